@@ -11,7 +11,7 @@ mod features;
 use features::{FEATURES, Feature};
 use fretwork::contact::Bond;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
-use fretwork::geometry::convex::{ContactTolerances, Core};
+use fretwork::geometry::convex::{ContactTolerances, Core, CorePair};
 use fretwork::geometry::periodic::Periodic;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::load;
@@ -185,7 +185,7 @@ fn pieces() {
             apart,
         ),
     ] {
-        let gauge = ContactTolerances {
+        let tolerances = ContactTolerances {
             reach: REACH,
             slack: 0.01 * REACH,
             held: false,
@@ -199,7 +199,13 @@ fn pieces() {
             for _ in 0..repeats {
                 for (a, b, way) in &pairs {
                     out.clear();
-                    a.contact_points(b, black_box(way), [0.0; 2], &gauge, &mut out);
+                    let pair = CorePair {
+                        cores: [a, b],
+                        apart: *black_box(way),
+                        roundings: [0.0; 2],
+                        tolerances,
+                    };
+                    Polyhedron::contact_points(&pair, &mut out);
                     points += out.len();
                 }
             }

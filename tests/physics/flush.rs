@@ -6,7 +6,7 @@ use crate::stepping::steps;
 use fretwork::geometry::convex::passing::{PairMotion, keep_ball_apart};
 use fretwork::geometry::convex::polygon::Polygon;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
-use fretwork::geometry::convex::{ContactTolerances, Core, PairFace};
+use fretwork::geometry::convex::{ContactTolerances, Core, CorePair, PairFace};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
@@ -344,8 +344,14 @@ fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[
             let mut apart = S::Vector::zero();
             (apart[0], apart[up]) = (sign * shift, sign * 2.5);
             let named = PairFace { of_candidate, face };
+            let pair = CorePair::<S> {
+                cores: [a, b],
+                apart,
+                roundings: [0.1, 0.05],
+                tolerances: TOLERANCES,
+            };
             let mut out = Vec::new();
-            S::Core::points_on_face(a, b, &apart, [0.1, 0.05], &TOLERANCES, named, &mut out);
+            S::Core::points_on_face(&pair, named, &mut out);
             let found = lowest(&mut out.iter().map(|m| m.gap));
             assert!(
                 (found - gap).abs() < 1e-12,

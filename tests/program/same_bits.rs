@@ -7,7 +7,7 @@ use fretwork::geometry::space::{Space, VectorLike};
 use fretwork::scene::{Loaded, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use fretwork::threads::divide_from;
+use fretwork::threads::divide_loops_from;
 use fretwork::{AnySimulation, in_dimension};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -59,7 +59,7 @@ fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u
         .build()
         .unwrap();
     // Small scenes too.
-    divide_from((threads > 1).then_some(0));
+    divide_loops_from((threads > 1).then_some(0));
     pool.install(|| {
         let mut simulation = built(loaded);
         simulation.options_mut().solver.parallel = threads > 1;

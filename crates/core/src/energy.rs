@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
 /// plus carried minus external work and expansion equals the initial energy.
 ///
-/// Dynamical systems are booked where rigid bodies and bonds are: their motion in `kinetic`, the
+/// Dynamical systems enter the entries of rigid bodies and bonds: their motion in `kinetic`, the
 /// energy of their deformation in `elastic`, their weight in `potential`, their damping in
 /// `viscous`, forces and motions imposed on them in `external_work`, and in `scheme` what the time
 /// integration takes of them. The impulses of contacts do work on a system through the velocities
@@ -79,7 +79,7 @@ pub struct BodyWork {
 
 impl Energy {
     /// Adds one step to the ledger.
-    pub fn book(&mut self, totals: &Totals, work: &BodyWork, kinetic: f64, elastic: f64) {
+    pub fn add_step(&mut self, totals: &Totals, work: &BodyWork, kinetic: f64, elastic: f64) {
         self.kinetic = kinetic;
         self.elastic = elastic;
         self.potential += work.potential;
@@ -116,7 +116,7 @@ impl Energy {
 
     /// Records a displacement of bodies at constant velocity: the change of potential energy and
     /// the work of imposed forces along it (J). The next recorded step closes the balance.
-    pub fn book_projection(&mut self, potential: f64, external: f64) {
+    pub fn add_projection(&mut self, potential: f64, external: f64) {
         self.potential += potential;
         self.external_work += external;
         self.correction -= potential - external;
@@ -212,7 +212,7 @@ impl Energy {
 
     /// Raises the scale of the balance to an energy (J) that is stored and released within one
     /// step, because its rounding error enters the residual.
-    pub fn see(&mut self, energy: f64) {
+    pub fn raise_scale(&mut self, energy: f64) {
         self.scale = self.scale.max(energy.abs());
     }
 
@@ -235,8 +235,8 @@ impl Energy {
 mod tests {
     use super::*;
 
-    /// What is supplied goes into all of the other entries in equal parts, so that none of them is
-    /// as large: the residual is zero, and the scale is what was supplied.
+    /// The supplied energy is divided equally among all other entries, so that none of them is as
+    /// large: the residual is zero, and the scale is the supplied energy.
     #[test]
     fn the_scale_is_the_largest_energy_and_what_adds_up_has_no_residual() {
         let totals = Totals {
@@ -270,16 +270,16 @@ mod tests {
                 initial_kinetic: at_start,
                 ..Energy::default()
             };
-            energy.book(&totals, &work, 1.0, 1.0);
+            energy.add_step(&totals, &work, 1.0, 1.0);
             assert_eq!((energy.residual, energy.scale), (0.0, all), "{work:?}");
             assert_eq!(energy.dissipated(), 4.0);
             // The entries before expansion add up to what was supplied.
             let sum: f64 = energy.entries()[..11].iter().map(|e| e.2).sum();
             assert_eq!(sum, energy.external_work + energy.expansion + at_start);
             // A smaller energy leaves the scale as it is, a larger one raises it.
-            energy.see(-1.0);
+            energy.raise_scale(-1.0);
             assert_eq!(energy.scale, all);
-            energy.see(-16.0);
+            energy.raise_scale(-16.0);
             energy.residual = -4.0;
             assert_eq!(energy.relative_residual(), 0.25);
         }
@@ -292,54 +292,33 @@ mod tests {
         let scale = |given: Energy| {
             let mut energy = given;
             let (kinetic, elastic) = (energy.kinetic, energy.elastic);
-            energy.book(&Totals::default(), &BodyWork::default(), kinetic, elastic);
+            energy.add_step(&Totals::default(), &BodyWork::default(), kinetic, elastic);
             energy.scale
         };
         let zero = Energy::default();
         assert_eq!((scale(zero), zero.relative_residual()), (0.0, 0.0));
-        for sign in [1.0, -1.0] {
-            let x = 3.0 * sign;
-            for given in [
-                Energy {
-                    external_work: x,
-                    ..zero
-                },
-                Energy {
-                    expansion: x,
-                    ..zero
-                },
-                Energy {
-                    potential: x,
-                    ..zero
-                },
-                Energy { kinetic: x, ..zero },
-                Energy {
-                    initial_kinetic: x,
-                    ..zero
-                },
-                Energy {
-                    fracture: x,
-                    ..zero
-                },
-                Energy {
-                    friction: x,
-                    ..zero
-                },
-                Energy { impact: x, ..zero },
-                Energy {
-                    adhesion: x,
-                    ..zero
-                },
-                Energy { viscous: x, ..zero },
-                Energy {
-                    correction: x,
-                    ..zero
-                },
-                Energy { scheme: x, ..zero },
-                Energy { carried: x, ..zero },
-            ] {
-                assert_eq!(scale(given), 3.0, "{given:?}");
-            }
+        let entries: [fn(&mut Energy) -> &mut f64; 13] = [
+            |e| &mut e.external_work,
+            |e| &mut e.expansion,
+            |e| &mut e.potential,
+            |e| &mut e.kinetic,
+            |e| &mut e.initial_kinetic,
+            |e| &mut e.fracture,
+            |e| &mut e.friction,
+            |e| &mut e.impact,
+            |e| &mut e.adhesion,
+            |e| &mut e.viscous,
+            |e| &mut e.correction,
+            |e| &mut e.scheme,
+            |e| &mut e.carried,
+        ];
+        for (x, entry) in entries
+            .iter()
+            .flat_map(|entry| [(3.0, entry), (-3.0, entry)])
+        {
+            let mut given = zero;
+            *entry(&mut given) = x;
+            assert_eq!(scale(given), 3.0, "{given:?}");
         }
     }
 
@@ -348,8 +327,8 @@ mod tests {
     #[test]
     fn a_projection_takes_its_work_from_the_correction() {
         let mut energy = Energy::default();
-        energy.book_projection(2.0, 0.5);
-        energy.book(&Totals::default(), &BodyWork::default(), 0.0, 0.0);
+        energy.add_projection(2.0, 0.5);
+        energy.add_step(&Totals::default(), &BodyWork::default(), 0.0, 0.0);
         assert_eq!((energy.potential, energy.external_work), (2.0, 0.5));
         assert_eq!((energy.correction, energy.residual), (-1.5, 0.0));
     }

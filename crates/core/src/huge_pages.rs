@@ -62,26 +62,26 @@ fn advise(start: *mut u8, size: usize) {
 // SAFETY: every call is the system allocator's.
 unsafe impl GlobalAlloc for HugePages {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         let start = unsafe { System.alloc(layout) };
         advise(start, layout.size());
         start
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         let start = unsafe { System.alloc_zeroed(layout) };
         advise(start, layout.size());
         start
     }
 
     unsafe fn dealloc(&self, start: *mut u8, layout: Layout) {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.dealloc(start, layout) }
     }
 
     unsafe fn realloc(&self, start: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         let start = unsafe { System.realloc(start, layout, size) };
         advise(start, size);
         start

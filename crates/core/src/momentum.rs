@@ -1,4 +1,4 @@
-//! The ledger of momentum: what free rigid bodies have gained that nothing outside of them gave.
+//! The ledger of momentum: the momentum that free rigid bodies gained without an external cause.
 
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// them, since the start: zero but for rounding where the contacts among them act on one place of
 /// both bodies (N s and N m s; per metre of depth in 2D).
 ///
-/// Outside are first bodies and dynamical systems. Between steps nothing is booked: what removes,
-/// adds, pushes or displaces bodies there acts from outside.
+/// Outside are first bodies and dynamical systems. Changes between steps are not counted:
+/// removing, adding, pushing and displacing bodies are external.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Momentum {
     /// Linear momentum, x, y, z (N s).
@@ -43,7 +43,7 @@ impl<S: Space> MomentumSum<S> {
         }
     }
 
-    /// Adds that of others.
+    /// Adds another sum.
     pub fn add(&mut self, other: &Self) {
         self.linear += other.linear;
         self.angular += other.angular;
@@ -52,8 +52,8 @@ impl<S: Space> MomentumSum<S> {
 }
 
 impl Momentum {
-    /// Adds a step: the gain that nothing outside gave, and the sizes of what there is.
-    pub fn book<S: Space>(&mut self, step: &MomentumSum<S>) {
+    /// Adds a step: the gain without external cause, and the sizes of the momenta.
+    pub fn add_step<S: Space>(&mut self, step: &MomentumSum<S>) {
         let angular = match S::D {
             2 => [0.0, 0.0, step.angular[0]],
             _ => step.angular.padded(),

@@ -1,16 +1,14 @@
-//! Division of a loop among the threads of the current pool, where there is enough to do for that
-//! to pay.
+//! Division of loops among the threads of the current pool, if the work is worth it.
 //!
-//! Loops are cut into chunks of a fixed size, whatever the number of threads, and what chunks give
-//! is joined in their order: the results have the same bits on any number of threads, one after the
-//! other included.
+//! Loops are divided into chunks of a fixed size, independent of the number of threads, and the
+//! results of the chunks are joined in order: results have the same bits on any number of threads.
 
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Least work that pays for waking other threads (ns): many times what that takes, since other
-/// programs may run on their cores.
+/// Smallest work for which other threads are used (ns): many times the cost of waking them, since
+/// other programs may run on their cores.
 const LEAST_WORK: u64 = 170_000;
 
 /// Least items of a task in [`fill`].
@@ -21,13 +19,13 @@ static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
 /// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured
 /// one. Results do not depend on it: tests set zero, so that small scenes run on several threads
 /// too.
-pub fn divide_from(nanoseconds: Option<u64>) {
+pub fn divide_loops_from(nanoseconds: Option<u64>) {
     LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
 }
 
-/// Returns the size of the chunks of a loop whose results do not depend on it: smaller ones where
-/// all loops are divided.
-pub fn any_size(size: usize) -> usize {
+/// Returns the size of the chunks of a loop whose results do not depend on it; it is reduced if all
+/// loops are divided ([`divide_loops_from`] zero).
+pub fn chunk_size(size: usize) -> usize {
     match LEAST.load(Ordering::Relaxed) {
         0 => size.div_ceil(16),
         _ => size,
@@ -37,7 +35,7 @@ pub fn any_size(size: usize) -> usize {
 /// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller
 /// allows several threads.
 #[inline]
-pub fn pays(parallel: bool, items: usize, each: f64) -> bool {
+pub fn worth_dividing(parallel: bool, items: usize, each: f64) -> bool {
     parallel
         && items as f64 * each >= LEAST.load(Ordering::Relaxed) as f64
         && rayon::current_num_threads() > 1
@@ -116,7 +114,7 @@ pub fn fill<T: Send>(
     of: impl Fn(usize) -> T + Sync + Send,
 ) {
     empty(list, count);
-    let out = Spread(list.as_mut_ptr());
+    let out = SharedSlots(list.as_mut_ptr());
     let tasks = if divide {
         count.div_ceil(LEAST_ITEMS).max(1)
     } else {
@@ -138,15 +136,15 @@ pub fn fill<T: Send>(
 }
 
 /// The memory of a list, of which each place is written by one thread.
-struct Spread<T>(*mut T);
-// SAFETY: as above.
-unsafe impl<T: Send> Sync for Spread<T> {}
+struct SharedSlots<T>(*mut T);
+// SAFETY: each place is written by one thread.
+unsafe impl<T: Send> Sync for SharedSlots<T> {}
 
-impl<T> Spread<T> {
+impl<T> SharedSlots<T> {
     /// # Safety
     /// The place is in the allocation, and nobody else uses it.
     unsafe fn put(&self, place: u32, item: T) {
-        // SAFETY: as above.
+        // SAFETY: guaranteed by the caller.
         unsafe { self.0.add(place as usize).write(item) }
     }
 
@@ -159,26 +157,26 @@ impl<T> Spread<T> {
     #[inline(never)]
     unsafe fn fill(&self, indices: Range<usize>, of: &impl Fn(usize) -> T) {
         for k in indices {
-            // SAFETY: as above.
+            // SAFETY: guaranteed by the caller.
             unsafe { self.0.add(k).write(of(k)) }
         }
     }
 }
 
-/// Empties a list that will have `count` items: with room for some more, but not for twice as many
-/// as lists that grow by doubling have.
+/// Empties a list that will have `count` items, with room for slightly more, but not for twice as
+/// many as in lists that grow by doubling.
 fn empty<T>(list: &mut Vec<T>, count: usize) {
     list.clear();
     let capacity = list.capacity();
     if capacity < count || capacity > count + count / 2 + 64 {
-        // The old memory goes before the new one comes.
+        // Frees the old memory before new memory is allocated.
         *list = Vec::new();
         list.reserve_exact(count + count / 16);
     }
 }
 
-/// Replaces the items of a list: that with index `places[k]` is what `of` gives for k. Items are
-/// made in the order of k, so that what they are made of is read in order.
+/// Replaces the items of a list: item `places[k]` is `of(k)`. Items are computed in the order of k, so
+/// that their inputs are read in order.
 ///
 /// # Safety
 /// `places` has each index below its length once.
@@ -190,7 +188,7 @@ pub unsafe fn fill_places<T: Send>(
 ) {
     let count = places.len();
     empty(list, count);
-    let spread = Spread(list.as_mut_ptr());
+    let spread = SharedSlots(list.as_mut_ptr());
     // SAFETY: places are below the capacity, and each is written once.
     let one = |k: usize| unsafe { spread.put(places[k], of(k)) };
     if divide {
@@ -235,13 +233,13 @@ pub fn map_tasks<T: Send, R: Send>(
     }
 }
 
-/// Items of a partial sum.
+/// Number of items of a partial sum.
 const SUM: usize = 1024;
 
 /// Returns the sum of what `of` gives for each index below `count`, which takes about `each`
 /// nanoseconds: partial sums of a fixed number of items, added in their order.
 pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+    let parts = map_ranges(worth_dividing(parallel, count, each), count, SUM, |items| {
         items.map(&of).sum::<f64>()
     });
     parts.iter().sum()
@@ -249,7 +247,7 @@ pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + 
 
 /// Returns how many indices below `count` satisfy `of`, which takes about `each` nanoseconds.
 pub fn count(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool + Sync) -> usize {
-    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+    let parts = map_ranges(worth_dividing(parallel, count, each), count, SUM, |items| {
         items.filter(|k| of(*k)).count()
     });
     parts.iter().sum()
@@ -257,7 +255,7 @@ pub fn count(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool
 
 /// Returns whether any index below `count` satisfies `of`, which takes about `each` nanoseconds.
 pub fn any(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool + Sync) -> bool {
-    if !pays(parallel, count, each) {
+    if !worth_dividing(parallel, count, each) {
         return (0..count).any(of);
     }
     let parts = map_ranges(true, count, SUM, |mut items| items.any(&of));
@@ -268,7 +266,7 @@ pub fn any(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool +
 /// nanoseconds; 0 if none is larger, NaN if one is.
 pub fn largest(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
     let larger = |far: f64, x: f64| if x <= far || far.is_nan() { far } else { x };
-    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+    let parts = map_ranges(worth_dividing(parallel, count, each), count, SUM, |items| {
         items.map(&of).fold(0.0, larger)
     });
     parts.into_iter().fold(0.0, larger)
@@ -364,12 +362,12 @@ mod tests {
     fn small_loops_are_not_divided() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2);
         pool.build().unwrap().install(|| {
-            assert!(pays(true, 1_000_000, 100.0));
-            assert!(!pays(false, 1_000_000, 100.0));
-            assert!(!pays(true, 10, 1.0));
+            assert!(worth_dividing(true, 1_000_000, 100.0));
+            assert!(!worth_dividing(false, 1_000_000, 100.0));
+            assert!(!worth_dividing(true, 10, 1.0));
         });
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
         let alone = alone.build().unwrap();
-        assert!(!alone.install(|| pays(true, 1_000_000, 100.0)));
+        assert!(!alone.install(|| worth_dividing(true, 1_000_000, 100.0)));
     }
 }

@@ -1,5 +1,5 @@
-//! Units of quantities. In a plane scene extensive quantities are per metre of depth; here alone a
-//! unit depends on the dimension.
+//! Units of quantities. In 2D extensive quantities are per metre of depth; this module alone makes
+//! units depend on the dimension.
 
 /// The SI unit of a quantity, in space and in the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +58,6 @@ pub const CONDUCTANCE: Unit = Unit::by_depth("W/K", "W/(m K)");
 pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
 /// Moments of inertia.
 pub const INERTIA: Unit = Unit::by_depth("kg m^2", "kg m");
-/// Voltages.
-pub const VOLT: Unit = Unit::of("V");
 
 impl Unit {
     /// A unit that is the same in every dimension; `1` for pure numbers.
@@ -72,7 +70,7 @@ impl Unit {
         Self { space, plane }
     }
 
-    /// Its symbol in a dimension: `1` for pure numbers, empty for what is no number.
+    /// Returns the symbol in a dimension: `1` for pure numbers, empty for texts and flags.
     pub const fn symbol(self, dimension: usize) -> &'static str {
         if dimension == 2 {
             self.plane
@@ -81,7 +79,7 @@ impl Unit {
         }
     }
 
-    /// Its symbol for the heading of a column, which is empty for pure numbers.
+    /// Returns the symbol for the heading of a column, empty for pure numbers.
     pub const fn heading(self, dimension: usize) -> &'static str {
         match self.symbol(dimension).as_bytes() {
             b"1" => "",

@@ -15,14 +15,14 @@ use super::wear::WearSummary;
 use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
-use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{Simulation, StepReport};
 use serde::{Deserialize, Serialize};
 
 /// Observes a friction test.
 #[derive(Debug)]
 pub struct FrictionTest<S: Space> {
-    body: RubbedBody,
+    body: SlidingBody,
     sample: Sample,
     before: State,
     state: Followed<S>,
@@ -46,7 +46,7 @@ struct Followed<S: Space> {
 
 impl<S: Space> FrictionTest<S> {
     /// A test of a body with these cycles, from the current state on.
-    pub fn new(body: RubbedBody, cycles: Cycles, s: &Simulation<S>) -> Self {
+    pub fn new(body: SlidingBody, cycles: Cycles, s: &Simulation<S>) -> Self {
         Self {
             body,
             sample: Sample::default(),

@@ -9,7 +9,7 @@ use super::warning::{NOT_REACHED, Warning};
 use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
-pub use fretwork_core::process::jump::{Jump, JumpSummary, Point};
+pub use fretwork_core::process::jump::{Jump, JumpPoint, JumpSummary};
 use fretwork_core::step::Simulation;
 
 /// Observes the jumps over cycles, which are a process of the simulation.

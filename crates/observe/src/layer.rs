@@ -6,7 +6,7 @@
 //! is not used here, so the two balances check each other.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::process::cycle::{Rubbed, RubbedBody};
+use fretwork_core::process::cycle::{SlidingBody, SlidingPart};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -48,9 +48,9 @@ impl<S: Space> Layer<S> {
     /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given,
     /// which is kept apart. Where the body of the test deforms, the work of all other drives is
     /// that of the ledger.
-    pub fn follow(&mut self, s: &Simulation<S>, test: Option<(&RubbedBody, f64)>) {
+    pub fn follow(&mut self, s: &Simulation<S>, test: Option<(&SlidingBody, f64)>) {
         let external = s.state.energy.external_work;
-        let deforms = test.filter(|(body, _)| matches!(body.rubbed, Rubbed::System { .. }));
+        let deforms = test.filter(|(body, _)| matches!(body.part, SlidingPart::System { .. }));
         if let Some((_, work)) = deforms {
             self.other += external - self.external - work;
         }
@@ -67,7 +67,7 @@ impl<S: Space> Layer<S> {
             if deforms.is_none() {
                 self.other -= impulse.dot(&v) + moment.dot(&w);
             }
-            if let Some((body, _)) = test.filter(|(body, _)| body.rubbed == Rubbed::Driven(d)) {
+            if let Some((body, _)) = test.filter(|(body, _)| body.part == SlidingPart::Driven(d)) {
                 self.other += impulse[body.along] * v[body.along];
             }
             let (dv, dw) = (*v1 - *v0, *w1 - *w0);

@@ -8,7 +8,7 @@ use super::statistics::Column;
 use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_core::wear::{Form, Scar, shape};
+use fretwork_core::wear::{Scar, ScarForm, shape};
 use serde::Serialize;
 
 crate::described! {
@@ -24,7 +24,7 @@ crate::described! {
         /// Position of the largest depth along x, in the body's frame.
         pub deepest_at: f64 => METRE,
         /// `U` deepest in the middle, `W` deeper on both sides, `None`.
-        pub form: Form => WORD,
+        pub form: ScarForm => WORD,
         /// Start of the scar along x; null if there is no scar.
         pub from: Option<f64> => METRE,
         /// End of the scar along x; null if there is no scar.
@@ -58,7 +58,7 @@ impl ScarSummary {
     /// Describes its form and extent; volume and depths are reported with the wear of its body.
     pub fn outline(&self) -> String {
         match (self.form, self.from, self.to) {
-            (Form::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
+            (ScarForm::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
             (form, Some(from), Some(to)) => {
                 let [left, right] = self.sides;
                 let m = |x: f64| quantity(x, "m");

@@ -12,7 +12,7 @@ use super::statistics::Column;
 use crate::typed::ObserverIn;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::detect::centre;
-use fretwork_core::geometry::grid::pairs;
+use fretwork_core::geometry::grid::{Balls, pairs};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use nalgebra::{DMatrix, Matrix3};
@@ -48,9 +48,13 @@ impl<S: Space> Strain<S> {
         let reach = if n > 0.0 { sum / n } else { 0.0 };
         let periodic = &s.shapes.periodic;
         let mut around = vec![Vec::new(); balls.len()];
-        for (a, b) in pairs(&centres, &radii, reach, periodic, false, |a, b| {
-            counts(a) && counts(b)
-        }) {
+        let all = Balls {
+            centres: &centres,
+            radii: &radii,
+            reach,
+            periodic,
+        };
+        for (a, b) in pairs(&all, false, |a, b| counts(a) && counts(b)) {
             let apart = centres[b as usize] - centres[a as usize];
             let vector = periodic.shortest(apart);
             let image = vector - apart;

@@ -13,7 +13,7 @@ use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::{Simulation, StepReport};
-use fretwork_core::threads::{map_ranges, pays};
+use fretwork_core::threads::{map_ranges, worth_dividing};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
@@ -376,7 +376,7 @@ const EACH: f64 = 4.0;
 fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     let bodies = &s.state.bodies;
     let grain = bodies.grain_flags();
-    let divide = pays(s.options.solver.parallel, bodies.len(), EACH);
+    let divide = worth_dividing(s.options.solver.parallel, bodies.len(), EACH);
     let parts = map_ranges(divide, bodies.len(), CHUNK, |range| {
         let (mut low, mut high, mut flow) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for b in range {

@@ -13,7 +13,7 @@ use rand_pcg::Pcg64;
 use std::collections::HashMap;
 
 /// Attempts to place one grain.
-const THROWS: usize = 5_000;
+const ATTEMPTS: usize = 5_000;
 
 /// A box (m).
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub struct Deposit<V> {
     /// Centres and radii (m), in random order of size.
     pub grains: Vec<(V, f64)>,
     /// Fraction of the box that all requested grains would fill.
-    pub asked: f64,
+    pub filling: f64,
 }
 
 /// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it;
@@ -59,11 +59,11 @@ pub fn deposit<S: Space>(
             && periodic.period[k]
                 .is_some_and(|p| corners.high[k] - corners.low[k] >= p * (1.0 - 1e-9))
     });
-    let mut placed = Levels::<S::Vector>::default();
+    let mut placed = SizeLevels::<S::Vector>(Vec::new());
     let mut found: Vec<Option<S::Vector>> = vec![None; count];
     for k in order {
         let radius = radii[k];
-        let Some(at) = room(&mut rng, radius, corners, around, periodic, &placed) else {
+        let Some(at) = free_place(&mut rng, radius, corners, around, periodic, &placed) else {
             break;
         };
         placed.add(at, radius, periodic);
@@ -72,18 +72,18 @@ pub fn deposit<S: Space>(
     let grains = found.iter().zip(&radii);
     Deposit {
         grains: grains.filter_map(|(x, r)| x.map(|x| (x, *r))).collect(),
-        asked: volume / corners.volume(),
+        filling: volume / corners.volume(),
     }
 }
 
 /// Draws positions for a ball until one overlaps no other; `None` after too many attempts.
-fn room<V: VectorLike>(
+fn free_place<V: VectorLike>(
     rng: &mut Pcg64,
     radius: f64,
     corners: &Corners<V>,
     around: [bool; 3],
     periodic: &Periodic,
-    placed: &Levels<V>,
+    placed: &SizeLevels<V>,
 ) -> Option<V> {
     let mut ranges = [(0.0, 0.0); 3];
     for k in 0..V::N {
@@ -93,7 +93,7 @@ fn room<V: VectorLike>(
             return None;
         }
     }
-    for _ in 0..THROWS {
+    for _ in 0..ATTEMPTS {
         let mut at = V::zero();
         for k in 0..V::N {
             let (low, high) = ranges[k];
@@ -106,20 +106,14 @@ fn room<V: VectorLike>(
     None
 }
 
-/// Balls sorted by size: each level holds radii within a factor of two of its largest, in cells as
-/// wide as that ball. A ball not larger than all placed ones therefore meets the balls of a level
+/// Balls sorted by size: each level has radii within a factor of two of its largest, in cells as wide
+/// as that ball. A ball not larger than all placed ones therefore meets the balls of a level
 /// in adjacent cells only.
-struct Levels<V>(Vec<Level<V>>);
+struct SizeLevels<V>(Vec<SizeLevel<V>>);
 
-struct Level<V> {
+struct SizeLevel<V> {
     widest: f64,
     cells: HashMap<[i64; 3], Vec<(V, f64)>>,
-}
-
-impl<V> Default for Levels<V> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
 }
 
 /// Number of cells of a level along an axis, and their width, adjusted to the period.
@@ -134,7 +128,7 @@ fn grid(widest: f64, period: Option<f64>) -> (f64, Option<i64>) {
     }
 }
 
-impl<V: VectorLike> Level<V> {
+impl<V: VectorLike> SizeLevel<V> {
     fn cell(&self, x: &V, periodic: &Periodic) -> [i64; 3] {
         let mut cell = [0; 3];
         for (k, c) in cell.iter_mut().enumerate().take(V::N) {
@@ -146,11 +140,11 @@ impl<V: VectorLike> Level<V> {
     }
 }
 
-impl<V: VectorLike> Levels<V> {
+impl<V: VectorLike> SizeLevels<V> {
     /// Inserts a ball that is not larger than those before.
     fn add(&mut self, at: V, radius: f64, periodic: &Periodic) {
         if self.0.last().is_none_or(|l| radius < 0.5 * l.widest) {
-            self.0.push(Level {
+            self.0.push(SizeLevel {
                 widest: radius,
                 cells: HashMap::new(),
             });
@@ -239,6 +233,6 @@ mod tests {
         let sizes = Sizes::power((0.1, 0.1), 0.0);
         let made = deposit::<Dim2>(60, &sizes, &corners, &Periodic::default(), 1);
         assert!(made.grains.len() < 32 && made.grains.len() > 5);
-        assert!((made.asked - 60.0 * std::f64::consts::PI * 0.01).abs() < 1e-9);
+        assert!((made.filling - 60.0 * std::f64::consts::PI * 0.01).abs() < 1e-9);
     }
 }

@@ -48,12 +48,12 @@ pub fn tiling(
     let only_x = Periodic {
         period: [around, None, None],
     };
-    let thrown = deposit::<Dim2>(count, &apart, corners, &only_x, seed);
-    if thrown.grains.len() < count {
+    let deposited = deposit::<Dim2>(count, &apart, corners, &only_x, seed);
+    if deposited.grains.len() < count {
         return None;
     }
-    let mut sites: Vec<V> = thrown.grains.iter().map(|g| g.0).collect();
-    let region = Region {
+    let mut sites: Vec<V> = deposited.grains.iter().map(|g| g.0).collect();
+    let region = Rectangle {
         corners: *corners,
         around,
         size,
@@ -120,13 +120,13 @@ impl HasPosition for Site {
 }
 
 /// The region to fill.
-struct Region {
+struct Rectangle {
     corners: Corners<V>,
     around: Option<f64>,
     size: f64,
 }
 
-impl Region {
+impl Rectangle {
     /// The sites and their images in the walls or across the period.
     fn with_images(&self, sites: &[V]) -> Vec<Site> {
         let (low, high) = (self.corners.low, self.corners.high);

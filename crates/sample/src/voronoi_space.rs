@@ -38,7 +38,7 @@ pub struct Cell {
 
 /// A Voronoi tiling of a box.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tiling {
+pub struct SpaceTiling {
     /// The cells, sorted so that neighbours in space are near in memory. Across a period, cells
     /// extend beyond the box.
     pub cells: Vec<Cell>,
@@ -66,22 +66,22 @@ pub fn tiling(
     size: f64,
     rounds: usize,
     seed: u64,
-) -> Result<Tiling, Failure> {
+) -> Result<SpaceTiling, Failure> {
     let count = (corners.volume() / size.powi(3)).round().max(1.0) as usize;
     let wide = corners.high - corners.low;
     let around = [0, 1, 2].map(|k| periodic.period[k].filter(|p| wide[k] >= p * (1.0 - 1e-9)));
     let apart = Sizes::power((0.25 * size, 0.25 * size), 0.0);
     let periods = Periodic { period: around };
-    let thrown = deposit::<Dim3>(count, &apart, corners, &periods, seed);
-    if thrown.grains.len() < count {
+    let deposited = deposit::<Dim3>(count, &apart, corners, &periods, seed);
+    if deposited.grains.len() < count {
         return Err(Failure::Thin);
     }
-    let region = Region {
+    let region = BoxRegion {
         corners: *corners,
         around,
         size,
     };
-    let mut sites: Vec<V> = thrown.grains.iter().map(|g| g.0).collect();
+    let mut sites: Vec<V> = deposited.grains.iter().map(|g| g.0).collect();
     for _ in 0..rounds {
         let moves: Vec<V> = region.cut_all(&sites).iter().map(|c| centre(c)).collect();
         for (site, way) in sites.iter_mut().zip(moves) {
@@ -96,21 +96,21 @@ pub fn tiling(
     let to_move = |cut: &[Vec<Corner<Side>>], i: usize| region.is_to_move(i, &cut[i]);
     let mut short: Vec<bool> = (0..sites.len()).map(|i| to_move(&cut, i)).collect();
     for _ in 0..NUDGES {
-        let restless: Vec<usize> = (0..sites.len()).filter(|i| short[*i]).collect();
-        if restless.is_empty() {
+        let short_cells: Vec<usize> = (0..sites.len()).filter(|i| short[*i]).collect();
+        if short_cells.is_empty() {
             let cells = cut.iter().enumerate();
             let cells = cells.map(|(i, corners)| region.finished(&sites, i, corners));
             let cells: Option<Vec<Cell>> = cells.collect();
-            let tiling = cells.map(|cells| Tiling { cells, moved });
+            let tiling = cells.map(|cells| SpaceTiling { cells, moved });
             return tiling.ok_or(Failure::Short);
         }
-        moved += restless.len();
-        let left: Vec<V> = restless.iter().map(|i| sites[*i]).collect();
-        for i in &restless {
+        moved += short_cells.len();
+        let left: Vec<V> = short_cells.iter().map(|i| sites[*i]).collect();
+        for i in &short_cells {
             let way = V::from_fn(|_, _| rng.random_range(-1.0..1.0)) * (NUDGE * size);
             sites[*i] = region.wrapped(sites[*i] + way);
         }
-        for i in region.cut_again(&sites, &restless, &left, &mut cut) {
+        for i in region.cut_again(&sites, &short_cells, &left, &mut cut) {
             short[i] = to_move(&cut, i);
         }
     }
@@ -241,13 +241,13 @@ fn farthest(corners: &[Corner<Side>]) -> f64 {
 }
 
 /// The region to fill.
-struct Region {
+struct BoxRegion {
     corners: Corners<V>,
     around: [Option<f64>; 3],
     size: f64,
 }
 
-impl Region {
+impl BoxRegion {
     /// Wraps a position into the box across periods, and keeps it at least a twentieth of a cell
     /// from walls.
     fn wrapped(&self, mut at: V) -> V {
@@ -378,10 +378,7 @@ impl Region {
                 let place = 0.5 * period * f64::from(periods[k]);
                 (Side::Site(i as u32, periods), place)
             }
-            None => {
-                let walls = [self.corners.low[k], self.corners.high[k]];
-                (Side::Wall(k, high), walls[usize::from(high)] - own[k])
-            }
+            None => (Side::Wall(k, high), self.wall(k, high) - own[k]),
         };
         (0..8)
             .map(|c| {
@@ -424,19 +421,17 @@ impl Region {
             Side::Site(j, periods) => (sites[*j as usize] + self.shift(*periods) - own).normalize(),
             Side::Wall(k, high) => V::ith(*k, if *high { 1.0 } else { -1.0 }),
         };
+        let neighbour = |side: &Side| match side {
+            Side::Site(j, _) => Some(*j),
+            Side::Wall(..) => None,
+        };
         Some(Cell {
             points: points?,
             faces: sides
                 .iter()
                 .map(|s| ordered(corners, *s, &outward(s)))
                 .collect(),
-            beyond: sides
-                .iter()
-                .map(|s| match s {
-                    Side::Site(j, _) => Some(*j),
-                    Side::Wall(..) => None,
-                })
-                .collect(),
+            beyond: sides.iter().map(neighbour).collect(),
         })
     }
 
@@ -475,11 +470,8 @@ impl Region {
     }
 
     fn wall(&self, axis: usize, high: bool) -> f64 {
-        if high {
-            self.corners.high[axis]
-        } else {
-            self.corners.low[axis]
-        }
+        let corners = [self.corners.low, self.corners.high];
+        corners[usize::from(high)][axis]
     }
 }
 

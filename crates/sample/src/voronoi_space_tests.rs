@@ -7,7 +7,7 @@ use fretwork_core::geometry::convex::polyhedron_mass;
 const LOW: V = V::new(-0.3, 0.7, 0.1);
 const HIGH: V = V::new(0.3, 1.1, 0.5);
 
-fn made(size: f64, rounds: usize, around: [bool; 3], seed: u64) -> Tiling {
+fn made(size: f64, rounds: usize, around: [bool; 3], seed: u64) -> SpaceTiling {
     let corners = Corners {
         low: LOW,
         high: HIGH,

@@ -5,7 +5,7 @@ use super::case::Case;
 use super::source::{ValidationError, nearest};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::{Interface, Kind};
-use fretwork_core::process::circuit::{Fate, Spec, Zone};
+use fretwork_core::process::circuit::{EjectedFate, Spec, Zone};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -236,7 +236,9 @@ pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
         low: S::Vector::from_slice(&z.low),
         high: S::Vector::from_slice(&z.high),
         carrier: z.carried_by.as_ref().and_then(index),
-        fate: z.lost_after.map_or(Fate::Stays, Fate::LostAfter),
+        fate: z
+            .lost_after
+            .map_or(EjectedFate::Stays, EjectedFate::LostAfter),
     });
     Some(Spec {
         bases: circuit.bases.iter().filter_map(index).collect(),

@@ -41,7 +41,7 @@ pub(super) fn points<S: Space>(
             let mut near = Vec::new();
             surface
                 .shape
-                .touches(&(arm - surface.offset), reach, &mut near);
+                .closest_points(&(arm - surface.offset), reach, &mut near);
             let nearest = near
                 .iter()
                 .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));

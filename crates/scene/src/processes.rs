@@ -7,7 +7,7 @@ use super::phases::{drives_of_holder, holder_name};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::circuit::{CircuitProcess, Intervals};
-use fretwork_core::process::cycle::{CycleClock, Rubbed, RubbedBody};
+use fretwork_core::process::cycle::{CycleClock, SlidingBody, SlidingPart};
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::Simulation;
 
@@ -15,7 +15,7 @@ use fretwork_core::step::Simulation;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionTest {
     /// The body that is rubbed.
-    pub body: RubbedBody,
+    pub body: SlidingBody,
     /// Its cycles.
     pub clock: CycleClock,
     /// When the motion starts to count (s); where it has no period its friction counts from later
@@ -36,8 +36,8 @@ impl FrictionTest {
             _ => test.start,
         };
         Some(Self {
-            body: RubbedBody {
-                rubbed,
+            body: SlidingBody {
+                part: rubbed,
                 along: test.along,
                 normal: test.normal,
             },
@@ -48,11 +48,11 @@ impl FrictionTest {
 }
 
 /// The body of the test of a case in its scene, and the drive that rubs it.
-fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(Rubbed, &'a Dof)> {
+fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(SlidingPart, &'a Dof)> {
     let test = case.friction.as_ref()?;
     let driven = &s.state.bodies.driven;
     if let Some(place) = driven.iter().position(|d| d.name == test.body) {
-        return Some((Rubbed::Driven(place), &driven[place].dofs[test.along]));
+        return Some((SlidingPart::Driven(place), &driven[place].dofs[test.along]));
     }
     let (part, dof) = held(case, &test.body, test.along)?;
     let systems = &s.state.systems;
@@ -62,7 +62,7 @@ fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(Rubbed,
     let holder = holders
         .iter()
         .position(|h| h.part == part && h.axis == test.along)?;
-    Some((Rubbed::System { system, holder }, dof))
+    Some((SlidingPart::System { system, holder }, dof))
 }
 
 /// The part of a deformable body that is held along an axis, and its drive: the first that moves or

@@ -8,7 +8,7 @@ mod rolling;
 
 use super::*;
 use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
-use fretwork::process::cycle::{Rubbed, RubbedBody};
+use fretwork::process::cycle::{SlidingBody, SlidingPart};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -341,8 +341,8 @@ fn fretted(theta: f64) -> Simulation<Dim2> {
 fn the_area_of_a_loop_does_not_depend_on_theta() {
     let areas = [0.6, 0.8, 1.0].map(|theta| {
         let mut s = fretted(theta);
-        let rubbed = RubbedBody {
-            rubbed: Rubbed::System {
+        let body = SlidingBody {
+            part: SlidingPart::System {
                 system: 1,
                 holder: 0,
             },
@@ -350,15 +350,15 @@ fn the_area_of_a_loop_does_not_depend_on_theta() {
             normal: 1,
         };
         go(&mut s, 32);
-        let (mut area, mut before) = (0.0, rubbed.drive(&s).force);
+        let (mut area, mut before) = (0.0, body.drive(&s).force);
         let heat = s.state.energy.friction;
         for _ in 0..80 {
             go(&mut s, 1);
-            let drive = rubbed.drive(&s);
+            let drive = body.drive(&s);
             area += drive.work(before);
             before = drive.force;
         }
-        near(178.9e3, rubbed.normal_force(&s), 1e-3);
+        near(178.9e3, body.normal_force(&s), 1e-3);
         let heat = s.state.energy.friction - heat;
         println!("theta {theta}: area {area:e}, heat {heat:e}");
         near(heat, area, 0.003);

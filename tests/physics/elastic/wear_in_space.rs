@@ -225,9 +225,9 @@ fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
     for v in vertices {
         let extra = if place(&v.at, -1.2e-4) { more } else { 0.0 };
         let volume = v.tributary * (layer + extra);
-        scar.put(&s.shapes, &(v.at - frame), volume).unwrap();
+        scar.wear_at(&s.shapes, &(v.at - frame), volume).unwrap();
     }
-    scar.show(&mut s.shapes, 1.0);
+    scar.apply_depth(&mut s.shapes, 1.0);
     go(&mut s, 40);
     let h = s.options.scheme.h;
     // A cell may touch a face and vertices: its load is the sum.

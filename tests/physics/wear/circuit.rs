@@ -53,7 +53,7 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
 /// the bar; its debris cost both.
 #[test]
 fn debris_remembers_the_bonds_that_broke_before_the_last() {
-    use fretwork::process::circuit::Circuit;
+    use fretwork::process::circuit::GrainCircuit;
     use fretwork::scene::circuit;
     // A heavy grain beside a light one: its root breaks first.
     let sets = [
@@ -64,11 +64,11 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     let loaded = scene::loaded("verification/falling_debris", &sets);
     let mut s = scene::simulation::<Dim2>(&loaded);
     s.step().unwrap();
-    let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
+    let mut account = GrainCircuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let (mut when, mut cost) = (Vec::new(), 0.0);
     while account.debris.is_empty() && s.state.time < 0.8 {
         s.step().unwrap();
-        account.note(&s);
+        account.record_bonds(&s);
         for b in &s.state.network.bond_breaks {
             when.push(s.state.time);
             cost += b.life.fracture;

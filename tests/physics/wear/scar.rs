@@ -3,7 +3,7 @@
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
-use fretwork::wear::{Form, shape};
+use fretwork::wear::{ScarForm, shape};
 
 fn scene<S: Space>(name: &str, sets: &[&str]) -> Simulation<S> {
     let mut s = scene::case::<S>(name, sets);
@@ -26,7 +26,7 @@ fn under<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 /// What the contacts of a step did: normal force, slip, work of friction and area, one by one.
-struct Rubbed {
+struct SlidingPart {
     force: f64,
     slip: f64,
     work: f64,
@@ -36,7 +36,11 @@ struct Rubbed {
 /// Runs and adds up what a law makes of each contact and step; compares with the scar, with the
 /// surface, and closes the ledger. The slip is the way that the slider itself went along the
 /// contact, it does not turn.
-fn worn<S: Space>(name: &str, sets: &[&str], law: impl Fn(f64, &Rubbed) -> f64) -> Simulation<S> {
+fn worn<S: Space>(
+    name: &str,
+    sets: &[&str],
+    law: impl Fn(f64, &SlidingPart) -> f64,
+) -> Simulation<S> {
     let mut s = scene::<S>(name, sets);
     let slider = s.state.bodies.driven[1].body as usize;
     let steps = (0.5 / s.options.scheme.h).round() as usize;
@@ -48,7 +52,7 @@ fn worn<S: Space>(name: &str, sets: &[&str], law: impl Fn(f64, &Rubbed) -> f64) 
         let way = s.state.bodies.position[slider] - from;
         let spent = s.state.network.dissipation.as_ref().unwrap();
         for (c, spent) in s.state.network.contacts.iter().zip(spent) {
-            let rubbed = Rubbed {
+            let rubbed = SlidingPart {
                 force: c.impulse.dot(&c.normal) / s.options.scheme.h,
                 slip: S::tangential(&c.normal, &way).norm(),
                 work: spent.friction,
@@ -75,7 +79,7 @@ fn worn<S: Space>(name: &str, sets: &[&str], law: impl Fn(f64, &Rubbed) -> f64) 
     s
 }
 
-fn archard(k: f64) -> impl Fn(f64, &Rubbed) -> f64 {
+fn archard(k: f64) -> impl Fn(f64, &SlidingPart) -> f64 {
     move |_, r| k * r.force.max(0.0) * r.slip
 }
 
@@ -126,7 +130,7 @@ fn t_gamma_wears_by_its_map() {
     for (speed, density, load, severe) in [(1.0, 785.0, -2e6, false), (1e-5, 7.85e-3, -150.0, true)]
     {
         let in_severe = std::cell::Cell::new(0);
-        let map = |h: f64, r: &Rubbed| {
+        let map = |h: f64, r: &SlidingPart| {
             let swept = r.area * speed * h;
             let x = r.work.max(0.0) / swept;
             let mass = if x < 10.4e6 {
@@ -195,7 +199,7 @@ fn a_block_sinks_into_what_it_covers() {
     assert!(s.state.energy.relative_residual().abs() < 1e-9);
     // What the load gave went to friction, and to the sinking.
     let o = shape::outline(&s.state.scars[0].along());
-    assert_eq!(o.form, Form::U);
+    assert_eq!(o.form, ScarForm::U);
     assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
 }
 
@@ -248,7 +252,7 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
     }
     assert!(curvatures.windows(2).all(|w| w[0] < w[1] && w[1] < 1.0));
     let o = shape::outline(&s.state.scars[0].along());
-    assert_eq!(o.form, Form::U);
+    assert_eq!(o.form, ScarForm::U);
     // k N s, the slip being that of the cylinder but for its rise.
     let kns = 3e-11 * 1e5 * 200.0 * a;
     let volume = s.state.scars[0].volume();
@@ -273,11 +277,11 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     };
     let (rocks, _) = form(&["time.step=5e-5"]);
     println!("{rocks:?}");
-    assert_eq!(rocks.form, Form::W);
+    assert_eq!(rocks.form, ScarForm::W);
     assert!(rocks.sides.iter().all(|side| rocks.middle < 0.75 * side));
     let (held, volume) = form(&["time.step=5e-5", "bodies.punch.dofs.rz=Fixed"]);
     println!("{held:?}");
-    assert_eq!(held.form, Form::U);
+    assert_eq!(held.form, ScarForm::U);
     assert!((held.middle / (volume / 4.4e-3) - 1.0).abs() < 0.05);
 }
 

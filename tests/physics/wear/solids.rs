@@ -3,7 +3,7 @@
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::process::circuit::Circuit;
+use fretwork::process::circuit::GrainCircuit;
 use fretwork::scene::circuit;
 use fretwork::step::Simulation;
 use std::collections::HashSet;
@@ -53,13 +53,13 @@ fn comes_loose<S: Space>(case: &str, steps: u64) {
     let loaded = scene::loaded(&format!("verification/{case}"), &sets);
     let mut s = scene::simulation::<S>(&loaded);
     s.step().unwrap();
-    let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
+    let mut account = GrainCircuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let base = account.bases()[0];
     let whole = account.tied_to(base);
     let (mut pieces, mut grains, mut mass) = (0, 0, 0.0);
     while s.state.steps < steps {
         s.step().unwrap();
-        account.note(&s);
+        account.record_bonds(&s);
         account.update(&mut s);
         let r = account.ledger.residual();
         for a in [r.tied, r.contact, r.ejected, r.lost] {
@@ -75,7 +75,7 @@ fn comes_loose<S: Space>(case: &str, steps: u64) {
         let free: Vec<usize> = s.state.bodies.grains().collect();
         let places = free.iter().map(|b| (account.place(*b), tied[*b]));
         for (place, tied) in places {
-            let here = matches!(place, Some(fretwork::wear::ledger::Place::Tied(_)));
+            let here = matches!(place, Some(fretwork::wear::ledger::GrainPlace::Tied(_)));
             assert_eq!(here, tied);
         }
     }

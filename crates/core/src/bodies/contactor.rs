@@ -1,4 +1,5 @@
-//! What of a dynamical system touches, and the nodes that a contact there acts on.
+//! Contactors: the parts of a dynamical system that can touch, and the nodes on which their contacts
+//! act.
 
 use super::nodes::Nodes;
 use crate::geometry::space::Space;
@@ -15,7 +16,7 @@ pub struct Contactor {
     /// space the radius of the disk of its area, from which contacts have their area; of other
     /// shapes a length of their size.
     pub radius: f64,
-    /// What touches.
+    /// Its shape.
     pub shape: ContactorShape,
     /// Index of the material of a ball, a point or a surface.
     pub material: u16,

@@ -46,11 +46,20 @@ pub struct Stage {
     pub drive: Dof,
 }
 
+impl Stage {
+    /// Creates a stage that ends at a time (s); `None` for the last one.
+    pub fn new(until: Option<f64>, drive: Dof) -> Self {
+        Self { until, drive }
+    }
+}
+
 impl Dof {
     /// Returns the active drive at a time; `self` where there are no stages.
     pub fn at(&self, t: f64) -> &Self {
         match self {
-            Self::Stages(stages) => active(stages, t),
+            Self::Stages(stages) => stages
+                .get(self.stage_at(t))
+                .map_or(&Self::Fixed, |s| &s.drive),
             simple => simple,
         }
     }
@@ -64,7 +73,12 @@ impl Dof {
     /// Returns the index of the active stage at a time; 0 where there are no stages.
     pub fn stage_at(&self, t: f64) -> usize {
         match self {
-            Self::Stages(stages) => active_index(stages, t),
+            Self::Stages(stages) => {
+                let found = stages
+                    .iter()
+                    .position(|s| s.until.is_none_or(|end| t < end));
+                found.unwrap_or(stages.len().saturating_sub(1))
+            }
             _ => 0,
         }
     }
@@ -149,21 +163,6 @@ impl Dof {
     }
 }
 
-/// Returns the active drive at a time.
-fn active(stages: &[Stage], t: f64) -> &Dof {
-    stages
-        .get(active_index(stages, t))
-        .map_or(&Dof::Fixed, |s| &s.drive)
-}
-
-/// Returns the index of the active stage at a time.
-fn active_index(stages: &[Stage], t: f64) -> usize {
-    let found = stages
-        .iter()
-        .position(|s| s.until.is_none_or(|end| t < end));
-    found.unwrap_or(stages.len().saturating_sub(1))
-}
-
 /// Returns the error in a list of stages, if any, and the path of its key.
 fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
     if stages.is_empty() {
@@ -172,12 +171,12 @@ fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
     let mut before = 0.0;
     // In the case file, stages have a single field, their list.
     for (k, stage) in stages.iter().enumerate() {
-        let said = |field: &str, message: String| Some((format!("0.{k}.{field}"), message));
+        let error = |field: &str, message: String| Some((format!("0.{k}.{field}"), message));
         if matches!(stage.drive, Dof::Stages(_)) {
-            return said("drive", "a stage cannot hold stages again".into());
+            return error("drive", "a stage cannot hold stages again".into());
         }
         if let Some((_, message)) = stage.drive.fault() {
-            return said("drive", message);
+            return error("drive", message);
         }
         match (stage.until, k + 1 == stages.len()) {
             (None, false) => {
@@ -186,12 +185,12 @@ fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
             }
             (Some(_), true) => {
                 let message = "the last stage holds for ever; leave its `until` out";
-                return said("until", message.into());
+                return error("until", message.into());
             }
             (Some(end), false) if !(end.is_finite() && end > before) => {
                 let message =
                     format!("stages must end one after another, got {end} after {before}");
-                return said("until", message);
+                return error("until", message);
             }
             (Some(end), false) => before = end,
             (None, true) => {}
@@ -226,14 +225,8 @@ mod tests {
 
     fn pressed_then_moved() -> Dof {
         Dof::Stages(vec![
-            Stage {
-                until: Some(0.3),
-                drive: Dof::Force(TimeFunction::Constant(-2.0)),
-            },
-            Stage {
-                until: None,
-                drive: Dof::Velocity(TimeFunction::Constant(-0.5)),
-            },
+            Stage::new(Some(0.3), Dof::Force(TimeFunction::Constant(-2.0))),
+            Stage::new(None, Dof::Velocity(TimeFunction::Constant(-0.5))),
         ])
     }
 
@@ -269,22 +262,12 @@ mod tests {
         ];
         for f in functions {
             let dof = Dof::Stages(vec![
-                Stage {
-                    until: Some(0.8),
-                    drive: Dof::Velocity(f.clone()),
-                },
-                Stage {
-                    until: None,
-                    drive: Dof::Displacement(f),
-                },
+                Stage::new(Some(0.8), Dof::Velocity(f.clone())),
+                Stage::new(None, Dof::Displacement(f)),
             ]);
             for t in [0.05, 0.6, 0.9, 2.0] {
-                let (now, later) = (
-                    dof.imposed_velocity(t).unwrap_or(f64::NAN),
-                    dof.delayed(3.0)
-                        .imposed_velocity(t + 3.0)
-                        .unwrap_or(f64::NAN),
-                );
+                let now = dof.imposed_velocity(t).unwrap();
+                let later = dof.delayed(3.0).imposed_velocity(t + 3.0).unwrap();
                 assert!((now - later).abs() < 1e-12, "{dof:?} at {t}");
             }
         }

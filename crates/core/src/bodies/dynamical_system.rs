@@ -1,4 +1,4 @@
-//! What the time step asks of a body that is more than rigid.
+//! The interface between the time step and a body that is more than rigid.
 //!
 //! Rigid bodies are the fast case and stay in the columns of [`super::Bodies`]. Anything else (an
 //! elastic half-space, a mesh, a grain in a floating frame) is a [`DynamicalSystem`]: it has
@@ -62,7 +62,7 @@ pub struct SystemWork {
     pub expansion: f64,
 }
 
-/// What holds a part of a system along an axis.
+/// The holder of a part of a system along an axis: displacement, velocity and force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Holder {
     /// Name of the part.
@@ -120,7 +120,7 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 ///
 /// Velocities have [`freedoms`](Self::freedoms) entries, in the system's own units.
 ///
-/// What it computes must depend on nothing but its state: the same state gives the same bits.
+/// Its results must depend on its state only: equal states give equal bits.
 ///
 /// # Methods
 /// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse,
@@ -141,7 +141,7 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// change more than that within a step converges them by
 /// [`relinearise`](DynamicalSystem::relinearise).
 pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
-    /// What a user calls it.
+    /// Name in the case.
     fn name(&self) -> &str;
 
     /// Number of generalised velocities.
@@ -150,8 +150,8 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// The current generalised velocities.
     fn velocity(&self) -> &[f64];
 
-    /// Is told the generalised impulse of all contacts (N s) before the velocity that it leads to
-    /// is set: systems of which motion is imposed have the work of that from it. Here nothing.
+    /// Sets the generalised impulse of all contacts (N s), before the velocity that it leads to:
+    /// systems with imposed motion compute the work of that motion from it. Ignored by default.
     fn set_contact_impulse(&mut self, _impulse: &[f64]) {}
 
     /// Takes generalised velocities, as many as [`Self::freedoms`].
@@ -169,7 +169,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// Takes the strain that each point of its mesh has without stress, or one of all points, by
     /// the thermal expansion of the step. Called in every step from the first with heat on, before
-    /// [`Self::begin_step`]. Here nothing: it does not expand.
+    /// [`Self::begin_step`]. By default nothing: it does not expand.
     fn set_free_strain(&mut self, _of_points: &[f64]) {}
 
     /// Work of the expansion at each point of its mesh in the step (J; J/m in 2D), which sums to
@@ -186,7 +186,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Forms A and what [`Self::compliance`] gives for the step, where they depend on the state: a
     /// body in large strain takes its tangent and factorises, one in a floating frame turns its
     /// blocks. Called once a step, at q_m, before all that needs A; [`Self::begin_step`] has
-    /// remembered the start. Here nothing: A is that of a linear system.
+    /// remembered the start. By default nothing: A is that of a linear system.
     fn linearise(&mut self, _step: &SystemStep<S>) {}
 
     /// Asked after the contacts of a step were solved, at the velocities that they led to: whether
@@ -253,7 +253,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         false
     }
 
-    /// Whether it is a grain, one of many that are told together.
+    /// Whether it is a grain, which results report together with all other grains.
     fn is_grain(&self) -> bool {
         false
     }
@@ -267,7 +267,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Adds P_a^T p to a generalised impulse: that of an impulse on a node (N s).
     fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]);
 
-    /// What of it can touch.
+    /// Its parts that can touch.
     fn contactors(&self) -> Vec<Contactor>;
 
     /// The nodes that a contact acts on, at an arm from the contactor's origin, in world axes (m):
@@ -281,7 +281,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// the angular velocity of the contactor there times its length (in the plane along x), and an
     /// impulse p on it is a moment of p times the length. Laws that resist rotation act on it.
     ///
-    /// Here none: the contactor does not turn, whatever moment acts on it, so that moments on it
+    /// By default there is none: the contactor does not turn, whatever moment acts on it, so that moments on it
     /// have no power.
     fn turning_node(&self, _contactor: &Contactor, _arm: &S::Vector) -> Option<(u32, f64)> {
         None
@@ -328,11 +328,8 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Velocity of the origin of a contactor (m/s) and angular velocity of its frame (rad/s) at
     /// generalised velocities: that of its nodes, without turning.
     fn contactor_velocity(&self, contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {
-        let terms = contactor.nodes.terms();
-        let sum = terms.fold(S::Vector::zero(), |sum, (node, weight)| {
-            sum + self.node_velocity(node, velocity) * weight
-        });
-        (sum, S::Spin::zero())
+        let of_node = |node| self.node_velocity(node, velocity);
+        (contactor.nodes.sum_of(of_node), S::Spin::zero())
     }
 
     /// The velocity of a contactor's frame that contacts of the step are looked for with, at the
@@ -345,16 +342,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Where a contactor stands and how it moves: as the nodes of its origin, without turning.
     fn contactor_motion(&self, contactor: &Contactor) -> ContactorMotion<S> {
         let (velocity, spin) = self.contactor_velocity(contactor, self.velocity());
-        let mut motion = ContactorMotion {
-            position: S::Vector::zero(),
+        ContactorMotion {
+            position: contactor.nodes.sum_of(|node| self.node_position(node)),
             rotation: S::identity(),
             velocity,
             spin,
-        };
-        for (node, weight) in contactor.nodes.terms() {
-            motion.position += self.node_position(node) * weight;
         }
-        motion
     }
 
     /// Whether its contactors can touch each other.
@@ -369,7 +362,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         compliance_by_solving(self, nodes)
     }
 
-    /// The same of points that are sums of nodes.
+    /// The blocks of some points that are sums of nodes (1/kg), row by row.
     fn point_compliance(&self, points: &[Nodes]) -> Vec<S::Matrix> {
         compliance_of_points(self, points)
     }
@@ -386,7 +379,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
-    /// What holds and drives it, always in the same order.
+    /// Its holders, always in the same order.
     fn holders(&self) -> Vec<Holder> {
         Vec::new()
     }
@@ -424,7 +417,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
-    /// What its solutions need; none where it is not known.
+    /// Memory and cost of its solutions; `None` if unknown.
     fn size(&self) -> Option<SystemSize> {
         None
     }
@@ -469,7 +462,7 @@ pub fn compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
     point_compliance_by_solving(system, &points)
 }
 
-/// The same of points that are sums of nodes, by solving for each point.
+/// The blocks of some points that are sums of nodes (1/kg), row by row, by solving for each point.
 fn point_compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
     system: &T,
     points: &[Nodes],
@@ -486,10 +479,8 @@ fn point_compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
                 system.add_impulse(node, &(unit * weight), &mut response);
             }
             system.solve(&mut response);
-            for (a, seen) in points.iter().enumerate() {
-                let velocity = seen.terms().fold(S::Vector::zero(), |sum, (node, weight)| {
-                    sum + system.node_velocity(node, &response) * weight
-                });
+            for (a, point) in points.iter().enumerate() {
+                let velocity = point.sum_of(|node| system.node_velocity(node, &response));
                 let block = &mut blocks[a * points.len() + b];
                 *block = *block + S::Matrix::dyad(&velocity, &unit);
             }

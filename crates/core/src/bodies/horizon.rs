@@ -1,5 +1,4 @@
-//! What lies ahead in functions of time and drives: the next kink, and the longest step that
-//! resolves them.
+//! The next kink of functions of time and drives, and the longest step that resolves them.
 
 use super::drive::Dof;
 use super::time_function::TimeFunction;
@@ -114,14 +113,8 @@ mod tests {
         };
         assert_eq!((sine.next_kink(0.0), sine.resolved_step(0.0)), (0.2, 0.1));
         let staged = Dof::Stages(vec![
-            Stage {
-                until: Some(0.5),
-                drive: Dof::Fixed,
-            },
-            Stage {
-                until: None,
-                drive: Dof::Force(ramp),
-            },
+            Stage::new(Some(0.5), Dof::Fixed),
+            Stage::new(None, Dof::Force(ramp)),
         ]);
         assert_eq!([0.0, 0.5].map(|t| staged.next_kink(t)), [0.5, 1.0]);
         assert_eq!(

@@ -1,6 +1,6 @@
 //! Bodies follow the paths of their imposed degrees of freedom.
 
-use super::path::Path;
+use super::path::ImposedPath;
 use super::state::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 
@@ -38,14 +38,14 @@ impl<S: Space> Bodies<S> {
             }
             if paths.along[k].as_ref().is_none_or(|p| p.stage != stage) {
                 let origin = if k < S::D { self.position[b][k] } else { 0.0 };
-                paths.along[k] = Some(Path::new(stage, origin, time));
+                paths.along[k] = Some(ImposedPath::new(stage, origin, time));
                 turns_anew |= k >= S::D;
             }
         }
         if turns_anew {
             paths.reference_orientation = self.rotation[b];
             for path in paths.along[S::D..].iter_mut().flatten() {
-                *path = Path::new(path.stage, 0.0, time);
+                *path = ImposedPath::new(path.stage, 0.0, time);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Changes, integrals and means of functions of time over intervals, in closed form.
 
-use super::table::{Points, inside, integral, rounding, slope, slope_after, value};
+use super::table::{TimePoints, inside, integral, rounding, slope, slope_after, value};
 use super::time_function::TimeFunction;
 use std::f64::consts::TAU;
 
@@ -87,22 +87,12 @@ impl TimeFunction {
         self.rate_beside(t, t - rounding(t), true)
     }
 
-    /// The derivative at a time, by a time that is that or differs from it by rounding, from the
-    /// left or from the right.
+    /// Returns the derivative at a time from the left or from the right. `beside` is the time shifted
+    /// to that side by rounding.
     fn rate_beside(&self, t: f64, beside: f64, from_left: bool) -> f64 {
         match self {
-            Self::Constant(_) => 0.0,
-            Self::Sine {
-                amplitude,
-                frequency,
-                start,
-                ..
-            } => {
-                if beside < *start || (from_left && beside == *start) {
-                    return 0.0;
-                }
-                TAU * frequency * amplitude * self.angle(t).cos()
-            }
+            Self::Sine { start, .. } if beside < *start || (from_left && beside == *start) => 0.0,
+            Self::Sine { .. } => self.slope_of_sine(t),
             pieces if from_left => pieces.with_points(|p| slope(p, beside)),
             pieces => pieces.with_points(|p| slope_after(p, beside)),
         }
@@ -158,8 +148,21 @@ impl TimeFunction {
         (t + eps < *start && *start < t + h - eps).then_some(*start)
     }
 
+    /// Returns the derivative of a sine after its start.
+    pub(super) fn slope_of_sine(&self, t: f64) -> f64 {
+        let Self::Sine {
+            amplitude,
+            frequency,
+            ..
+        } = self
+        else {
+            return 0.0;
+        };
+        TAU * frequency * amplitude * self.angle(t).cos()
+    }
+
     /// Returns the angle of a sine (rad).
-    fn angle(&self, t: f64) -> f64 {
+    pub(super) fn angle(&self, t: f64) -> f64 {
         match self {
             Self::Sine {
                 frequency,
@@ -201,7 +204,7 @@ impl TimeFunction {
     }
 
     /// Calls `f` with the points between which the function is linear: those of a ramp or a table.
-    fn with_points<T>(&self, f: impl FnOnce(&Points) -> T) -> T {
+    pub(super) fn with_points<T>(&self, f: impl FnOnce(&TimePoints) -> T) -> T {
         match self {
             Self::Ramp {
                 from,
@@ -285,7 +288,7 @@ mod tests {
     #[test]
     fn corners_have_two_derivatives() {
         let f = TimeFunction::Table(vec![(0.0, 0.0), (0.3, 3.0), (0.5, 1.0)]);
-        // As summed in a run, and slightly less.
+        // The time 0.3 as summed in a run, and a time slightly below 0.3.
         for t in [0.1 + 0.1 + 0.1, 0.3 - 5e-17] {
             assert!((f.rate_before(t) - 10.0).abs() < 1e-13);
             assert!((f.rate_after(t) + 10.0).abs() < 1e-13);

@@ -1,5 +1,6 @@
 //! A point of a dynamical system as a weighted sum of its nodes.
 
+use crate::geometry::space::VectorLike;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -9,30 +10,37 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes(Terms);
 
-/// Nodes and weights in place while there are few, as almost always; copies of others share them.
+/// Nodes and weights: in place if there are few, which is the usual case, or else shared by all
+/// copies.
 #[derive(Clone, Debug, PartialEq)]
 enum Terms {
-    Few {
-        ids: [u32; FEW],
-        weights: [f64; FEW],
+    Inline {
+        ids: [u32; INLINE],
+        weights: [f64; INLINE],
         count: u8,
     },
-    Many(Arc<[(u32, f64)]>),
+    Shared(Arc<[(u32, f64)]>),
 }
 
-/// Weight below which a place on a facet is not at a vertex.
+/// Weight up to which a vertex of a facet is left out.
 const ROUNDING: f64 = 1e-9;
 
-/// Nodes that are kept in place: those of a facet with quadratic shape functions.
-const FEW: usize = 8;
+/// Largest number of nodes stored in place: those of a facet with quadratic shape functions.
+const INLINE: usize = 8;
 
 impl Nodes {
     /// A node itself.
     pub fn one(node: u32) -> Self {
-        let (mut ids, mut weights) = ([0; FEW], [0.0; FEW]);
-        (ids[0], weights[0]) = (node, 1.0);
-        let count = 1;
-        Self(Terms::Few {
+        Self::inline(&[(node, 1.0)])
+    }
+
+    fn inline(terms: &[(u32, f64)]) -> Self {
+        let (mut ids, mut weights) = ([0; INLINE], [0.0; INLINE]);
+        for (k, (node, weight)) in terms.iter().enumerate() {
+            (ids[k], weights[k]) = (*node, *weight);
+        }
+        let count = terms.len() as u8;
+        Self(Terms::Inline {
             ids,
             weights,
             count,
@@ -41,22 +49,11 @@ impl Nodes {
 
     /// A weighted sum of different nodes; none of no node.
     pub fn sum(terms: &[(u32, f64)]) -> Option<Self> {
-        if terms.is_empty() {
-            return None;
+        match terms.len() {
+            0 => None,
+            1..=INLINE => Some(Self::inline(terms)),
+            _ => Some(Self(Terms::Shared(terms.into()))),
         }
-        if terms.len() > FEW {
-            return Some(Self(Terms::Many(terms.into())));
-        }
-        let (mut ids, mut weights) = ([0; FEW], [0.0; FEW]);
-        for (k, (node, weight)) in terms.iter().enumerate() {
-            (ids[k], weights[k]) = (*node, *weight);
-        }
-        let count = terms.len() as u8;
-        Some(Self(Terms::Few {
-            ids,
-            weights,
-            count,
-        }))
     }
 
     /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to
@@ -79,12 +76,12 @@ impl Nodes {
     /// Number of nodes.
     pub fn count(&self) -> usize {
         match &self.0 {
-            Terms::Few { count, .. } => usize::from(*count),
-            Terms::Many(terms) => terms.len(),
+            Terms::Inline { count, .. } => usize::from(*count),
+            Terms::Shared(terms) => terms.len(),
         }
     }
 
-    /// An order of points, by nodes and weights; equal where both are.
+    /// A total order of points, by nodes and then by weights; equal if both are equal.
     pub fn order(&self, other: &Self) -> Ordering {
         let ids = |p: &Self, q: &Self| p.terms().map(|t| t.0).cmp(q.terms().map(|t| t.0));
         let by_nodes = self.count().cmp(&other.count());
@@ -99,9 +96,15 @@ impl Nodes {
     /// The node at a place among them and its weight.
     fn term(&self, k: usize) -> (u32, f64) {
         match &self.0 {
-            Terms::Few { ids, weights, .. } => (ids[k], weights[k]),
-            Terms::Many(terms) => terms[k],
+            Terms::Inline { ids, weights, .. } => (ids[k], weights[k]),
+            Terms::Shared(terms) => terms[k],
         }
+    }
+
+    /// The weighted sum of a vector that is given at each node.
+    pub fn sum_of<V: VectorLike>(&self, of: impl Fn(u32) -> V) -> V {
+        let terms = self.terms();
+        terms.fold(V::zero(), |sum, (node, weight)| sum + of(node) * weight)
     }
 
     /// The nodes and their weights.

@@ -72,7 +72,7 @@ impl Dof {
 
 /// Start of the path of an imposed degree of freedom, and the displacement so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Path {
+pub(super) struct ImposedPath {
     /// Index of the stage of the drive that it follows.
     pub(super) stage: usize,
     /// Initial coordinate (m); zero for a rotation.
@@ -83,7 +83,7 @@ pub(super) struct Path {
     displacement: [f64; 2],
 }
 
-impl Path {
+impl ImposedPath {
     pub(super) fn new(stage: usize, origin: f64, since: f64) -> Self {
         Self {
             stage,
@@ -117,16 +117,16 @@ impl Path {
     }
 }
 
-/// Paths of a driven body, in the order of its degrees of freedom.
+/// ImposedPaths of a driven body, in the order of its degrees of freedom.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub struct Paths<S: Space> {
-    pub(super) along: Vec<Option<Path>>,
+pub struct ImposedPaths<S: Space> {
+    pub(super) along: Vec<Option<ImposedPath>>,
     /// Orientation relative to which the imposed rotation is measured.
     pub(super) reference_orientation: S::Rotation,
 }
 
-impl<S: Space> Paths<S> {
+impl<S: Space> ImposedPaths<S> {
     pub(super) fn new(dofs: usize) -> Self {
         Self {
             along: vec![None; dofs],

@@ -15,12 +15,12 @@ struct Face {
     offset: f64,
 }
 
-/// What a servo pushes.
+/// The body or holder on which a servo acts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Pushed {
     /// A driven body: its index among these, and that of the degree of freedom.
     Body(usize, usize),
-    /// What holds a part of a deformable body.
+    /// The holder of a part of a deformable body.
     Holder(HeldAxis),
 }
 
@@ -37,7 +37,7 @@ impl Pushed {
 /// A drive that depends on the area between walls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
-    /// What it pushes.
+    /// The body or holder on which it acts.
     pushed: Pushed,
     /// Index of the stage, 0 where there are no stages.
     drive: usize,
@@ -48,7 +48,7 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// What it pushes.
+    /// Returns the body or holder on which it acts.
     pub(crate) fn pushed(&self) -> &Pushed {
         &self.pushed
     }

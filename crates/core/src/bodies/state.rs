@@ -2,18 +2,18 @@
 
 use super::contactor::Carrier;
 use super::drive::{Dof, Driven};
-use super::path::Paths;
-use super::tensor::{self, Tensor};
+use super::path::ImposedPaths;
+use super::tensor::{self, InertiaTensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::sum;
 use serde::{Deserialize, Serialize};
 
-/// About what it takes to find the energy of a body (ns).
+/// Approximate time to evaluate the energy of a body (ns).
 const ENERGY: f64 = 5.0;
 
 /// All bodies of a scene, grains and first bodies, as a structure of arrays. In 2D masses are per
 /// metre of depth.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Bodies<S: Space> {
     /// Stable identities.
@@ -31,7 +31,7 @@ pub struct Bodies<S: Space> {
     /// Moments of inertia (kg m^2); for anisotropic inertia the mean.
     pub inertia: Vec<f64>,
     /// Anisotropic inertia tensors; empty if there are none.
-    pub tensors: Vec<Option<Tensor<S>>>,
+    pub tensors: Vec<Option<InertiaTensor<S>>>,
     /// Length that scales spins to velocities in the solver (m): the radius of a grain.
     pub length: Vec<f64>,
     /// Inverse mass along each axis; zero where the motion is imposed (1/kg).
@@ -40,8 +40,8 @@ pub struct Bodies<S: Space> {
     pub inverse_inertia: Vec<f64>,
     /// The driven first bodies.
     pub driven: Vec<Driven>,
-    /// Paths of their imposed motion, in the same order.
-    pub paths: Vec<Paths<S>>,
+    /// ImposedPaths of their imposed motion, in the same order.
+    pub paths: Vec<ImposedPaths<S>>,
     /// Whether each body has been removed: it then has no contacts and is not drawn.
     pub removed: Vec<bool>,
     /// Displacement of each body lost to rounding (m); empty while there is none.
@@ -49,29 +49,6 @@ pub struct Bodies<S: Space> {
     /// Which bodies stand for contactors of dynamical systems: they follow these and have no
     /// inertia of their own. Empty where there are no systems.
     pub carriers: Vec<Option<Carrier>>,
-}
-
-impl<S: Space> Default for Bodies<S> {
-    fn default() -> Self {
-        Self {
-            id: Vec::new(),
-            position: Vec::new(),
-            rotation: Vec::new(),
-            velocity: Vec::new(),
-            spin: Vec::new(),
-            mass: Vec::new(),
-            inertia: Vec::new(),
-            tensors: Vec::new(),
-            length: Vec::new(),
-            inverse_mass: Vec::new(),
-            inverse_inertia: Vec::new(),
-            driven: Vec::new(),
-            paths: Vec::new(),
-            removed: Vec::new(),
-            lost: Vec::new(),
-            carriers: Vec::new(),
-        }
-    }
 }
 
 impl<S: Space> Bodies<S> {
@@ -84,16 +61,8 @@ impl<S: Space> Bodies<S> {
 
     /// Returns the name of a body in messages: a first body's name, a grain's index.
     pub fn name(&self, body: u32) -> String {
-        if let Some(carrier) = self.carrier(body as usize) {
-            let Carrier {
-                system,
-                contactor,
-                grain,
-                ..
-            } = carrier;
-            if grain {
-                return format!("grain {}", self.id[body as usize]);
-            }
+        if let Some(carrier) = self.carrier(body as usize).filter(|c| !c.grain) {
+            let (system, contactor) = (carrier.system, carrier.contactor);
             return format!("contactor {contactor} of system {system}");
         }
         match self.driven.iter().find(|d| d.body == body) {
@@ -197,7 +166,7 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// The same with moments of inertia by axis, in the body's own axes (kg m^2).
+    /// Adds a free body at rest with an inertia tensor in its own axes (kg m^2); returns its index.
     pub fn add_shaped(
         &mut self,
         position: S::Vector,
@@ -206,7 +175,7 @@ impl<S: Space> Bodies<S> {
         length: f64,
     ) -> u32 {
         let body = self.add(position, mass, tensor::mean::<S>(inertia), length);
-        if let Some(tensor) = Tensor::new(*inertia) {
+        if let Some(tensor) = InertiaTensor::new(*inertia) {
             self.tensors.resize(self.len(), None);
             self.tensors[body as usize] = Some(tensor);
         }
@@ -214,7 +183,7 @@ impl<S: Space> Bodies<S> {
     }
 
     /// Returns the anisotropic inertia tensor of a body that rotates freely, if it has one.
-    pub fn tensor(&self, body: usize) -> Option<&Tensor<S>> {
+    pub fn tensor(&self, body: usize) -> Option<&InertiaTensor<S>> {
         let tensor = self.tensors.get(body)?.as_ref()?;
         (self.inverse_inertia[body] > 0.0).then_some(tensor)
     }
@@ -255,7 +224,7 @@ impl<S: Space> Bodies<S> {
 
     /// Makes a body driven, with the drives of time zero.
     pub fn drive(&mut self, driven: Driven) {
-        self.paths.push(Paths::new(driven.dofs.len()));
+        self.paths.push(ImposedPaths::new(driven.dofs.len()));
         self.driven.push(driven);
         self.update_constraints(self.driven.len() - 1, 0.0);
     }
@@ -394,7 +363,8 @@ impl<S: Space> Bodies<S> {
         self.sum_kinetic_energy(false)
     }
 
-    /// The same with the same bits, on several threads where that pays.
+    /// Returns [`Self::kinetic_energy`] with the same bits, on several threads if `parallel` and there
+    /// are enough bodies.
     pub fn sum_kinetic_energy(&self, parallel: bool) -> f64 {
         sum(parallel, self.len(), ENERGY, |b| {
             if self.carrier(b).is_none() {

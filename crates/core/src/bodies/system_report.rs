@@ -1,5 +1,5 @@
-//! What a dynamical system tells of itself for results, pictures and checks: the surface that
-//! touches, and its size in memory.
+//! Data of a dynamical system for results, pictures and checks: its contact surface, and its size in
+//! memory.
 
 use crate::geometry::space::Space;
 
@@ -17,8 +17,8 @@ pub struct TouchingSurface<S: Space> {
     pub areas: Vec<f64>,
 }
 
-/// What a system keeps in memory for its solutions (bytes), and what they cost, as far as it is
-/// known before the first step.
+/// Memory of a system for its solutions (bytes), and their cost, as far as known before the first
+/// step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SystemSize {
     /// Unknowns of a solution.
@@ -27,8 +27,7 @@ pub struct SystemSize {
     pub matrix: usize,
     /// The factor of A, with its pattern; zero of systems without a factor.
     pub factor: usize,
-    /// What is kept of the compliance of the surface once all of it was touched, and what of that a
-    /// single point needs.
+    /// Compliance of the surface that is kept once all of it was touched.
     pub surface: usize,
     /// Compliance of a single point of the surface.
     pub point: usize,

@@ -37,7 +37,7 @@ pub struct HeldAxis {
 
 /// A system with what the step keeps of it.
 #[derive(Clone, Debug)]
-struct Entry<S: Space> {
+struct SystemEntry<S: Space> {
     system: Box<dyn DynamicalSystem<S>>,
     contactors: Vec<Contactor>,
     /// The bodies that stand for its contactors, in their order.
@@ -54,12 +54,12 @@ type SystemState = (String, Vec<u8>);
 
 /// All systems of a scene that are not rigid bodies.
 ///
-/// They are serialised as their names and states. Read back there are the states alone, until
-/// [`Systems::take_up`] puts them into systems that were built again.
-#[derive(Clone, Debug)]
+/// They are serialised as their names and states. After deserialisation there are only states, until
+/// [`Systems::resume`] restores them into systems that were built again.
+#[derive(Clone, Debug, Default)]
 pub struct Systems<S: Space> {
-    entries: Vec<Entry<S>>,
-    /// States that were read and are in no system yet.
+    entries: Vec<SystemEntry<S>>,
+    /// States that were deserialised and not yet restored.
     read: Vec<SystemState>,
 }
 
@@ -74,15 +74,6 @@ impl<'de, S: Space> Deserialize<'de> for Systems<S> {
         let read = Vec::deserialize(from)?;
         let entries = Vec::new();
         Ok(Self { entries, read })
-    }
-}
-
-impl<S: Space> Default for Systems<S> {
-    fn default() -> Self {
-        Self {
-            entries: Vec::new(),
-            read: Vec::new(),
-        }
     }
 }
 
@@ -119,21 +110,18 @@ impl<S: Space> Systems<S> {
                 grain: contactor.shape == ContactorShape::Grain,
             };
             let at = system.contactor_motion(contactor).position;
-            let length = if contactor.radius > 0.0 {
-                contactor.radius
-            } else {
-                1.0
-            };
+            let positive = contactor.radius > 0.0;
+            let length = if positive { contactor.radius } else { 1.0 };
             let body = bodies.add_carried(at, length, carrier);
             if carrier.grain {
-                // Of measures; the system moves it.
+                // Used by measures only; the system has the inertia.
                 bodies.mass[body as usize] = system.mass();
             }
             body
         });
         let carried = carried.collect();
         let velocity = system.velocity().to_vec();
-        self.entries.push(Entry {
+        self.entries.push(SystemEntry {
             bodies: carried,
             points: 0..0,
             contactors,
@@ -175,7 +163,7 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Is told which balls are the points of a grain, in the order of the vertices of its surface.
+    /// Sets which balls are the points of a grain, in the order of the vertices of its surface.
     pub(crate) fn set_points(&mut self, system: usize, balls: Range<usize>) {
         self.entries[system].points = balls;
     }
@@ -187,15 +175,15 @@ impl<S: Space> Systems<S> {
             let Some(carrier) = bodies.carrier(surface.body as usize) else {
                 continue;
             };
-            let entry = &self.entries[carrier.system as usize];
-            let contactor = &entry.contactors[carrier.contactor as usize];
+            let (system, contactor) = self.contactor(carrier);
             if matches!(
                 contactor.shape,
                 ContactorShape::Surface | ContactorShape::Grain
             ) {
-                let vertices = entry.system.surface_vertices(contactor);
+                let vertices = system.surface_vertices(contactor);
                 surface.shape.move_vertices(&vertices);
-                let points = &mut shapes.balls[entry.points.clone()];
+                let points = self.entries[carrier.system as usize].points.clone();
+                let points = &mut shapes.balls[points];
                 for (point, vertex) in points.iter_mut().zip(&vertices) {
                     point.offset = *vertex;
                 }
@@ -285,25 +273,27 @@ impl<S: Space> Systems<S> {
 
     /// The velocity without contacts of a point of a system (m/s).
     pub fn free_velocity_at(&self, system: usize, point: &Nodes) -> S::Vector {
-        let terms = point.terms();
-        terms.fold(S::Vector::zero(), |sum, (node, weight)| {
-            sum + self.free_velocity_of(system, node) * weight
-        })
+        point.sum_of(|node| self.free_velocity_of(system, node))
+    }
+
+    /// The system and the contactor that a body stands for.
+    fn contactor(&self, carrier: Carrier) -> (&dyn DynamicalSystem<S>, &Contactor) {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        (entry.system.as_ref(), contactor)
     }
 
     /// The nodes that a contact with a contactor's body acts on, at an arm from its centre (m).
     pub fn contact_nodes(&self, carrier: Carrier, arm: &S::Vector) -> Nodes {
-        let entry = &self.entries[carrier.system as usize];
-        let contactor = &entry.contactors[carrier.contactor as usize];
-        entry.system.contact_nodes(contactor, arm)
+        let (system, contactor) = self.contactor(carrier);
+        system.contact_nodes(contactor, arm)
     }
 
     /// The node that turns with a contactor's body at an arm from its centre (m); see
     /// [`DynamicalSystem::turning_node`].
     pub fn turning_node(&self, carrier: Carrier, arm: &S::Vector) -> Option<TurningNode> {
-        let entry = &self.entries[carrier.system as usize];
-        let contactor = &entry.contactors[carrier.contactor as usize];
-        let (node, length) = entry.system.turning_node(contactor, arm)?;
+        let (system, contactor) = self.contactor(carrier);
+        let (node, length) = system.turning_node(contactor, arm)?;
         Some(TurningNode {
             system: carrier.system,
             node,
@@ -332,9 +322,8 @@ impl<S: Space> Systems<S> {
 
     /// The nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].
     pub(crate) fn vertex_nodes(&self, carrier: Carrier, weights: &[(u32, f64)]) -> Option<Nodes> {
-        let entry = &self.entries[carrier.system as usize];
-        let contactor = &entry.contactors[carrier.contactor as usize];
-        entry.system.vertex_nodes(contactor, weights)
+        let (system, contactor) = self.contactor(carrier);
+        system.vertex_nodes(contactor, weights)
     }
 
     /// Whether two contactors are on grids of equal cells, up to a share of these.
@@ -350,11 +339,7 @@ impl<S: Space> Systems<S> {
     /// Velocity of a point of a system at the current velocities (m/s).
     pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
         let system = &self.entries[system].system;
-        nodes
-            .terms()
-            .fold(S::Vector::zero(), |sum, (node, weight)| {
-                sum + system.node_velocity(node, system.velocity()) * weight
-            })
+        nodes.sum_of(|node| system.node_velocity(node, system.velocity()))
     }
 
     /// Gives a system the velocity that impulses on its nodes (N s) lead to.
@@ -421,7 +406,7 @@ impl<S: Space> Systems<S> {
 
     /// The name of the first system with a velocity that is not finite.
     pub fn not_finite(&self) -> Option<&str> {
-        let bad = |e: &&Entry<S>| e.system.velocity().iter().any(|v| !v.is_finite());
+        let bad = |e: &&SystemEntry<S>| e.system.velocity().iter().any(|v| !v.is_finite());
         self.entries.iter().find(bad).map(|e| e.system.name())
     }
 
@@ -430,14 +415,14 @@ impl<S: Space> Systems<S> {
         if !self.read.is_empty() {
             return Cow::Borrowed(&self.read);
         }
-        let one = |e: &Entry<S>| (e.system.name().to_owned(), e.system.save());
+        let one = |e: &SystemEntry<S>| (e.system.name().to_owned(), e.system.save());
         self.entries.iter().map(one).collect()
     }
 
-    /// Becomes the systems of a scene that was built again, in the states that these have. False,
-    /// and nothing changed, where the states are not theirs.
+    /// Replaces these systems by those of a scene that was built again, restored to the states of
+    /// these. Returns false, without a change, if the states belong to other systems.
     #[must_use]
-    pub fn take_up(&mut self, built: &Self) -> bool {
+    pub fn resume(&mut self, built: &Self) -> bool {
         let states = self.states();
         if states.len() != built.entries.len() {
             return false;

@@ -1,7 +1,7 @@
 //! Tables of points (time, value), linear between them and constant outside.
 
-/// Points in the order of time.
-pub(super) type Points = [(f64, f64)];
+/// TimePoints in the order of time.
+pub(super) type TimePoints = [(f64, f64)];
 
 /// Returns the tolerance for equal times, which are sums and differences of numbers of this size.
 pub(super) fn rounding(t: f64) -> f64 {
@@ -9,7 +9,7 @@ pub(super) fn rounding(t: f64) -> f64 {
 }
 
 /// Returns the points within (t, t + h), excluding one at an end to rounding.
-pub(super) fn inside(points: &Points, t: f64, h: f64) -> &Points {
+pub(super) fn inside(points: &TimePoints, t: f64, h: f64) -> &TimePoints {
     let eps = rounding(t + h);
     let first = points.partition_point(|p| p.0 <= t + eps);
     let last = points.partition_point(|p| p.0 < t + h - eps);
@@ -17,7 +17,7 @@ pub(super) fn inside(points: &Points, t: f64, h: f64) -> &Points {
 }
 
 /// Returns the value at a time: linear between points, constant outside.
-pub(super) fn value(points: &Points, t: f64) -> f64 {
+pub(super) fn value(points: &TimePoints, t: f64) -> f64 {
     let k = points.partition_point(|p| p.0 <= t);
     if k == 0 {
         points.first().map_or(0.0, |p| p.1)
@@ -30,24 +30,24 @@ pub(super) fn value(points: &Points, t: f64) -> f64 {
 }
 
 /// Returns the slope at a time, from the left at a point.
-pub(super) fn slope(points: &Points, t: f64) -> f64 {
+pub(super) fn slope(points: &TimePoints, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 < t))
 }
 
 /// Returns the slope at a time, from the right at a point.
-pub(super) fn slope_after(points: &Points, t: f64) -> f64 {
+pub(super) fn slope_after(points: &TimePoints, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 <= t))
 }
 
 /// Returns the slope of the segment that ends at a point.
-fn slope_to(points: &Points, k: usize) -> f64 {
+fn slope_to(points: &TimePoints, k: usize) -> f64 {
     if k == 0 || k == points.len() {
         return 0.0;
     }
     (points[k].1 - points[k - 1].1) / (points[k].0 - points[k - 1].0)
 }
 
-pub(super) fn integral(points: &Points, from: f64, to: f64) -> f64 {
+pub(super) fn integral(points: &TimePoints, from: f64, to: f64) -> f64 {
     let first = points.partition_point(|p| p.0 <= from);
     let last = points.partition_point(|p| p.0 < to);
     let corners = points.get(first..last).unwrap_or_default();

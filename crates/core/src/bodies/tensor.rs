@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 /// Inertia tensor of a body in its own axes (kg m^2), and its inverse.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub struct Tensor<S: Space> {
+pub struct InertiaTensor<S: Space> {
     own: S::Tensor,
     inverse: S::Tensor,
     /// Largest rotation per substep (rad).
     turn: f64,
 }
 
-impl<S: Space> Tensor<S> {
+impl<S: Space> InertiaTensor<S> {
     /// Creates a tensor; `None` if it is isotropic or singular.
     pub fn new(own: S::Tensor) -> Option<Self> {
         const ALIKE: f64 = 1e-12;
@@ -116,7 +116,7 @@ mod tests {
     use crate::geometry::space::{Dim2, Dim3};
     use nalgebra::{Matrix1, Matrix3, UnitQuaternion, Vector3};
 
-    type Rigid = Tensor<Dim3>;
+    type Rigid = InertiaTensor<Dim3>;
 
     fn diagonal(a: f64, b: f64, c: f64) -> Rigid {
         Rigid::new(Matrix3::from_diagonal(&Vector3::new(a, b, c))).unwrap()
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn what_is_alike_about_all_axes_needs_no_tensor() {
         assert!(Rigid::new(Matrix3::identity() * 3.0).is_none());
-        assert!(Tensor::<Dim2>::new(Matrix1::new(2.0)).is_none());
+        assert!(InertiaTensor::<Dim2>::new(Matrix1::new(2.0)).is_none());
     }
 
     #[test]

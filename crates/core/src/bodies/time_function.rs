@@ -2,7 +2,6 @@
 
 use super::table;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom
 /// over a step.
@@ -55,12 +54,8 @@ impl TimeFunction {
                 end,
             } => from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0),
             Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                offset,
-                start,
-            } => offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin(),
+                amplitude, offset, ..
+            } => offset + amplitude * self.angle(t).sin(),
             Self::Table(points) => table::value(points, t),
         }
     }
@@ -69,32 +64,9 @@ impl TimeFunction {
     /// right at the start of a sine.
     pub fn rate(&self, t: f64) -> f64 {
         match self {
-            Self::Constant(_) => 0.0,
-            Self::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => {
-                if t > *start && t <= *end {
-                    (to - from) / (end - start)
-                } else {
-                    0.0
-                }
-            }
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                start,
-                ..
-            } => {
-                if t < *start {
-                    return 0.0;
-                }
-                TAU * frequency * amplitude * (TAU * frequency * (t - start) + phase).cos()
-            }
-            Self::Table(points) => table::slope(points, t),
+            Self::Sine { start, .. } if t < *start => 0.0,
+            Self::Sine { .. } => self.slope_of_sine(t),
+            pieces => pieces.with_points(|p| table::slope(p, t)),
         }
     }
 
@@ -109,9 +81,11 @@ impl TimeFunction {
     /// Returns the error in the numbers, if any.
     pub fn fault(&self) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
+        let error = |is: bool, message: String| is.then_some(message);
         match self {
-            Self::Constant(x) if !x.is_finite() => {
-                Some(format!("a constant must be finite, got {x}"))
+            Self::Constant(x) => {
+                let message = format!("a constant must be finite, got {x}");
+                error(!x.is_finite(), message)
             }
             Self::Ramp {
                 from,
@@ -119,15 +93,11 @@ impl TimeFunction {
                 start,
                 end,
             } => {
-                if !finite(&[*from, *to, *start, *end]) {
-                    Some("the numbers of a ramp must be finite".into())
-                } else if end <= start {
-                    Some(format!(
-                        "a ramp must end after it starts, got start {start} and end {end}"
-                    ))
-                } else {
-                    None
-                }
+                let numbers = "the numbers of a ramp must be finite".into();
+                let order =
+                    format!("a ramp must end after it starts, got start {start} and end {end}");
+                error(!finite(&[*from, *to, *start, *end]), numbers)
+                    .or_else(|| error(end <= start, order))
             }
             Self::Sine {
                 amplitude,
@@ -136,29 +106,24 @@ impl TimeFunction {
                 offset,
                 start,
             } => {
-                if !finite(&[*amplitude, *frequency, *phase, *offset, *start]) {
-                    Some("the numbers of a sine must be finite".into())
-                } else if *frequency < 0.0 {
-                    Some(format!("a frequency must not be negative, got {frequency}"))
-                } else {
-                    None
-                }
+                let numbers = "the numbers of a sine must be finite".into();
+                let sign = format!("a frequency must not be negative, got {frequency}");
+                error(
+                    !finite(&[*amplitude, *frequency, *phase, *offset, *start]),
+                    numbers,
+                )
+                .or_else(|| error(*frequency < 0.0, sign))
             }
             Self::Table(points) => {
-                if points.is_empty() {
-                    Some("a table needs at least one (time, value)".into())
-                } else if !points.iter().all(|p| finite(&[p.0, p.1])) {
-                    Some("the numbers of a table must be finite".into())
-                } else if points.windows(2).any(|w| w[1].0 <= w[0].0) {
-                    Some(
-                        "the times of a table must rise; for a jump give two times that are close"
-                            .into(),
-                    )
-                } else {
-                    None
-                }
+                let empty = "a table needs at least one (time, value)".into();
+                let numbers = "the numbers of a table must be finite".into();
+                let order =
+                    "the times of a table must rise; for a jump give two times that are close";
+                let falls = points.windows(2).any(|w| w[1].0 <= w[0].0);
+                error(points.is_empty(), empty)
+                    .or_else(|| error(!points.iter().all(|p| finite(&[p.0, p.1])), numbers))
+                    .or_else(|| error(falls, order.into()))
             }
-            Self::Constant(_) => None,
         }
     }
 
@@ -178,6 +143,7 @@ impl TimeFunction {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     #[test]
     fn rates_are_the_derivatives() {
@@ -234,22 +200,16 @@ mod tests {
     }
 
     #[test]
-    fn bad_functions_say_why() {
-        assert!(
-            TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)])
-                .fault()
-                .is_some()
-        );
-        assert!(
-            TimeFunction::Ramp {
-                from: 0.0,
-                to: 1.0,
-                start: 1.0,
-                end: 1.0
-            }
-            .fault()
-            .is_some()
-        );
-        assert!(TimeFunction::Constant(f64::NAN).fault().is_some());
+    fn invalid_functions_are_refused() {
+        let no_length = TimeFunction::Ramp {
+            from: 0.0,
+            to: 1.0,
+            start: 1.0,
+            end: 1.0,
+        };
+        let two_values = TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)]);
+        for f in [no_length, two_values, TimeFunction::Constant(f64::NAN)] {
+            assert!(f.fault().is_some(), "{f:?}");
+        }
     }
 }

@@ -1,8 +1,8 @@
-//! Whether contacts that were read are those of a scene: every index in range, every length right,
-//! every number finite. Detection and laws take this for granted.
+//! Checks that contacts read from a file belong to a scene: every index is in range, every column
+//! has the right length, every number is finite. Detection and laws rely on it.
 
 use super::memory::Memory;
-use super::network::{Contact, Key, Network};
+use super::network::{Contact, Key, Network, ShapeIndex};
 use crate::bodies::Bodies;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
@@ -18,7 +18,10 @@ impl<S: Space> Network<S> {
             .all(|b| below(&b.bodies) && law(b.law));
         let formed = self.bonds_formed.iter().all(|(b, l)| below(b) && law(*l));
         let pair = |(a, b): &(u32, u32)| {
-            let two = [body_of(shapes, *a), body_of(shapes, *b)];
+            let two = [
+                ShapeIndex::of(*a).body(shapes),
+                ShapeIndex::of(*b).body(shapes),
+            ];
             *a & Key::SURFACE == 0 && two.iter().all(Option::is_some) && two[0] != two[1]
         };
         let surface = |k: &usize| *k < shapes.surfaces.len();
@@ -39,7 +42,8 @@ impl<S: Space> Network<S> {
 
     /// Whether a contact is one of these shapes.
     fn has(&self, c: &Contact<S>, shapes: &Shapes<S>) -> bool {
-        let bodies = [c.key.candidate, c.key.antagonist].map(|name| body_of(shapes, name));
+        let bodies =
+            [c.key.candidate, c.key.antagonist].map(|side| ShapeIndex::of(side).body(shapes));
         let vectors = [c.normal, c.arms[0], c.arms[1], c.impulse];
         let memory = self.memory.get(usize::from(c.law));
         bodies == c.bodies.map(Some)
@@ -49,18 +53,6 @@ impl<S: Space> Network<S> {
             && vectors.iter().all(VectorLike::is_finite)
             && c.gap.is_finite()
     }
-}
-
-/// The body of a ball, a piece or a surface by its name in a [`Key`].
-fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> Option<u32> {
-    let at = (name & !(Key::SURFACE | Key::PIECE)) as usize;
-    if name & Key::SURFACE != 0 {
-        return shapes.surfaces.get(at).map(|s| s.body);
-    }
-    if name & Key::PIECE != 0 {
-        return shapes.pieces.get(at).map(|p| p.body);
-    }
-    shapes.balls.get(at).map(|b| b.body)
 }
 
 impl<S: Space> Memory<S> {

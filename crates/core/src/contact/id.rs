@@ -1,12 +1,12 @@
-//! Names of contacts that do not depend on where bodies stand in memory: the identities of the
-//! bodies, which contactor of each body touches, and with which feature.
+//! Names of contacts that do not depend on the order of bodies in memory: identities of the bodies,
+//! numbers of their contactors, and the feature in contact.
 //!
 //! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a
 //! step, and is compared often. A [`ContactId`] names the same contact in another listing of the
 //! same bodies, such as a run that is resumed, a scene from which other bodies were taken, or
 //! another machine's part of it. [`ContactNames`] translates.
 
-use super::network::{Contact, Key, Network};
+use super::network::{Contact, Key, Network, ShapeIndex};
 use crate::bodies::Bodies;
 use crate::geometry::convex::Core;
 use crate::geometry::shape::Shapes;
@@ -14,7 +14,7 @@ use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What kind of part of a body touches.
+/// Kind of a contactor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ContactorKind {
     /// A disk or sphere.
@@ -28,7 +28,7 @@ pub enum ContactorKind {
 /// A part of a body that can touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactorId {
-    /// What it is.
+    /// Its kind.
     pub kind: ContactorKind,
     /// Identity of the body, [`Bodies::id`].
     pub body: u64,
@@ -40,7 +40,7 @@ pub struct ContactorId {
 /// between balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactId {
-    /// The contactors, the smaller first: what detection takes for the candidate may be either.
+    /// The contactors, the smaller first; either may be the candidate of detection.
     pub sides: [ContactorId; 2],
     /// The feature as [`Key::feature`], with the first side as the candidate.
     pub feature: u64,
@@ -55,46 +55,35 @@ pub struct ContactNames {
 }
 
 impl ContactNames {
-    /// Of these shapes and bodies; to be made anew where either is listed anew.
+    /// Names the contactors of these shapes and bodies. Valid as long as neither list changes.
     pub fn of<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Self {
-        let numbered = |kind: ContactorKind, of: &mut dyn Iterator<Item = u32>| {
-            let mut count = vec![0u32; bodies.len()];
-            of.map(|body| {
-                let number = count[body as usize];
-                count[body as usize] += 1;
-                ContactorId {
-                    kind,
-                    body: bodies.id[body as usize],
-                    number,
-                }
-            })
-            .collect()
+        let numbered = |kind: ContactorKind, count: usize, shape: fn(usize) -> ShapeIndex| {
+            let mut next = vec![0u32; bodies.len()];
+            let contactor = |k: usize| {
+                let body = shape(k).body(shapes)? as usize;
+                let number = next[body];
+                next[body] += 1;
+                let body = bodies.id[body];
+                Some(ContactorId { kind, body, number })
+            };
+            (0..count).filter_map(contactor).collect()
         };
+        let (pieces, surfaces) = (shapes.pieces.len(), shapes.surfaces.len());
         Self {
-            balls: numbered(
-                ContactorKind::Ball,
-                &mut shapes.balls.iter().map(|b| b.body),
-            ),
-            pieces: numbered(
-                ContactorKind::ConvexCollider,
-                &mut shapes.pieces.iter().map(|p| p.body),
-            ),
-            surfaces: numbered(
-                ContactorKind::Surface,
-                &mut shapes.surfaces.iter().map(|s| s.body),
-            ),
+            balls: numbered(ContactorKind::Ball, shapes.balls.len(), ShapeIndex::Ball),
+            pieces: numbered(ContactorKind::ConvexCollider, pieces, ShapeIndex::Piece),
+            surfaces: numbered(ContactorKind::Surface, surfaces, ShapeIndex::Surface),
         }
     }
 
     /// The contactor of a part of a key.
     fn contactor(&self, part: u32) -> Option<ContactorId> {
-        let index = (part & !(Key::SURFACE | Key::PIECE)) as usize;
-        let list = match (part & Key::SURFACE != 0, part & Key::PIECE != 0) {
-            (true, _) => &self.surfaces,
-            (false, true) => &self.pieces,
-            (false, false) => &self.balls,
-        };
-        list.get(index).copied()
+        match ShapeIndex::of(part) {
+            ShapeIndex::Ball(k) => self.balls.get(k),
+            ShapeIndex::Piece(k) => self.pieces.get(k),
+            ShapeIndex::Surface(k) => self.surfaces.get(k),
+        }
+        .copied()
     }
 
     /// The contactors of a key, the candidate first; none where the scene has no such contactors.
@@ -171,11 +160,7 @@ mod tests {
         let names = ContactNames::of(&s.shapes, &s.state.bodies);
         s.shapes.balls.swap(0, 1);
         let swapped = ContactNames::of(&s.shapes, &s.state.bodies);
-        let key = |candidate, antagonist| Key {
-            candidate,
-            antagonist,
-            feature: 3,
-        };
+        let key = |candidate, antagonist| Key::new(candidate, antagonist, 3);
         let name = |kind, body, number| ContactorId { kind, body, number };
         let [ball, second, other] =
             [(0, 0), (0, 1), (1, 0)].map(|(b, n)| name(ContactorKind::Ball, b, n));

@@ -4,9 +4,9 @@ use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// A bond: a contact with an opening and a damage. What laws see of it is in one line of the cache
-/// in two dimensions.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// A bond: a contact with an opening and a damage. In two dimensions the data that laws read are in
+/// one cache line.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
 #[repr(C, align(64))]
 pub struct Bond<S: Space> {
@@ -35,15 +35,11 @@ impl<S: Space> Bond<S> {
     /// Returns a slot without a bond, for internal variables only.
     fn none(area: f64) -> Self {
         Self {
-            opening_n: 0.0,
-            opening_t: S::Tangent::zero(),
-            gap: 0.0,
+            live: true,
             damage: 1.0,
             step_damage: 1.0,
             area,
-            energy: 0.0,
-            life: Life::default(),
-            live: true,
+            ..Self::default()
         }
     }
 
@@ -95,17 +91,17 @@ impl Slides {
 pub enum BondState {
     /// There is no bond, and was none.
     None,
-    /// It holds.
+    /// The bond is intact.
     Intact {
         /// Its damage, 0 to 1.
         damage: f64,
     },
-    /// It broke.
+    /// The bond broke.
     Broken,
 }
 
 /// The bonds of one interface law and the internal variables of its plugins.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Memory<S: Space> {
     /// Slots; freed slots are reused.
@@ -131,15 +127,8 @@ impl<S: Space> Memory<S> {
     /// Creates a memory with this number of internal variables.
     pub fn new(variables: usize) -> Self {
         Self {
-            bonds: Vec::new(),
             variables: vec![Vec::new(); variables],
-            rotates: false,
-            compliant: false,
-            rotations: Vec::new(),
-            made: 0,
-            broken: 0,
-            slides: Slides::default(),
-            free: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -12,7 +12,7 @@ pub mod thermal;
 pub use events::{Break, ContactDissipation, Life, Loss};
 pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
 pub use memory::{Bond, BondState, Memory, Slides};
-pub use network::{Acts, Contact, Key, Network};
+pub use network::{Acts, Contact, Key, Network, ShapeIndex};
 pub use spring::Spring;
 pub use step_size::{Occurrence, StepSizeDiagnostics};
 pub use thermal::{ContactHeat, ContactTemperature, HeatSide, MaterialPair};

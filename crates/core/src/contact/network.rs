@@ -6,15 +6,18 @@ use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
 use super::thermal::ContactHeat;
 use crate::bodies::Bodies;
+use crate::geometry::shape::Shapes;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::{count, sum};
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Key of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
-/// antagonist (the same, or a surface with [`Key::SURFACE`] set), and the face, edge or vertex in
-/// contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+/// antagonist (a ball, a piece, or a surface with [`Key::SURFACE`] set), and the face, edge or
+/// vertex in contact.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 pub struct Key {
     /// Index of the candidate.
     pub candidate: u32,
@@ -29,6 +32,15 @@ impl Key {
     pub const SURFACE: u32 = 1 << 31;
     /// Marks a candidate or antagonist that is a convex piece.
     pub const PIECE: u32 = 1 << 30;
+
+    /// Creates the key of a candidate and an antagonist that touch with a feature.
+    pub fn new(candidate: u32, antagonist: u32, feature: u64) -> Self {
+        Self {
+            candidate,
+            antagonist,
+            feature,
+        }
+    }
 
     /// Returns the index of the candidate if it is a ball.
     pub fn ball(&self) -> Option<usize> {
@@ -53,6 +65,49 @@ impl Key {
     }
 }
 
+/// A collision shape of a scene, decoded from a side of a [`Key`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeIndex {
+    /// Index of a ball.
+    Ball(usize),
+    /// Index of a convex piece.
+    Piece(usize),
+    /// Index of a surface.
+    Surface(usize),
+}
+
+impl ShapeIndex {
+    /// Decodes a side of a key.
+    #[inline]
+    pub fn of(side: u32) -> Self {
+        let index = (side & !(Key::SURFACE | Key::PIECE)) as usize;
+        match (side & Key::SURFACE != 0, side & Key::PIECE != 0) {
+            (true, _) => Self::Surface(index),
+            (false, true) => Self::Piece(index),
+            (false, false) => Self::Ball(index),
+        }
+    }
+
+    /// Returns its place in a list of all balls, then all pieces, then all surfaces.
+    #[inline]
+    pub fn place(self, [balls, pieces]: [usize; 2]) -> usize {
+        match self {
+            Self::Ball(k) => k,
+            Self::Piece(k) => balls + k,
+            Self::Surface(k) => balls + pieces + k,
+        }
+    }
+
+    /// Returns the index of its body; `None` if the scene has no such shape.
+    pub fn body<S: Space>(self, shapes: &Shapes<S>) -> Option<u32> {
+        match self {
+            Self::Ball(k) => shapes.balls.get(k).map(|b| b.body),
+            Self::Piece(k) => shapes.pieces.get(k).map(|p| p.body),
+            Self::Surface(k) => shapes.surfaces.get(k).map(|s| s.body),
+        }
+    }
+}
+
 /// Where the impulse of a contact acts. One place for both bodies, so that it gives them no angular
 /// momentum: where there is a gap, or an overlap, their surfaces are not at one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,7 +125,7 @@ pub enum Acts {
 }
 
 /// A candidate pair within the alert distance, or held by a bond.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Contact<S: Space> {
     /// Key.
@@ -79,7 +134,7 @@ pub struct Contact<S: Space> {
     pub bodies: [u32; 2],
     /// Index of the interface law.
     pub law: u16,
-    /// See [`crate::solve::ContactForm::central`].
+    /// Whether the impulse cannot turn the bodies, see [`crate::solve::ContactForm::central`].
     pub central: bool,
     /// Whether the contact is at a corner of a polygon, so that there is no face for a bond.
     pub vertex_contact: bool,
@@ -155,25 +210,13 @@ impl<S: Space> Contact<S> {
             key,
             bodies,
             law,
-            central: false,
-            vertex_contact: false,
-            broken: false,
             slot: Self::NO_MEMORY,
             gap: geometry.gap,
             normal: geometry.normal,
             arms: geometry.arms,
-            acts: Acts::Surfaces,
             radius: geometry.radius,
-            impulse: S::Vector::zero(),
-            moment: S::Spin::zero(),
             formed_at,
-            compression_time: 0.0,
-            closing: false,
-            later: false,
-            beyond: false,
-            slides: false,
-            friction_work: 0.0,
-            spring: Spring::relaxed(),
+            ..Self::default()
         }
     }
 
@@ -296,13 +339,14 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
     pairs.serialize(to)
 }
 
-/// About what it takes to find the energy of a contact's spring (ns).
+/// Approximate time to evaluate the energy of a contact's spring (ns).
 const ENERGY: f64 = 3.0;
-/// About what it takes to look whether a contact counts (ns).
+/// Approximate time to decide whether a contact counts (ns).
 const COUNT: f64 = 2.0;
 
 impl<S: Space> Network<S> {
-    /// Gives a contact another normal; what it remembers along the surface turns with it.
+    /// Replaces the normal of a contact and rotates its tangential memory (spring force, bond opening
+    /// and rotation) with it.
     pub(crate) fn turn(&mut self, contact: usize, normal: &S::Vector) {
         let contact = &mut self.contacts[contact];
         let from = std::mem::replace(&mut contact.normal, *normal);
@@ -387,7 +431,7 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// The gap of a contact less what its bond fills, while it holds (m).
+    /// The gap of a contact (m), less the rest gap of its bond while that is intact.
     pub fn open_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap)
@@ -447,8 +491,8 @@ impl<S: Space> Network<S> {
         (self.bonds_broken() as f64 + intact) / made as f64
     }
 
-    /// The gap of the spring of a compliant contact (m): without what cement fills. An overlap at
-    /// which a bond was made stays in the spring.
+    /// The gap of the spring of a compliant contact (m), without the part filled by an intact bond.
+    /// An overlap at which a bond formed stays in the spring.
     pub fn spring_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap.max(0.0))
@@ -464,12 +508,8 @@ impl<S: Space> Network<S> {
         self.sum_spring_energy(false)
     }
 
-    /// Returns the energy stored in bonds and in the springs of compliant contacts (J).
-    pub fn elastic_energy(&self) -> f64 {
-        self.bond_energy() + self.spring_energy()
-    }
-
-    /// The energy of springs with the same bits, on several threads where that pays.
+    /// Returns [`Self::spring_energy`] with the same bits, on several threads if `parallel` and there
+    /// are enough contacts.
     pub fn sum_spring_energy(&self, parallel: bool) -> f64 {
         sum(parallel, self.contacts.len(), ENERGY, |k| {
             self.contacts[k].spring.stored()
@@ -481,15 +521,11 @@ impl<S: Space> Network<S> {
 mod tests {
     use super::*;
 
-    /// The kind of each side is in its number; a pair is both without the feature.
+    /// The kind of each side is encoded in its number; a pair is both sides without the feature.
     #[test]
-    fn a_key_tells_what_touches() {
+    fn a_key_contains_the_kinds_of_its_sides() {
         let (piece, surface) = (Key::PIECE | 3, Key::SURFACE | 4);
-        let key = |candidate, antagonist| Key {
-            candidate,
-            antagonist,
-            feature: 7,
-        };
+        let key = |candidate, antagonist| Key::new(candidate, antagonist, 7);
         for (key, ball, other, plane) in [
             (key(3, 4), Some(3), Some(4), None),
             (key(3, piece), Some(3), None, None),

@@ -1,11 +1,11 @@
 //! The state of the spring of a compliant contact.
 
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// The spring of a compliant contact at the end of a step; all zero for a rigid contact and one
 /// that does not touch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Spring<S: Space> {
     /// Overlap of the bodies (m).
@@ -19,16 +19,6 @@ pub struct Spring<S: Space> {
 }
 
 impl<S: Space> Spring<S> {
-    /// Returns a spring that carries nothing.
-    pub fn relaxed() -> Self {
-        Self {
-            overlap: 0.0,
-            force_n: 0.0,
-            force_t: S::Tangent::zero(),
-            energy: [0.0; 2],
-        }
-    }
-
     /// Returns the stored energy (J).
     pub fn stored(&self) -> f64 {
         self.energy[0] + self.energy[1]
@@ -44,9 +34,9 @@ mod tests {
     fn it_stores_the_sum_of_both_energies() {
         let spring = Spring::<Dim2> {
             energy: [2.0, 3.0],
-            ..Spring::relaxed()
+            ..Spring::default()
         };
         assert_eq!(spring.stored(), 5.0);
-        assert_eq!(Spring::<Dim2>::relaxed().stored(), 0.0);
+        assert_eq!(Spring::<Dim2>::default().stored(), 0.0);
     }
 }

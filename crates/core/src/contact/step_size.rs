@@ -9,12 +9,14 @@ use serde::{Deserialize, Serialize};
 /// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as
 /// found late.
 const LATE: f64 = 0.01;
-/// The same for springs, which overlap by that much under load; more is too soft for a contact
+/// Penetration, relative to the reduced radius, from which a contact of springs counts as found late.
+/// Springs overlap by that much under load; softer ones are too soft for a contact
 /// (`fretwork check`).
 const LATE_SPRING: f64 = 0.05;
-/// Overlap over what the bodies move relative to each other in a step, above which it did not come
-/// about by their speed.
+/// Ratio of an overlap to the relative motion of the bodies in a step, above which the overlap is not
+/// due to their speed.
 const NOT_BY_SPEED: f64 = 2.0;
+
 /// Time and bodies of the first occurrence of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
@@ -25,7 +27,7 @@ pub struct Occurrence {
 }
 
 impl Occurrence {
-    fn new<S: Space>(time: f64, bodies: &Bodies<S>, of: &[u32]) -> Self {
+    pub(crate) fn new<S: Space>(time: f64, bodies: &Bodies<S>, of: &[u32]) -> Self {
         Self {
             time,
             bodies: of.iter().map(|b| bodies.name(*b)).collect(),
@@ -169,68 +171,47 @@ impl StepSizeDiagnostics {
     }
 
     /// Records two bodies that the step could not keep apart.
-    pub(super) fn record_passing<S: Space>(
-        &mut self,
-        time: f64,
-        bodies: &Bodies<S>,
-        pair: [u32; 2],
-    ) {
+    pub(super) fn record_passing(&mut self, first: impl FnOnce() -> Occurrence) {
         self.passed += 1;
-        self.first_passed
-            .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
+        self.first_passed.get_or_insert_with(first);
     }
 
     /// Records two bodies whose impact follows another one of the same step.
-    pub(crate) fn record_held_back<S: Space>(
-        &mut self,
-        time: f64,
-        bodies: &Bodies<S>,
-        pair: [u32; 2],
-    ) {
+    pub(crate) fn record_held_back(&mut self, first: impl FnOnce() -> Occurrence) {
         self.held_back += 1;
-        self.first_held_back
-            .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
+        self.first_held_back.get_or_insert_with(first);
     }
 
-    /// Records a body that slides into an edge of this height (m), in a scene of some convex
+    /// Records a body that slides into an edge of this height (m), in a scene of `pieces` convex
     /// pieces.
-    pub(super) fn record_edge<S: Space>(
+    pub(super) fn record_edge(
         &mut self,
-        time: f64,
-        bodies: &Bodies<S>,
-        pair: [u32; 2],
         height: f64,
         pieces: u64,
+        first: impl FnOnce() -> Occurrence,
     ) {
         self.edges += 1;
         self.highest_edge = self.highest_edge.max(height);
         self.pieces = pieces;
-        self.first_edge
-            .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
+        self.first_edge.get_or_insert_with(first);
     }
 
-    /// Records a body that moves farther in a step than the range in which contacts are searched.
-    pub(super) fn record_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
+    /// Records a body that moves farther in a step that starts at `time` (s) than the range in which
+    /// contacts are searched.
+    pub(super) fn record_unwatched(&mut self, time: f64, first: impl FnOnce() -> Occurrence) {
         // A step may be examined several times.
         if self.last_unwatched == Some(time) {
             return;
         }
         self.last_unwatched = Some(time);
         self.unwatched_steps += 1;
-        self.first_unwatched
-            .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
+        self.first_unwatched.get_or_insert_with(first);
     }
 
     /// Records a body whose displacement in a step is below the floating-point spacing of its
     /// position.
-    pub(crate) fn record_lost_motion<S: Space>(
-        &mut self,
-        time: f64,
-        bodies: &Bodies<S>,
-        body: u32,
-    ) {
-        self.motion_lost
-            .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
+    pub(crate) fn record_lost_motion(&mut self, first: impl FnOnce() -> Occurrence) {
+        self.motion_lost.get_or_insert_with(first);
     }
 
     /// Returns the warning about bodies that slid into low edges, and whether these are more than
@@ -260,19 +241,6 @@ impl StepSizeDiagnostics {
         })
     }
 
-    fn late_contacts(&self) -> Option<String> {
-        let first = self
-            .first_late
-            .as_ref()
-            .map_or(String::new(), Occurrence::text);
-        (self.late > 0).then(|| {
-            format!(
-                "{} contacts were first seen overlapping, by up to {:.2e} of the radius, {first}",
-                self.late, self.deepest
-            )
-        })
-    }
-
     /// Returns the warning for the user; `None` if every contact was found in time.
     pub fn warning(&self) -> Option<String> {
         let first = |o: &Option<Occurrence>| o.as_ref().map_or(String::new(), Occurrence::text);
@@ -298,12 +266,17 @@ impl StepSizeDiagnostics {
                 first(&self.first_unwatched)
             )
         });
-        let late = self.late_contacts();
-        let told: Vec<String> = [passed, held_back, unwatched, late]
-            .into_iter()
-            .flatten()
-            .collect();
-        (!told.is_empty()).then(|| format!("{}; take a smaller time.step", told.join("; ")))
+        let late = (self.late > 0).then(|| {
+            format!(
+                "{} contacts were first seen overlapping, by up to {:.2e} of the radius, {}",
+                self.late,
+                self.deepest,
+                first(&self.first_late)
+            )
+        });
+        let all = [passed, held_back, unwatched, late];
+        let warnings: Vec<String> = all.into_iter().flatten().collect();
+        (!warnings.is_empty()).then(|| format!("{}; take a smaller time.step", warnings.join("; ")))
     }
 }
 
@@ -316,79 +289,66 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is no sign
-    /// of speed, one of 2 % of the grain is.
+    /// A contact of two faces at the body of index 0.
+    fn contact(depth: f64, radius: f64) -> Contact<Dim2> {
+        let geometry = ContactGeometry {
+            gap: -depth,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::zeros(); 2],
+            radius,
+        };
+        let key = Key::new(Key::PIECE, Key::PIECE | 1, 0);
+        Contact::new(key, [0, 1], 0, geometry, 0.0)
+    }
+
+    /// Grains of 1e-6 m, one metre apart.
+    fn grains(count: usize) -> Bodies<Dim2> {
+        let mut bodies = Bodies::default();
+        for x in 0..count {
+            bodies.add_ball(Vector2::new(x as f64, 0.0), 1e-6, 1e3);
+        }
+        bodies
+    }
+
+    /// Numbers of contacts that are found late and of those that sank, after a contact of 2e-8 m
+    /// between grains of 1e-6 m was found within a second.
+    fn late_and_sunk(bodies: &Bodies<Dim2>) -> (u64, u64) {
+        let mut found = StepSizeDiagnostics::default();
+        let contact = contact(2e-8, 1e-6);
+        found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], bodies);
+        (found.late, found.sunk)
+    }
+
+    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is not due
+    /// to speed, one of 2 % of the grain is.
     #[test]
     fn late_contacts_are_measured_by_their_bodies() {
-        let mut bodies = Bodies::<Dim2>::default();
-        for x in [0.0, 1.0] {
-            bodies.add_ball(Vector2::new(x, 0.0), 1e-6, 1e3);
-        }
+        let mut bodies = grains(2);
         // Faster than any of these overlaps in a second.
         bodies.velocity[0] = Vector2::new(0.0, -1.0);
         let mut found = StepSizeDiagnostics::default();
         for (depth, compliant, late) in [(2e-9, false, 0), (2e-8, true, 0), (2e-8, false, 1)] {
-            let geometry = ContactGeometry {
-                gap: -depth,
-                normal: Vector2::new(0.0, 1.0),
-                arms: [Vector2::zeros(); 2],
-                radius: 1e-9,
-            };
-            let key = Key {
-                candidate: Key::PIECE,
-                antagonist: Key::PIECE | 1,
-                feature: 0,
-            };
-            let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+            let contact = contact(depth, 1e-9);
             found.record_late(&contact, [0.0, 1e-6], compliant, [1.0, 1.0], &bodies);
             assert_eq!(found.late, late);
         }
         assert!((found.deepest - 0.02).abs() < 1e-12 && found.sunk == 0);
     }
 
-    /// A body at 1e-9 m/s that overlaps by 2e-8 m after a second did not get there by its speed.
+    /// The overlap of a body at 1e-9 m/s, of 2e-8 m after a second, is not due to its speed.
     #[test]
-    fn overlaps_of_slow_bodies_are_no_sign_of_speed() {
-        let mut bodies = Bodies::<Dim2>::default();
-        for x in [0.0, 1.0] {
-            bodies.add_ball(Vector2::new(x, 0.0), 1e-6, 1e3);
-        }
-        let geometry = ContactGeometry {
-            gap: -2e-8,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [Vector2::zeros(); 2],
-            radius: 1e-6,
-        };
-        let key = Key {
-            candidate: Key::PIECE,
-            antagonist: Key::PIECE | 1,
-            feature: 0,
-        };
-        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+    fn overlaps_of_slow_bodies_are_not_due_to_speed() {
+        let mut bodies = grains(2);
         for (speed, sunk) in [(1e-9, 1), (2e-8, 0)] {
             bodies.velocity[0] = Vector2::new(0.0, -speed);
-            let mut found = StepSizeDiagnostics::default();
-            found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], &bodies);
-            assert_eq!((found.sunk, found.late), (sunk, 1 - sunk), "{speed}");
+            assert_eq!(late_and_sunk(&bodies), (1 - sunk, sunk), "{speed}");
         }
     }
 
-    /// A point of a system that is as slow as the bodies above sank as they do; of a surface the
-    /// speed is known at its origin, of which that elsewhere may be a hundred times.
+    /// The limits of speed of a point of a system are those of a body. Of a surface the speed is
+    /// known at its origin only; elsewhere it may be a hundred times as large.
     #[test]
-    fn what_systems_carry_sinks_too() {
-        let geometry = ContactGeometry {
-            gap: -2e-8,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [Vector2::zeros(); 2],
-            radius: 1e-6,
-        };
-        let key = Key {
-            candidate: Key::PIECE,
-            antagonist: Key::PIECE | 1,
-            feature: 0,
-        };
-        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+    fn contactors_of_systems_sink_too() {
         for (points, speed, sunk) in [
             (2, 0.0, 1),
             (2, 1e-9, 1),
@@ -397,40 +357,33 @@ mod tests {
             (0, 1e-11, 1),
             (0, 1e-9, 0),
         ] {
-            let mut bodies = Bodies::<Dim2>::default();
-            for b in 0..2 + points {
-                bodies.add_ball(Vector2::new(b as f64, 0.0), 1e-6, 1e3);
-            }
+            let mut bodies = grains(2 + points);
+            bodies.carriers.resize(2 + points, None);
             for b in 1..2 + points {
-                let carrier = Carrier {
+                bodies.carriers[b] = Some(Carrier {
                     system: 0,
                     contactor: b as u32 - 1,
                     touches_itself: false,
                     grain: false,
-                };
-                bodies.carriers.resize(2 + points, None);
-                bodies.carriers[b] = Some(carrier);
+                });
             }
             bodies.velocity[1] = Vector2::new(speed, 0.0);
-            let mut found = StepSizeDiagnostics::default();
-            found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], &bodies);
             assert_eq!(
-                (found.sunk, found.late),
-                (sunk, 1 - sunk),
+                late_and_sunk(&bodies),
+                (1 - sunk, sunk),
                 "{points}, {speed}"
             );
         }
     }
 
-    /// A step that is examined twice counts once, and there is a warning of what happened only.
+    /// A step that is examined twice counts once, and the warning names only what happened.
     #[test]
-    fn steps_that_are_not_watched_are_counted_and_told() {
-        let mut bodies = Bodies::<Dim2>::default();
-        bodies.add_ball(Vector2::zeros(), 0.5, 1e3);
+    fn unwatched_steps_are_counted_once() {
+        let bodies = grains(1);
         let mut found = StepSizeDiagnostics::default();
         assert_eq!(found.warning(), None);
         for time in [0.0, 0.0, 1.0, 2.0, 2.0] {
-            found.record_unwatched(time, &bodies, 0);
+            found.record_unwatched(time, || Occurrence::new(time, &bodies, &[0]));
         }
         assert_eq!(found.unwatched_steps, 3);
         let warning = found.warning().unwrap();
@@ -439,8 +392,8 @@ mod tests {
             "{warning}"
         );
         assert!(warning.ends_with("take a smaller time.step"), "{warning}");
-        for untold in ["restitution", "penetrated", "overlapping"] {
-            assert!(!warning.contains(untold), "{warning}");
+        for other in ["restitution", "penetrated", "overlapping"] {
+            assert!(!warning.contains(other), "{warning}");
         }
     }
 }

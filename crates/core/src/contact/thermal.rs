@@ -15,7 +15,7 @@ pub enum HeatSide {
     Between(u32),
 }
 
-/// What two materials in contact have together, of the first on the candidate and the second on the
+/// Properties of a pair of materials in contact, the first of the candidate and the second of the
 /// antagonist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPair {
@@ -26,7 +26,7 @@ pub struct MaterialPair {
     pub share: f64,
 }
 
-/// What a contact sees of heat in a step.
+/// Temperatures and heat paths of a contact in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactTemperature {
     /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
@@ -37,13 +37,14 @@ pub struct ContactTemperature {
     pub pair: u32,
 }
 
-/// What laws see of heat at each contact, and what they answer, in the order of the contacts.
+/// Temperatures that laws receive at each contact, and conductances that they return, in the order of
+/// the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHeat {
     /// All pairs of materials.
     pub pairs: Arc<[MaterialPair]>,
-    /// What they see.
-    pub seen: Vec<ContactTemperature>,
+    /// Temperatures and heat paths.
+    pub temperatures: Vec<ContactTemperature>,
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws
     /// give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
@@ -51,7 +52,7 @@ pub struct ContactHeat {
     pub between: Vec<Nodes>,
     /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
     pub source: Vec<f64>,
-    /// Whether heat or current flows in this step, so that conductances are asked for.
+    /// Whether heat or current flows in this step, so that laws compute conductances.
     pub conducts: bool,
     /// Whether current flows, so that laws are given resistivities.
     pub current: bool,

@@ -22,6 +22,7 @@ pub fn least(a: f64, b: f64) -> f64 {
 pub trait VectorLike:
     Copy
     + Debug
+    + Default
     + Send
     + Sync
     + PartialEq

@@ -1,8 +1,10 @@
-//! Bounding boxes of the segments of a chain, of groups of successive ones, of groups of these, and
-//! so on: what is near a place is found without a look at the rest. Successive segments of a chain
+//! Hierarchy of bounding boxes of the segments of a chain: the segments near a place are found
+//! without a search over all. Successive segments of a chain
 //! are near each other, so that nothing has to be sorted.
 
 use nalgebra::Vector2;
+
+type V = Vector2<f64>;
 
 /// Boxes per group.
 const GROUP: usize = 8;
@@ -11,25 +13,25 @@ const GROUP: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Least coordinates (m).
-    pub low: Vector2<f64>,
+    pub low: V,
     /// Greatest coordinates (m).
-    pub high: Vector2<f64>,
+    pub high: V,
 }
 
 impl Window {
     /// The box of all places within `reach` (m) of one along the axes.
-    pub fn around(centre: &Vector2<f64>, reach: f64) -> Self {
+    pub fn around(centre: &V, reach: f64) -> Self {
         Self {
-            low: Vector2::new(centre.x - reach, centre.y - reach),
-            high: Vector2::new(centre.x + reach, centre.y + reach),
+            low: V::new(centre.x - reach, centre.y - reach),
+            high: V::new(centre.x + reach, centre.y + reach),
         }
     }
 
     /// Moves the box along x (m).
     pub fn shifted(&self, x: f64) -> Self {
         Self {
-            low: Vector2::new(self.low.x + x, self.low.y),
-            high: Vector2::new(self.high.x + x, self.high.y),
+            low: V::new(self.low.x + x, self.low.y),
+            high: V::new(self.high.x + x, self.high.y),
         }
     }
 
@@ -52,7 +54,7 @@ impl Window {
 /// The boxes of a chain.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
-    /// Those of the segments, then those of the groups of each level; the last level has one.
+    /// Boxes of the segments, then of the groups of each level; the last level has one box.
     levels: Vec<Vec<Window>>,
 }
 
@@ -120,7 +122,7 @@ mod tests {
         for count in [0u32, 1, 2, 8, 9, 64, 65, 700] {
             let segment = |k: u32| {
                 let t = 0.1 * f64::from(k);
-                Window::around(&Vector2::new(t.cos() * t, t.sin() * t), 0.05 * t)
+                Window::around(&V::new(t.cos() * t, t.sin() * t), 0.05 * t)
             };
             let mut boxes = Boxes::default();
             // Of another chain, which is forgotten.
@@ -128,7 +130,7 @@ mod tests {
             boxes.set((0..count).map(segment));
             for k in 0..200 {
                 let t = 0.35 * f64::from(k);
-                let centre = Vector2::new(t.sin() * t, (1.3 * t).cos() * t);
+                let centre = V::new(t.sin() * t, (1.3 * t).cos() * t);
                 let window = Window::around(&centre, 0.02 * t);
                 let mut found = Vec::new();
                 let mut push = |k| {

@@ -38,7 +38,12 @@ impl Drum {
 }
 
 impl<S: Space> Surface<S> for Drum {
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>) {
+    fn closest_points(
+        &self,
+        centre: &S::Vector,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<S::Vector>>,
+    ) {
         let across = self.across::<S>(centre);
         let r = across.norm();
         let distance = self.radius - r;
@@ -117,7 +122,7 @@ impl<S: Space> Surface<S> for Drum {
         self.across::<S>(from).norm() - self.across::<S>(to).norm()
     }
 
-    fn keeps_place(&self, spin: &S::Spin) -> bool {
+    fn is_unchanged_by(&self, spin: &S::Spin) -> bool {
         let mut axis = S::Vector::zero();
         if S::D == 3 {
             axis[self.axis] = 1.0;
@@ -134,7 +139,7 @@ mod tests {
 
     fn touch<S: Space>(drum: &Drum, at: S::Vector, reach: f64) -> Vec<ClosestPoint<S::Vector>> {
         let mut out = Vec::new();
-        Surface::<S>::touches(drum, &at, reach, &mut out);
+        Surface::<S>::closest_points(drum, &at, reach, &mut out);
         out
     }
 
@@ -178,9 +183,9 @@ mod tests {
             assert_eq!(found.closest_point[axis], 7.0);
             let mut spin = Vector3::zeros();
             spin[axis] = 3.0;
-            assert!(Surface::<Dim3>::keeps_place(&drum, &spin));
+            assert!(Surface::<Dim3>::is_unchanged_by(&drum, &spin));
             spin[(axis + 1) % 3] = 1e-3;
-            assert!(!Surface::<Dim3>::keeps_place(&drum, &spin));
+            assert!(!Surface::<Dim3>::is_unchanged_by(&drum, &spin));
         }
     }
 }

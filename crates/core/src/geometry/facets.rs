@@ -56,26 +56,28 @@ impl Facet<V> {
     }
 }
 
-/// A nearest part: the number of facets that found it, the vector from it, and the first such
-/// facet.
-struct Found {
+/// A part of the surface that is nearest to the centre on at least one facet.
+struct NearestPart {
     part: [u64; 3],
+    /// Number of its corners.
     corners: usize,
+    /// Number of facets that found it.
     count: usize,
     closest_point: V,
+    /// The first such facet.
     first: usize,
 }
 
 /// Finds all points where the surface is locally nearest to a ball centred at `centre` within
 /// `reach` (m), in the order of their features. `facets` are all that intersect the box of that
 /// size about it.
-pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
-    touches_within(facets, centre, reach, 0.0, out);
+pub fn closest_points(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
+    closest_points_within(facets, centre, reach, 0.0, out);
 }
 
-/// Finds the points where the surface is locally nearest to a ball, as [`touches`] does. A point
+/// Finds the points where the surface is locally nearest to a ball, as [`closest_points`] does. A point
 /// that is nearer to a corner than the share `at_corner` of an edge is moved to the corner.
-pub fn touches_within(
+pub fn closest_points_within(
     facets: &[Facet<V>],
     centre: &V,
     reach: f64,
@@ -83,12 +85,12 @@ pub fn touches_within(
     out: &mut Vec<ClosestPoint<V>>,
 ) {
     let start = out.len();
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<NearestPart> = Vec::new();
     for (k, facet) in facets.iter().enumerate() {
         let [a, b, c] = facet.corners;
         let (closest_point, mut used) = nearest(*centre, a, b, c);
-        // In line with a corner rounding decides whether a facet finds that or an edge of it; the
-        // facets around it must agree.
+        // If the centre is in line with a corner, rounding decides whether a facet finds the corner or
+        // an edge at it; all facets around the corner must agree.
         for (k, corner) in facet.corners.iter().enumerate() {
             let edge = (facet.corners[(k + 1) % 3] - corner).norm();
             if at_corner > 0.0 && (closest_point - corner).norm() <= at_corner * edge {
@@ -101,7 +103,7 @@ pub fn touches_within(
         let part = facet.part(used);
         match found.iter_mut().find(|f| f.part == part) {
             Some(f) => f.count += 1,
-            None => found.push(Found {
+            None => found.push(NearestPart {
                 part,
                 corners: used.iter().filter(|u| **u).count(),
                 count: 1,
@@ -110,15 +112,17 @@ pub fn touches_within(
             }),
         }
     }
-    let about = |part: [u64; 3]| facets.iter().filter(move |g| g.has(&part));
+    let around = |part: [u64; 3]| facets.iter().filter(move |g| g.has(&part));
     // An edge or a corner counts if all facets around it find it; otherwise a face is nearer.
-    found.retain(|f| f.count >= about(f.part).count());
-    let up = |f: &Found| pseudo_normal(about(f.part), &f.part, f.corners);
-    let arm = |f: &Found| centre - f.closest_point;
-    let nearest = |f: &&Found, g: &&Found| arm(f).norm_squared().total_cmp(&arm(g).norm_squared());
+    found.retain(|f| f.count >= around(f.part).count());
+    let up = |f: &NearestPart| pseudo_normal(around(f.part), &f.part, f.corners);
+    let arm = |f: &NearestPart| centre - f.closest_point;
+    let nearest = |f: &&NearestPart, g: &&NearestPart| {
+        arm(f).norm_squared().total_cmp(&arm(g).norm_squared())
+    };
     // A vector of the size of rounding errors has no direction.
     let tiny = 1e-13 * (centre.norm() + reach);
-    // The nearest part determines inside or outside: parts behind it are seen from their back.
+    // The nearest part determines whether the centre is inside or outside: parts behind it face away.
     let inside = found
         .iter()
         .min_by(nearest)
@@ -129,8 +133,8 @@ pub fn touches_within(
         if (arm.dot(&up) < 0.0) != inside && length > tiny {
             continue;
         }
-        // Nor has its part across the normal: a point that touches a seam of a plane would be
-        // pushed along it.
+        // A tangential part of the size of rounding errors is ignored too: a point that touches a seam
+        // within a plane would be pushed along the plane.
         let aligned = (arm - up * arm.dot(&up)).norm() <= tiny;
         let face = f.corners == 3 || aligned;
         let rises = |g: &Facet<V>| {
@@ -138,9 +142,9 @@ pub fn touches_within(
                 |c: &V| (c - f.closest_point).dot(&up) > BEHIND * (c - f.closest_point).norm();
             g.corners.iter().any(over)
         };
-        if (inside || length <= tiny) && about(f.part).any(rises) {
+        if (inside || length <= tiny) && around(f.part).any(rises) {
             // At or below the bottom of a crease: behind the planes of all its sides.
-            out.extend(about(f.part).map(|g| {
+            out.extend(around(f.part).map(|g| {
                 let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
                 ClosestPoint {
                     closest_point: centre - normal * distance,
@@ -315,12 +319,7 @@ pub fn behind(facets: &[Facet<V>], name: u64, place: &V, normal: &V) -> bool {
 
 /// Returns the nearest point of a triangle and the corners involved (one: a corner, two: an edge,
 /// three: the face). Ericson, Real-Time Collision Detection (2005), section 5.1.5.
-pub fn nearest(
-    p: Vector3<f64>,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    c: Vector3<f64>,
-) -> (Vector3<f64>, [bool; 3]) {
+pub fn nearest(p: V, a: V, b: V, c: V) -> (V, [bool; 3]) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
     if d1 <= 0.0 && d2 <= 0.0 {

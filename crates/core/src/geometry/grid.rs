@@ -13,35 +13,44 @@ use std::ops::Range;
 
 /// Balls per task.
 const CHUNK: usize = 1024;
-/// Time of a ball (ns).
+/// Approximate time for a ball (ns).
 const COST: f64 = 300.0;
 
-/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a,
-/// b).
+/// Balls of which pairs are searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Balls<'a, V> {
+    /// Centres x (m).
+    pub centres: &'a [V],
+    /// Radii r (m).
+    pub radii: &'a [f64],
+    /// Distance beyond the radii within which two balls are a pair (m).
+    pub reach: f64,
+    /// Periodic boundaries.
+    pub periodic: &'a Periodic,
+}
+
+/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + reach, sorted by (a, b).
 ///
 /// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is
 /// linear in the number of balls, for any sizes; memory is bounded for any extent (cells grow if
 /// the scene is sparse). Balls are distributed over threads if `parallel`; the results are the
 /// same.
 pub fn pairs<V: VectorLike>(
-    centres: &[V],
-    radii: &[f64],
-    reach: f64,
-    periodic: &Periodic,
+    balls: &Balls<V>,
     parallel: bool,
     keep: impl Fn(u32, u32) -> bool + Sync,
 ) -> Vec<(u32, u32)> {
-    let n = centres.len();
+    let n = balls.centres.len();
     if n < 2 {
         return Vec::new();
     }
-    let levels = Levels::new(centres, radii, reach, periodic);
-    let divide = threads::pays(parallel, n, COST);
-    let parts = threads::map_ranges(divide, n, threads::any_size(CHUNK), |balls| {
-        let (mut out, mut near) = (Vec::with_capacity(8 * balls.len()), Vec::new());
-        for a in balls {
+    let levels = Levels::new(balls);
+    let divide = threads::worth_dividing(parallel, n, COST);
+    let parts = threads::map_ranges(divide, n, threads::chunk_size(CHUNK), |range| {
+        let (mut out, mut rows) = (Vec::with_capacity(8 * range.len()), Vec::new());
+        for a in range {
             let (a, first) = (a as u32, out.len());
-            levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+            levels.near(a, balls, &mut rows, |b| {
                 let pair = (a.min(b), a.max(b));
                 if keep(pair.0, pair.1) {
                     out.push(pair);
@@ -61,7 +70,7 @@ pub fn pairs<V: VectorLike>(
 
 /// A cell with many balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crowd {
+pub struct DenseCell {
     /// One of them.
     pub ball: u32,
     /// Number of balls
@@ -70,30 +79,27 @@ pub struct Crowd {
     pub size: f64,
 }
 
-/// Returns, if [`pairs`] would find more than `most` pairs, the cell with the most balls. Stores no
+/// Returns the cell with the most balls if [`pairs`] would find more than `most` pairs. Stores no
 /// pairs, and stops counting when the answer is known.
-pub fn more_than<V: VectorLike>(
-    centres: &[V],
-    radii: &[f64],
-    reach: f64,
-    periodic: &Periodic,
+pub fn dense_cell<V: VectorLike>(
+    balls: &Balls<V>,
     most: usize,
     keep: impl Fn(u32, u32) -> bool,
-) -> Option<Crowd> {
-    let n = centres.len();
+) -> Option<DenseCell> {
+    let n = balls.centres.len();
     // All possible pairs together are fewer.
     if n < 2 || n.saturating_mul(n - 1) / 2 <= most {
         return None;
     }
-    let levels = Levels::new(centres, radii, reach, periodic);
-    let (mut near, mut found) = (Vec::new(), 0usize);
+    let levels = Levels::new(balls);
+    let (mut rows, mut found) = (Vec::new(), 0usize);
     for a in 0..n as u32 {
-        levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+        levels.near(a, balls, &mut rows, |b| {
             found += usize::from(keep(a.min(b), a.max(b)));
             found <= most
         });
         if found > most {
-            return levels.crowd();
+            return levels.densest_cell();
         }
     }
     None
@@ -101,22 +107,17 @@ pub fn more_than<V: VectorLike>(
 
 /// Returns the number of pairs that [`pairs`] examines, an upper bound of those it finds. Linear in
 /// the number of balls.
-pub fn most_pairs<V: VectorLike>(
-    centres: &[V],
-    radii: &[f64],
-    reach: f64,
-    periodic: &Periodic,
-) -> f64 {
-    let levels = Levels::new(centres, radii, reach, periodic);
-    let (mut near, mut sum) = (Vec::new(), 0.0);
-    for (a, x) in centres.iter().enumerate() {
+pub fn pairs_bound<V: VectorLike>(balls: &Balls<V>) -> f64 {
+    let levels = Levels::new(balls);
+    let (mut rows, mut sum) = (Vec::new(), 0.0);
+    for (a, x) in balls.centres.iter().enumerate() {
         for level in levels.of(a as u32) {
-            level.grid.around(x, periodic, &mut near);
-            let seen: usize = near.iter().map(|row| row.len()).sum();
+            level.grid.around(x, balls.periodic, &mut rows);
+            let examined: usize = rows.iter().map(|row| row.len()).sum();
             sum += if levels.is_own(a as u32, level) {
-                0.5 * (seen as f64 - 1.0)
+                0.5 * (examined as f64 - 1.0)
             } else {
-                seen as f64
+                examined as f64
             };
         }
     }
@@ -125,7 +126,7 @@ pub fn most_pairs<V: VectorLike>(
 
 /// Mean number of balls per cell searched, above which balls are sorted by size. For balls of one
 /// size it is three.
-const CROWD: f64 = 8.0;
+const CROWDED: f64 = 8.0;
 /// The largest search distance of a level is at most twice its smallest, except in the last level,
 /// which starts at 1e-9 of the largest.
 const MAX_LEVELS: usize = 31;
@@ -145,8 +146,8 @@ struct Level<V> {
 }
 
 impl<V: VectorLike> Level<V> {
-    fn new(place: usize, grid: Grid, centres: &[V], radii: &[f64]) -> Self {
-        let at = |b: &u32| (centres[*b as usize], radii[*b as usize]);
+    fn new(place: usize, grid: Grid, balls: &Balls<V>) -> Self {
+        let at = |b: &u32| (balls.centres[*b as usize], balls.radii[*b as usize]);
         let places = grid.sorted().iter().map(at).collect();
         Self {
             place,
@@ -157,15 +158,16 @@ impl<V: VectorLike> Level<V> {
 }
 
 impl<V: VectorLike> Levels<V> {
-    fn new(centres: &[V], radii: &[f64], reach: f64, periodic: &Periodic) -> Self {
+    fn new(balls: &Balls<V>) -> Self {
+        let (radii, reach) = (balls.radii, balls.reach);
         let widest = radii.iter().copied().fold(0.0, f64::max);
         let width = |radius: f64| 2.0 * radius + reach;
-        let grid = Grid::new(centres, None, width(widest), periodic);
+        let grid = Grid::new(balls.centres, None, width(widest), balls.periodic);
         let one = |grid| Self {
-            levels: vec![Level::new(0, grid, centres, radii)],
+            levels: vec![Level::new(0, grid, balls)],
             own: Vec::new(),
         };
-        if grid.crowd() <= CROWD {
+        if grid.crowd() <= CROWDED {
             return one(grid);
         }
         // From large to small, as far as there are balls.
@@ -191,8 +193,8 @@ impl<V: VectorLike> Levels<V> {
             let members = &members[*class];
             let widest = members.iter().map(|b| radii[*b as usize]);
             let widest = widest.fold(0.0, f64::max);
-            let grid = Grid::new(centres, Some(members), width(widest), periodic);
-            Level::new(place, grid, centres, radii)
+            let grid = Grid::new(balls.centres, Some(members), width(widest), balls.periodic);
+            Level::new(place, grid, balls)
         });
         let levels = levels.collect();
         let place = |class: &usize| filled.iter().position(|f| f == class).unwrap_or(0) as u8;
@@ -210,20 +212,16 @@ impl<V: VectorLike> Levels<V> {
 
     /// Calls `each` with the balls within the search distance of `a` that it is paired with, until
     /// it returns false.
-    #[allow(clippy::too_many_arguments)]
     fn near(
         &self,
         a: u32,
-        centres: &[V],
-        radii: &[f64],
-        reach: f64,
-        periodic: &Periodic,
+        balls: &Balls<V>,
         rows: &mut Vec<Range<usize>>,
         mut each: impl FnMut(u32) -> bool,
     ) {
-        let (xa, ra) = (centres[a as usize], radii[a as usize]);
+        let (xa, ra) = (balls.centres[a as usize], balls.radii[a as usize]);
         for level in self.of(a) {
-            level.grid.around(&xa, periodic, rows);
+            level.grid.around(&xa, balls.periodic, rows);
             let own = self.is_own(a, level);
             for row in rows.iter() {
                 let sorted = &level.grid.sorted()[row.clone()];
@@ -232,8 +230,8 @@ impl<V: VectorLike> Levels<V> {
                     if own && b <= a {
                         continue;
                     }
-                    let d = periodic.shortest(*xb - xa);
-                    let limit = ra + rb + reach;
+                    let d = balls.periodic.shortest(*xb - xa);
+                    let limit = ra + rb + balls.reach;
                     if d.dot(&d) < limit * limit && !each(b) {
                         return;
                     }
@@ -243,13 +241,13 @@ impl<V: VectorLike> Levels<V> {
     }
 
     /// Returns the cell with the most balls.
-    fn crowd(&self) -> Option<Crowd> {
+    fn densest_cell(&self) -> Option<DenseCell> {
         let cells = self.levels.iter().filter_map(|level| {
             let (cell, count) = level.grid.fullest_cell()?;
             Some((&level.grid, cell, count))
         });
         let (grid, cell, count) = cells.max_by_key(|c| c.2)?;
-        Some(Crowd {
+        Some(DenseCell {
             ball: *grid.balls(cell).first()?,
             count,
             size: grid.cell_size(),
@@ -268,22 +266,35 @@ mod tests {
     use nalgebra::{Vector2, Vector3};
     use rand::{RngExt, SeedableRng};
 
-    fn brute<V: VectorLike>(
-        x: &[V],
-        r: &[f64],
-        reach: f64,
-        periodic: &Periodic,
-    ) -> Vec<(u32, u32)> {
+    /// All pairs by comparing every ball with every other.
+    fn brute<V: VectorLike>(balls: &Balls<V>) -> Vec<(u32, u32)> {
+        let (x, r) = (balls.centres, balls.radii);
         let mut out = Vec::new();
         for a in 0..x.len() {
             for b in a + 1..x.len() {
-                if periodic.shortest(x[b] - x[a]).norm() < r[a] + r[b] + reach {
+                if balls.periodic.shortest(x[b] - x[a]).norm() < r[a] + r[b] + balls.reach {
                     out.push((a as u32, b as u32));
                 }
             }
         }
         out
     }
+
+    fn balls<'a, V>(
+        centres: &'a [V],
+        radii: &'a [f64],
+        reach: f64,
+        periodic: &'a Periodic,
+    ) -> Balls<'a, V> {
+        Balls {
+            centres,
+            radii,
+            reach,
+            periodic,
+        }
+    }
+
+    const OPEN: &Periodic = &Periodic { period: [None; 3] };
 
     #[test]
     fn finds_what_all_pairs_finds() {
@@ -296,18 +307,14 @@ mod tests {
             let x2: Vec<_> = (0..200)
                 .map(|_| Vector2::new(rng.random_range(-2.0..12.0), rng.random_range(0.0..4.0)))
                 .collect();
-            assert_eq!(
-                pairs(&x2, &r, 0.05, &periodic, false, |_, _| true),
-                brute(&x2, &r, 0.05, &periodic)
-            );
+            let plane = balls(&x2, &r, 0.05, &periodic);
+            assert_eq!(pairs(&plane, false, |_, _| true), brute(&plane));
             let x3: Vec<_> = x2
                 .iter()
                 .map(|p| Vector3::new(p.x, p.y * 0.3, p.x * 0.1))
                 .collect();
-            assert_eq!(
-                pairs(&x3, &r, 0.05, &periodic, false, |_, _| true),
-                brute(&x3, &r, 0.05, &periodic)
-            );
+            let space = balls(&x3, &r, 0.05, &periodic);
+            assert_eq!(pairs(&space, false, |_, _| true), brute(&space));
         }
     }
 
@@ -335,40 +342,42 @@ mod tests {
                     };
                     let (x, mut r) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector2::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, true, every);
-                    assert_eq!(found, brute(&x, &r, reach, &periodic));
-                    assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
+                    let plane = balls(&x, &r, reach, &periodic);
+                    let found = pairs(&plane, true, every);
+                    assert_eq!(found, brute(&plane));
+                    assert!(pairs_bound(&plane) >= found.len() as f64);
                     // One large ball among many small ones of equal size.
                     r.fill(1.0 / ratio);
                     r[137] = 1.0;
                     let (x, _) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector3::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, true, every);
-                    assert_eq!(found, brute(&x, &r, reach, &periodic));
-                    assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
+                    let space = balls(&x, &r, reach, &periodic);
+                    let found = pairs(&space, true, every);
+                    assert_eq!(found, brute(&space));
+                    assert!(pairs_bound(&space) >= found.len() as f64);
                 }
             }
         }
     }
 
     #[test]
-    fn a_wide_ball_does_not_make_small_ones_look_far() {
+    fn a_large_ball_does_not_widen_the_search_of_small_ones() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(10);
         let n = 20_000;
         let mut x: Vec<_> = (0..n)
             .map(|_| Vector2::new(rng.random_range(0.0..1.0), rng.random_range(0.0..1.0)))
             .collect();
         let mut r = vec![3e-3; n];
-        let alone = most_pairs(&x, &r, 0.0, &Periodic::default());
+        let alone = pairs_bound(&balls(&x, &r, 0.0, OPEN));
         x.push(Vector2::new(0.5, 1.5));
         r.push(0.6);
-        let both = most_pairs(&x, &r, 0.0, &Periodic::default());
+        let both = pairs_bound(&balls(&x, &r, 0.0, OPEN));
         // Each also examines the large one.
         assert!(both < 1.1 * alone + n as f64, "{both:e} {alone:e}");
     }
 
     #[test]
-    fn pairs_are_no_more_than_are_looked_at() {
+    fn the_bound_of_pairs_is_not_exceeded() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(8);
         let x: Vec<_> = (0..500)
             .map(|_| Vector2::new(rng.random_range(0.0..10.0), rng.random_range(0.0..10.0)))
@@ -379,8 +388,9 @@ mod tests {
             let periodic = Periodic {
                 period: [period, None, None],
             };
-            let found = pairs(&x, &r, reach, &periodic, false, |_, _| true).len() as f64;
-            let most = most_pairs(&x, &r, reach, &periodic);
+            let balls = balls(&x, &r, reach, &periodic);
+            let found = pairs(&balls, false, |_, _| true).len() as f64;
+            let most = pairs_bound(&balls);
             assert!(found <= most && most > last, "{found} of {most}");
             last = most;
         }
@@ -391,15 +401,14 @@ mod tests {
     #[test]
     fn a_pile_is_found_without_its_pairs() {
         let mut x: Vec<_> = (0..3000).map(|k| Vector2::new(f64::from(k), 0.0)).collect();
-        let none = more_than(&x, &[0.6; 3000], 0.0, &Periodic::default(), 2999, |_, _| {
-            true
-        });
+        let radii = vec![0.6; 3000];
+        let none = dense_cell(&balls(&x, &radii, 0.0, OPEN), 2999, |_, _| true);
         assert_eq!(none, None);
         x[1000..2000].fill(Vector2::new(500.25, 0.0));
-        let radii = vec![0.6; 3000];
-        let found = pairs(&x, &radii, 0.0, &Periodic::default(), false, |_, _| true).len();
+        let balls = balls(&x, &radii, 0.0, OPEN);
+        let found = pairs(&balls, false, |_, _| true).len();
         assert!(found > 499_500);
-        let pile = |most| more_than(&x, &radii, 0.0, &Periodic::default(), most, |_, _| true);
+        let pile = |most| dense_cell(&balls, most, |_, _| true);
         assert_eq!(pile(found), None);
         for most in [10, found - 1] {
             let crowd = pile(most).unwrap();
@@ -411,7 +420,7 @@ mod tests {
         }
         // Irrelevant pairs are not counted.
         let apart = |a: u32, b: u32| a / 1000 != b / 1000;
-        let few = more_than(&x, &radii, 0.0, &Periodic::default(), 5000, apart);
+        let few = dense_cell(&balls, 5000, apart);
         assert_eq!(few, None);
     }
 
@@ -422,11 +431,7 @@ mod tests {
             Vector2::new(1e9, 1e9),
             Vector2::new(1e9, 1e9 + 1e-3),
         ];
-        assert_eq!(
-            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), false, |_, _| {
-                true
-            }),
-            vec![(1, 2)]
-        );
+        let far = balls(&x, &[1e-3; 3], 0.0, OPEN);
+        assert_eq!(pairs(&far, false, |_, _| true), [(1, 2)]);
     }
 }

@@ -6,6 +6,8 @@ use super::shape::{ClosestPoint, Fan, Surface};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
+type V = Vector3<f64>;
+
 /// Heights z on a regular grid of `nx` by `ny` points, with two triangles per cell. With `periodic`
 /// the grid repeats: point nx is then the image of point 0 and is not stored.
 #[derive(Debug, Clone)]
@@ -87,9 +89,9 @@ impl HeightField {
         j * self.nx + i
     }
 
-    fn point(&self, i: i64, j: i64) -> Vector3<f64> {
+    fn point(&self, i: i64, j: i64) -> V {
         let z = self.heights[self.vertex(i, j)];
-        Vector3::new(i as f64 * self.spacing[0], j as f64 * self.spacing[1], z)
+        V::new(i as f64 * self.spacing[0], j as f64 * self.spacing[1], z)
     }
 }
 
@@ -106,18 +108,13 @@ fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
 }
 
 impl Surface<Dim3> for HeightField {
-    fn touches(
-        &self,
-        centre: &Vector3<f64>,
-        reach: f64,
-        out: &mut Vec<ClosestPoint<Vector3<f64>>>,
-    ) {
-        let (extent, mut near) = (Vector3::repeat(reach), Vec::new());
+    fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
+        let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
-        facets::touches(&near, centre, reach, out);
+        facets::closest_points(&near, centre, reach, out);
     }
 
-    fn facets(&self, low: &Vector3<f64>, high: &Vector3<f64>, out: &mut Vec<Facet<Vector3<f64>>>) {
+    fn facets(&self, low: &V, high: &V, out: &mut Vec<Facet<V>>) {
         if low.z > self.highest || high.z < self.lowest {
             return;
         }
@@ -148,13 +145,13 @@ impl Surface<Dim3> for HeightField {
         }
     }
 
-    fn fan(&self, at: &Vector3<f64>, within: f64, out: &mut Fan<Vector3<f64>>) {
-        let (extent, mut about) = (Vector3::repeat(within), Vec::new());
+    fn fan(&self, at: &V, within: f64, out: &mut Fan<V>) {
+        let (extent, mut about) = (V::repeat(within), Vec::new());
         self.facets(&(at - extent), &(at + extent), &mut about);
         facets::fan(&about, at, within, out);
     }
 
-    fn near(&self, centre: &Vector3<f64>, reach: f64) -> bool {
+    fn near(&self, centre: &V, reach: f64) -> bool {
         let within = |axis: usize| {
             let length = self.cells(axis) as f64 * self.spacing[axis];
             self.periodic[axis] || (-reach..length + reach).contains(&centre[axis])
@@ -177,7 +174,7 @@ impl Surface<Dim3> for HeightField {
         Some(self)
     }
 
-    fn outline(&self) -> Vec<Vec<Vector3<f64>>> {
+    fn outline(&self) -> Vec<Vec<V>> {
         let mut out = Vec::new();
         for i in 0..self.cells(0) {
             for j in 0..self.cells(1) {
@@ -191,7 +188,7 @@ impl Surface<Dim3> for HeightField {
 }
 
 impl Recede<Dim3> for HeightField {
-    fn vertices(&self) -> Vec<Vertex<Vector3<f64>>> {
+    fn vertices(&self) -> Vec<Vertex<V>> {
         let third = self.spacing[0] * self.spacing[1] / 6.0;
         let mut tributary = vec![0.0; self.heights.len()];
         for i in 0..self.cells(0) {
@@ -214,7 +211,7 @@ impl Recede<Dim3> for HeightField {
         tributary.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn shares(&self, closest_point: &Vector3<f64>) -> Shares {
+    fn shares(&self, closest_point: &V) -> Shares {
         // The cell, and the position in it.
         let place = |axis: usize| {
             let x = closest_point[axis] / self.spacing[axis];
@@ -260,9 +257,9 @@ impl Recede<Dim3> for HeightField {
 mod tests {
     use super::*;
 
-    fn touches(field: &HeightField, at: [f64; 3], reach: f64) -> Vec<ClosestPoint<Vector3<f64>>> {
+    fn closest_points(field: &HeightField, at: [f64; 3], reach: f64) -> Vec<ClosestPoint<V>> {
         let mut out = Vec::new();
-        field.touches(&Vector3::from(at), reach, &mut out);
+        field.closest_points(&V::from(at), reach, &mut out);
         out
     }
 
@@ -276,11 +273,9 @@ mod tests {
             (-5.3, 7.2),
             (1.5, 0.2),
         ] {
-            let t = touches(&flat, [x, y, 0.8], 1.0);
+            let t = closest_points(&flat, [x, y, 0.8], 1.0);
             assert_eq!(t.len(), 1, "{x} {y}: {t:?}");
-            assert!(
-                (t[0].normal - Vector3::z()).norm() < 1e-15 && (t[0].distance - 0.8).abs() < 1e-15
-            );
+            assert!((t[0].normal - V::z()).norm() < 1e-15 && (t[0].distance - 0.8).abs() < 1e-15);
         }
     }
 
@@ -289,16 +284,16 @@ mod tests {
         let mut z = vec![0.0; 25];
         z[12] = 1.0;
         let peak = HeightField::new(5, 5, [1.0, 1.0], z, [false, false]).unwrap();
-        let t = touches(&peak, [2.0, 2.0, 1.5], 0.6);
+        let t = closest_points(&peak, [2.0, 2.0, 1.5], 0.6);
         assert_eq!(t.len(), 1);
-        assert!((t[0].distance - 0.5).abs() < 1e-15 && (t[0].normal - Vector3::z()).norm() < 1e-15);
+        assert!((t[0].distance - 0.5).abs() < 1e-15 && (t[0].normal - V::z()).norm() < 1e-15);
     }
 
     #[test]
     fn a_valley_is_touched_on_both_sides() {
         let z = (0..15).map(|k| ((k % 5) as f64 - 2.0).abs()).collect();
         let valley = HeightField::new(5, 3, [1.0, 1.0], z, [false, false]).unwrap();
-        let t = touches(&valley, [2.0, 0.9, 0.7], 0.6);
+        let t = closest_points(&valley, [2.0, 0.9, 0.7], 0.6);
         assert_eq!(t.len(), 2, "{t:?}");
         assert!((t[0].distance - 0.7 / 2f64.sqrt()).abs() < 1e-14);
     }
@@ -312,7 +307,7 @@ mod tests {
 
     /// Volume under the triangles, each a prism.
     fn volume(field: &HeightField) -> f64 {
-        let prism = |t: &Vec<Vector3<f64>>| {
+        let prism = |t: &Vec<V>| {
             let area = 0.5 * ((t[1] - t[0]).cross(&(t[2] - t[0]))).z;
             area * (t[0].z + t[1].z + t[2].z) / 3.0
         };
@@ -320,16 +315,16 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_at_points_is_the_volume_that_is_gone() {
+    fn the_removed_volume_is_the_sum_of_the_worn_volumes() {
         for periodic in [[false, false], [true, true], [true, false]] {
             let z = (0..20).map(|k| 0.1 * f64::from(k * k % 7)).collect();
             let mut field = HeightField::new(5, 4, [0.3, 0.7], z, periodic).unwrap();
             let (before, vertices) = (volume(&field), field.vertices());
             let mut depth = vec![0.0; vertices.len()];
-            let mut put = 0.0;
+            let mut worn = 0.0;
             for k in 0..50 {
                 let t = f64::from(k);
-                let closest_point = Vector3::new(
+                let closest_point = V::new(
                     1.2 * (0.5 + 0.5 * t.sin()),
                     2.1 * (0.5 + 0.5 * (1.7 * t).cos()),
                     0.0,
@@ -338,12 +333,12 @@ mod tests {
                     assert!((0.0..=1.0).contains(&part));
                     depth[vertex] += 1e-3 * part / vertices[vertex].tributary;
                 }
-                put += 1e-3;
+                worn += 1e-3;
             }
             let all: Vec<usize> = (0..depth.len()).collect();
             field.recede(&depth, &all);
-            let gone = before - volume(&field);
-            assert!((gone / put - 1.0).abs() < 1e-12, "{gone} {put}");
+            let removed = before - volume(&field);
+            assert!((removed / worn - 1.0).abs() < 1e-12, "{removed} {worn}");
         }
     }
 }

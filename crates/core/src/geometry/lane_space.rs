@@ -133,13 +133,13 @@ impl LaneSpace for Dim3 {
     }
 }
 
-/// The same vector in all lanes.
+/// Returns a vector with equal components in all lanes.
 #[inline(always)]
 pub(crate) fn lanes_of<L: Lane, V: LaneVector<L>>(v: &impl VectorLike) -> V {
     V::from_fn(|k| L::all(v[k]))
 }
 
-/// The same matrix in all lanes.
+/// Returns a matrix with equal entries in all lanes.
 #[inline(always)]
 pub(crate) fn matrix_lanes_of<L: Lane, M: LaneMatrix<L>>(m: &impl MatrixLike) -> M {
     M::from_fn(|i, j| L::all(m.entry(i, j)))

@@ -4,7 +4,7 @@ use super::facets::{self, Facet};
 use super::recede::Recede;
 use super::shape::{ClosestPoint, Fan, MovingFacet, Surface, at_vertex};
 use super::space::Dim3;
-use super::worn_mesh::Worn;
+use super::worn_mesh::MeshWear;
 use nalgebra::Vector3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -26,7 +26,7 @@ pub struct Mesh {
     /// Whether it encloses a grain.
     closed: bool,
     /// Its wear, if it can recede.
-    pub(super) worn: Option<Worn>,
+    pub(super) worn: Option<MeshWear>,
 }
 
 /// Share of an edge of a grain within which a place is at its end.
@@ -131,7 +131,7 @@ impl Mesh {
     /// Those of [`Self::new`].
     pub fn closed(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let mesh = Self::new(points, triangles)?;
-        // It deforms from the start.
+        // A closed mesh deforms from the start.
         Ok(Self {
             closed: true,
             deforms: true,
@@ -142,7 +142,7 @@ impl Mesh {
     /// Lets it recede along z, if all of its triangles face up, or all down.
     #[must_use]
     pub fn with_wear(mut self) -> Self {
-        self.worn = Worn::new(&self.points, &self.triangles);
+        self.worn = MeshWear::new(&self.points, &self.triangles);
         self
     }
 
@@ -161,9 +161,8 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// The facets at a vertex on the border, of which one is known; none at a vertex that is not on
-    /// it.
-    fn about(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
+    /// Returns the facets at a vertex on the border, of which one is known; `None` for a vertex inside.
+    fn around(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
         let (mut found, mut next, mut border) = (vec![known], 0, false);
         while next < found.len() {
             let k = found[next] as usize;
@@ -196,12 +195,12 @@ fn bounds(low: &V, high: &V) -> AABB<[f64; 3]> {
 }
 
 impl Surface<Dim3> for Mesh {
-    fn touches(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
+    fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
-        // Blocks stand on each other in line.
+        // Grains may stand on each other with corners in line.
         let at_corner = if self.closed { AT_CORNER } else { 0.0 };
-        facets::touches_within(&near, centre, reach, at_corner, out);
+        facets::closest_points_within(&near, centre, reach, at_corner, out);
     }
 
     fn is_closed(&self) -> bool {
@@ -241,8 +240,8 @@ impl Surface<Dim3> for Mesh {
             1..=3 => part as usize - 1,
             // A vertex, where facets around it end.
             _ => {
-                let about = self.about(name, self.triangles[name as usize][part as usize & 3]);
-                let normals = about?.into_iter().map(|k| self.facet(k).normal());
+                let around = self.around(name, self.triangles[name as usize][part as usize & 3]);
+                let normals = around?.into_iter().map(|k| self.facet(k).normal());
                 return normals.sum::<V>().try_normalize(0.0);
             }
         };
@@ -310,6 +309,7 @@ impl Surface<Dim3> for Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::convex::polyhedron::CUBOID_FACES;
 
     /// The cube from -1 to 1.
     fn cube() -> Mesh {
@@ -317,23 +317,15 @@ mod tests {
         let points = (0..8)
             .map(|k| V::new(at(k, 0), at(k, 1), at(k, 2)))
             .collect();
-        let faces = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let triangles = faces
+        let triangles = CUBOID_FACES
             .iter()
             .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
         Mesh::new(points, triangles.collect()).unwrap()
     }
 
-    fn touches(at: [f64; 3], reach: f64) -> Vec<ClosestPoint<V>> {
+    fn closest_points(at: [f64; 3], reach: f64) -> Vec<ClosestPoint<V>> {
         let mut out = Vec::new();
-        cube().touches(&V::from(at), reach, &mut out);
+        cube().closest_points(&V::from(at), reach, &mut out);
         out
     }
 
@@ -341,19 +333,19 @@ mod tests {
     fn a_ball_touches_faces_edges_and_corners_once() {
         // Above a face, including its diagonal seam.
         for at in [[0.3, 0.1, 1.2], [0.25, 0.25, 1.2], [-0.5, 0.5, 1.2]] {
-            let t = touches(at, 0.5);
+            let t = closest_points(at, 0.5);
             assert_eq!(t.len(), 1, "{t:?}");
             assert!((t[0].normal - V::z()).norm() < 1e-15 && (t[0].distance - 0.2).abs() < 1e-15);
         }
-        let t = touches([1.3, 0.2, 1.4], 0.6);
+        let t = closest_points([1.3, 0.2, 1.4], 0.6);
         assert_eq!(t.len(), 1);
         assert!((t[0].distance - 0.5).abs() < 1e-15);
         assert!((t[0].normal - V::new(0.6, 0.0, 0.8)).norm() < 1e-14);
-        let t = touches([2.0, 3.0, 3.0], 3.1);
+        let t = closest_points([2.0, 3.0, 3.0], 3.1);
         assert_eq!(t.len(), 1);
         assert!((t[0].distance - 3.0).abs() < 1e-15);
         // Inside, pushed out by the nearest faces only.
-        let t = touches([0.9, 0.0, 0.0], 0.2);
+        let t = closest_points([0.9, 0.0, 0.0], 0.2);
         assert!(t.len() == 1 && (t[0].distance + 0.1).abs() < 1e-15 && t[0].normal == V::x());
     }
 
@@ -371,7 +363,7 @@ mod tests {
         let plate = Mesh::new(all, triangles).unwrap();
         for (z, side) in [(0.05, 1.0), (-0.15, -1.0)] {
             let mut out = Vec::new();
-            plate.touches(&V::new(0.1, 0.2, z), 0.5, &mut out);
+            plate.closest_points(&V::new(0.1, 0.2, z), 0.5, &mut out);
             assert_eq!(out.len(), 1, "{out:?}");
             assert!((out[0].distance - 0.05).abs() < 1e-15 && out[0].normal == V::z() * side);
         }
@@ -380,13 +372,13 @@ mod tests {
     #[test]
     fn features_stay_while_a_ball_slides_on_a_face() {
         let names: Vec<u32> = (0..5)
-            .map(|k| touches([0.5 - 0.1 * f64::from(k), -0.6, 1.1], 0.3)[0].feature)
+            .map(|k| closest_points([0.5 - 0.1 * f64::from(k), -0.6, 1.1], 0.3)[0].feature)
             .collect();
         assert!(names.windows(2).all(|w| w[0] == w[1]), "{names:?}");
     }
 
     #[test]
-    fn triangles_that_are_no_surface_are_told() {
+    fn invalid_triangles_are_refused() {
         let cube = cube();
         let (p, t) = (cube.points, cube.triangles);
         let of = |t: Vec<[u32; 3]>| Mesh::new(p.clone(), t).unwrap_err();

@@ -19,7 +19,7 @@
 //! the other surface ends below a facet psi is found anew on what is covered. The weights sum to 1,
 //! and sum w_k t_k is the place of the point. They may be negative.
 //!
-//! What is worn off where a point rubs comes from below its facets: vertex k gives the share s_k =
+//! The volume worn at a point is taken from below its facets: vertex k gives the share s_k =
 //! int_C phi phi_k dt / int_C phi dt of it, with the shape function phi of the point. Shares sum to
 //! 1, and none is negative. A depth that is the same at all points, on the areas that they stand
 //! for, is the same at all vertices, since the phi of all points sum to 1.
@@ -43,17 +43,17 @@ const FARTHEST: f64 = 4.5;
 /// which on it is an area.
 const FLAT: f64 = 1e-12;
 
-/// The facets at a point, and what of another surface they face.
+/// The facets at a point, and their overlap with another surface.
 #[derive(Clone, Debug)]
 pub struct Star {
-    facets: Vec<Facet>,
+    facets: Vec<StarFacet>,
     /// Whether the point itself faces the other surface.
     covered: bool,
 }
 
 /// A facet at the point.
 #[derive(Clone, Debug)]
-struct Facet {
+struct StarFacet {
     /// D corners.
     corners: [Along; 3],
     count: usize,
@@ -68,7 +68,7 @@ struct Facet {
     squares: Along,
     product: f64,
     /// Over the same the integrals of the shape functions of vertices of the other surface.
-    vertices: Vec<Term>,
+    vertices: Vec<VertexIntegral>,
     /// Integral of the shape function of the point over the same.
     own: f64,
 }
@@ -76,7 +76,7 @@ struct Facet {
 /// Integrals of the shape function of a vertex of the other surface over what is covered of a
 /// facet.
 #[derive(Clone, Copy, Debug, Default)]
-struct Term {
+struct VertexIntegral {
     vertex: u32,
     alone: f64,
     /// With the coordinates.
@@ -122,7 +122,7 @@ fn range(corners: &[Along], axis: usize) -> [f64; 2] {
     })
 }
 
-impl Facet {
+impl StarFacet {
     fn corners(&self) -> &[Along] {
         &self.corners[..self.count]
     }
@@ -130,7 +130,7 @@ impl Facet {
     /// Adds what it has in common with a facet of the other surface; gives its size.
     fn face(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
         let own = self.corners;
-        let (mut one, mut parts) = (0.0, [Term::default(); 3]);
+        let (mut one, mut parts) = (0.0, [VertexIntegral::default(); 3]);
         integrate(&own[..self.count], at, |t, weight| {
             one += weight;
             let of_point = weight * shape_functions(&own[..self.count], t)[self.point];
@@ -151,7 +151,7 @@ impl Facet {
         if one > 0.0 {
             let parts = vertices.iter().zip(parts);
             self.vertices
-                .extend(parts.map(|(k, part)| Term { vertex: *k, ..part }));
+                .extend(parts.map(|(k, part)| VertexIntegral { vertex: *k, ..part }));
         }
         one
     }
@@ -190,7 +190,7 @@ impl Star {
     ) -> Option<Self> {
         let facet = |(corners, point): ([Along; 3], usize)| {
             let size = -signed_size(&corners[..count]);
-            (size > 0.0).then(|| Facet {
+            (size > 0.0).then(|| StarFacet {
                 corners,
                 count,
                 point,
@@ -203,7 +203,7 @@ impl Star {
                 own: 0.0,
             })
         };
-        let facets: Vec<Facet> = facets.into_iter().filter_map(facet).collect();
+        let facets: Vec<StarFacet> = facets.into_iter().filter_map(facet).collect();
         let covered = false;
         (!facets.is_empty()).then_some(Self { facets, covered })
     }
@@ -236,7 +236,7 @@ impl Star {
     /// it, or is beside it: of one that is `beyond` its border what is covered of its facets
     /// counts, up to about half of one.
     pub fn faced(&self, beyond: bool) -> Option<Faced> {
-        let twice = |f: &Facet| f.one > (1.0 + ROUNDING) * f.size;
+        let twice = |f: &StarFacet| f.one > (1.0 + ROUNDING) * f.size;
         if !(self.covered || beyond) || self.facets.iter().any(twice) {
             return None;
         }
@@ -245,7 +245,7 @@ impl Star {
             let terms = facet.vertices.iter();
             shares.extend(terms.clone().map(|term| (term.vertex, term.own)));
             if let Some((b, c)) = facet.dual() {
-                let psi = |t: &Term| c * (t.alone + b[0] * t.with[0] + b[1] * t.with[1]);
+                let psi = |t: &VertexIntegral| c * (t.alone + b[0] * t.with[0] + b[1] * t.with[1]);
                 weights.extend(terms.map(|term| (term.vertex, psi(term))));
             }
         }

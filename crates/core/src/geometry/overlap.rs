@@ -1,5 +1,5 @@
-//! What two segments of a line, or two triangles of a plane, have in common, as places with weights
-//! that integrate quadratic functions over it exactly.
+//! Quadrature over the overlap of two segments of a line, or of two triangles of a plane, exact for
+//! quadratic functions.
 
 /// A place in the coordinates along a contact (m); in the plane, where that is a line, the second
 /// is zero.

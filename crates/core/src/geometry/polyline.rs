@@ -6,6 +6,8 @@ use super::shape::{ClosestPoint, Corner, Fan, Surface, at_vertex};
 use super::space::Dim2;
 use nalgebra::Vector2;
 
+type V = Vector2<f64>;
+
 /// Distance from a vertex, relative to its segment, up to which it is one of rounding.
 const AT_VERTEX: f64 = 1e-9;
 
@@ -26,22 +28,22 @@ const MARGIN: f64 = 0.25;
 /// first.
 #[derive(Debug)]
 pub struct Polyline {
-    points: Vec<Vector2<f64>>,
+    points: Vec<V>,
     period: Option<f64>,
     /// Whether it is closed: its last point is its first.
     closed: bool,
     boxes: Boxes,
     /// Data of a wearing profile; `None` without wear.
-    worn: Option<Worn>,
+    worn: Option<ProfileWear>,
     /// Where the points were when the boxes were built, and the margin of these (m); `None` unless
     /// the profile deforms.
-    deformed: Option<(Vec<Vector2<f64>>, f64)>,
+    deformed: Option<(Vec<V>, f64)>,
 }
 
 /// Heights before any wear, depths, and the displacement of vertices since the boxes were built,
 /// and the margin (m).
 #[derive(Debug)]
-struct Worn {
+struct ProfileWear {
     first: Vec<f64>,
     depth: Vec<f64>,
     moved: f64,
@@ -79,7 +81,7 @@ impl Polyline {
     ///
     /// # Errors
     /// Too few, coincident or non-finite points, ends that do not match the period.
-    pub fn new(points: Vec<Vector2<f64>>, period: Option<f64>) -> Result<Self, ProfileError> {
+    pub fn new(points: Vec<V>, period: Option<f64>) -> Result<Self, ProfileError> {
         Self::build(points, period, false)
     }
 
@@ -87,20 +89,16 @@ impl Polyline {
     ///
     /// # Errors
     /// Too few, coincident or non-finite points.
-    pub fn closed(mut corners: Vec<Vector2<f64>>) -> Result<Self, ProfileError> {
+    pub fn closed(mut corners: Vec<V>) -> Result<Self, ProfileError> {
         let vertices = corners.clone();
         corners.extend(corners.first().copied());
         let mut out = Self::build(corners, None, true)?;
-        // It deforms from the start.
+        // A closed chain deforms from the start.
         out.move_vertices(&vertices);
         Ok(out)
     }
 
-    fn build(
-        points: Vec<Vector2<f64>>,
-        period: Option<f64>,
-        closed: bool,
-    ) -> Result<Self, ProfileError> {
+    fn build(points: Vec<V>, period: Option<f64>, closed: bool) -> Result<Self, ProfileError> {
         if points.len() < 2 {
             return Err(ProfileError::TooFew(points.len()));
         }
@@ -116,7 +114,7 @@ impl Polyline {
         let (first, last) = (points[0], points[points.len() - 1]);
         if let Some(period) = period {
             let along = if last.x > first.x { period } else { -period };
-            let mismatch = (last - first - Vector2::new(along, 0.0)).norm();
+            let mismatch = (last - first - V::new(along, 0.0)).norm();
             if mismatch > 1e-9 * period {
                 return Err(ProfileError::Period(
                     first.x, first.y, last.x, last.y, period,
@@ -142,8 +140,8 @@ impl Polyline {
 
     /// Builds the bounding boxes of the segments, with a margin along each axis (m).
     fn index(&mut self, margin: [f64; 2]) {
-        let margin = Vector2::from(margin);
-        let of = |ends: &[Vector2<f64>]| Window {
+        let margin = V::from(margin);
+        let of = |ends: &[V]| Window {
             low: ends[0].inf(&ends[1]) - margin,
             high: ends[0].sup(&ends[1]) + margin,
         };
@@ -171,8 +169,8 @@ impl Polyline {
     }
 
     /// Returns the ends of a segment, shifted along x (m).
-    fn segment(&self, k: usize, shift: f64) -> [Vector2<f64>; 2] {
-        let image = |p: Vector2<f64>| Vector2::new(p.x + shift, p.y);
+    fn segment(&self, k: usize, shift: f64) -> [V; 2] {
+        let image = |p: V| V::new(p.x + shift, p.y);
         [image(self.points[k]), image(self.points[k + 1])]
     }
 
@@ -188,17 +186,17 @@ impl Polyline {
     }
 
     /// Maps a position into the period that starts at the first point.
-    fn wrapped(&self, centre: &Vector2<f64>) -> (Vector2<f64>, f64) {
+    fn wrapped(&self, centre: &V) -> (V, f64) {
         let Some(period) = self.period else {
             return (*centre, 0.0);
         };
         let start = self.points[0].x.min(self.points[self.points.len() - 1].x);
         let shift = ((centre.x - start) / period).floor() * period;
-        (Vector2::new(centre.x - shift, centre.y), shift)
+        (V::new(centre.x - shift, centre.y), shift)
     }
 
     /// Returns the direction of the chain after a segment; `None` at its end.
-    fn following(&self, segment: usize) -> Option<Vector2<f64>> {
+    fn following(&self, segment: usize) -> Option<V> {
         let next = match segment + 1 {
             next if next < self.segments() => next,
             _ => self.goes_on().then_some(0)?,
@@ -208,12 +206,7 @@ impl Polyline {
 }
 
 impl Surface<Dim2> for Polyline {
-    fn touches(
-        &self,
-        centre: &Vector2<f64>,
-        reach: f64,
-        out: &mut Vec<ClosestPoint<Vector2<f64>>>,
-    ) {
+    fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (c, shift) = self.wrapped(centre);
         let start = out.len();
         self.visit(&Window::around(&c, reach), |segment, image| {
@@ -222,10 +215,10 @@ impl Surface<Dim2> for Polyline {
             let along = b - a;
             let (s, end) = ((c - a).dot(&along), along.norm_squared());
             if s >= 0.0 && s <= end {
-                let normal = Vector2::new(-along.y, along.x) / along.norm();
+                let normal = V::new(-along.y, along.x) / along.norm();
                 let distance = (c - a).dot(&normal);
                 if distance.abs() < reach {
-                    let closest_point = c - normal * distance + Vector2::new(shift, 0.0);
+                    let closest_point = c - normal * distance + V::new(shift, 0.0);
                     out.push(ClosestPoint {
                         closest_point,
                         normal,
@@ -255,7 +248,7 @@ impl Surface<Dim2> for Polyline {
             if length < reach && nearest {
                 // At the vertex itself, and behind one that is no valley, a direction from the
                 // vertex means nothing.
-                let of = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
+                let of = |v: V| V::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
                 let level = from.dot(&mean) >= -BELOW * along.norm();
                 let ends = next.is_none() && self.deforms() && level && 2.0 * length < along.norm();
@@ -266,7 +259,7 @@ impl Surface<Dim2> for Polyline {
                     let distance = if valley { -length } else { length };
                     (from / distance, distance)
                 };
-                let closest_point = vertex + Vector2::new(shift, 0.0);
+                let closest_point = vertex + V::new(shift, 0.0);
                 let feature = if at_end { 2 * k + 1 } else { u32::MAX };
                 out.push(ClosestPoint {
                     closest_point,
@@ -282,7 +275,7 @@ impl Surface<Dim2> for Polyline {
         let mut k = start + 1;
         while self.closed && k < out.len() {
             let (before, here) = (&out[start..k], &out[k]);
-            let alike = |t: &ClosestPoint<Vector2<f64>>| {
+            let alike = |t: &ClosestPoint<V>| {
                 (t.closest_point - here.closest_point).norm() <= SEAM * reach
                     && t.normal.dot(&here.normal) > 0.5
             };
@@ -294,7 +287,7 @@ impl Surface<Dim2> for Polyline {
         }
     }
 
-    fn near(&self, centre: &Vector2<f64>, reach: f64) -> bool {
+    fn near(&self, centre: &V, reach: f64) -> bool {
         let (c, _) = self.wrapped(centre);
         let mut any = false;
         self.visit(&Window::around(&c, reach), |_, _| {
@@ -304,23 +297,18 @@ impl Surface<Dim2> for Polyline {
         any
     }
 
-    fn corners(
-        &self,
-        low: &Vector2<f64>,
-        high: &Vector2<f64>,
-        out: &mut Vec<Corner<Vector2<f64>>>,
-    ) {
+    fn corners(&self, low: &V, high: &V, out: &mut Vec<Corner<V>>) {
         // The chain's images are one period to each side.
         let middle = (low + high) * 0.5;
         let (_, shift) = self.wrapped(&middle);
         let window = Window {
-            low: Vector2::new(low.x - shift, low.y),
-            high: Vector2::new(high.x - shift, high.y),
+            low: V::new(low.x - shift, low.y),
+            high: V::new(high.x - shift, high.y),
         };
         let first = out.len();
         self.visit(&window, |k, image| {
             let [a, b] = self.segment(k, image);
-            let at = b + Vector2::new(shift, 0.0);
+            let at = b + V::new(shift, 0.0);
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
             if !inside {
                 return true;
@@ -333,7 +321,7 @@ impl Surface<Dim2> for Polyline {
                 return true;
             };
             let (before, after) = (b - a, self.points[next + 1] - self.points[next]);
-            let normal = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
+            let normal = |v: V| V::new(-v.y, v.x) / v.norm();
             let normals = [normal(before), normal(after)];
             // With the solid on the right, a convex corner turns right.
             let convex = normals[0].perp(&normals[1]) < -1e-9;
@@ -350,7 +338,7 @@ impl Surface<Dim2> for Polyline {
         out[first..].sort_by_key(|c| c.feature);
     }
 
-    fn fan(&self, at: &Vector2<f64>, within: f64, out: &mut Fan<Vector2<f64>>) {
+    fn fan(&self, at: &V, within: f64, out: &mut Fan<V>) {
         let (c, _) = self.wrapped(at);
         self.visit(&Window::around(&c, within), |k, image| {
             let [a, b] = self.segment(k, image);
@@ -358,7 +346,7 @@ impl Surface<Dim2> for Polyline {
             let length = along.norm();
             for (end, other) in [(a, b), (b, a)] {
                 if (end - c).norm() <= within {
-                    out.normals.push(Vector2::new(-along.y, along.x) / length);
+                    out.normals.push(V::new(-along.y, along.x) / length);
                     out.spokes.push(other - end);
                 }
             }
@@ -366,16 +354,11 @@ impl Surface<Dim2> for Polyline {
         });
     }
 
-    fn vertices_within(
-        &self,
-        centre: &Vector2<f64>,
-        reach: f64,
-        out: &mut Vec<ClosestPoint<Vector2<f64>>>,
-    ) {
+    fn vertices_within(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         if !self.deforms() {
             return;
         }
-        let (extent, mut corners) = (Vector2::repeat(reach), Vec::new());
+        let (extent, mut corners) = (V::repeat(reach), Vec::new());
         self.corners(&(centre - extent), &(centre + extent), &mut corners);
         out.extend(corners.iter().filter_map(|c| {
             let outward = c.normals[0] + c.normals[1];
@@ -383,7 +366,7 @@ impl Surface<Dim2> for Polyline {
         }));
     }
 
-    fn outline(&self) -> Vec<Vec<Vector2<f64>>> {
+    fn outline(&self) -> Vec<Vec<V>> {
         vec![self.points.clone()]
     }
 
@@ -391,7 +374,7 @@ impl Surface<Dim2> for Polyline {
         self.closed
     }
 
-    fn move_vertices(&mut self, vertices: &[Vector2<f64>]) {
+    fn move_vertices(&mut self, vertices: &[V]) {
         self.points[..vertices.len()].copy_from_slice(vertices);
         if self.closed {
             let last = self.points.len() - 1;
@@ -405,7 +388,7 @@ impl Surface<Dim2> for Polyline {
                 point.y -= down * worn.depth[k];
             }
         }
-        let far = |(built, margin): &(Vec<Vector2<f64>>, f64)| {
+        let far = |(built, margin): &(Vec<V>, f64)| {
             let mut moved = built.iter().zip(&self.points);
             moved.any(|(a, b)| (b - a).amax() > *margin)
         };
@@ -418,7 +401,7 @@ impl Surface<Dim2> for Polyline {
         }
     }
 
-    fn moving_vertices(&self) -> &[Vector2<f64>] {
+    fn moving_vertices(&self) -> &[V] {
         if self.deformed.is_some() {
             &self.points
         } else {
@@ -426,7 +409,7 @@ impl Surface<Dim2> for Polyline {
         }
     }
 
-    fn border_normal(&self, feature: u32) -> Option<Vector2<f64>> {
+    fn border_normal(&self, feature: u32) -> Option<V> {
         let last = self.segments() - 1;
         let segment = match feature {
             u32::MAX => 0,
@@ -435,7 +418,7 @@ impl Surface<Dim2> for Polyline {
         };
         let along = self.points[segment + 1] - self.points[segment];
         let open = self.deforms() && !self.goes_on();
-        open.then(|| Vector2::new(-along.y, along.x).normalize())
+        open.then(|| V::new(-along.y, along.x).normalize())
     }
 
     fn receding(&self) -> Option<&dyn Recede<Dim2>> {
@@ -448,7 +431,7 @@ impl Surface<Dim2> for Polyline {
 }
 
 impl Recede<Dim2> for Polyline {
-    fn vertices(&self) -> Vec<Vertex<Vector2<f64>>> {
+    fn vertices(&self) -> Vec<Vertex<V>> {
         let n = self.segments();
         let wide = |k: usize| (self.points[k + 1].x - self.points[k].x).abs();
         let count = if self.period.is_some() { n } else { n + 1 };
@@ -469,16 +452,16 @@ impl Recede<Dim2> for Polyline {
         (0..count).map(vertex).collect()
     }
 
-    fn end(&self) -> Option<Vector2<f64>> {
+    fn end(&self) -> Option<V> {
         self.period.map(|_| {
             let last = self.segments();
             let height = self.worn.as_ref().map(|w| w.first[last]);
             let at = self.points[last];
-            Vector2::new(at.x, height.unwrap_or(at.y))
+            V::new(at.x, height.unwrap_or(at.y))
         })
     }
 
-    fn shares(&self, closest_point: &Vector2<f64>) -> Shares {
+    fn shares(&self, closest_point: &V) -> Shares {
         let (closest_point, _) = self.wrapped(closest_point);
         let (n, to) = (self.segments(), self.direction());
         let passed = self
@@ -503,7 +486,7 @@ impl Recede<Dim2> for Polyline {
     fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64 {
         let (n, down) = (self.segments(), self.direction());
         let wide = (self.points[n].x - self.points[0].x).abs();
-        let worn = self.worn.get_or_insert_with(|| Worn {
+        let worn = self.worn.get_or_insert_with(|| ProfileWear {
             first: self.points.iter().map(|p| p.y).collect(),
             depth: vec![0.0; n + 1],
             // The boxes have no margin for wear yet.

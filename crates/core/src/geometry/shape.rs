@@ -43,7 +43,7 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Its radius in contacts (m), from which laws find their area: that of a ball; of a point of a
+    /// Returns the radius in contacts (m), from which laws compute their area: that of a ball; of a point of a
     /// surface the one whose contact has the area that it stands for.
     pub fn contact_radius(&self, lengths: &[f64]) -> f64 {
         match S::D {
@@ -109,21 +109,12 @@ pub struct Corner<V> {
 
 /// The faces around a place of a surface: their normals, and the vectors from the place to their
 /// corners (m).
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Fan<V> {
     /// Unit normals, to the open side.
     pub normals: Vec<V>,
     /// Vectors to corners.
     pub spokes: Vec<V>,
-}
-
-impl<V> Default for Fan<V> {
-    fn default() -> Self {
-        Self {
-            normals: Vec::new(),
-            spokes: Vec::new(),
-        }
-    }
 }
 
 /// A facet of a surface that deforms.
@@ -140,7 +131,12 @@ pub struct MovingFacet {
 pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Finds all points where the surface is locally nearest to a ball centred at `centre` within
     /// `reach` (m), in the order of their features, without ghost contacts at seams between faces.
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>);
+    fn closest_points(
+        &self,
+        centre: &S::Vector,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<S::Vector>>,
+    );
     /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too
     /// often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
@@ -241,7 +237,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             return None;
         }
         let mut found = Vec::new();
-        self.touches(place, 2.0 * size.sqrt(), &mut found);
+        self.closest_points(place, 2.0 * size.sqrt(), &mut found);
         let nearest = found
             .into_iter()
             .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
@@ -254,7 +250,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
         !self.moving_vertices().is_empty()
     }
     /// Finds all vertices within `reach` (m) of a ball's centre in front of a surface that deforms,
-    /// with the features that [`Surface::touches`] gives them; none of others.
+    /// with the features that [`Surface::closest_points`] gives them; none of others.
     fn vertices_within(
         &self,
         _centre: &S::Vector,
@@ -264,7 +260,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes,
     /// leaves the surface in place.
-    fn keeps_place(&self, spin: &S::Spin) -> bool {
+    fn is_unchanged_by(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero()
     }
 }
@@ -303,7 +299,12 @@ pub struct HalfSpace<S: Space> {
 }
 
 impl<S: Space> Surface<S> for HalfSpace<S> {
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>) {
+    fn closest_points(
+        &self,
+        centre: &S::Vector,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<S::Vector>>,
+    ) {
         let distance = centre.dot(&self.normal);
         if distance < reach {
             out.push(ClosestPoint {
@@ -327,7 +328,7 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
         true
     }
 
-    fn keeps_place(&self, spin: &S::Spin) -> bool {
+    fn is_unchanged_by(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero() || (S::D == 3 && about::<S>(&self.normal, spin))
     }
 
@@ -391,8 +392,8 @@ mod tests {
             shown: 1.0,
         };
         let mut out = Vec::new();
-        floor.touches(&Vector2::new(3.0, 0.5), 1.0, &mut out);
-        floor.touches(&Vector2::new(3.0, -0.5), 1.0, &mut out);
+        floor.closest_points(&Vector2::new(3.0, 0.5), 1.0, &mut out);
+        floor.closest_points(&Vector2::new(3.0, -0.5), 1.0, &mut out);
         assert_eq!((out[0].distance, out[1].distance), (0.5, -0.5));
         assert_eq!(out[0].closest_point, Vector2::new(3.0, 0.0));
     }

@@ -25,7 +25,15 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     /// so that no tangent frame is needed.
     type Tangent: VectorLike;
     /// Orientation of a body: an angle in 2D, a unit quaternion in 3D.
-    type Rotation: Copy + Debug + Send + Sync + PartialEq + Serialize + DeserializeOwned + 'static;
+    type Rotation: Copy
+        + Debug
+        + Default
+        + Send
+        + Sync
+        + PartialEq
+        + Serialize
+        + DeserializeOwned
+        + 'static;
     /// Cores of convex pieces.
     type Core: super::convex::Core<Self>;
 

@@ -14,13 +14,13 @@ const VERTICAL: f64 = 1e-9;
 
 /// Heights without wear, and depths along z (m).
 #[derive(Debug)]
-pub(super) struct Worn {
+pub(super) struct MeshWear {
     pub(super) sign: f64,
     first: Vec<f64>,
     depth: Vec<f64>,
 }
 
-impl Worn {
+impl MeshWear {
     /// Of an unworn surface; `None` unless all of its triangles face up, or all down.
     pub(super) fn new(points: &[V], triangles: &[[u32; 3]]) -> Option<Self> {
         let corners = triangles.iter().map(|t| t.map(|c| points[c as usize]));
@@ -178,12 +178,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_at_points_is_the_volume_that_is_gone() {
+    fn the_removed_volume_is_the_sum_of_the_worn_volumes() {
         for up in [true, false] {
             let mut mesh = worn_plate(up);
             let (before, vertices) = (volume(&mesh), mesh.vertices());
             let mut depth = vec![0.0; vertices.len()];
-            let mut put = 0.0;
+            let mut worn = 0.0;
             for k in 0..50 {
                 let t = f64::from(k);
                 let at = on(
@@ -198,12 +198,12 @@ mod tests {
                     assert!((0.0..=1.0).contains(&part));
                     depth[vertex] += 1e-3 * part / vertices[vertex].tributary;
                 }
-                put += 1e-3;
+                worn += 1e-3;
                 let all: Vec<usize> = (0..depth.len()).collect();
                 mesh.recede(&depth, &all);
             }
-            let gone = before - volume(&mesh);
-            assert!((gone / put - 1.0).abs() < 1e-12, "{gone} {put}");
+            let removed = before - volume(&mesh);
+            assert!((removed / worn - 1.0).abs() < 1e-12, "{removed} {worn}");
         }
     }
 
@@ -228,14 +228,14 @@ mod tests {
         // Contacts are found where it is now.
         let mut out = Vec::new();
         let at = mesh.points[7] + V::new(0.0, 0.0, 1e-3);
-        mesh.touches(&at, 0.01, &mut out);
+        mesh.closest_points(&at, 0.01, &mut out);
         assert!(!out.is_empty());
     }
 
     #[test]
     fn walls_and_overhangs_do_not_recede() {
         let (points, triangles) = plate(true);
-        // Neither does the surface of a rigid body.
+        // A surface of a rigid body, without wear, does not recede.
         assert!(
             Mesh::new(points.clone(), triangles.clone())
                 .unwrap()

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What drives the current.
+/// The source of the current.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Supply {
     /// A voltage (V).
@@ -24,7 +24,7 @@ pub struct Circuit {
     pub from: u32,
     /// Body that it leaves, of potential 0.
     pub to: u32,
-    /// What drives it.
+    /// Its source.
     pub supply: Supply,
 }
 

@@ -11,9 +11,9 @@ pub fn free_strain(coefficient: f64, difference: f64) -> f64 {
     (coefficient * difference).max(-0.9)
 }
 
-/// A ball or a piece as the case gives it.
+/// A ball or a piece with the size of the case.
 #[derive(Clone, Debug)]
-struct Rest<C, V> {
+struct ShapeAtRest<C, V> {
     core: C,
     offset: V,
     /// Radius of a ball; rounding, bound and size of a piece (m).
@@ -52,8 +52,8 @@ pub struct Expansion<S: Space> {
     pub reference: Vec<f64>,
     /// Bodies of finite elements that expand.
     pub systems: Vec<ExpandingSystem>,
-    balls: Vec<Rest<(), S::Vector>>,
-    pieces: Vec<Rest<S::Core, S::Vector>>,
+    balls: Vec<ShapeAtRest<(), S::Vector>>,
+    pieces: Vec<ShapeAtRest<S::Core, S::Vector>>,
 }
 
 impl<S: Space> Expansion<S> {
@@ -66,13 +66,13 @@ impl<S: Space> Expansion<S> {
         shapes: &Shapes<S>,
         lengths: &[f64],
     ) -> Self {
-        let ball = shapes.balls.iter().map(|b| Rest {
+        let ball = shapes.balls.iter().map(|b| ShapeAtRest {
             core: (),
             offset: b.offset,
             lengths: [b.radius, 0.0, 0.0],
             whole: b.offset == S::Vector::zero() && lengths[b.body as usize] == b.radius,
         });
-        let piece = shapes.pieces.iter().map(|p| Rest {
+        let piece = shapes.pieces.iter().map(|p| ShapeAtRest {
             core: p.core.clone(),
             offset: p.offset,
             lengths: [p.rounding, p.bound, p.size],
@@ -92,9 +92,9 @@ impl<S: Space> Expansion<S> {
         1.0 + free_strain(self.coefficient[body], temperature - self.reference[body])
     }
 
-    /// Gives all shapes the sizes of the stretches of their bodies, and bodies of one ball its
-    /// radius for their length; returns the largest change of a distance from a centre (m).
-    pub fn show(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
+    /// Scales all shapes by the stretches of their bodies, and sets the length of bodies that are one
+    /// ball to its radius; returns the largest change of a distance from a centre (m).
+    pub fn apply(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
         let mut most = 0.0f64;
         for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {
             let (body, before) = (ball.body as usize, ball.radius);

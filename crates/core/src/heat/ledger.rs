@@ -20,11 +20,11 @@ pub struct HeatLedger {
     pub expansion: f64,
     /// Stored in grains and first bodies.
     pub stored: f64,
-    /// Gone into bodies of fixed temperature, and at contacts of two insulated bodies.
+    /// Received by bodies of fixed temperature, and dissipated at contacts of two insulated bodies.
     pub fixed: f64,
     /// Put in, but not yet part of a step of the heat, where one spans several of the mechanics.
     pub pending: f64,
-    /// What does not add up.
+    /// Residual of the balance.
     pub residual: f64,
     /// Largest heat put in, stored, received by a first body, or passed through all contacts in one
     /// step, so far.
@@ -32,8 +32,8 @@ pub struct HeatLedger {
 }
 
 impl HeatLedger {
-    /// Books the flows of a step of the heat, in which so much went through contacts (J).
-    pub(crate) fn book(&mut self, balance: &Balance, exchanged: f64) {
+    /// Adds the flows of a step of the heat, in which `exchanged` passed through contacts (J).
+    pub(crate) fn add_step(&mut self, balance: &Balance, exchanged: f64) {
         self.scale = self.scale.max(exchanged);
         self.surroundings += balance.surroundings;
         self.stored += balance.stored;
@@ -41,7 +41,7 @@ impl HeatLedger {
         self.pending = 0.0;
     }
 
-    /// Adds up.
+    /// Computes the residual and the scale.
     pub(crate) fn close(&mut self, received: &[f64]) {
         let put_in =
             self.dissipated + self.joule + self.imposed + self.surroundings - self.expansion;
@@ -121,8 +121,8 @@ impl HeatLedger {
 mod tests {
     use super::*;
 
-    /// What is put in is stored, gone into fixed temperatures, or pending; the scale is the largest
-    /// of all, and does not fall.
+    /// Supplied heat is stored, has entered bodies of fixed temperature, or is pending; the scale is
+    /// the largest of all, and does not decrease.
     #[test]
     fn heat_that_is_accounted_for_leaves_no_residual() {
         let mut ledger = HeatLedger {
@@ -141,7 +141,7 @@ mod tests {
             fixed: 3.0,
             ..Balance::default()
         };
-        ledger.book(&balance, 7.0);
+        ledger.add_step(&balance, 7.0);
         ledger.close(&[]);
         assert_eq!((ledger.pending, ledger.residual), (0.0, 0.0));
         assert_eq!(ledger.scale, 7.0);

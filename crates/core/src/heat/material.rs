@@ -2,7 +2,7 @@
 
 use fretwork_math::diffusion::Conductor;
 
-/// What heat and current need to know of a material.
+/// Thermal and electrical properties of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThermalMaterial {
     /// Thermal conductivity k (W/(m K)).
@@ -16,7 +16,7 @@ pub struct ThermalMaterial {
 }
 
 impl ThermalMaterial {
-    /// As a conductor of heat.
+    /// Returns it as a conductor of heat.
     pub fn conductor(&self) -> Conductor {
         Conductor {
             conductivity: self.conductivity,

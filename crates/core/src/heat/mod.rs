@@ -1,8 +1,8 @@
-//! Heat and electric current of a scene: what a case gives of them, and what steps change.
+//! Heat and electric current of a scene: the model given by the case, and the state changed by steps.
 //!
 //! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a
 //! half-space below each. Contacts join them by the conductances that transport laws give, and put
-//! in the heat that the energy ledger books as dissipated at that contact in that step:
+//! in the heat that the energy ledger counts as dissipated at that contact in that step:
 //!
 //! ```text
 //! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i
@@ -28,6 +28,6 @@ pub use fretwork_math::diffusion::{
 };
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
-pub use model::{BodyNodes, Heat, Imposed, Partition, Shares};
+pub use model::{BodyNodes, Heat, HeatShares, Imposed, Partition};
 pub use pieces::{PieceAxis, Pieces};
 pub use state::HeatState;

@@ -1,4 +1,4 @@
-//! What a case gives of heat; no step changes it.
+//! The model of heat: given by the case, not changed by steps.
 
 use super::circuit::Circuit;
 use super::material::ThermalMaterial;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// elsewhere (new surfaces, sound, plastic work that is stored).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Shares {
+pub struct HeatShares {
     /// Of friction.
     pub friction: f64,
     /// Of impacts.
@@ -28,8 +28,8 @@ pub struct Shares {
     pub fracture: f64,
 }
 
-impl Default for Shares {
-    /// All of it, but for fracture, which makes surfaces.
+impl Default for HeatShares {
+    /// All dissipation except fracture, which creates surfaces.
     fn default() -> Self {
         Self {
             friction: 1.0,
@@ -41,7 +41,7 @@ impl Default for Shares {
     }
 }
 
-impl Shares {
+impl HeatShares {
     /// Heat of the energies dissipated at a contact (J).
     #[inline]
     pub fn heat(&self, dissipated: &ContactDissipation) -> f64 {
@@ -73,7 +73,7 @@ pub enum BodyNodes {
     One(u32),
     /// One for each piece of its surface, from a first one on.
     Pieces(u32, Pieces),
-    /// Those of the points of its mesh of finite elements, from a first one to before an end.
+    /// The nodes of its mesh of finite elements, from a first one to before an end.
     Mesh(u32, u32),
 }
 
@@ -116,7 +116,7 @@ pub struct Imposed {
 pub struct Heat {
     /// Properties of the materials, by index.
     pub materials: Vec<ThermalMaterial>,
-    /// See [`Heat::pairs`].
+    /// All pairs of materials, as [`Heat::pairs`] returns them.
     pub pairs: Arc<[MaterialPair]>,
     /// Material of each body.
     pub material: Vec<u16>,
@@ -133,9 +133,9 @@ pub struct Heat {
     pub imposed: Vec<Imposed>,
     /// Temperature of what has no node, where nothing that it touches has one (K).
     pub initial: f64,
-    /// What becomes heat.
-    pub shares: Shares,
-    /// How it is split.
+    /// Shares of dissipation that become heat.
+    pub shares: HeatShares,
+    /// Split of the heat of a contact between its bodies.
     pub partition: Partition,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,

@@ -1,4 +1,4 @@
-//! What steps change of heat and current; a checkpoint holds all of it.
+//! The state of heat and current: changed by steps, and stored in checkpoints.
 
 use super::circuit::CircuitState;
 use super::ledger::HeatLedger;
@@ -78,14 +78,14 @@ impl HeatState {
         lengths(self) == lengths(first) && nodes.into_iter().all(|(a, b)| a.fits(b))
     }
 
-    /// In how many steps of the mechanics, this one included, bodies come to the size of their
+    /// Number of steps of the mechanics, this one included, in which bodies reach the size of their
     /// temperature.
     pub(crate) fn parts(&self, every: u64) -> f64 {
         every.saturating_sub(self.pending_steps).max(1) as f64
     }
 
-    /// Takes work of expansion (J) from the heat of a node.
-    pub(crate) fn pay_for_expansion(&mut self, node: usize, work: f64) {
+    /// Subtracts work of thermal expansion (J) from the heat of a node.
+    pub(crate) fn take_expansion_work(&mut self, node: usize, work: f64) {
         self.pending[node] -= work;
         self.ledger.pending -= work;
         self.ledger.expansion += work;

@@ -2,10 +2,10 @@
 
 use super::Lane;
 
-/// What is compiled for vector instructions: it is called with lanes of four contacts, and of
-/// eight.
+/// Code that is compiled for vector instructions. It is called with lanes of four and of eight
+/// contacts.
 pub(crate) trait Wide {
-    /// Does it. The function is inlined.
+    /// Runs the code. Implementations are inlined.
     fn run<L4: Lane, L8: Lane>(self);
 }
 
@@ -15,7 +15,7 @@ pub(crate) enum Instructions {
     /// 256 bits.
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// Used for its registers, which are twice as many: also 256 bits. Fused multiplication and
+    /// 256 bits, with twice as many registers. Fused multiplication and
     /// addition, which comes with it, is not formed from separate operations.
     #[cfg(target_arch = "x86_64")]
     Avx512,
@@ -51,7 +51,7 @@ mod compiled {
         /// The machine has them.
         #[inline(always)]
         pub unsafe fn run(self, what: impl Wide) {
-            // SAFETY: as asked for.
+            // SAFETY: guaranteed by the caller.
             unsafe {
                 match self {
                     Self::Avx2 => avx2(what),
@@ -112,7 +112,7 @@ mod compiled {
     }
 }
 
-/// Asks for what is there in memory, which is read soon.
+/// Prefetches a memory location that is read soon.
 #[inline(always)]
 pub(crate) fn prefetch<T>(what: *const T) {
     #[cfg(target_arch = "x86_64")]

@@ -5,7 +5,7 @@
 //! and comparisons, [`Lane::greatest`] and [`Lane::least`] treat NaN and signed zeros in the same
 //! way.
 //!
-//! What holds several numbers is inlined into functions that are compiled for the instructions of a
+//! Functions of several numbers are inlined into functions that are compiled for the instructions of a
 //! machine ([`dispatch`]).
 
 mod dispatch;
@@ -41,8 +41,8 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
     fn all(self) -> bool;
 }
 
-/// Number of separate partial sums over contacts, to which lanes add in turn: the same for all
-/// widths.
+/// Number of separate partial sums over contacts, to which lanes add in turn; it does not depend on
+/// the width.
 pub const SUMS: usize = 4;
 
 /// One number of each of [`Self::WIDTH`] contacts.
@@ -58,14 +58,14 @@ pub trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// How many contacts.
+    /// Number of contacts.
     const WIDTH: usize;
     /// A condition on each lane.
     type Mask: Mask;
     /// A value of any type of each lane.
     type Each<T: Copy>: Copy;
 
-    /// The same number in all lanes.
+    /// Returns a lane with the number `x` in all places.
     fn all(x: f64) -> Self;
     /// The greater of two numbers; `other` where they are equal or one is NaN.
     fn greatest(self, other: Self) -> Self;

@@ -94,7 +94,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     unsafe fn load_columns(from: [*mut f64; 4]) -> [Self; 4] {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let [a, b] = Self::load_pairs(from);
             let [c, d] = Self::load_pairs(from.map(|p| p.add(2)));
@@ -103,7 +103,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     unsafe fn load_pairs(from: [*mut f64; 4]) -> [Self; 2] {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let [a, b, c, d] = from.map(|p| vld1q_f64(p));
             [
@@ -123,7 +123,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     unsafe fn store_pairs(to: [*mut f64; 4], [a, b]: [Self; 2]) {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             for k in 0..2 {
                 vst1q_f64(to[2 * k], vzip1q_f64(a.0[k], b.0[k]));

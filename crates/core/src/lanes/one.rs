@@ -76,18 +76,18 @@ impl Lane for f64 {
 
     #[inline(always)]
     unsafe fn gather<T: Record>(from: *mut T) -> T::With<f64> {
-        // SAFETY: as asked for; with single numbers it is the record itself.
+        // SAFETY: guaranteed by the caller; with single numbers it is the record itself.
         unsafe { from.cast::<T::With<f64>>().read() }
     }
     #[inline(always)]
     unsafe fn scatter<T: Record>(to: *mut T, value: &T::With<f64>) {
-        // SAFETY: as asked for; with single numbers it is the record itself.
+        // SAFETY: guaranteed by the caller; with single numbers it is the record itself.
         unsafe { to.cast::<T::With<f64>>().write(*value) }
     }
     #[inline(always)]
     unsafe fn scatter_where<T: Record>(mask: bool, to: *mut T, value: &T::With<f64>) {
         if mask {
-            // SAFETY: as asked for.
+            // SAFETY: guaranteed by the caller.
             unsafe { Self::scatter(to, value) }
         }
     }

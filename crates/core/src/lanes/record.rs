@@ -7,15 +7,15 @@ use std::ops::Deref;
 
 /// A structure of numbers alone, which may be those of several contacts.
 ///
-/// Those with an even number of numbers are aligned to 16 bytes where they are read in columns, so
-/// that no pair of numbers lies in two lines of the cache.
+/// Structures with an even number of numbers that are read in columns are aligned to 16 bytes, so that
+/// no pair of numbers lies in two cache lines.
 ///
 /// # Safety
 /// `Self` consists of `f64` alone, and `With<L>` of as many `L`, in the same order (`repr(C)`).
 pub unsafe trait Record: Copy {
     /// The structure with a lane in the place of each number.
     type With<L: Lane>: Copy;
-    /// How many numbers.
+    /// Number of numbers.
     const COUNT: usize = size_of::<Self>() / size_of::<f64>();
 }
 

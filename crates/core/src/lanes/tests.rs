@@ -51,7 +51,7 @@ fn numbers<L: Lane>(of: impl Fn(usize) -> f64) -> L {
     unsafe { L::gather(each) }
 }
 
-/// Those of a lane.
+/// Returns the number in a lane.
 fn lane<L: Lane>(x: L, k: usize) -> f64 {
     let mut out = vec![0.0; L::WIDTH];
     let first = out.as_mut_ptr();

@@ -73,7 +73,7 @@ pub trait LaneVector<L: Lane>:
 
 /// A square matrix of lanes.
 pub trait LaneMatrix<L: Lane>: Copy + Debug + Send + Sync + 'static {
-    /// What it acts on.
+    /// Type of the vectors that it acts on.
     type V: LaneVector<L>;
     /// The matrix with these entries, by row and column.
     fn from_fn(entry: impl FnMut(usize, usize) -> L) -> Self;

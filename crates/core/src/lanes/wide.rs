@@ -6,7 +6,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Four numbers in one or two vector registers. A comparison sets all bits of a number, or none.
 pub(super) trait Four: Copy + std::fmt::Debug + Send + Sync + 'static {
-    /// The same number four times.
+    /// Returns four copies of a number.
     fn all(x: f64) -> Self;
     /// Four numbers.
     fn new(x: [f64; 4]) -> Self;
@@ -158,7 +158,7 @@ macro_rules! by_fours {
 #[inline(always)]
 unsafe fn gather_four<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
     for u in 0..U {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let columns = F::load_columns(numbers(&from[u], at));
             for k in 0..4 {
@@ -175,7 +175,7 @@ unsafe fn gather_four<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *
 #[inline(always)]
 unsafe fn gather_two<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
     for u in 0..U {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let columns = F::load_pairs(numbers(&from[u], at));
             for k in 0..2 {
@@ -192,7 +192,7 @@ unsafe fn gather_two<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *m
 #[inline(always)]
 unsafe fn gather_one<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
     for u in 0..U {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let [a, b, c, d] = numbers(&from[u], at);
             to.add(at * U + u).write(F::new([*a, *b, *c, *d]));
@@ -206,7 +206,7 @@ unsafe fn gather_one<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *m
 /// The records have as many numbers.
 #[inline(always)]
 unsafe fn numbers<T>([a, b, c, d]: &[*mut T; 4], at: usize) -> [*mut f64; 4] {
-    // SAFETY: as asked for.
+    // SAFETY: guaranteed by the caller.
     unsafe {
         [
             a.cast::<f64>().add(at),
@@ -230,7 +230,7 @@ unsafe fn scatter_four<F: Four, T, const U: usize>(
     _: Groups<U>,
     at: usize,
 ) {
-    // SAFETY: as asked for.
+    // SAFETY: guaranteed by the caller.
     unsafe {
         let column = from.add(at * U);
         let rows = F::rows([
@@ -260,7 +260,7 @@ unsafe fn scatter_one<F: Four, T, const U: usize>(
     _: Groups<U>,
     at: usize,
 ) {
-    // SAFETY: as asked for.
+    // SAFETY: guaranteed by the caller.
     unsafe {
         let (mut column, to) = ([0.0; 4], numbers(to, at));
         (*from.add(at * U)).store(&mut column);
@@ -357,7 +357,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
         let mut out = MaybeUninit::<T::With<Self>>::uninit();
         let to = out.as_mut_ptr().cast::<F>();
         let (from, count) = (&from, T::COUNT);
-        // SAFETY: as asked for; `With` has the same numbers in the same order.
+        // SAFETY: guaranteed by the caller; `With` has the same numbers in the same order.
         unsafe {
             by_fours!(T::COUNT, gather_four(from, to));
             match count % 4 {
@@ -377,7 +377,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
 
     #[inline(always)]
     unsafe fn scatter<T: Record>(to: Self::Each<*mut T>, value: &T::With<Self>) {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe { scatter::<F, T, U>(to, value, [ALL; U]) }
     }
 
@@ -387,7 +387,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
         to: Self::Each<*mut T>,
         value: &T::With<Self>,
     ) {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let mut bits = [0; U];
             for u in 0..U {
@@ -435,7 +435,7 @@ unsafe fn scatter<F: Four, T: Record, const U: usize>(
     let end = count - count % 4;
     for u in 0..U {
         let (to, bits) = (&to[u], bits[u]);
-        // SAFETY: as asked for; `With` has the same numbers in the same order.
+        // SAFETY: guaranteed by the caller; `With` has the same numbers in the same order.
         unsafe {
             let from = from.add(u);
             if bits == ALL {

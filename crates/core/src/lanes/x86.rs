@@ -10,7 +10,7 @@ macro_rules! by_two {
     ($($name:ident: $with:expr;)+) => {$(
         #[inline(always)]
         fn $name(self, with: Self) -> Self {
-            // SAFETY: see the module.
+            // SAFETY: callers are compiled for AVX, as the module states.
             unsafe { $with(self, with) }
         }
     )+};
@@ -33,43 +33,43 @@ impl Four for __m256d {
     }
     #[inline(always)]
     fn all(x: f64) -> Self {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe { _mm256_set1_pd(x) }
     }
     #[inline(always)]
     fn new(x: [f64; 4]) -> Self {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe { _mm256_setr_pd(x[0], x[1], x[2], x[3]) }
     }
     #[inline(always)]
     fn load(from: &[f64; 4]) -> Self {
-        // SAFETY: four numbers; see the module.
+        // SAFETY: four numbers; callers are compiled for AVX.
         unsafe { _mm256_loadu_pd(from.as_ptr()) }
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; 4]) {
-        // SAFETY: four numbers; see the module.
+        // SAFETY: four numbers; callers are compiled for AVX.
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self) }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe { _mm256_sqrt_pd(self) }
     }
     #[inline(always)]
     fn select(mask: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe { _mm256_blendv_pd(no, yes, mask) }
     }
     #[inline(always)]
     fn bits(self) -> i32 {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe { _mm256_movemask_pd(self) }
     }
     #[inline(always)]
     unsafe fn load_columns(from: [*mut f64; 4]) -> [Self; 4] {
-        // By halves, which needs fewer moves between the halves of a register. SAFETY: as asked
-        // for.
+        // Loads by halves, which needs fewer moves between the halves of a register.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let [p, q, r, s] = from;
             let [a, b] = Self::load_pairs(from);
@@ -79,7 +79,7 @@ impl Four for __m256d {
     }
     #[inline(always)]
     unsafe fn load_pairs(from: [*mut f64; 4]) -> [Self; 2] {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let two = |k: usize| {
                 let low = _mm256_castpd128_pd256(_mm_loadu_pd(from[k]));
@@ -91,7 +91,7 @@ impl Four for __m256d {
     }
     #[inline(always)]
     fn rows([a, b, c, d]: [Self; 4]) -> [Self; 4] {
-        // SAFETY: see the module.
+        // SAFETY: callers are compiled for AVX, as the module states.
         unsafe {
             let (ab, ba) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
             let (cd, dc) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
@@ -105,7 +105,7 @@ impl Four for __m256d {
     }
     #[inline(always)]
     unsafe fn store_pairs(to: [*mut f64; 4], [a, b]: [Self; 2]) {
-        // SAFETY: as asked for.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             let (ac, bd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
             _mm_storeu_pd(to[0], _mm256_castpd256_pd128(ac));

@@ -11,7 +11,7 @@ use super::library::Call;
 use super::step_result::{MomentStep, SolvedStep, Totals, Velocities};
 use crate::contact::{Bond, Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::any_size;
+use crate::threads::chunk_size;
 
 /// About what the laws of a bond take (ns).
 const BOND: f64 = 100.0;
@@ -179,7 +179,7 @@ impl LawEvaluator {
         let laws: Vec<&Loaded> = law.cohesion().into_iter().chain(law.damage()).collect();
         let members = &self.members[index].bonded;
         let divide = self.divides(members.len(), BOND);
-        let batches = members.chunks(any_size(BATCH)).collect();
+        let batches = members.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
             let source = Source {
                 law,
@@ -253,7 +253,7 @@ impl LawEvaluator {
                     trials.push((index, slot as usize, used + change));
                 }
             };
-            let batches = members.chunks(any_size(BATCH)).collect();
+            let batches = members.chunks(chunk_size(BATCH)).collect();
             let largest = &mut history.largest;
             self.pool
                 .evaluate(divide, largest, network, batches, of, take)?;

@@ -254,7 +254,7 @@ impl Columns {
     /// Fills the columns of heat from those of the contacts, of which these are members.
     pub(super) fn take_heat(&mut self, thermal: &ContactHeat, members: &[usize]) {
         for (k, at) in members.iter().enumerate() {
-            let seen = &thermal.seen[*at];
+            let seen = &thermal.temperatures[*at];
             for (column, value) in self.temperature.iter_mut().zip(seen.temperature) {
                 column[k] = value;
             }

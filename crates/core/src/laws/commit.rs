@@ -13,7 +13,7 @@ use super::spring::SpringStep;
 use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{any_size, fill, map_chunks_mut, map_chunks_of_two, pays};
+use crate::threads::{chunk_size, fill, map_chunks_mut, map_chunks_of_two, worth_dividing};
 
 /// Contacts of a task; sums are formed per chunk and added in order.
 const CHUNK: usize = 1024;
@@ -119,7 +119,7 @@ impl LawEvaluator {
                 paid = pay_debts(&slides, network, history, group.members);
             }
         }
-        let size = any_size(BATCH);
+        let size = chunk_size(BATCH);
         let of = |network: &_, batch: &mut Batch, (first, members): &mut (usize, &[usize])| {
             let source = Source {
                 law,
@@ -254,7 +254,7 @@ fn commit_contacts<S: Space>(
         dissipation,
         ..
     } = network;
-    let divide = pays(parallel, contacts.len(), COMMIT);
+    let divide = worth_dividing(parallel, contacts.len(), COMMIT);
     let parts = match dissipation {
         None => map_chunks_mut(divide, contacts, CHUNK, |first, contacts| {
             let mut totals = Totals::default();

@@ -6,7 +6,7 @@ use super::gather::{AHEAD, prefetch_bond};
 use super::interface::Interface;
 use crate::contact::Network;
 use crate::geometry::space::Space;
-use crate::threads::{any_size, map_chunks, pays};
+use crate::threads::{chunk_size, map_chunks, worth_dividing};
 
 /// Contacts of a task that looks to which interface they belong.
 const CHUNK: usize = 4096;
@@ -83,17 +83,22 @@ impl LawEvaluator {
         for list in self.members.iter_mut().flat_map(Members::lists) {
             list.clear();
         }
-        if !pays(self.parallel, network.contacts.len(), SELECT) {
+        if !worth_dividing(self.parallel, network.contacts.len(), SELECT) {
             let whole = 0..network.contacts.len();
             select(laws, network, whole, &mut self.members);
         } else {
-            let parts = map_chunks(true, &network.contacts, any_size(CHUNK), |first, chunk| {
-                let mut members = Vec::new();
-                members.resize_with(laws.len(), Members::default);
-                let range = first..first + chunk.len();
-                select(laws, network, range, &mut members);
-                members
-            });
+            let parts = map_chunks(
+                true,
+                &network.contacts,
+                chunk_size(CHUNK),
+                |first, chunk| {
+                    let mut members = Vec::new();
+                    members.resize_with(laws.len(), Members::default);
+                    let range = first..first + chunk.len();
+                    select(laws, network, range, &mut members);
+                    members
+                },
+            );
             for mut part in parts {
                 for (to, from) in self.members.iter_mut().zip(&mut part) {
                     for (to, from) in to.lists().into_iter().zip(from.lists()) {
@@ -117,7 +122,7 @@ impl LawEvaluator {
     /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds,
     /// among threads.
     pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
-        contacts > any_size(BATCH) && pays(self.parallel, contacts, each / OVERHEAD)
+        contacts > chunk_size(BATCH) && worth_dividing(self.parallel, contacts, each / OVERHEAD)
     }
 }
 

@@ -11,7 +11,7 @@ use super::library::Call;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
-use crate::threads::{any_size, map_chunks, pays};
+use crate::threads::{chunk_size, map_chunks, worth_dividing};
 
 /// Contacts of a task.
 const CHUNK: usize = 4096;
@@ -133,7 +133,7 @@ impl LawEvaluator {
         if of_laws.iter().all(|law| *law == Concerned::None) {
             return concerned;
         }
-        let divide = pays(self.parallel, network.contacts.len(), LOOK);
+        let divide = worth_dividing(self.parallel, network.contacts.len(), LOOK);
         let parts = map_chunks(divide, &network.contacts, CHUNK, |first, contacts| {
             let contacts = contacts.iter().zip(first..);
             let found = contacts.filter(|(contact, _)| match of_laws[contact.law as usize] {
@@ -165,7 +165,7 @@ impl LawEvaluator {
             return Ok(());
         };
         let still = Velocities::still(&network.contacts);
-        let batches = stretched.chunks(any_size(BATCH)).collect();
+        let batches = stretched.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
             let source = Source {
                 law,
@@ -212,7 +212,7 @@ impl LawEvaluator {
         }
         let still = Velocities::still(&network.contacts);
         let laws: Vec<&Loaded> = law.loaded().collect();
-        let batches = new.chunks(any_size(BATCH)).collect();
+        let batches = new.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
             let source = Source {
                 law,

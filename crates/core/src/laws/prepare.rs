@@ -15,7 +15,7 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentForm;
 use crate::solve::form::{ContactForm, Elastic};
-use crate::threads::{any_size, map_chunks_mut, pays};
+use crate::threads::{chunk_size, map_chunks_mut, worth_dividing};
 
 /// Contacts of a task.
 const CHUNK: usize = 1024;
@@ -77,7 +77,7 @@ fn tasks<'a, S: Space>(
     mut springs: &'a mut [Option<SpringForm<S>>],
 ) -> Vec<Task<'a, S>> {
     let mut first = 0;
-    let batches = members.chunks(any_size(BATCH));
+    let batches = members.chunks(chunk_size(BATCH));
     let task = batches.map(|members| {
         let count = members.last().map_or(0, |last| last + 1 - first);
         let (own, rest) = std::mem::take(&mut forms).split_at_mut(count);
@@ -263,7 +263,7 @@ fn apply_constant<S: Space>(
     let Asked {
         law, index, info, ..
     } = *asked;
-    let divide = pays(parallel, network.contacts.len(), APPLY);
+    let divide = worth_dividing(parallel, network.contacts.len(), APPLY);
     let held_back = map_chunks_mut(divide, forms, CHUNK, |first, forms| {
         let mut held_back = Vec::new();
         for (form, at) in forms.iter_mut().zip(first..) {

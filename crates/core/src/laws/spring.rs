@@ -152,7 +152,7 @@ impl<S: Space> SpringForm<S> {
         before: &Spring<S>,
         h: f64,
     ) -> SpringStep<S> {
-        let mut spring = Spring::relaxed();
+        let mut spring = Spring::default();
         let n = &form.normal;
         let un = n.dot(end);
         let pressed = solution.unilateral_n + form.tension > 0.0;
@@ -345,7 +345,7 @@ mod tests {
                 unilateral_t: Vector1::new(0.0),
             };
             let velocity = Vector2::new(0.0, -0.15 / h);
-            let before = Spring::relaxed();
+            let before = Spring::default();
             let step = spring.complete(&form, &solution, [&velocity; 2], &before, h);
             let damped = if gap > 0.0 { overlap / h } else { 0.15 / h };
             assert!((step.spring.overlap - overlap).abs() < 1e-15);

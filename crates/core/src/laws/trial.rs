@@ -11,7 +11,7 @@ use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::laws::columns::StepInfo;
-use crate::threads::any_size;
+use crate::threads::chunk_size;
 
 /// Where laws are asked: the contacts of the step, and what is known of them at its start.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl LawEvaluator {
         call: impl Fn(&mut Batch, &Asked<'_, S, T>) -> Result<Vec<R>, LawError> + Sync,
     ) -> Result<Vec<R>, LawError> {
         let (law, before, info) = (&step.laws[index], step.before, step.info);
-        let size = any_size(BATCH);
+        let size = chunk_size(BATCH);
         let tasks: Vec<_> = members.chunks(size).zip(given.chunks(size)).collect();
         let of =
             |network: &Network<S>, batch: &mut Batch, (members, given): &mut (&[usize], &[T])| {

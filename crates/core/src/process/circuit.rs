@@ -8,15 +8,15 @@ use crate::contact::Network;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
-use crate::wear::ledger::{Ledger, Place};
+use crate::wear::ledger::{GrainPlace, Ledger};
 use crate::wear::ties::Ties;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Fate of a grain in an ejection zone.
+/// What happens to a grain in an ejection zone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Fate {
+pub enum EjectedFate {
     /// It stays ejected until it leaves the zone, and may return to the contact.
     Stays,
     /// It is lost, and removed from the scene, after this time in the zone (s).
@@ -36,8 +36,8 @@ pub struct Zone<S: Space> {
     /// The body that carries it; its corners are then in the frame of that body, which may move but
     /// not rotate.
     pub carrier: Option<u32>,
-    /// Fate of the grains in it.
-    pub fate: Fate,
+    /// What happens to the grains in it.
+    pub fate: EjectedFate,
 }
 
 impl<S: Space> Zone<S> {
@@ -95,7 +95,7 @@ pub struct Debris<S: Space> {
 
 /// A broken bond.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Cut {
+struct BrokenBond {
     bodies: [u32; 2],
     work: [f64; 2],
     fracture: f64,
@@ -104,7 +104,7 @@ struct Cut {
 /// The circuit of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub struct Circuit<S: Space> {
+pub struct GrainCircuit<S: Space> {
     spec: Spec<S>,
     /// Body indices of the grains.
     grains: Vec<u32>,
@@ -119,7 +119,7 @@ pub struct Circuit<S: Space> {
     /// Bonds broken since the last update.
     cuts: Vec<[u32; 2]>,
     /// Bonds that each body lost since it was last connected, by body.
-    past: BTreeMap<u32, Vec<Cut>>,
+    past: BTreeMap<u32, Vec<BrokenBond>>,
     /// Debris detached in the last update.
     #[serde(skip)]
     pub debris: Vec<Debris<S>>,
@@ -127,7 +127,7 @@ pub struct Circuit<S: Space> {
     pub cost: Duration,
 }
 
-impl<S: Space> Circuit<S> {
+impl<S: Space> GrainCircuit<S> {
     /// Creates the circuit from the current bonds.
     pub fn new(spec: Spec<S>, s: &Simulation<S>) -> Self {
         let grains: Vec<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
@@ -143,7 +143,7 @@ impl<S: Space> Circuit<S> {
             .map(|b| s.state.bodies.mass[*b as usize] / spec.scaling);
         let masses: Vec<f64> = masses.collect();
         let mut circuit = Self {
-            ledger: Ledger::new(masses.clone(), vec![Place::Contact; grains.len()]),
+            ledger: Ledger::new(masses.clone(), vec![GrainPlace::Contact; grains.len()]),
             since: vec![s.state.time; grains.len()],
             number,
             ties,
@@ -156,9 +156,9 @@ impl<S: Space> Circuit<S> {
             spec,
         };
         let mut places = circuit.places(s);
-        for place in places.iter_mut().filter(|p| **p == Place::Lost) {
+        for place in places.iter_mut().filter(|p| **p == GrainPlace::Lost) {
             // The first update removes it.
-            *place = Place::Ejected(0);
+            *place = GrainPlace::Ejected(0);
         }
         circuit.ledger = Ledger::new(masses, places);
         circuit
@@ -170,7 +170,7 @@ impl<S: Space> Circuit<S> {
     }
 
     /// Returns the place of a body, if it is a grain.
-    pub fn place(&self, body: usize) -> Option<Place> {
+    pub fn place(&self, body: usize) -> Option<GrainPlace> {
         self.number[body].map(|k| self.ledger.places()[k as usize])
     }
 
@@ -181,7 +181,7 @@ impl<S: Space> Circuit<S> {
     }
 
     /// Records the bonds formed and broken in the last step. Must be called after every step.
-    pub fn note(&mut self, s: &Simulation<S>) {
+    pub fn record_bonds(&mut self, s: &Simulation<S>) {
         let clock = Instant::now();
         let (number, spec) = (&self.number, &self.spec);
         let ties = |bodies: &[u32; 2], law: u16| {
@@ -192,24 +192,16 @@ impl<S: Space> Circuit<S> {
                 self.made.push(*bodies);
             }
         }
-        for b in s
-            .state
-            .network
-            .bond_breaks
-            .iter()
-            .filter(|b| ties(&b.bodies, b.law))
-        {
-            let cut = Cut {
+        let breaks = s.state.network.bond_breaks.iter();
+        for b in breaks.filter(|b| ties(&b.bodies, b.law)) {
+            let cut = BrokenBond {
                 bodies: b.bodies,
                 work: [b.life.work[0], b.life.work[1]],
                 fracture: b.life.fracture,
             };
             self.cuts.push(b.bodies);
-            for body in b
-                .bodies
-                .iter()
-                .filter(|b| self.number[**b as usize].is_some())
-            {
+            let is_grain = |b: &&u32| self.number[**b as usize].is_some();
+            for body in b.bodies.iter().filter(is_grain) {
                 self.past.entry(*body).or_default().push(cut);
             }
         }
@@ -230,7 +222,7 @@ impl<S: Space> Circuit<S> {
             let debris = self.debris_of(s, *base, piece);
             self.debris.push(debris);
         }
-        // A grain's list of broken bonds is closed when it detaches, and starts again when it is
+        // The list of broken bonds of a grain is cleared when the grain detaches, and when it is
         // reconnected.
         let loose = change.loose.iter().flat_map(|(_, piece)| piece);
         for body in loose.chain(change.tied.iter().map(|(body, _)| body)) {
@@ -238,11 +230,11 @@ impl<S: Space> Circuit<S> {
         }
         self.made.clear();
         self.cuts.clear();
-        let before: Vec<Place> = self.ledger.places().to_vec();
+        let before: Vec<GrainPlace> = self.ledger.places().to_vec();
         let places = self.places(s);
-        self.ledger.book(&places);
+        self.ledger.update(&places);
         for (k, (old, new)) in before.iter().zip(&places).enumerate() {
-            if *new == Place::Lost && *old != Place::Lost {
+            if *new == GrainPlace::Lost && *old != GrainPlace::Lost {
                 s.remove_body(self.grains[k] as usize);
             }
         }
@@ -250,34 +242,34 @@ impl<S: Space> Circuit<S> {
     }
 
     /// Returns the current place of each grain.
-    fn places(&mut self, s: &Simulation<S>) -> Vec<Place> {
+    fn places(&mut self, s: &Simulation<S>) -> Vec<GrainPlace> {
         let mut places = Vec::with_capacity(self.grains.len());
         for (k, body) in self.grains.iter().enumerate() {
             let old = self.ledger.places()[k];
-            if old == Place::Lost {
+            if old == GrainPlace::Lost {
                 places.push(old);
                 continue;
             }
             if let Some(base) = self.ties.base(*body) {
-                places.push(Place::Tied(base));
+                places.push(GrainPlace::Tied(base));
                 continue;
             }
             let (at, periodic) = (&s.state.bodies.position[*body as usize], &s.shapes.periodic);
             let mut zones = self.spec.zones.iter();
             let zone = zones.position(|z| z.holds(&s.state.bodies, periodic, at));
             let Some(zone) = zone else {
-                places.push(Place::Contact);
+                places.push(GrainPlace::Contact);
                 continue;
             };
-            let now = Place::Ejected(zone as u32);
+            let now = GrainPlace::Ejected(zone as u32);
             if old != now {
                 self.since[k] = s.state.time;
             }
             let lost = match self.spec.zones[zone].fate {
-                Fate::Stays => false,
-                Fate::LostAfter(time) => s.state.time - self.since[k] >= time,
+                EjectedFate::Stays => false,
+                EjectedFate::LostAfter(time) => s.state.time - self.since[k] >= time,
             };
-            places.push(if lost { Place::Lost } else { now });
+            places.push(if lost { GrainPlace::Lost } else { now });
         }
         places
     }
@@ -286,10 +278,8 @@ impl<S: Space> Circuit<S> {
         let first = s.state.bodies.position[piece[0] as usize];
         let (mut mass, mut moment) = (0.0, S::Vector::zero());
         for b in piece {
-            let (m, at) = (
-                s.state.bodies.mass[*b as usize],
-                s.state.bodies.position[*b as usize],
-            );
+            let b = *b as usize;
+            let (m, at) = (s.state.bodies.mass[b], s.state.bodies.position[b]);
             mass += m;
             moment += s.shapes.periodic.shortest(at - first) * m;
         }
@@ -302,18 +292,13 @@ impl<S: Space> Circuit<S> {
         for cut in cuts {
             energy += cut.fracture;
             bonds += 1;
-            work = [
-                work[0] + cut.work[0].max(0.0),
-                work[1] + cut.work[1].max(0.0),
-            ];
+            work = [0, 1].map(|k| work[k] + cut.work[k].max(0.0));
         }
         let all = work[0] + work[1];
+        let id = |b: &u32| s.state.bodies.id[*b as usize];
         Debris {
             time: s.state.time,
-            grains: piece
-                .iter()
-                .map(|b| s.state.bodies.id[*b as usize])
-                .collect(),
+            grains: piece.iter().map(id).collect(),
             mass: mass / self.spec.scaling,
             place: s.shapes.periodic.wrapped(first + moment * (1.0 / mass)),
             base,
@@ -324,7 +309,7 @@ impl<S: Space> Circuit<S> {
     }
 }
 
-/// When the account of a run begins and how often it is brought up to date.
+/// How often the ledger of a circuit is updated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intervals {
     /// Steps between two updates.
@@ -333,25 +318,25 @@ pub struct Intervals {
     pub rows: Option<u64>,
 }
 
-/// The circuit as a process: the account begins at its time, takes in every step, and takes lost
-/// grains out between steps.
+/// The circuit as a process: from its start on it records the bonds of every step, and removes lost
+/// grains between steps.
 #[derive(Clone, Debug)]
 pub struct CircuitProcess<S: Space> {
     spec: Spec<S>,
     start: f64,
     intervals: Intervals,
-    state: CircuitState<S>,
+    state: AccountState<S>,
 }
 
-/// What a circuit carries from step to step.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// The part of a circuit that changes from step to step.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
-struct CircuitState<S: Space> {
+struct AccountState<S: Space> {
     /// None before it begins.
-    circuit: Option<Circuit<S>>,
-    /// Number of the last step that it took in, and of the last after which it was brought up to
-    /// date.
-    noted: u64,
+    circuit: Option<GrainCircuit<S>>,
+    /// Number of the last step whose bonds it recorded.
+    recorded: u64,
+    /// Number of the last step after which it was updated.
     updated: u64,
 }
 
@@ -373,16 +358,12 @@ impl<S: Space> CircuitProcess<S> {
             spec,
             start,
             intervals,
-            state: CircuitState {
-                circuit: None,
-                noted: 0,
-                updated: 0,
-            },
+            state: AccountState::default(),
         }
     }
 
     /// The circuit; none before it begins.
-    pub fn circuit(&self) -> Option<&Circuit<S>> {
+    pub fn circuit(&self) -> Option<&GrainCircuit<S>> {
         self.state.circuit.as_ref()
     }
 
@@ -397,7 +378,7 @@ impl<S: Space> CircuitProcess<S> {
     }
 
     fn begin(&mut self, s: &Simulation<S>) -> Result<(), NoBonds> {
-        let circuit = Circuit::new(self.spec.clone(), s);
+        let circuit = GrainCircuit::new(self.spec.clone(), s);
         let untied = |base: &&u32| circuit.tied_to(**base) == 0;
         if let Some(base) = circuit.bases().iter().find(untied) {
             let driven = s.state.bodies.driven.iter().find(|d| d.body == *base);
@@ -429,8 +410,8 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
         let Some(circuit) = &mut self.state.circuit else {
             return Ok(self.begin(s)?);
         };
-        circuit.note(s);
-        self.state.noted = s.state.steps;
+        circuit.record_bonds(s);
+        self.state.recorded = s.state.steps;
         let due = |every: u64| s.state.steps.is_multiple_of(every);
         if due(self.intervals.every) || self.intervals.rows.is_some_and(due) {
             self.update(s);
@@ -439,7 +420,7 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
     }
 
     fn at_end(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
-        if self.state.noted == s.state.steps && self.state.updated != s.state.steps {
+        if self.state.recorded == s.state.steps && self.state.updated != s.state.steps {
             self.update(s);
         }
         Ok(())
@@ -459,8 +440,8 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
     }
 }
 
-/// Whether a body's bonds tie: a grain's and a base's. Another first body is no debris, and nothing
-/// belongs to a base through it.
+/// Returns whether bonds of a body count: those of grains and bases. Another first body is not
+/// debris, and connects no grain to a base.
 fn counts<S: Space>(body: u32, number: &[Option<u32>], spec: &Spec<S>) -> bool {
     number[body as usize].is_some() || spec.bases.contains(&body)
 }

@@ -52,9 +52,9 @@ impl CycleClock {
     }
 }
 
-/// What is rubbed.
+/// The part that slides in a friction test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Rubbed {
+pub enum SlidingPart {
     /// A rigid body, by its place among the driven bodies.
     Driven(usize),
     /// A deformable body, by its index among the systems, and which of its holders moves it.
@@ -88,28 +88,29 @@ impl Drive {
     }
 }
 
-/// A body that is rubbed along an axis.
+/// A body that slides along an axis in a friction test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RubbedBody {
-    /// Which.
-    pub rubbed: Rubbed,
+pub struct SlidingBody {
+    /// The part that slides.
+    pub part: SlidingPart,
     /// Axis of sliding.
     pub along: usize,
     /// Axis of the normal load.
     pub normal: usize,
 }
 
-impl RubbedBody {
-    /// What its drive did in the last step. Of a deformable body that is its holder.
+impl SlidingBody {
+    /// Returns force and sliding of its drive in the last step; of a deformable body those of the holder
+    /// that moves it.
     pub fn drive<S: Space>(&self, s: &Simulation<S>) -> Drive {
         let h = s.options.scheme.h;
-        match self.rubbed {
-            Rubbed::Driven(place) => Drive {
+        match self.part {
+            SlidingPart::Driven(place) => Drive {
                 force: -s.state.received[place].0[self.along] / h,
                 slide: h * step_velocity(s, place)[self.along],
                 at: 0.5,
             },
-            Rubbed::System { system, holder } => {
+            SlidingPart::System { system, holder } => {
                 let holders = s.state.systems.get(system).map(|s| s.holders());
                 let held = holders.as_ref().and_then(|h| h.get(holder));
                 held.map_or_else(Drive::default, |held| Drive {
@@ -124,9 +125,9 @@ impl RubbedBody {
     /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in
     /// compression.
     pub fn normal_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        let pushed = match self.rubbed {
-            Rubbed::Driven(place) => s.state.received[place].0[self.normal],
-            Rubbed::System { .. } => self
+        let pushed = match self.part {
+            SlidingPart::Driven(place) => s.state.received[place].0[self.normal],
+            SlidingPart::System { .. } => self
                 .sides(s)
                 .map(|(p, _, sign)| p[self.normal] * sign)
                 .sum(),
@@ -149,13 +150,13 @@ impl RubbedBody {
         s: &Simulation<S>,
     ) -> impl Iterator<Item = (S::Vector, S::Vector, f64)> {
         let bodies = &s.state.bodies;
-        let own = match self.rubbed {
-            Rubbed::Driven(place) => Some(bodies.driven[place].body),
-            Rubbed::System { .. } => None,
+        let own = match self.part {
+            SlidingPart::Driven(place) => Some(bodies.driven[place].body),
+            SlidingPart::System { .. } => None,
         };
-        let index = match self.rubbed {
-            Rubbed::System { system, .. } => Some(system as u32),
-            Rubbed::Driven(_) => None,
+        let index = match self.part {
+            SlidingPart::System { system, .. } => Some(system as u32),
+            SlidingPart::Driven(_) => None,
         };
         let is = move |body: u32| match own {
             Some(own) => body == own,

@@ -39,7 +39,7 @@ pub struct ThermalExpansion<S: Space> {
 }
 
 impl<S: Space> ThermalExpansion<S> {
-    /// Has rigid bodies expand from here on, by coefficients of linear expansion (1/K) of each,
+    /// Lets rigid bodies expand from now on, by coefficients of linear expansion (1/K) of each,
     /// from the temperatures that they have now, and bodies of finite elements. Without heat, which
     /// is added before, nothing expands.
     pub fn add_to(s: &mut Simulation<S>, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>) {
@@ -68,7 +68,7 @@ impl<S: Space> ThermalExpansion<S> {
         });
     }
 
-    /// What expands in a simulation; `None` where nothing does.
+    /// Returns the expansion of a simulation; `None` if no body expands.
     pub fn of(s: &Simulation<S>) -> Option<&Expansion<S>> {
         Some(&s.process::<Self>()?.expansion)
     }
@@ -118,8 +118,8 @@ impl<S: Space> ThermalExpansion<S> {
         }
     }
 
-    /// Takes the work of rigid bodies from their heat; returns all of it (J).
-    fn pay_for_bodies(&self, s: &mut Simulation<S>) -> f64 {
+    /// Subtracts the work of rigid bodies from their heat; returns the total (J).
+    fn take_work_of_bodies(&self, s: &mut Simulation<S>) -> f64 {
         let Some(state) = &mut s.state.heat else {
             return 0.0;
         };
@@ -140,15 +140,15 @@ impl<S: Space> ThermalExpansion<S> {
                 all += work;
                 let nodes = &self.heat.nodes[contact.bodies[side] as usize];
                 if let Some(node) = nodes.range().next() {
-                    state.pay_for_expansion(node, work);
+                    state.take_expansion_work(node, work);
                 }
             }
         }
         all
     }
 
-    /// Takes the work of bodies of finite elements from their heat.
-    fn pay_for_systems(&self, s: &mut Simulation<S>) {
+    /// Subtracts the work of bodies of finite elements from their heat.
+    fn take_work_of_systems(&self, s: &mut Simulation<S>) {
         let Some(state) = &mut s.state.heat else {
             return;
         };
@@ -158,7 +158,7 @@ impl<S: Space> ThermalExpansion<S> {
             for (point, work) in work.iter().enumerate().filter(|(_, work)| **work != 0.0) {
                 // A single node is that of all points.
                 let node = (system.nodes.start + point).min(system.nodes.end - 1);
-                state.pay_for_expansion(node, *work);
+                state.take_expansion_work(node, *work);
             }
         }
     }
@@ -201,8 +201,8 @@ impl<S: Space> Process<S> for ThermalExpansion<S> {
     }
 
     fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
-        s.workspace.surfaces.work += self.pay_for_bodies(s);
-        self.pay_for_systems(s);
+        s.workspace.surfaces.work += self.take_work_of_bodies(s);
+        self.take_work_of_systems(s);
         Ok(())
     }
 
@@ -216,7 +216,7 @@ impl<S: Space> Process<S> for ThermalExpansion<S> {
         }
         state.stretch.clone_from(&self.stretch);
         let lengths = &mut s.state.bodies.length;
-        let grown = (self.expansion).show(&self.stretch, &mut s.shapes, lengths);
+        let grown = (self.expansion).apply(&self.stretch, &mut s.shapes, lengths);
         let network = &mut s.state.network;
         network.grown += grown;
         if network.grown > GROWTH * network.skin {
@@ -229,7 +229,7 @@ impl<S: Space> Process<S> for ThermalExpansion<S> {
     fn follow_state(&mut self, s: &mut Simulation<S>) {
         if let Some(state) = &s.state.heat {
             let lengths = &mut s.state.bodies.length;
-            self.expansion.show(&state.stretch, &mut s.shapes, lengths);
+            self.expansion.apply(&state.stretch, &mut s.shapes, lengths);
         }
     }
 }

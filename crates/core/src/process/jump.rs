@@ -1,8 +1,8 @@
 //! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of
 //! each jump.
 
-use super::cycle::{CycleClock, RubbedBody};
-pub use super::jump_summary::{Jump, JumpSummary, Point};
+use super::cycle::{CycleClock, SlidingBody};
+pub use super::jump_summary::{Jump, JumpPoint, JumpSummary};
 use super::{Process, ProcessError};
 use crate::code::{CodeError, decode, encode};
 use crate::contact::Bond;
@@ -10,7 +10,9 @@ use crate::contact::events::Life;
 use crate::geometry::recede::Vertex;
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepReport};
-use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
+use crate::wear::jump::{
+    Amounts, error, error_growth, growth, misplaced, next_length, parabola_weights, remaining,
+};
 use serde::{Deserialize, Serialize};
 
 /// Jumps over the cycles of a friction test: some computed cycles stand for many, see
@@ -74,7 +76,7 @@ struct Pending {
 pub struct Jumps {
     spec: JumpSpec,
     clock: CycleClock,
-    test: RubbedBody,
+    test: SlidingBody,
     /// Volume worn off first bodies and off grains (m^3; m^3/m).
     worn: (f64, f64),
     /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far
@@ -105,10 +107,10 @@ pub struct Jumps {
     earlier: Option<(Amounts, f64)>,
     /// Distance in cycles of the growth `rate` from the next jump; 0 for the cycle just before it.
     centre: f64,
-    /// Sum of the errors of the jumps, by quantity.
-    off: Vec<f64>,
+    /// Sum of the errors of the jumps, by accumulated quantity.
+    errors: Vec<f64>,
     /// Misplaced volume on each scar.
-    form: Vec<f64>,
+    misplaced_volume: Vec<f64>,
     /// Amounts added by the last checked jump.
     last: Option<Amounts>,
     summary: JumpSummary,
@@ -120,7 +122,7 @@ impl Jumps {
     pub fn new<S: Space>(
         spec: JumpSpec,
         clock: CycleClock,
-        test: RubbedBody,
+        test: SlidingBody,
         steps: [u64; 2],
         s: &Simulation<S>,
     ) -> Self {
@@ -143,8 +145,8 @@ impl Jumps {
             pending: None,
             earlier: None,
             centre: 0.0,
-            off: vec![0.0; first.len()],
-            form: vec![0.0; first.len()],
+            errors: vec![0.0; first.len()],
+            misplaced_volume: vec![0.0; first.len()],
             last: None,
             summary: JumpSummary {
                 asked_cycles: spec.cycles,
@@ -200,13 +202,13 @@ impl Jumps {
         self.force = drive.force;
     }
 
-    /// Ends a cycle, and says what the next one stands for.
+    /// Ends a cycle, and chooses how many cycles the next one represents.
     fn close<S: Space>(&mut self, s: &Simulation<S>, work: f64) {
         let now = amounts(s, self.worn.1);
         let grown = growth(&now, &self.opened);
         self.computed += 1;
         self.represented = self.represented.saturating_add(self.cycle_multiplier);
-        self.summary.points.push(Point {
+        self.summary.points.push(JumpPoint {
             cycles: self.represented,
             cycle_multiplier: self.cycle_multiplier,
             wear_volume: self.worn.0,
@@ -237,7 +239,7 @@ impl Jumps {
                 let share = 1.0 / f64::from(pending.computed);
                 let scaled = |list: &Vec<f64>| list.iter().map(|x| share * x).collect();
                 self.rate = pending.control.iter().map(scaled).collect();
-                self.judge(s, &now, &pending);
+                self.check_jump(s, &now, &pending);
             }
             None => {
                 self.rate = grown;
@@ -254,7 +256,7 @@ impl Jumps {
     }
 
     /// Compares a jump with the adjacent cycles, and computes the length of the next.
-    fn judge<S: Space>(&mut self, s: &Simulation<S>, now: &Amounts, pending: &Pending) {
+    fn check_jump<S: Space>(&mut self, s: &Simulation<S>, now: &Amounts, pending: &Pending) {
         let n = f64::from(pending.cycles);
         // Cycles are counted from the one before the jump; the mean of those after it represents
         // their midpoint.
@@ -263,7 +265,10 @@ impl Jumps {
         let after = n + 1.0 + middle;
         // Before the first jump the two cycles are the same, and a straight line is used instead.
         let (earlier, parts) = match self.earlier.take() {
-            Some((rate, back)) => (rate, parts(pending.cycles, [-back, -self.centre, after])),
+            Some((rate, back)) => (
+                rate,
+                parabola_weights(pending.cycles, [-back, -self.centre, after]),
+            ),
             None => {
                 let share = 0.5 * n * (n + 1.0) / after;
                 (pending.before.clone(), [0.0, n - share, share])
@@ -287,7 +292,7 @@ impl Jumps {
             }
             let off = if q < s.state.scars.len() {
                 let form = misplaced(added, self.last.as_ref().map_or(rates[1], |l| &l[q]));
-                self.form[q] = form.max(left(self.form[q], all));
+                self.misplaced_volume[q] = form.max(remaining(self.misplaced_volume[q], all));
                 worst = worst.max(form / (total * to_come));
                 error(all, rates.map(|r| sum(r)), &parts)
             } else {
@@ -295,7 +300,7 @@ impl Jumps {
                 let bond = |(k, x): (usize, &f64)| error(*x, rates.map(|r| at(r, k)), &parts);
                 added.iter().enumerate().map(bond).sum()
             };
-            self.off[q] = off + self.off[q] * carried(sum(rates[1]), sum(rates[2]));
+            self.errors[q] = off + self.errors[q] * error_growth(sum(rates[1]), sum(rates[2]));
             worst = worst.max(off / all);
         }
         self.last = Some(pending.added.clone());
@@ -339,7 +344,7 @@ impl Jumps {
         (most.floor() as u32).max(1)
     }
 
-    /// What the summary says at the end of the run.
+    /// Returns the summary at the end of the run.
     pub fn outcome<S: Space>(&self, s: &Simulation<S>) -> JumpSummary {
         let grown = growth(&amounts(s, self.worn.1), &self.first);
         let share = |((off, form), grown): ((&f64, &f64), &Vec<f64>)| {
@@ -350,7 +355,7 @@ impl Jumps {
                 (true, false) => None,
             }
         };
-        let off = self.off.iter().zip(&self.form);
+        let off = self.errors.iter().zip(&self.misplaced_volume);
         let shares: Option<Vec<f64>> = off.zip(&grown).map(share).collect();
         let waiting = self.pending.as_ref().map_or(0, |p| p.cycles);
         let at_hand = if self.cycle_multiplier > 1 {
@@ -420,7 +425,7 @@ impl<S: Space> Process<S> for Jumps {
     }
 }
 
-/// What cycles change: volumes worn at the places of each scar, what was worn off grains, and the
+/// Returns the accumulated quantities: volumes worn at the places of each scar, what was worn off grains, and the
 /// damage of the bonds, interface by interface.
 fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     let mut all: Amounts = Vec::new();
@@ -442,15 +447,11 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
 /// Lists the internal variables of the laws in use, as `law: variable`.
 fn variables<S: Space>(s: &Simulation<S>) -> Vec<String> {
     let laws = s.laws.iter().flat_map(|law| law.loaded());
-    let mut names: Vec<String> = laws
-        .flat_map(|l| {
-            let name = &l.plugin.name;
-            l.plugin
-                .variables
-                .iter()
-                .map(move |v| format!("{} of {name}", v.name))
-        })
-        .collect();
+    let names = laws.flat_map(|l| {
+        let (law, variables) = (&l.plugin.name, l.plugin.variables.iter());
+        variables.map(move |v| format!("{} of {law}", v.name))
+    });
+    let mut names: Vec<String> = names.collect();
     names.sort();
     names.dedup();
     names

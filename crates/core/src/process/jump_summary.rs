@@ -18,7 +18,7 @@ pub struct Jump {
 
 /// State at the end of a computed cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct JumpPoint {
     /// Cycles, including those jumped over.
     pub cycles: u32,
     /// Number of cycles that the last one represents.
@@ -53,5 +53,5 @@ pub struct JumpSummary {
     /// Checked jumps.
     pub jumps: Vec<Jump>,
     /// States after the computed cycles.
-    pub points: Vec<Point>,
+    pub points: Vec<JumpPoint>,
 }

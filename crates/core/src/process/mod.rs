@@ -1,14 +1,14 @@
-//! What acts on a simulation at the named moments of its steps: heat, thermal expansion, wear
-//! recession, cycle jumps, the tribological circuit, and what a user of the library adds. The step
-//! knows none of them by name.
+//! Processes, which act on a simulation at named moments of its steps: heat, thermal expansion, wear
+//! recession, cycle jumps, the tribological circuit, and those added by users of the library. The
+//! step names none of them.
 //!
 //! ```text
 //! step:  at_start ─► imposed motion ─► before_detection ─► detect ─► contacts_found
 //!        ─► laws, solve, commit ─► after_solve ─► ledger, move ─► after_move
-//! then:  (observers look at the step) ─► between_steps ─► the next step
+//! then:  (observers evaluate the step) ─► between_steps ─► the next step
 //! ```
 //! Phases, imposed motion, servo pressures and gravity belong to [`crate::step::control`]: they set
-//! velocities and forces whose work the step itself books.
+//! velocities and forces whose work the step itself accounts for.
 
 pub mod circuit;
 pub mod cycle;

@@ -1,18 +1,18 @@
 //! Recession: worn surfaces are lowered by the depth of their scars.
 //!
-//! What a step wears off is put on the scars with the closest points of its contacts, at q_m; that
-//! of a contact on a mean place on all vertices below the facets of its point
-//! ([`crate::geometry::mortar`]). The surfaces fall after the step's motion: the gap that opens is
-//! met by the next step's detection. Nobody does work in between: a load that sinks into the gap
-//! gives its potential energy in the next step, as it does over any open gap.
+//! The volume worn in a step is removed from the scars at the closest points of its contacts, at q_m;
+//! at a contact with a mean place from all vertices below the facets of its point
+//! ([`crate::geometry::mortar`]). The surfaces recede after the motion of the step; the next
+//! detection finds the gap that opens. No work is done in between: a load that falls into the gap
+//! releases its potential energy in the next step, as over any open gap.
 
 use super::{Process, ProcessError};
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepError, StepReport};
 use crate::wear::scar::{Scar, closest_point};
 
-/// Puts what contacts wear off on the scars of a simulation, and lowers its surfaces. It carries
-/// nothing: the scars are part of the state of the simulation.
+/// Removes the volumes worn at contacts from the scars of a simulation, and lowers its surfaces. It
+/// has no state of its own: the scars are part of the state of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Recession;
 
@@ -40,9 +40,10 @@ impl<S: Space> Process<S> for Recession {
     /// Lowers the surfaces that are due in this step, at the interval `every` of their scars.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         let steps = s.state.steps;
-        // A step that wears for many is followed at once: the contact must find what protrudes.
-        let many = s.state.network.cycle_multiplier > 1.0;
-        lower(s, |scar| many || steps.is_multiple_of(scar.every));
+        // The surface follows a step that represents several cycles at once, so that the next contacts
+        // are at protruding places.
+        let jumps = s.state.network.cycle_multiplier > 1.0;
+        lower(s, |scar| jumps || steps.is_multiple_of(scar.every));
         Ok(())
     }
 
@@ -54,7 +55,7 @@ impl<S: Space> Process<S> for Recession {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Has a surface worn by its contacts; the network records their losses from the next step on.
+    /// Lets a surface wear by its contacts; the network records their losses from the next step on.
     pub fn follow_wear(&mut self, scar: Scar<S>) {
         if self.process::<Recession>().is_none() {
             self.add_process(Recession);
@@ -78,7 +79,7 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Puts what the step wore off on the scars.
+/// Removes the volumes worn in the step from the scars.
 fn put_losses<S: Space>(s: &mut Simulation<S>) {
     let losses = s.state.network.losses.take();
     for loss in losses.iter().flatten() {
@@ -94,12 +95,12 @@ fn put_losses<S: Space>(s: &mut Simulation<S>) {
         });
         let scar = &mut s.state.scars[scar];
         let put = match below {
-            Some(shares) => scar.share(shares, loss.volume),
+            Some(shares) => scar.wear_vertices(shares, loss.volume),
             None => {
                 let carried = &s.shapes.surfaces[scar.surface];
                 let rotation = &s.state.bodies.rotation[carried.body as usize];
                 let closest_point = closest_point(carried, rotation, &contact.arms[1]);
-                scar.put(&s.shapes, &closest_point, loss.volume)
+                scar.wear_at(&s.shapes, &closest_point, loss.volume)
             }
         };
         s.state.worn_through = s.state.worn_through.take().or(put.err());
@@ -111,7 +112,7 @@ fn lower<S: Space>(s: &mut Simulation<S>, due: impl Fn(&Scar<S>) -> bool) {
     let bound = 0.5 * s.state.network.skin;
     let mut far = false;
     for scar in s.state.scars.iter_mut().filter(|scar| due(scar)) {
-        far |= scar.show(&mut s.shapes, bound);
+        far |= scar.apply_depth(&mut s.shapes, bound);
     }
     if far {
         s.state.network.forget_neighbours();

@@ -4,7 +4,7 @@ use super::form::{ContactForm, Mobility, Place, Problem};
 use super::kinds::{KINDS, RowsOfKind, of_kind};
 use super::row::{RigidBodies, SolverBody};
 use crate::geometry::space::Space;
-use crate::threads::{fill, for_chunks, map_chunks, pays};
+use crate::threads::{fill, for_chunks, map_chunks, worth_dividing};
 
 /// About what it takes to add a body (ns).
 const BODY: f64 = 15.0;
@@ -57,7 +57,7 @@ impl<S: Space> Problem<S> {
         body: impl Fn(usize) -> (Mobility<S>, f64) + Sync + Send,
     ) {
         debug_assert!(self.solver_bodies.is_empty());
-        let (divide, count) = (pays(parallel, free.len(), BODY), free.len());
+        let (divide, count) = (worth_dividing(parallel, free.len(), BODY), free.len());
         self.free.extend_from_slice(free);
         fill(divide, &mut self.lengths, count, |b| body(b).1);
         fill(divide, &mut self.masses, count, |b| body(b).0);
@@ -85,7 +85,7 @@ impl<S: Space> Problem<S> {
     pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
         debug_assert!(self.places.is_empty());
         self.of_kind.iter_mut().for_each(Vec::clear);
-        let divide = pays(parallel, contacts.len(), SORT);
+        let divide = worth_dividing(parallel, contacts.len(), SORT);
         let parts = map_chunks(divide, contacts, CHUNK, |first, contacts| {
             let mut of_kind: [Vec<u32>; KINDS] = Default::default();
             let mut places = Vec::with_capacity(contacts.len());
@@ -127,10 +127,15 @@ impl<S: Space> Problem<S> {
     /// Whether a body moves, of each.
     pub(super) fn movable(&self, parallel: bool) -> Vec<bool> {
         let (mut movable, count) = (Vec::new(), self.solver_bodies.len());
-        fill(pays(parallel, count, SORT), &mut movable, count, |b| {
-            let body = &self.solver_bodies[b];
-            body.im > 0.0 || body.is > 0.0
-        });
+        fill(
+            worth_dividing(parallel, count, SORT),
+            &mut movable,
+            count,
+            |b| {
+                let body = &self.solver_bodies[b];
+                body.im > 0.0 || body.is > 0.0
+            },
+        );
         movable
     }
 
@@ -138,7 +143,7 @@ impl<S: Space> Problem<S> {
     pub(super) fn place_in_order(&mut self, parallel: bool) {
         let in_order = self.rows.each_ref();
         let in_order = in_order.map(|rows| of_kind!(rows, rows => rows.places()));
-        let divide = pays(parallel, self.places.len(), SORT);
+        let divide = worth_dividing(parallel, self.places.len(), SORT);
         for_chunks(divide, &mut self.places, CHUNK, |_, places| {
             for place in places {
                 if let Place::Row { kind, row } = place {

@@ -10,7 +10,7 @@
 //! any order by any number of threads, with bitwise identical results.
 
 use super::schedule::Schedule;
-use crate::threads::{map_chunks_mut, map_with_memory, pays};
+use crate::threads::{map_chunks_mut, map_with_memory, worth_dividing};
 
 /// Maximum number of colours, of blocks and within a part.
 const COLOURS: usize = 32;
@@ -67,7 +67,7 @@ impl Order {
     ) {
         let same = self.movable == movable && self.bodies.len() == count;
         self.bodies.resize(count, [0, 0]);
-        let divide = pays(parallel, count, READ);
+        let divide = worth_dividing(parallel, count, READ);
         let changed = map_chunks_mut(divide, &mut self.bodies, CHUNK, |first, bodies| {
             let mut same = true;
             for (old, k) in bodies.iter_mut().zip(first..) {
@@ -233,7 +233,7 @@ impl Sorting<'_> {
     fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs, parallel: bool) {
         let (bodies, movable) = (self.bodies, self.movable);
         let memory = || (vec![Seen::default(); movable.len()], 0);
-        let divide = pays(parallel, bodies.len(), COLOUR);
+        let divide = worth_dividing(parallel, bodies.len(), COLOUR);
         let grouped = map_with_memory(divide, blocks.len(), memory, |(seen, mark), k| {
             let first = blocks[k].1 as usize * span;
             let end = bodies.len().min(first + span);

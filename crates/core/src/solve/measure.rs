@@ -6,7 +6,7 @@ use super::kinds::of_kind;
 use super::rocking;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
-use crate::threads::{for_chunks, map_ranges, pays};
+use crate::threads::{for_chunks, map_ranges, worth_dividing};
 
 /// Bodies per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 2048;
@@ -62,14 +62,19 @@ pub(super) fn scale<S: Space>(
     parallel: bool,
 ) -> Scale {
     let count = problem.solver_bodies.len();
-    let parts = map_ranges(pays(parallel, count, WORK), count, CHUNK, |bodies| {
-        let of = |b: usize| {
-            let (body, (v, w)) = (&problem.solver_bodies[b], &problem.free[b]);
-            let spin = body.s * (1.0 / problem.lengths[b]);
-            problem.masses[b].energy(&(body.v - *v), &(spin - *w))
-        };
-        bodies.map(of).sum::<f64>()
-    });
+    let parts = map_ranges(
+        worth_dividing(parallel, count, WORK),
+        count,
+        CHUNK,
+        |bodies| {
+            let of = |b: usize| {
+                let (body, (v, w)) = (&problem.solver_bodies[b], &problem.free[b]);
+                let spin = body.s * (1.0 / problem.lengths[b]);
+                problem.masses[b].energy(&(body.v - *v), &(spin - *w))
+            };
+            bodies.map(of).sum::<f64>()
+        },
+    );
     let mut work: f64 = parts.iter().sum();
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
@@ -139,7 +144,7 @@ pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) 
 impl<S: Space> Problem<S> {
     /// Sets every body to its free velocity.
     pub(super) fn set_free(&mut self, parallel: bool) {
-        let divide = pays(parallel, self.solver_bodies.len(), WORK);
+        let divide = worth_dividing(parallel, self.solver_bodies.len(), WORK);
         let (free, lengths) = (&self.free, &self.lengths);
         for_chunks(divide, &mut self.solver_bodies, CHUNK, |first, bodies| {
             for (body, b) in bodies.iter_mut().zip(first..) {

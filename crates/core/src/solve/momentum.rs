@@ -17,7 +17,7 @@ use super::form::Problem;
 use super::kinds::{KINDS, of_kind};
 use super::row::{Parts, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{fill, map_chunks_of_two, pays};
+use crate::threads::{fill, map_chunks_of_two, worth_dividing};
 
 /// Bodies of a task.
 const CHUNK: usize = 2048;
@@ -58,17 +58,22 @@ impl<S: Space> Momentum<S> {
     pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
         let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
         let (mut bodies, count) = (Vec::new(), problem.solver_bodies.len());
-        fill(pays(parallel, count, EACH), &mut bodies, count, |b| {
-            let b = &problem.solver_bodies[b];
-            BodyIncrement {
-                v: b.v,
-                s: b.s,
-                dv: S::Vector::zero(),
-                ds: S::Spin::zero(),
-                mass: inverse(b.im),
-                inertia: inverse(b.is),
-            }
-        });
+        fill(
+            worth_dividing(parallel, count, EACH),
+            &mut bodies,
+            count,
+            |b| {
+                let b = &problem.solver_bodies[b];
+                BodyIncrement {
+                    v: b.v,
+                    s: b.s,
+                    dv: S::Vector::zero(),
+                    ds: S::Spin::zero(),
+                    mass: inverse(b.im),
+                    inertia: inverse(b.is),
+                }
+            },
+        );
         Self {
             t: 1.0,
             factor: 0.0,
@@ -113,7 +118,7 @@ impl<S: Space> Momentum<S> {
         let next = |t: f64| 0.5 * (1.0 + (1.0 + 4.0 * t * t).sqrt());
         let next_t = next(self.t);
         let factor = (self.t - 1.0) / next_t;
-        let divide = pays(parallel, solver_bodies.len(), EACH);
+        let divide = worth_dividing(parallel, solver_bodies.len(), EACH);
         let lists = (&mut self.bodies[..], &mut solver_bodies[..]);
         let parts = map_chunks_of_two(divide, CHUNK, lists, |_, increments, bodies| {
             let (mut squared, mut along) = (0.0, 0.0);

@@ -8,7 +8,7 @@ use super::row::{
     Visit, visit,
 };
 use crate::geometry::space::Space;
-use crate::threads::{fill, fill_places, map_ranges, pays};
+use crate::threads::{fill, fill_places, map_ranges, worth_dividing};
 use std::ops::Range;
 
 /// Contacts per task. Sums are formed per chunk and added in order.
@@ -152,7 +152,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         self.order.update(of.len(), pair, movable, parallel);
         let places = self.order.places();
         assert_eq!(places.len(), of.len(), "one place for each contact");
-        let divide = pays(parallel, places.len(), MAKE);
+        let divide = worth_dividing(parallel, places.len(), MAKE);
         // SAFETY: the places of an order are a permutation.
         unsafe {
             fill_places(divide, &mut self.rows, places, |k| {
@@ -210,7 +210,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         );
         let rows = Shared(self.rows.as_mut_ptr());
         let pairs = self.order.pairs();
-        schedule.run(pays(parallel, count, ORDERED), |block| {
+        schedule.run(worth_dividing(parallel, count, ORDERED), |block| {
             // SAFETY: blocks are disjoint, and each is run once.
             let part = unsafe { rows.slice(schedule.block(block)) };
             let mut visitor = what(part, schedule.block(block));
@@ -234,9 +234,12 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
     /// The impulses.
     pub fn local_impulses(&self, parallel: bool) -> Vec<Parts<S>> {
         let (mut parts, count) = (Vec::new(), self.rows.len());
-        fill(pays(parallel, count, VISIT), &mut parts, count, |k| {
-            self.rows[k].local_impulse()
-        });
+        fill(
+            worth_dividing(parallel, count, VISIT),
+            &mut parts,
+            count,
+            |k| self.rows[k].local_impulse(),
+        );
         parts
     }
 
@@ -261,9 +264,12 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
             let (a, b) = solver_bodies.read(pairs[k]);
             self.rows[k].work_on_compliance(&a, &b)
         };
-        let parts = map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
-            range.map(of).sum::<f64>()
-        });
+        let parts = map_ranges(
+            worth_dividing(parallel, count, VISIT),
+            count,
+            CHUNK,
+            |range| range.map(of).sum::<f64>(),
+        );
         parts.iter().sum()
     }
 
@@ -286,16 +292,21 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         let count = self.rows.len();
         let rows = Shared(self.rows.as_mut_ptr());
         let pairs = self.pairs();
-        map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
-            let at = range.start;
-            let groups = [0, range.len() as u32];
-            let bodies = &pairs[range.clone()];
-            // SAFETY: chunks are disjoint, and each is read once.
-            let part = unsafe { rows.slice(range) };
-            let mut visitor = what();
-            visit((part, bodies), &groups, solver_bodies, &mut visitor);
-            found(&visitor, at)
-        })
+        map_ranges(
+            worth_dividing(parallel, count, VISIT),
+            count,
+            CHUNK,
+            |range| {
+                let at = range.start;
+                let groups = [0, range.len() as u32];
+                let bodies = &pairs[range.clone()];
+                // SAFETY: chunks are disjoint, and each is read once.
+                let part = unsafe { rows.slice(range) };
+                let mut visitor = what();
+                visit((part, bodies), &groups, solver_bodies, &mut visitor);
+                found(&visitor, at)
+            },
+        )
     }
 }
 

@@ -51,7 +51,7 @@ impl<S: Space> Simulation<S> {
         bodies.spin[body] += spin;
         let work = bodies.energy_of(body) - before;
         self.workspace.pushed = true;
-        self.state.energy.see(work);
+        self.state.energy.raise_scale(work);
         self.state.energy.external_work += work;
     }
 

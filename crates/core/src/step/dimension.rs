@@ -5,7 +5,7 @@
 
 use super::one_step::one_step;
 use super::{Simulation, StepError, StepReport};
-use crate::contact::detect::detect;
+use crate::contact::detect::{CollisionScene, detect};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;
 
@@ -91,8 +91,8 @@ impl<'a> InDimensionMut<'a> {
 }
 
 fn touching<S: Space>(s: &mut Simulation<S>) {
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    detect(network, &s.shapes, bodies, &s.table, [0.0; 2], false);
+    let scene = CollisionScene::new(&s.shapes, &s.state.bodies, &s.table);
+    detect(&mut s.state.network, &scene, [0.0; 2], false);
 }
 
 impl<S: Space> Simulation<S> {

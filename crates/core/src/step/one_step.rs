@@ -39,8 +39,8 @@ pub(super) fn one_step<S: Space>(s: &mut Simulation<S>) -> Result<StepReport, St
     problem::commit_laws(s, &info, &mut report)?;
     s.act(Process::after_solve)?;
 
-    ledger::book_energy(s, &start, &mut report);
-    ledger::book_momentum(s, &start, &mut report);
+    ledger::close_energy(s, &start, &mut report);
+    ledger::close_momentum(s, &start, &mut report);
     detection::watch_edges(s);
 
     motion::move_to_end(s);

@@ -198,7 +198,7 @@ impl<S: Space> Simulation<S> {
         let turning = self.shapes.surfaces.iter().any(|surface| {
             let b = surface.body as usize;
             let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-            bodies.spin[b].norm() > 0.0 && !surface.shape.keeps_place(&spin)
+            bodies.spin[b].norm() > 0.0 && !surface.shape.is_unchanged_by(&spin)
         });
         if turning {
             return f64::INFINITY;

@@ -41,15 +41,13 @@ impl<S: Space> Simulation<S> {
     /// `state`, which would leave dynamical systems without their data.
     #[must_use]
     pub fn restore(&mut self, mut state: State<S>) -> bool {
-        if self.state.steps > 0
-            || !fits(&state, self)
-            || !state.systems.take_up(&self.state.systems)
+        if self.state.steps > 0 || !fits(&state, self) || !state.systems.resume(&self.state.systems)
         {
             return false;
         }
         self.state = state;
         for scar in &self.state.scars {
-            scar.show_again(&mut self.shapes);
+            scar.reapply_depth(&mut self.shapes);
         }
         self.tell(|process, simulation| process.follow_state(simulation));
         // Results may be asked for before the next step.
@@ -168,7 +166,7 @@ impl<S: Space> Simulation<S> {
         self.laws = saved.laws;
         let scars = self.state.scars.iter().zip(worn);
         for (scar, _) in scars.filter(|(_, worn)| *worn) {
-            scar.show_again(&mut self.shapes);
+            scar.reapply_depth(&mut self.shapes);
         }
         self.processes.truncate(saved.processes.len());
         self.restore_processes(&saved.processes)?;
@@ -220,8 +218,8 @@ mod tests {
         s.state.scars.push(scar);
         let wear = |s: &mut Simulation<Dim2>, x: f64| {
             let scar = &mut s.state.scars[0];
-            scar.put(&s.shapes, &Vector2::new(x, 0.0), 0.1).unwrap();
-            scar.show(&mut s.shapes, 1.0);
+            scar.wear_at(&s.shapes, &Vector2::new(x, 0.0), 0.1).unwrap();
+            scar.apply_depth(&mut s.shapes, 1.0);
         };
         let outline = |s: &Simulation<Dim2>| s.shapes.surfaces[0].shape.outline();
         wear(&mut s, 0.5);

@@ -13,7 +13,7 @@ use crate::geometry::space::Space;
 use crate::heat::Heat;
 use crate::laws::{ContactStep, Interface, LawError};
 use crate::solve::{self, ContactForm};
-use crate::threads::pays;
+use crate::threads::worth_dividing;
 use std::sync::Arc;
 
 /// About what a pass over contacts takes for each (ns).
@@ -104,7 +104,7 @@ impl<S: Space> Simulation<S> {
     /// Whether a pass over the contacts is divided among threads.
     pub(super) fn divides_contacts(&self) -> bool {
         let parallel = self.options.solver.parallel;
-        pays(parallel, self.state.network.contacts.len(), EACH)
+        worth_dividing(parallel, self.state.network.contacts.len(), EACH)
     }
 
     /// The error of a law in the current step.

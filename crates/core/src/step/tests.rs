@@ -6,7 +6,7 @@ use crate::bodies::Dof;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
 use crate::heat::{
-    BodyNodes, Heat, HeatState, Imposed, Node, Partition, Shares, Store, ThermalMaterial,
+    BodyNodes, Heat, HeatShares, HeatState, Imposed, Node, Partition, Store, ThermalMaterial,
 };
 use crate::laws::Interface;
 use crate::laws::sample_laws::{bond, constant, interface, sticky};
@@ -222,7 +222,7 @@ fn heat() -> Heat {
         first_bodies: vec![("second".into(), 1..2)],
         imposed: Vec::new(),
         initial: 300.0,
-        shares: Shares::default(),
+        shares: HeatShares::default(),
         partition: Partition::default(),
         theta: 1.0,
         clock: 1.0,
@@ -307,9 +307,9 @@ fn friction_warms_both_sides() {
         ([none.clone(), none], 1.0, [0.0, 0.0]),
     ] {
         let mut s = slider();
-        let shares = Shares {
+        let shares = HeatShares {
             friction: share,
-            ..Shares::default()
+            ..HeatShares::default()
         };
         let heat = Heat {
             nodes: nodes_of.to_vec(),
@@ -353,7 +353,7 @@ fn a_sliding_contact_flashes() {
         );
         for k in 0..10 {
             s.step().unwrap();
-            let seen = &s.state.network.thermal.as_ref().unwrap().seen[0];
+            let seen = &s.state.network.thermal.as_ref().unwrap().temperatures[0];
             let [mean, a, b] = seen.temperature;
             assert_eq!((a, b), (300.0, 300.0));
             // The force of the last step, and the speed at the start of this one.

@@ -35,7 +35,7 @@ pub trait RunControl: RunView + Send {
     fn check_worn_through(&self) -> Result<(), StepError>;
     /// How it is computed, to be changed.
     fn options_mut(&mut self) -> &mut Options;
-    /// Goes on with another step (s); see [`Simulation::change_step`].
+    /// Continues with another time step (s); see [`Simulation::change_step`].
     fn change_step(&mut self, h: f64);
     /// Applies an impulse to a body and adds its work to the ledger; see
     /// [`Simulation::apply_impulse`].
@@ -46,26 +46,26 @@ pub trait RunControl: RunView + Send {
     /// The state as bytes.
     ///
     /// # Errors
-    /// It cannot be put into bytes.
+    /// The state cannot be serialised.
     fn save(&self) -> Result<Vec<u8>, CodeError>;
-    /// Goes on from the state that [`RunControl::save`] put at the start of the bytes; returns the
+    /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns the
     /// bytes after it, or `None` if the state belongs to another case. See [`Simulation::restore`].
     ///
     /// # Errors
-    /// The bytes are of no state.
+    /// The bytes are not a state.
     fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError>;
     /// The states of the processes.
     ///
     /// # Errors
-    /// One cannot be put into bytes.
+    /// A state cannot be serialised.
     fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError>;
     /// Restores the states of the processes.
     ///
     /// # Errors
-    /// They are of other processes.
+    /// The states belong to other processes.
     fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
-    /// Has `trial` make steps, with options that it may change, and restores the state before it;
-    /// see [`Simulation::repeat`].
+    /// Calls `trial`, which may make steps and change options, and restores the state before it; see
+    /// [`Simulation::repeat`].
     ///
     /// # Errors
     /// As [`Simulation::repeat`].

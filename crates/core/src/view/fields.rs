@@ -80,9 +80,9 @@ impl FieldValues {
 /// Fields of grains beside those that every simulation registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GrainFields {
-    /// Orientations, of use where grains are no lone balls.
+    /// Orientations, needed if grains are not single balls.
     pub orientation: bool,
-    /// Whether each grain was taken out.
+    /// Whether each grain was removed.
     pub removed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! A simulation without its dimension, for those who read it, record it and steer it.
+//! A simulation without its dimension, for code that reads, records or controls it.
 //!
 //! ```text
 //! Simulation<Dim2> ─┐

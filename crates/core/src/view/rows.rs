@@ -1,4 +1,4 @@
-//! What a view shows: plain data, in three components.
+//! Rows of a view: plain data with three components.
 
 use crate::bodies::{Carrier, Driven};
 use crate::contact::{BondState, Key};
@@ -147,7 +147,7 @@ pub struct ScarView<'a> {
 /// A contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactView {
-    /// Its name in the scene.
+    /// Key in the scene.
     pub key: Key,
     /// The bodies: candidate, antagonist.
     pub bodies: [u32; 2],
@@ -166,7 +166,7 @@ pub struct ContactView {
     /// Mean force of the last step on the candidate (N; N/m in 2D); the antagonist has its
     /// opposite.
     pub force: [f64; 3],
-    /// Its part along the normal (N; N/m in 2D), positive in compression.
+    /// Component of the force along the normal (N; N/m in 2D), positive in compression.
     pub normal_force: f64,
     /// Whether friction is at its bound.
     pub slides: bool,

@@ -6,7 +6,7 @@ use super::placement;
 use super::rows::{
     BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
 };
-use super::systems::{Seen, SystemView};
+use super::systems::{SystemReader, SystemView};
 use crate::bodies::SystemStep;
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, StepSizeDiagnostics};
@@ -24,8 +24,7 @@ use crate::step::fields::GrainPart;
 use crate::step::{InDimension, Options, Simulation};
 use std::fmt::Debug;
 
-/// A simulation for reading, between two steps; see the [module](super) for what stands in the
-/// third component.
+/// A simulation for reading, between two steps. The [module](super) describes the third components.
 ///
 /// Bodies are counted as in [`RunView::bodies`], surfaces as in [`RunView::surfaces`].
 pub trait RunView: Debug {
@@ -102,7 +101,7 @@ pub trait RunView: Debug {
 
     /// Number of contacts, open ones within the alert distance too.
     fn contact_count(&self) -> usize;
-    /// Hands each contact of the last step to a function, in the order of their keys.
+    /// Calls a function with each contact of the last step, in the order of their keys.
     fn visit_contacts(&self, visit: &mut dyn FnMut(&ContactView));
     /// End points of the contacts that [count](ContactView::counts): the candidate's centre, and
     /// the antagonist's centre or the closest point on its surface (m), the first in the periodic
@@ -372,7 +371,7 @@ impl<S: Space> RunView for Simulation<S> {
             theta: self.options.scheme.theta,
             gravity: self.state.gravity,
         };
-        Some(Box::new(Seen { system, step }))
+        Some(Box::new(SystemReader { system, step }))
     }
     fn bodies_of_system(&self, system: usize) -> &[u32] {
         self.state.systems.bodies(system)

@@ -6,7 +6,7 @@ use crate::geometry::space::{Space, VectorLike};
 /// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
 /// same names.
 pub trait SystemView {
-    /// What a user calls it.
+    /// Name in the case.
     fn name(&self) -> &str;
     /// Number of its generalised velocities.
     fn freedoms(&self) -> usize;
@@ -14,11 +14,11 @@ pub trait SystemView {
     fn is_grain(&self) -> bool;
     /// A length of its size (m).
     fn length(&self) -> f64;
-    /// What of it touches.
+    /// Its parts that can touch.
     fn contactors(&self) -> Vec<Contactor>;
-    /// What holds it.
+    /// Its holders.
     fn holders(&self) -> Vec<Holder>;
-    /// What it keeps in memory, and what its solutions cost.
+    /// Memory and cost of its solutions.
     fn size(&self) -> Option<SystemSize>;
     /// Numbers of points and elements of its mesh; `None` where it has none.
     fn mesh_size(&self) -> Option<[usize; 2]>;
@@ -39,13 +39,13 @@ pub trait SystemTrial {
 }
 
 /// A system in its dimension.
-pub(super) struct Seen<'a, S: Space> {
+pub(super) struct SystemReader<'a, S: Space> {
     pub system: &'a dyn DynamicalSystem<S>,
     /// The step that comes next.
     pub step: SystemStep<S>,
 }
 
-impl<S: Space> SystemView for Seen<'_, S> {
+impl<S: Space> SystemView for SystemReader<'_, S> {
     fn name(&self) -> &str {
         self.system.name()
     }

@@ -63,7 +63,7 @@ fn fields_are_columns_of_all_that_carry_them() {
         removed: true,
     };
     let names: Vec<&str> = run.grain_fields(with).iter().map(|f| f.name).collect();
-    assert_eq!(names[fields.len()..], ["angle", "gone"]);
+    assert_eq!(names[fields.len()..], ["angle", "removed"]);
     let widths = run
         .contact_fields()
         .iter()

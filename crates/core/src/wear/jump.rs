@@ -41,7 +41,7 @@ pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
 
 /// Returns the weights of increments at three cycles in the sum over the cycles 1 to n of the
 /// parabola through them.
-pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
+pub fn parabola_weights(n: u32, at: [f64; 3]) -> [f64; 3] {
     let part = |k: usize| {
         let [i, j] = [(k + 1) % 3, (k + 2) % 3];
         let below = (at[k] - at[i]) * (at[k] - at[j]);
@@ -51,20 +51,20 @@ pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
     [part(0), part(1), part(2)]
 }
 
-/// Returns the error of a jump that added `jumped`, from increments with their [`parts`].
+/// Returns the error of a jump that added `jumped`, from increments with their [`parabola_weights`].
 pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
     let expected: f64 = rates.iter().zip(parts).map(|(r, p)| r * p).sum();
     (jumped - expected).abs()
 }
 
 /// Largest growth of an increment over a jump for which errors are propagated.
-const MAX_CARRIED: f64 = 10.0;
+const MAX_ERROR_GROWTH: f64 = 10.0;
 
 /// Returns the growth of an error while the increment of a cycle changes from one value to another:
 /// for z' = f(z) the error of z grows like f. Decreasing increments give no reduction.
-pub fn carried(from: f64, to: f64) -> f64 {
+pub fn error_growth(from: f64, to: f64) -> f64 {
     if from > 0.0 {
-        (to / from).clamp(1.0, MAX_CARRIED)
+        (to / from).clamp(1.0, MAX_ERROR_GROWTH)
     } else {
         1.0
     }
@@ -84,7 +84,7 @@ pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
 }
 
 /// Returns the remainder of a misplaced volume after a further wear volume.
-pub fn left(misplaced: f64, worn: f64) -> f64 {
+pub fn remaining(misplaced: f64, worn: f64) -> f64 {
     if misplaced > 0.0 {
         misplaced * (-0.5 * worn / misplaced).exp()
     } else {
@@ -114,7 +114,7 @@ mod tests {
         for n in [1, 7, 50] {
             let at = [-9.0, 0.0, f64::from(n) + 1.0];
             let added: f64 = (1..=n).map(|c| rate(f64::from(c))).sum();
-            assert!(error(added, at.map(rate), &parts(n, at)) < 1e-9 * added);
+            assert!(error(added, at.map(rate), &parabola_weights(n, at)) < 1e-9 * added);
         }
     }
 
@@ -128,7 +128,7 @@ mod tests {
             let squares = m * (m + 1.0) * (2.0 * m + 1.0) / 6.0;
             let added = (0.5 * m * (m + 1.0)).powi(2);
             let parabola = (m + 2.0) * squares - (m + 1.0) * 0.5 * m * (m + 1.0);
-            let off = error(added, at.map(|c| c.powi(3)), &parts(n, at));
+            let off = error(added, at.map(|c| c.powi(3)), &parabola_weights(n, at));
             assert!((off / (added - parabola).abs() - 1.0).abs() < 1e-9, "{off}");
         }
     }
@@ -171,8 +171,8 @@ mod tests {
         let z = |from: f64, t: f64| 1.0 / (1.0 / from - t);
         let (d, t) = (1e-7, 0.6);
         let grown = (z(1.0 + d, t) - z(1.0, t)) / d;
-        assert!((carried(1.0, z(1.0, t).powi(2)) / grown - 1.0).abs() < 1e-5);
-        assert_eq!(carried(2.0, 1.0), 1.0);
+        assert!((error_growth(1.0, z(1.0, t).powi(2)) / grown - 1.0).abs() < 1e-5);
+        assert_eq!(error_growth(2.0, 1.0), 1.0);
     }
 
     #[test]

@@ -14,9 +14,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Place of a grain.
+/// GrainPlace of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Place {
+pub enum GrainPlace {
     /// Connected by a path of bonds to the first body of this index.
     Tied(u32),
     /// Loose, between the first bodies.
@@ -44,9 +44,9 @@ impl Amount {
     }
 }
 
-/// Contents of each place.
+/// MassByPlace of each place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Contents {
+pub struct MassByPlace {
     /// Tied to first bodies.
     pub tied: Amount,
     /// In the contact, M.
@@ -57,9 +57,9 @@ pub struct Contents {
     pub lost: Amount,
 }
 
-impl Contents {
+impl MassByPlace {
     /// Counts all grains.
-    pub fn count(places: &[Place], masses: &[f64]) -> Self {
+    pub fn count(places: &[GrainPlace], masses: &[f64]) -> Self {
         let mut contents = Self::default();
         for (place, mass) in places.iter().zip(masses) {
             contents.at(*place).add(1, *mass);
@@ -67,12 +67,12 @@ impl Contents {
         contents
     }
 
-    fn at(&mut self, place: Place) -> &mut Amount {
+    fn at(&mut self, place: GrainPlace) -> &mut Amount {
         match place {
-            Place::Tied(_) => &mut self.tied,
-            Place::Contact => &mut self.contact,
-            Place::Ejected(_) => &mut self.ejected,
-            Place::Lost => &mut self.lost,
+            GrainPlace::Tied(_) => &mut self.tied,
+            GrainPlace::Contact => &mut self.contact,
+            GrainPlace::Ejected(_) => &mut self.ejected,
+            GrainPlace::Lost => &mut self.lost,
         }
     }
 }
@@ -96,18 +96,18 @@ pub struct Flows {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     masses: Vec<f64>,
-    places: Vec<Place>,
-    start: Contents,
+    places: Vec<GrainPlace>,
+    start: MassByPlace,
     /// Current contents, counted.
-    pub contents: Contents,
+    pub contents: MassByPlace,
     /// Accumulated flows.
     pub flows: Flows,
 }
 
 impl Ledger {
     /// Creates a ledger for grains of these masses (kg; kg/m in 2D) at these places.
-    pub fn new(masses: Vec<f64>, places: Vec<Place>) -> Self {
-        let start = Contents::count(&places, &masses);
+    pub fn new(masses: Vec<f64>, places: Vec<GrainPlace>) -> Self {
+        let start = MassByPlace::count(&places, &masses);
         Self {
             masses,
             places,
@@ -118,12 +118,12 @@ impl Ledger {
     }
 
     /// Returns the places of the grains.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[GrainPlace] {
         &self.places
     }
 
     /// Updates the places of the grains. Each grain passes through all intermediate places.
-    pub fn book(&mut self, places: &[Place]) {
+    pub fn update(&mut self, places: &[GrainPlace]) {
         for (k, new) in places.iter().enumerate() {
             let old = std::mem::replace(&mut self.places[k], *new);
             if old == *new {
@@ -148,11 +148,11 @@ impl Ledger {
                 }
             }
         }
-        self.contents = Contents::count(&self.places, &self.masses);
+        self.contents = MassByPlace::count(&self.places, &self.masses);
     }
 
     /// Returns counted contents minus those from flows, by place: zero in grains, rounding in mass.
-    pub fn residual(&self) -> Contents {
+    pub fn residual(&self) -> MassByPlace {
         let (now, start, f) = (&self.contents, &self.start, &self.flows);
         let rest = |now: Amount, start: Amount, enter: &[Amount], leave: &[Amount]| {
             let mut rest = Amount::default();
@@ -161,7 +161,7 @@ impl Ledger {
             leave.iter().for_each(|a| rest.add(a.grains, a.mass));
             rest
         };
-        Contents {
+        MassByPlace {
             tied: rest(now.tied, start.tied, &[f.attached], &[f.source]),
             contact: rest(
                 now.contact,
@@ -181,12 +181,12 @@ impl Ledger {
 }
 
 /// Places in the order in which mass passes them.
-fn rank(place: Place) -> usize {
+fn rank(place: GrainPlace) -> usize {
     match place {
-        Place::Tied(_) => 0,
-        Place::Contact => 1,
-        Place::Ejected(_) => 2,
-        Place::Lost => 3,
+        GrainPlace::Tied(_) => 0,
+        GrainPlace::Contact => 1,
+        GrainPlace::Ejected(_) => 2,
+        GrainPlace::Lost => 3,
     }
 }
 
@@ -196,14 +196,14 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    fn places(rng: &mut Pcg64, n: usize) -> Vec<Place> {
+    fn places(rng: &mut Pcg64, n: usize) -> Vec<GrainPlace> {
         let one = |k: u32| match k {
-            0 => Place::Tied(0),
-            1 => Place::Tied(1),
-            2 => Place::Contact,
-            3 => Place::Ejected(0),
-            4 => Place::Ejected(1),
-            _ => Place::Lost,
+            0 => GrainPlace::Tied(0),
+            1 => GrainPlace::Tied(1),
+            2 => GrainPlace::Contact,
+            3 => GrainPlace::Ejected(0),
+            4 => GrainPlace::Ejected(1),
+            _ => GrainPlace::Lost,
         };
         (0..n).map(|_| one(rng.random_range(0..6))).collect()
     }
@@ -217,7 +217,7 @@ mod tests {
         let mut ledger = Ledger::new(masses, first);
         for _ in 0..200 {
             let next = places(&mut rng, 500);
-            ledger.book(&next);
+            ledger.update(&next);
             let r = ledger.residual();
             for a in [r.tied, r.contact, r.ejected, r.lost] {
                 assert_eq!(a.grains, 0);
@@ -231,8 +231,8 @@ mod tests {
 
     #[test]
     fn a_grain_that_flies_out_at_once_passes_every_flow() {
-        let mut ledger = Ledger::new(vec![2.0], vec![Place::Tied(0)]);
-        ledger.book(&[Place::Lost]);
+        let mut ledger = Ledger::new(vec![2.0], vec![GrainPlace::Tied(0)]);
+        ledger.update(&[GrainPlace::Lost]);
         let one = Amount {
             grains: 1,
             mass: 2.0,
@@ -249,7 +249,7 @@ mod tests {
         let (cs, ce, most, dt) = (3.0, 2.0, 4_000usize, 1e-3);
         // A first body with sufficient mass.
         let n = 8 * most;
-        let mut places = vec![Place::Tied(0); n];
+        let mut places = vec![GrainPlace::Tied(0); n];
         let mut ledger = Ledger::new(vec![1.0; n], places.clone());
         let (mut loose, mut lost, mut due) = (0, 0, [0.0f64; 2]);
         let tau = 1.0 / (cs + ce);
@@ -259,15 +259,15 @@ mod tests {
             due[0] += cs * (most as f64 - m) * dt;
             due[1] += ce * m * dt;
             for _ in 0..due[0].floor() as usize {
-                places[loose] = Place::Contact;
+                places[loose] = GrainPlace::Contact;
                 loose += 1;
             }
             for _ in 0..due[1].floor() as usize {
-                places[lost] = Place::Lost;
+                places[lost] = GrainPlace::Lost;
                 lost += 1;
             }
             due = due.map(f64::fract);
-            ledger.book(&places);
+            ledger.update(&places);
             let exact = level * (1.0 - (-(step as f64) * dt / tau).exp());
             // The error of Euler's method is dt/2 in the exponent, and counting whole grains adds a
             // few.

@@ -6,4 +6,4 @@ pub mod shape;
 pub mod ties;
 
 pub use scar::{Scar, WornThrough};
-pub use shape::Form;
+pub use shape::ScarForm;

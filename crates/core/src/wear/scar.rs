@@ -25,7 +25,7 @@ pub struct Scar<S: Space> {
     vertices: Vec<Vertex<S::Vector>>,
     depth: Vec<f64>,
     /// Depth currently applied to the surface, by vertex (m).
-    shown: Vec<f64>,
+    applied: Vec<f64>,
     /// Accumulated wear volume (m^3; m^3/m in 2D).
     volume: f64,
     deepest: usize,
@@ -53,12 +53,16 @@ pub struct WornThrough {
 }
 
 impl<S: Space> Scar<S> {
-    /// Whether it is a later state of a scar.
+    /// Returns whether it is a valid later state of a scar.
     pub(crate) fn fits(&self, first: &Self) -> bool {
         let count = first.vertices.len();
         (&self.name, self.surface) == (&first.name, first.surface)
-            && [self.vertices.len(), self.depth.len(), self.shown.len()] == [count; 3]
-            && self.depth.iter().chain(&self.shown).all(|d| d.is_finite())
+            && [self.vertices.len(), self.depth.len(), self.applied.len()] == [count; 3]
+            && self
+                .depth
+                .iter()
+                .chain(&self.applied)
+                .all(|d| d.is_finite())
             && self.deepest < count.max(1)
             && self.pending.iter().all(|k| *k < count)
     }
@@ -78,7 +82,7 @@ impl<S: Space> Scar<S> {
             thickness,
             every,
             depth: vec![0.0; vertices.len()],
-            shown: vec![0.0; vertices.len()],
+            applied: vec![0.0; vertices.len()],
             vertices,
             volume: 0.0,
             deepest: 0,
@@ -87,8 +91,7 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Has its places shifted (m): the frame of a surface that deforms has its origin at one of its
-    /// points.
+    /// Shifts its vertices (m): the frame of a surface that deforms has its origin at one of its points.
     #[must_use]
     pub fn shifted(mut self, by: S::Vector) -> Self {
         self.vertices.iter_mut().for_each(|v| v.at += by);
@@ -99,14 +102,14 @@ impl<S: Space> Scar<S> {
     ///
     /// # Errors
     /// The surface is worn through; the volume is removed nevertheless.
-    pub fn put(
+    pub fn wear_at(
         &mut self,
         shapes: &Shapes<S>,
         closest_point: &S::Vector,
         volume: f64,
     ) -> Result<(), WornThrough> {
         match shapes.surfaces[self.surface].shape.receding() {
-            Some(shape) => self.share(shape.shares(closest_point), volume),
+            Some(shape) => self.wear_vertices(shape.shares(closest_point), volume),
             None => Ok(()),
         }
     }
@@ -115,7 +118,7 @@ impl<S: Space> Scar<S> {
     ///
     /// # Errors
     /// The surface is worn through; the volume is removed nevertheless.
-    pub fn share(
+    pub fn wear_vertices(
         &mut self,
         shares: impl IntoIterator<Item = (usize, f64)>,
         volume: f64,
@@ -150,14 +153,14 @@ impl<S: Space> Scar<S> {
 
     /// Applies the depth to the surface. Returns whether the displacement since the last `true`
     /// exceeds a bound (m).
-    pub fn show(&mut self, shapes: &mut Shapes<S>, bound: f64) -> bool {
+    pub fn apply_depth(&mut self, shapes: &mut Shapes<S>, bound: f64) -> bool {
         if self.pending.is_empty() {
             return false;
         }
         self.pending.sort_unstable();
         self.pending.dedup();
         for vertex in &self.pending {
-            self.shown[*vertex] = self.depth[*vertex];
+            self.applied[*vertex] = self.depth[*vertex];
         }
         if let Some(shape) = shapes.surfaces[self.surface].shape.receding_mut() {
             self.moved += shape.recede(&self.depth, &self.pending);
@@ -170,18 +173,19 @@ impl<S: Space> Scar<S> {
         far
     }
 
-    /// Applies to an unworn surface the depth that was applied before; later wear remains pending.
-    pub fn show_again(&self, shapes: &mut Shapes<S>) {
-        let all: Vec<usize> = (0..self.shown.len()).collect();
+    /// Applies the depth of an earlier [`Self::apply_depth`] to an unworn surface; later wear remains
+    /// pending.
+    pub fn reapply_depth(&self, shapes: &mut Shapes<S>) {
+        let all: Vec<usize> = (0..self.applied.len()).collect();
         let carried = shapes.surfaces.get_mut(self.surface);
         if let Some(shape) = carried.and_then(|c| c.shape.receding_mut()) {
-            shape.recede(&self.shown, &all);
+            shape.recede(&self.applied, &all);
         }
     }
 
-    /// Whether the surface is at the same depths as another state of this scar has it.
+    /// Returns whether this state and another one of the scar have applied the same depths.
     pub fn same_depths(&self, other: &Self) -> bool {
-        self.shown == other.shown
+        self.applied == other.applied
     }
 
     /// Returns the wear volume so far (m^3; m^3/m in 2D).
@@ -265,6 +269,14 @@ mod tests {
         }
     }
 
+    /// A flat chain of 1 m segments from x = 0, and its scar of this thickness (m).
+    fn flat(segments: u32, thickness: f64) -> (Shapes<Dim2>, Scar<Dim2>) {
+        let points: Vec<_> = (0..=segments).map(|x| (f64::from(x), 0.0)).collect();
+        let shapes = scene(&points, None);
+        let scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], thickness, 1).unwrap();
+        (shapes, scar)
+    }
+
     /// Integral of height along the chain by the trapezoidal rule; it decreases where solid is
     /// removed, for either orientation.
     fn under(shapes: &Shapes<Dim2>) -> f64 {
@@ -275,7 +287,7 @@ mod tests {
 
     /// A flank of 87 degrees, a gentle slope, a plateau; solid below, above, and periodic.
     #[test]
-    fn the_area_between_the_chains_is_the_volume_that_was_put() {
+    fn the_area_between_the_chains_is_the_worn_volume() {
         let hill = [
             (0.0, 0.0),
             (0.1, 2.0),
@@ -299,22 +311,21 @@ mod tests {
                 // With a period, positions one period apart are equivalent.
                 let x = x + period.map_or(0.0, |p| p * f64::from(k % 5 - 2));
                 let closest_point = Vector2::new(x, 0.0);
-                scar.put(&shapes, &closest_point, 1e-4).unwrap();
-                scar.show(&mut shapes, 1.0);
+                scar.wear_at(&shapes, &closest_point, 1e-4).unwrap();
+                scar.apply_depth(&mut shapes, 1.0);
             }
-            let gone = before - under(&shapes);
-            assert!((gone / 0.04 - 1.0).abs() < 1e-12, "{gone}");
+            let removed = before - under(&shapes);
+            assert!((removed / 0.04 - 1.0).abs() < 1e-12, "{removed}");
             assert!((scar.volume() / 0.04 - 1.0).abs() < 1e-12);
         }
     }
 
     #[test]
-    fn it_says_when_and_where_it_is_worn_through() {
-        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
-        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 0.1, 1).unwrap();
+    fn the_error_has_the_place_where_it_is_worn_through() {
+        let (shapes, mut scar) = flat(2, 0.1);
         let at = Vector2::new(1.0, 0.0);
-        assert_eq!(scar.put(&shapes, &at, 0.09), Ok(()));
-        let error = scar.put(&shapes, &at, 0.02).unwrap_err();
+        assert_eq!(scar.wear_at(&shapes, &at, 0.09), Ok(()));
+        let error = scar.wear_at(&shapes, &at, 0.02).unwrap_err();
         assert_eq!(error.at, [1.0, 0.0]);
         assert!((error.depth - 0.11).abs() < 1e-15);
         assert!(error.to_string().contains("`rail` is worn through"));
@@ -323,16 +334,15 @@ mod tests {
     /// The bounding boxes of the search follow a profile that wears often and deep.
     #[test]
     fn contacts_are_found_where_the_worn_profile_is() {
-        let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)], None);
-        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
+        let (mut shapes, mut scar) = flat(3, 1e3);
         for k in 1..200 {
             for x in [1.0, 2.0] {
-                scar.put(&shapes, &Vector2::new(x, 0.0), 0.01).unwrap();
+                scar.wear_at(&shapes, &Vector2::new(x, 0.0), 0.01).unwrap();
             }
-            scar.show(&mut shapes, 1.0);
+            scar.apply_depth(&mut shapes, 1.0);
             let (mut out, depth) = (Vec::new(), 0.01 * f64::from(k));
             let shape = &shapes.surfaces[0].shape;
-            shape.touches(&Vector2::new(1.5, 0.1 - depth), 0.2, &mut out);
+            shape.closest_points(&Vector2::new(1.5, 0.1 - depth), 0.2, &mut out);
             assert_eq!(out.len(), 1, "{depth}");
             assert!((out[0].distance - 0.1).abs() < 1e-12);
             assert!(shape.near(&Vector2::new(1.5, 0.1 - depth), 0.11));
@@ -343,33 +353,34 @@ mod tests {
     /// from zero.
     #[test]
     fn displacements_add_up_between_two_lists() {
-        let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
-        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
+        let (mut shapes, mut scar) = flat(2, 1e3);
         let step = 1.0 / 1024.0;
         let far: Vec<bool> = (0..9)
             .map(|_| {
-                scar.put(&shapes, &Vector2::new(1.0, 0.0), step).unwrap();
-                scar.show(&mut shapes, 2.5 * step)
+                scar.wear_at(&shapes, &Vector2::new(1.0, 0.0), step)
+                    .unwrap();
+                scar.apply_depth(&mut shapes, 2.5 * step)
             })
             .collect();
         let third = [false, false, true];
         assert_eq!(far, [third; 3].concat());
-        assert!(!scar.show(&mut shapes, 0.0), "nothing is worn since");
+        assert!(!scar.apply_depth(&mut shapes, 0.0), "nothing is worn since");
     }
 
     /// Two states have the surface at the same depths as long as what was worn since was not
     /// applied to it.
     #[test]
-    fn states_of_a_scar_are_told_apart_by_the_depths_of_the_surface() {
-        let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
-        let scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
+    fn states_of_a_scar_differ_by_the_depths_applied_to_the_surface() {
+        let (mut shapes, scar) = flat(2, 1e3);
         let mut later = scar.clone();
-        later.put(&shapes, &Vector2::new(1.0, 0.0), 0.1).unwrap();
+        later
+            .wear_at(&shapes, &Vector2::new(1.0, 0.0), 0.1)
+            .unwrap();
         assert!(later.same_depths(&scar));
-        later.show(&mut shapes, 1.0);
+        later.apply_depth(&mut shapes, 1.0);
         assert!(!later.same_depths(&scar));
         let before = under(&shapes);
-        scar.show_again(&mut shapes);
+        scar.reapply_depth(&mut shapes);
         assert!((under(&shapes) - before - 0.1).abs() < 1e-15);
     }
 
@@ -377,9 +388,9 @@ mod tests {
     /// volume of 0.09 m^2 is put is as many m deep.
     #[test]
     fn depths_along_the_chain_are_those_of_its_vertices() {
-        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
-        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
-        scar.put(&shapes, &Vector2::new(1.0, 0.0), 0.09).unwrap();
+        let (shapes, mut scar) = flat(2, 1.0);
+        scar.wear_at(&shapes, &Vector2::new(1.0, 0.0), 0.09)
+            .unwrap();
         assert_eq!(
             scar.along(),
             [[0.0, 0.5, 0.0], [1.0, 1.0, 0.09], [2.0, 0.5, 0.0]]
@@ -392,16 +403,12 @@ mod tests {
     fn depths_of_one_place_are_averaged() {
         let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0)], None);
         let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
-        scar.share([(1, 1.0)], 0.125).unwrap();
+        scar.wear_vertices([(1, 1.0)], 0.125).unwrap();
         let along = scar.along();
         let places: Vec<f64> = along.iter().map(|row| row[0]).collect();
         assert_eq!(places, [0.0, 1.0, 2.0]);
-        let both: f64 = scar
-            .vertices()
-            .skip(1)
-            .take(2)
-            .map(|(v, _)| v.tributary)
-            .sum();
+        let middle = scar.vertices().skip(1).take(2);
+        let both: f64 = middle.map(|(v, _)| v.tributary).sum();
         assert!((along[1][1] - both).abs() < 1e-15);
         assert!((along[1][2] * both - 0.125).abs() < 1e-15);
     }
@@ -409,8 +416,7 @@ mod tests {
     /// A state that was read is refused where it names vertices that the scar has not.
     #[test]
     fn a_state_with_other_vertices_does_not_fit() {
-        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
-        let first = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
+        let (_, first) = flat(2, 1.0);
         assert!(first.fits(&first));
         for (deepest, pending, fits) in
             [(2, vec![2], true), (3, vec![], false), (0, vec![3], false)]

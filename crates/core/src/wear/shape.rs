@@ -17,7 +17,7 @@ const SHALLOW: f64 = 0.9;
 
 /// Shape of a scar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Form {
+pub enum ScarForm {
     /// No wear, or at one or two places only.
     None,
     /// Deepest in the middle, or equally deep.
@@ -28,9 +28,9 @@ pub enum Form {
 
 /// Extent and shape of a scar.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Outline {
+pub struct ScarOutline {
     /// Shape.
-    pub form: Form,
+    pub form: ScarForm,
     /// Start of the scar (m); NaN where there is none.
     pub from: f64,
     /// End of the scar (m).
@@ -43,9 +43,9 @@ pub struct Outline {
 
 /// Returns extent and shape from depths in order of position; each row holds position (m),
 /// tributary length, and depth (m).
-pub fn outline(rows: &[[f64; 3]]) -> Outline {
-    let none = Outline {
-        form: Form::None,
+pub fn outline(rows: &[[f64; 3]]) -> ScarOutline {
+    let none = ScarOutline {
+        form: ScarForm::None,
         from: f64::NAN,
         to: f64::NAN,
         middle: 0.0,
@@ -73,11 +73,11 @@ pub fn outline(rows: &[[f64; 3]]) -> Outline {
     let middle = 0.5 * (depths[half - 1] + depths[half]);
     let sides = [most(&depths[..half]), most(&depths[half..])];
     let form = if sides.iter().all(|s| middle < SHALLOW * s) {
-        Form::W
+        ScarForm::W
     } else {
-        Form::U
+        ScarForm::U
     };
-    Outline {
+    ScarOutline {
         form,
         from,
         to,
@@ -104,7 +104,7 @@ fn integral(rows: &[[f64; 3]], from: f64, to: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn of(depth: impl Fn(f64) -> f64) -> Outline {
+    fn of(depth: impl Fn(f64) -> f64) -> ScarOutline {
         let row = |k: i32| {
             let x = 0.01 * f64::from(k);
             [x, 0.01, depth(x)]
@@ -114,12 +114,15 @@ mod tests {
 
     #[test]
     fn a_circle_a_plateau_and_a_slope_are_u_and_two_lobes_are_w() {
-        assert_eq!(of(|_| 0.0).form, Form::None);
-        assert_eq!(of(|x| (1.0 - x * x).max(0.0)).form, Form::U);
-        assert_eq!(of(|x| if x.abs() < 1.0 { 1.0 } else { 0.0 }).form, Form::U);
+        assert_eq!(of(|_| 0.0).form, ScarForm::None);
+        assert_eq!(of(|x| (1.0 - x * x).max(0.0)).form, ScarForm::U);
+        assert_eq!(
+            of(|x| if x.abs() < 1.0 { 1.0 } else { 0.0 }).form,
+            ScarForm::U
+        );
         assert_eq!(
             of(|x| if x.abs() < 1.0 { 1.5 + x } else { 0.0 }).form,
-            Form::U
+            ScarForm::U
         );
         // cos^2 with a shallow middle: 1 at x = 0.5, 0.5 at x = 0.
         let w = of(|x| {
@@ -129,7 +132,7 @@ mod tests {
                 0.0
             }
         });
-        assert_eq!(w.form, Form::W);
+        assert_eq!(w.form, ScarForm::W);
         assert!((w.from + 0.99).abs() < 1e-12 && (w.to - 0.99).abs() < 1e-12);
         assert!((w.middle - 0.5).abs() < 0.02 && w.sides.iter().all(|s| (s - 1.0).abs() < 0.02));
     }
@@ -144,6 +147,6 @@ mod tests {
             };
             if x.abs() < 1.0 { 1.0 + dent } else { 0.0 }
         });
-        assert_eq!(form.form, Form::U);
+        assert_eq!(form.form, ScarForm::U);
     }
 }

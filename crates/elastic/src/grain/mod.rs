@@ -27,7 +27,7 @@ pub use shape::GrainShape;
 use crate::material::Elasticity;
 use crate::support::Rayleigh;
 use crate::touching_surface::closed_surface;
-use fretwork_core::bodies::tensor::Tensor;
+use fretwork_core::bodies::tensor::InertiaTensor;
 use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
@@ -90,7 +90,7 @@ struct Model<S: Space> {
     inertia: S::Tensor,
     inverse: S::Tensor,
     /// The moments of inertia where they differ by axis.
-    tensor: Option<Tensor<S>>,
+    tensor: Option<InertiaTensor<S>>,
     /// The displacement of a mode of the shape at an amplitude of 1 (m).
     scale: f64,
     /// lambda of each mode (1/s^2).
@@ -148,7 +148,7 @@ impl<S: Space> ElasticGrain<S> {
         // A mesh within a ball has less volume.
         let density = mass / (shape.volume() * size.powi(S::D as i32));
         let inertia = shape.inertia().scaled(density * size.powi(S::D as i32 + 2));
-        let tensor = Tensor::<S>::new(inertia);
+        let tensor = InertiaTensor::<S>::new(inertia);
         let uniform = S::Tensor::uniform(fretwork_core::bodies::tensor::mean::<S>(&inertia));
         let inertia = if tensor.is_some() { inertia } else { uniform };
         let inverse = inertia

@@ -19,7 +19,7 @@ pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report
 use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
 use fretwork_core::bodies::Dof;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
 use fretwork_scene::processes::FrictionTest;
@@ -60,7 +60,7 @@ pub struct AccuracyControl {
     step: Setting,
     tolerance: Setting,
     growth: Growth,
-    body: Option<RubbedBody>,
+    body: Option<SlidingBody>,
     /// Step of the case before which the next stretch is repeated.
     next: u64,
     /// Stretches repeated, and those that failed.

@@ -19,9 +19,9 @@ use super::wear::show_flows;
 use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::process::circuit::{Circuit, CircuitProcess, Debris};
+use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
 use fretwork_core::step::Simulation;
-use fretwork_core::wear::ledger::{Flows, Ledger, Place};
+use fretwork_core::wear::ledger::{Flows, GrainPlace, Ledger};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -158,7 +158,7 @@ struct Followed {
 }
 
 /// The circuit of a simulation; none before it begins.
-fn circuit<S: Space>(s: &Simulation<S>) -> Option<&Circuit<S>> {
+fn circuit<S: Space>(s: &Simulation<S>) -> Option<&GrainCircuit<S>> {
     s.process::<CircuitProcess<S>>()?.circuit()
 }
 
@@ -203,10 +203,10 @@ impl CircuitAccount {
         let balls = s.shapes.balls.iter().map(|b| b.body);
         let bodies = balls.chain(s.shapes.pieces.iter().map(|p| p.body));
         let paint = |body: u32| match circuit.place(body as usize) {
-            Some(Place::Tied(base)) => {
+            Some(GrainPlace::Tied(base)) => {
                 Paint::Tied(circuit.bases().iter().position(|b| *b == base).unwrap_or(0))
             }
-            Some(Place::Contact) => Paint::Loose,
+            Some(GrainPlace::Contact) => Paint::Loose,
             Some(_) => Paint::Out,
             None => Paint::Grey,
         };

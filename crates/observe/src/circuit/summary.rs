@@ -5,7 +5,7 @@ use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part};
 use crate::steady::Flow;
 use crate::warning::Warning;
 use crate::wear::NO_CIRCUIT;
-use fretwork_core::wear::ledger::{Contents, Flows};
+use fretwork_core::wear::ledger::{Flows, MassByPlace};
 use serde::Serialize;
 
 crate::described! {
@@ -56,7 +56,7 @@ const fn amount(name: &'static str, doc: &'static str) -> Field {
     }
 }
 
-/// Contents of the places of grains.
+/// MassByPlace of the places of grains.
 const CONTENTS: Schema = Schema::Part(&[
     amount("tied", "tied to first bodies"),
     amount("contact", "in the contact"),
@@ -81,12 +81,12 @@ crate::described! {
         pub start: f64 => SECOND,
         /// Window of the mean flows.
         pub window: [f64; 2] => SECOND,
-        /// Contents at the end.
-        pub contents: Contents = CONTENTS,
+        /// MassByPlace at the end.
+        pub contents: MassByPlace = CONTENTS,
         /// Cumulative flows since the start.
         pub flows: Flows = FLOWS,
         /// Residual of the balance.
-        pub residual: Contents = CONTENTS,
+        pub residual: MassByPlace = CONTENTS,
         /// Unit of the mean flows: kg/s; in 2D kg/(m s), per metre of depth.
         pub rates_unit: &'static str => WORD,
         /// Mean flows.

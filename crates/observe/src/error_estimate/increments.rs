@@ -1,7 +1,7 @@
 //! What the results of a run grow by over a few steps.
 
 use fretwork_core::geometry::space::Space;
-use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{Simulation, StepError, StepReport};
 use serde::{Deserialize, Serialize};
 
@@ -63,7 +63,7 @@ impl Stretch {
     pub fn of<S: Space>(
         s: &mut Simulation<S>,
         [length, parts]: [u32; 2],
-        body: Option<&RubbedBody>,
+        body: Option<&SlidingBody>,
     ) -> Result<Self, StepError> {
         let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
         let mut force = body.map_or(0.0, |body| body.drive(s).force);

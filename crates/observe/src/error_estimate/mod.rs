@@ -17,7 +17,7 @@ pub use report::{Effects, Repeats, Shares};
 
 pub(crate) use change::Pair;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, Simulation, StepReport};
 use fretwork_scene::case::Case;
 use fretwork_scene::processes::FrictionTest;
@@ -57,7 +57,7 @@ pub struct ErrorEstimate {
     to_come: std::collections::VecDeque<u64>,
     /// Steps of the run when it was begun.
     total: u64,
-    body: Option<RubbedBody>,
+    body: Option<SlidingBody>,
     /// Whether repeats are left out once they cost too much: where the case does not say how many
     /// there are.
     limited: bool,

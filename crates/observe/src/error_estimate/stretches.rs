@@ -4,7 +4,7 @@ use super::increments::Stretch;
 use super::{FINER, Place};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Interface;
-use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::Coupling;
 use fretwork_core::step::{RepeatError, Simulation};
 
@@ -20,7 +20,7 @@ const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RepeatedStretch {
     pub length: u32,
-    pub body: Option<RubbedBody>,
+    pub body: Option<SlidingBody>,
     /// Whether explicit coupling of damage is compared with implicit coupling.
     pub couples: bool,
 }

@@ -2,14 +2,14 @@
 
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;
-use fretwork_core::process::jump::{JumpSummary, Point};
+use fretwork_core::process::jump::{JumpPoint, JumpSummary};
 use fretwork_core::unit::VOLUME;
 
 /// Wear volume and mean damage against cycles, computed and jumped.
 pub(crate) fn charts(jump: &JumpSummary, dimension: usize) -> Output {
     let volume = VOLUME.symbol(dimension);
-    let chart = |heading: &str, y: Axis, value: fn(&Point) -> f64| {
-        let at = |p: &Point| (f64::from(p.cycles), value(p));
+    let chart = |heading: &str, y: Axis, value: fn(&JumpPoint) -> f64| {
+        let at = |p: &JumpPoint| (f64::from(p.cycles), value(p));
         let alone = jump.points.iter().filter(|p| p.cycle_multiplier == 1);
         Chart::new(heading, Axis::cycles(), y)
             .with_unless_zero(

@@ -5,7 +5,7 @@ use crate::output::Output;
 use crate::scars::file_name;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_core::wear::{Form, shape};
+use fretwork_core::wear::{ScarForm, shape};
 
 /// The scars: the depth, in 3D averaged across the sliding, and in 2D the initial and the current
 /// profile.
@@ -15,7 +15,7 @@ pub(crate) fn charts<S: Space>(s: &Simulation<S>) -> Vec<Output> {
         let rows = scar.along();
         let x = || Axis::new("position x", "m");
         let title = match shape::outline(&rows).form {
-            Form::None => format!("Wear scar of {}", scar.name),
+            ScarForm::None => format!("Wear scar of {}", scar.name),
             form => format!("Wear scar of {}, {form:?}-shaped", scar.name),
         };
         // Depth plotted downwards.

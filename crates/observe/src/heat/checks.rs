@@ -145,7 +145,7 @@ impl ContactShares {
             |side: HeatSide| thermal.temperature_of(side, |n| state.nodes[n].temperature);
         let contacts = s.state.network.contacts.iter();
         let heats = thermal
-            .seen
+            .temperatures
             .iter()
             .zip(&thermal.conductance)
             .zip(&thermal.source);

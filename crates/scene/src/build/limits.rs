@@ -2,8 +2,8 @@
 
 use super::Builder;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::contact::detect::{LawTable, centre};
-use fretwork_core::geometry::grid;
+use fretwork_core::contact::detect::{LawTable, centre, piece_centre};
+use fretwork_core::geometry::grid::{self, Balls};
 use fretwork_core::geometry::space::Space;
 
 /// Limit on the pairs of grains that a large skin may make neighbours, see
@@ -38,7 +38,12 @@ impl<S: Space> Builder<'_, S> {
             .chain(self.shapes.pieces.iter().map(|p| of(p.body)))
             .collect();
         let radii: Vec<f64> = self.radii().collect();
-        let pairs = grid::most_pairs(&centres, &radii, alert + skin, &self.shapes.periodic);
+        let pairs = grid::pairs_bound(&Balls {
+            centres: &centres,
+            radii: &radii,
+            reach: alert + skin,
+            periodic: &self.shapes.periodic,
+        });
         if pairs <= MAX_PAIRS {
             return Ok(());
         }
@@ -67,10 +72,8 @@ impl<S: Space> Builder<'_, S> {
             }
         };
         let mut centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &self.bodies)).collect();
-        centres.extend(self.shapes.pieces.iter().map(|p| {
-            let b = p.body as usize;
-            self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
-        }));
+        let pieces = self.shapes.pieces.iter();
+        centres.extend(pieces.map(|p| piece_centre(p, &self.bodies)));
         let radii: Vec<f64> = self.radii().collect();
         // A large skin given in the case has its own limit.
         let reach = alert
@@ -85,19 +88,24 @@ impl<S: Space> Builder<'_, S> {
             let ((i, m), (j, n)) = (owner(a), owner(b));
             i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
         };
-        let periodic = &self.shapes.periodic;
-        let Some(crowd) = grid::more_than(&centres, &radii, reach, periodic, most, keep) else {
+        let all = Balls {
+            centres: &centres,
+            radii: &radii,
+            reach,
+            periodic: &self.shapes.periodic,
+        };
+        let Some(dense) = grid::dense_cell(&all, most, keep) else {
             return Ok(());
         };
-        let (body, _) = owner(crowd.ball);
-        let at = centres[crowd.ball as usize];
+        let (body, _) = owner(dense.ball);
+        let at = centres[dense.ball as usize];
         let at: Vec<String> = (0..S::D).map(|k| format!("{:e}", at[k])).collect();
-        let looked = grid::most_pairs(&centres, &radii, reach, periodic);
+        let examined = grid::pairs_bound(&all);
         let message = format!(
-            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), while grains that \
+            "more than {most} pairs of grains are within reach of each other (up to {examined:.1e}), while grains that \
              touch make about 20 each: {} of them are within {:.1e} m of ({}) m",
-            crowd.count,
-            crowd.size,
+            dense.count,
+            dense.size,
             at.join(", ")
         );
         let origin = self

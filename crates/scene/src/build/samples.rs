@@ -38,7 +38,7 @@ impl<S: Space> Builder<'_, S> {
                 "only {placed} of {} grains fit: together they would take {:.0} % of the box, while grains \
                  placed at random fit up to about {} %",
                 spec.count,
-                100.0 * made.asked,
+                100.0 * made.filling,
                 if S::D == 2 { 50 } else { 35 }
             );
             let fault = ValidationError::new(path, message);
@@ -47,7 +47,7 @@ impl<S: Space> Builder<'_, S> {
         }
         self.samples.push(format!(
             "{here}: {placed} grains placed at random without overlaps, {:.1} % of their box",
-            100.0 * made.asked
+            100.0 * made.filling
         ));
         let seeds = made.grains.into_iter();
         Ok(seeds

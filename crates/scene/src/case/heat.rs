@@ -1,6 +1,6 @@
 //! Heat and electric current of a case.
 
-use fretwork_core::heat::{Partition, Shares, Supply};
+use fretwork_core::heat::{HeatShares, Partition, Supply};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub struct HeatSpec {
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub bodies: BTreeMap<String, BodyHeatSpec>,
     /// Share of each dissipated energy that becomes heat at its contact.
-    pub shares: Shares,
+    pub shares: HeatShares,
     /// How the heat of a contact is split between its sides.
     pub partition: Partition,
     /// Thermal time over mechanical time: each step lets heat flow for `clock` times as long, while
@@ -58,7 +58,7 @@ impl Default for HeatSpec {
             grains: BTreeMap::new(),
             convection: None,
             bodies: BTreeMap::new(),
-            shares: Shares::default(),
+            shares: HeatShares::default(),
             partition: Partition::default(),
             clock: 1.0,
             every: 1,

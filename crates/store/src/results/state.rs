@@ -127,7 +127,12 @@ impl Grains {
                 .collect::<Result<Vec<_>, _>>()
         };
         let (radius, first_body, id) = (column("radius")?, column("first_body")?, column("id")?);
-        let (corners, gone) = (where_listed("corners")?, where_listed("gone")?);
+        let corners = where_listed("corners")?;
+        // Older files have the name `gone`.
+        let removed = match self.reader.has(&place("gone")) {
+            true => column("gone")?,
+            false => where_listed("removed")?,
+        };
         let velocity = axes(&["velocity_x", "velocity_y", "velocity_z"])?;
         let (spin, turn) = (axes(self.spins)?, axes(self.turns)?);
         fn at<const N: usize>(columns: &[Vec<f64>], k: usize) -> [f64; N] {
@@ -142,7 +147,7 @@ impl Grains {
         };
         let mut balls: Vec<u64> = Vec::new();
         let grains = (0..count).filter(|k| first_body[*k] == 0.0);
-        for k in grains.filter(|k| gone[*k] == 0.0) {
+        for k in grains.filter(|k| removed[*k] == 0.0) {
             let motion = Motion {
                 at: std::array::from_fn(|axis| points[3 * k + axis]),
                 rotation: (!turn.is_empty()).then(|| at(&turn, k)),

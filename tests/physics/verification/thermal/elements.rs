@@ -90,7 +90,10 @@ fn two_meshes(table: &mut Table) {
     assert!(all > 5e-3, "{all}");
     let quantity = "flow between two meshes, n G dT (W/m)";
     table.compare(case, quantity, 100.0 * all, flow, 1e-5);
-    let mut seen = thermal.seen.iter().flat_map(|seen| seen.temperature);
+    let mut seen = thermal
+        .temperatures
+        .iter()
+        .flat_map(|seen| seen.temperature);
     assert!(seen.all(|t| (300.0..=400.0).contains(&t)));
 }
 

@@ -154,7 +154,13 @@ fn flash(table: &mut Table) {
         let contacts: Vec<f64> = s.contacts().map(|c| c.normal_force).collect();
         let before: Vec<f64> = ["floor", "block"].map(|b| temperature(&s, b)).to_vec();
         s.step().expect("a step");
-        let seen = &s.state.network.thermal.as_ref().expect("temperatures").seen;
+        let seen = &s
+            .state
+            .network
+            .thermal
+            .as_ref()
+            .expect("temperatures")
+            .temperatures;
         let mean = (oxide * before[0] + steel * before[1]) / (oxide + steel);
         for (force, seen) in contacts.iter().zip(seen) {
             let (v, width) = (0.1 / clock, force / 1e9);
@@ -176,7 +182,7 @@ fn flash(table: &mut Table) {
         until(&mut cold, 5e-4, |_| ());
         let thermal = cold.state.network.thermal.as_ref().expect("temperatures");
         let off = thermal
-            .seen
+            .temperatures
             .iter()
             .map(|seen| seen.temperature)
             .map(|[t, a, b]| (t - a.max(b)).max(0.0));

@@ -2,24 +2,25 @@
 //! per pair.
 
 use super::narrow::{Narrow, Scratch};
-use super::renewal::{Found, Touch};
-use super::{SLACK, held};
-use crate::contact::network::{Contact, ContactGeometry, Key};
+use super::renewal::{Hit, Renewed};
+use super::{CollisionScene, SLACK, held};
+use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::passing::{
     PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
 };
-use crate::geometry::convex::seam::{Beside, DEEPEST, ball_is_over_seam, leave_seam};
-use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
+use crate::geometry::convex::seam::{Adjacent, DEEPEST, ball_is_over_seam, leave_seam};
+use crate::geometry::convex::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Share of the cosine between two directions that is of rounding.
+/// Rounding error of the cosine between two directions.
 const ROUNDING: f64 = 1e-12;
 
-/// The pair: bodies, materials, and the size used where the contact point defines none (m).
-struct Pair<S: Space> {
+/// A pair of shapes of which at least one is a convex piece.
+struct ShapePair<S: Space> {
     name: (u32, u32),
     bodies: [u32; 2],
     law: u16,
+    /// Reduced radius of contacts whose point defines none (m).
     radius: f64,
     /// Vectors from the centres of the two bodies to the origin of the contact points (m).
     origins: [S::Vector; 2],
@@ -31,25 +32,25 @@ impl<S: Space> Narrow<'_, S> {
         &self,
         name: (u32, u32),
         scratch: &mut Scratch<S>,
-        found: &mut Found<S>,
+        renewed: &mut Renewed<S>,
     ) {
-        let held = found.old().iter().any(|c| held(self.network, Some(c)));
+        let held = renewed.old().iter().any(|c| held(self.network, Some(c)));
         scratch.points.clear();
         let pair = if !held && self.far(name) {
             None
         } else {
             let tolerances = ContactTolerances {
-                reach: self.reach(found.old()),
+                reach: self.reach(renewed.old()),
                 slack: SLACK * self.network.alert,
                 held,
             };
-            self.contact_points(name.0, name.1, &tolerances, scratch)
+            self.contact_points(name, &tolerances, scratch)
         };
         match pair {
-            Some(pair) if !(scratch.points.is_empty() && found.old().is_empty()) => {
-                self.create_contacts(&pair, scratch, found);
+            Some(pair) if !(scratch.points.is_empty() && renewed.old().is_empty()) => {
+                self.create_contacts(&pair, scratch, renewed);
             }
-            _ => found.drop_others(|_| false),
+            _ => renewed.drop_others(|_| false),
         }
     }
 
@@ -57,9 +58,10 @@ impl<S: Space> Narrow<'_, S> {
     fn motion(&self, bodies: [u32; 2], centres: [S::Vector; 2]) -> PairMotion<S> {
         let of = |side: usize| {
             let b = bodies[side] as usize;
-            let arm = centres[side] - self.bodies.position[b];
-            let (v, w) = (self.bodies.velocity[b], self.bodies.spin[b]);
-            ((v + S::spin_velocity(&w, &arm)) * self.h, w * self.h)
+            let (bodies, h) = (self.placed.scene.bodies, self.placed.h);
+            let arm = centres[side] - bodies.position[b];
+            let (v, w) = (bodies.velocity[b], bodies.spin[b]);
+            ((v + S::spin_velocity(&w, &arm)) * h, w * h)
         };
         let ((shift, turn), (shift_other, turn_other)) = (of(0), of(1));
         PairMotion {
@@ -68,31 +70,32 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a
-    /// piece.
-    fn beside(&self, pair: [u32; 2]) -> Vec<Beside<'_, S>> {
-        let centre = |k: usize| self.centres[self.shapes.balls.len() + k];
+    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the antagonist
+    /// is a piece.
+    fn adjacent(&self, pair: [u32; 2]) -> Vec<Adjacent<'_, S>> {
+        let (shapes, centre) = (self.placed.scene.shapes, |k| self.piece_centre(k));
         self.partners
-            .beside(self.pairs, self.shapes, self.cores, centre, pair)
+            .adjacent(self.pairs, shapes, self.cores, centre, pair)
     }
 
     /// Returns whether the bounding balls of a pair without bonds are too far from each other for
     /// contacts.
     fn far(&self, (a, b): (u32, u32)) -> bool {
-        if b & Key::SURFACE != 0 {
-            return false;
-        }
-        let balls = self.shapes.balls.len();
-        let place = |name: u32| {
-            let k = (name & !Key::PIECE) as usize;
-            if name & Key::PIECE == 0 {
-                (self.centres[k], self.shapes.balls[k].radius)
-            } else {
-                (self.centres[balls + k], self.shapes.pieces[k].bound)
-            }
+        let shapes = self.placed.scene.shapes;
+        let ball = |side: u32| {
+            let shape = ShapeIndex::of(side);
+            let radius = match shape {
+                ShapeIndex::Ball(k) => shapes.balls[k].radius,
+                ShapeIndex::Piece(k) => shapes.pieces[k].bound,
+                ShapeIndex::Surface(_) => return None,
+            };
+            let place = shape.place(self.placed.scene.counts());
+            Some((self.placed.centres[place], radius))
         };
-        let ((x, r), (y, s)) = (place(a), place(b));
-        let apart = self.shapes.periodic.shortest(x - y);
+        let (Some((x, r)), Some((y, s))) = (ball(a), ball(b)) else {
+            return false;
+        };
+        let apart = shapes.periodic.shortest(x - y);
         // Beyond what counts as corner on face.
         let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
         apart.dot(&apart) > limit * limit
@@ -101,180 +104,209 @@ impl<S: Space> Narrow<'_, S> {
     /// Finds the contact points of a pair in world axes. `None` if the pair has no law.
     fn contact_points(
         &self,
-        a: u32,
-        b: u32,
+        (a, b): (u32, u32),
         tolerances: &ContactTolerances,
         scratch: &mut Scratch<S>,
-    ) -> Option<Pair<S>> {
-        let out = &mut scratch.points;
-        let balls = self.shapes.balls.len();
-        let at = |name: u32| (name & !Key::PIECE) as usize;
-        let of = |body: u32| self.bodies.position[body as usize];
-        if b & Key::SURFACE != 0 {
-            let k = at(a);
-            let (piece, surface) = (
-                &self.shapes.pieces[k],
-                &self.shapes.surfaces[(b & !Key::SURFACE) as usize],
-            );
-            let law = self.laws.get(piece.material, surface.material)?;
-            let (origin, rotation) = self.frames[(b & !Key::SURFACE) as usize];
-            let closed = surface.shape.is_closed();
-            let mut apart = self.centres[balls + k] - origin;
-            if closed {
-                apart = self.shapes.periodic.shortest(apart);
+    ) -> Option<ShapePair<S>> {
+        match (ShapeIndex::of(a), ShapeIndex::of(b)) {
+            (ShapeIndex::Piece(k), ShapeIndex::Surface(s)) => {
+                self.piece_on_surface((a, b), [k, s], tolerances, scratch)
             }
-            let place = S::unrotate(&rotation, &apart);
-            // The core in the surface's axes.
-            let own = &self.cores[k];
-            let core = scratch.core.get_or_insert_with(|| own.clone());
-            own.turn_into(&S::inverse(&rotation), core);
-            core.contact_points_with_surface(
-                surface.shape.as_ref(),
-                &place,
-                piece.rounding,
-                tolerances,
-                out,
-            );
-            if !(out.is_empty() || tolerances.held || surface.shape.deforms()) {
-                let bodies = [piece.body, surface.body];
-                let motion = self.motion(bodies, [self.centres[balls + k], origin]);
-                let motion = motion.seen_from(&rotation);
-                let rounding = piece.rounding;
-                let surface = surface.shape.as_ref();
-                keep_apart_from_surface::<S>(
-                    core, surface, &place, rounding, tolerances, &motion, out,
-                );
+            (ShapeIndex::Ball(k), ShapeIndex::Piece(other)) => {
+                self.ball_on_piece((a, b), [k, other], tolerances, &mut scratch.points)
             }
-            for m in out.iter_mut() {
-                m.normal = S::rotate(&rotation, &m.normal);
-                m.on_candidate = S::rotate(&rotation, &m.on_candidate);
-                m.on_antagonist = S::rotate(&rotation, &m.on_antagonist);
-                // The vertices of a grain stand for its area.
-                m.facing &= !closed;
+            (ShapeIndex::Piece(k), ShapeIndex::Piece(other)) => {
+                self.piece_on_piece((a, b), [k, other], tolerances, &mut scratch.points)
             }
-            return Some(Pair {
-                name: (a, b),
-                bodies: [piece.body, surface.body],
-                law,
-                radius: piece.size,
-                origins: [
-                    self.centres[balls + k] - apart - of(piece.body),
-                    origin - of(surface.body),
-                ],
-            });
+            // A candidate precedes its antagonist in the order balls, pieces, surfaces.
+            _ => None,
         }
-        let k = at(b);
-        let (other, centre) = (&self.shapes.pieces[k], self.centres[balls + k]);
-        let (bodies, law, radius, own_centre, apart);
-        if a & Key::PIECE == 0 {
-            let ball = &self.shapes.balls[a as usize];
-            own_centre = self.centres[a as usize];
-            apart = self.shapes.periodic.shortest(own_centre - centre);
-            let core = &self.cores[k];
-            let mut meeting = core.contact_point_with_ball(&apart, ball.radius, other.rounding);
-            if meeting.gap > 0.0 && !tolerances.held {
-                let sizes = [ball.radius, other.rounding];
-                let motion = self.motion([ball.body, other.body], [own_centre, centre]);
-                keep_ball_apart::<S>(core, &apart, sizes, tolerances, &motion, &mut meeting);
-            }
-            // The inside of a face is on no seam.
-            let inside = |n: &S::Vector| n.dot(&meeting.normal) > 1.0 - ROUNDING;
-            let over_seam = meeting.gap <= tolerances.reach
-                && !tolerances.held
-                && !core.normals().iter().any(inside)
-                && ball_is_over_seam::<S>(
-                    &meeting,
-                    &apart,
-                    ball.radius,
-                    tolerances.slack,
-                    b,
-                    || self.beside([a, b]),
-                );
-            if meeting.gap <= tolerances.reach && !over_seam {
-                out.push(meeting);
-            }
-            bodies = [ball.body, other.body];
-            law = self.laws.get(ball.material, other.material)?;
-            let own = S::unrotate(&self.bodies.rotation[ball.body as usize], &meeting.normal);
-            radius = ball.radius_towards(&own, &self.bodies.length);
-        } else {
-            let piece = &self.shapes.pieces[at(a)];
-            own_centre = self.centres[balls + at(a)];
-            apart = self.shapes.periodic.shortest(own_centre - centre);
-            let roundings = [piece.rounding, other.rounding];
-            let cores = [&self.cores[at(a)], &self.cores[k]];
-            cores[0].contact_points(cores[1], &apart, roundings, tolerances, out);
-            bodies = [piece.body, other.body];
-            if !(out.is_empty() || tolerances.held) {
-                let motion = self.motion(bodies, [own_centre, centre]);
-                keep_apart::<S>(cores, &apart, roundings, tolerances, &motion, out);
-                let deepest = DEEPEST * piece.size.min(other.size);
-                leave_seam::<S>(
-                    cores,
-                    &apart,
-                    roundings,
-                    tolerances,
-                    &motion,
-                    deepest,
-                    || self.beside([a, b]),
-                    out,
-                );
-            }
-            law = self.laws.get(piece.material, other.material)?;
-            radius = piece.size * other.size / (piece.size + other.size);
+    }
+
+    /// Centre of a convex piece (m).
+    fn piece_centre(&self, piece: usize) -> S::Vector {
+        self.placed.centres[self.placed.scene.shapes.balls.len() + piece]
+    }
+
+    fn piece_on_surface(
+        &self,
+        name: (u32, u32),
+        [k, s]: [usize; 2],
+        tolerances: &ContactTolerances,
+        scratch: &mut Scratch<S>,
+    ) -> Option<ShapePair<S>> {
+        let CollisionScene {
+            shapes,
+            bodies: state,
+            laws,
+        } = *self.placed.scene;
+        let (piece, surface, centre) =
+            (&shapes.pieces[k], &shapes.surfaces[s], self.piece_centre(k));
+        let law = laws.get(piece.material, surface.material)?;
+        let (bodies, (origin, rotation)) = ([piece.body, surface.body], self.frames[s]);
+        let (shape, rounding, out) = (surface.shape.as_ref(), piece.rounding, &mut scratch.points);
+        let closed = shape.is_closed();
+        let mut apart = centre - origin;
+        if closed {
+            apart = shapes.periodic.shortest(apart);
         }
-        // For the candidate, the antagonist's centre may be a periodic image.
-        let [i, j] = bodies.map(of);
-        Some(Pair {
-            name: (a, b),
+        let place = S::unrotate(&rotation, &apart);
+        // The core in the surface's axes.
+        let own = &self.cores[k];
+        let core = scratch.core.get_or_insert_with(|| own.clone());
+        own.turn_into(&S::inverse(&rotation), core);
+        core.contact_points_with_surface(shape, &place, rounding, tolerances, out);
+        if !(out.is_empty() || tolerances.held || shape.deforms()) {
+            let motion = self.motion(bodies, [centre, origin]).seen_from(&rotation);
+            keep_apart_from_surface::<S>(core, shape, &place, rounding, tolerances, &motion, out);
+        }
+        for m in out.iter_mut() {
+            *m = m.rotated::<S>(&rotation);
+            // The area of a grain belongs to its vertices.
+            m.facing &= !closed;
+        }
+        let [i, j] = bodies.map(|b| state.position[b as usize]);
+        Some(ShapePair {
+            name,
             bodies,
             law,
-            radius,
-            origins: [own_centre - apart - i, centre - j],
+            radius: piece.size,
+            origins: [centre - apart - i, origin - j],
+        })
+    }
+
+    fn ball_on_piece(
+        &self,
+        name: (u32, u32),
+        [k, other]: [usize; 2],
+        tolerances: &ContactTolerances,
+        out: &mut Vec<ContactPoint<S::Vector>>,
+    ) -> Option<ShapePair<S>> {
+        let CollisionScene {
+            shapes,
+            bodies: state,
+            laws,
+        } = *self.placed.scene;
+        let (ball, piece, core) = (&shapes.balls[k], &shapes.pieces[other], &self.cores[other]);
+        let (bodies, radius) = ([ball.body, piece.body], ball.radius);
+        let centres = [self.placed.centres[k], self.piece_centre(other)];
+        let apart = shapes.periodic.shortest(centres[0] - centres[1]);
+        let mut point = core.contact_point_with_ball(&apart, radius, piece.rounding);
+        if point.gap > 0.0 && !tolerances.held {
+            let (sizes, motion) = ([radius, piece.rounding], self.motion(bodies, centres));
+            keep_ball_apart::<S>(core, &apart, sizes, tolerances, &motion, &mut point);
+        }
+        // The inside of a face is not on a seam.
+        let inside = |n: &S::Vector| n.dot(&point.normal) > 1.0 - ROUNDING;
+        let adjacent = || self.adjacent([name.0, name.1]);
+        let over_seam = point.gap <= tolerances.reach
+            && !tolerances.held
+            && !core.normals().iter().any(inside)
+            && ball_is_over_seam::<S>(&point, &apart, radius, tolerances.slack, name.1, adjacent);
+        if point.gap <= tolerances.reach && !over_seam {
+            out.push(point);
+        }
+        let own = S::unrotate(&state.rotation[ball.body as usize], &point.normal);
+        let [i, j] = bodies.map(|b| state.position[b as usize]);
+        Some(ShapePair {
+            name,
+            bodies,
+            law: laws.get(ball.material, piece.material)?,
+            radius: ball.radius_towards(&own, &state.length),
+            // For the candidate, the antagonist's centre may be a periodic image.
+            origins: [centres[0] - apart - i, centres[1] - j],
+        })
+    }
+
+    fn piece_on_piece(
+        &self,
+        name: (u32, u32),
+        indices: [usize; 2],
+        tolerances: &ContactTolerances,
+        out: &mut Vec<ContactPoint<S::Vector>>,
+    ) -> Option<ShapePair<S>> {
+        let CollisionScene {
+            shapes,
+            bodies: state,
+            laws,
+        } = *self.placed.scene;
+        let [one, other] = indices.map(|k| &shapes.pieces[k]);
+        let (bodies, centres) = (
+            [one.body, other.body],
+            indices.map(|k| self.piece_centre(k)),
+        );
+        let pair = CorePair::<S> {
+            cores: indices.map(|k| &self.cores[k]),
+            apart: shapes.periodic.shortest(centres[0] - centres[1]),
+            roundings: [one.rounding, other.rounding],
+            tolerances: *tolerances,
+        };
+        S::Core::contact_points(&pair, out);
+        if !(out.is_empty() || tolerances.held) {
+            let motion = self.motion(bodies, centres);
+            keep_apart(&pair, &motion, out);
+            let deepest = DEEPEST * one.size.min(other.size);
+            leave_seam(
+                &pair,
+                &motion,
+                deepest,
+                || self.adjacent([name.0, name.1]),
+                out,
+            );
+        }
+        let [i, j] = bodies.map(|b| state.position[b as usize]);
+        Some(ShapePair {
+            name,
+            bodies,
+            law: laws.get(one.material, other.material)?,
+            radius: one.size * other.size / (one.size + other.size),
+            // For the candidate, the antagonist's centre may be a periodic image.
+            origins: [centres[0] - pair.apart - i, centres[1] - j],
         })
     }
 
     /// Creates contacts from the contact points within the alert distance, with the memory of old
     /// ones.
-    fn create_contacts(&self, pair: &Pair<S>, scratch: &mut Scratch<S>, found: &mut Found<S>) {
+    fn create_contacts(
+        &self,
+        pair: &ShapePair<S>,
+        scratch: &mut Scratch<S>,
+        renewed: &mut Renewed<S>,
+    ) {
         let (network, origins) = (self.network, pair.origins);
         let Scratch {
             points,
             matched,
-            ways,
-            met,
-            taken,
+            distances,
+            selected,
+            continued,
             ..
         } = scratch;
-        let old = found.old();
-        match_old_contacts(old, points, &origins[0], matched, ways);
-        met.clear();
+        let old = renewed.old();
+        match_old_contacts(old, points, &origins[0], matched, distances);
+        selected.clear();
         let pairs = points.iter().copied().zip(matched.iter().copied());
-        met.extend(
+        selected.extend(
             pairs.filter(|(m, before)| {
                 m.gap < network.alert || held(network, before.map(|k| &old[k]))
             }),
         );
         // A face in 3D may lose a corner; a bond there continues at the nearest remaining one.
         for (k, contact) in old.iter().enumerate() {
-            if held(network, Some(contact)) && !met.iter().any(|m| m.1 == Some(k)) {
+            if held(network, Some(contact)) && !selected.iter().any(|m| m.1 == Some(k)) {
                 let at = contact.arms[0] - origins[0];
                 let far = |m: &ContactPoint<S::Vector>| (m.on_candidate - at).norm();
                 let nearest = points.iter().min_by(|m, n| far(m).total_cmp(&far(n)));
                 let feature = contact.key.feature;
-                met.extend(nearest.map(|m| (ContactPoint { feature, ..*m }, Some(k))));
+                selected.extend(nearest.map(|m| (ContactPoint { feature, ..*m }, Some(k))));
             }
         }
-        met.sort_by_key(|(m, _)| m.feature);
-        taken.clear();
-        taken.resize(old.len(), false);
-        for (m, before) in met.iter() {
-            let touch = Touch {
-                key: Key {
-                    candidate: pair.name.0,
-                    antagonist: pair.name.1,
-                    feature: m.feature,
-                },
+        selected.sort_by_key(|(m, _)| m.feature);
+        continued.clear();
+        continued.resize(old.len(), false);
+        for (m, before) in selected.iter() {
+            let hit = Hit {
+                key: Key::new(pair.name.0, pair.name.1, m.feature),
                 bodies: pair.bodies,
                 law: pair.law,
                 central: false,
@@ -288,13 +320,13 @@ impl<S: Space> Narrow<'_, S> {
             };
             match before {
                 Some(k) => {
-                    taken[*k] = true;
-                    found.renew(self, *k, &touch);
+                    continued[*k] = true;
+                    renewed.renew(self, *k, &hit);
                 }
-                None => found.add(self, &touch, pair.radius),
+                None => renewed.add(self, &hit, pair.radius),
             }
         }
-        found.drop_others(|k| taken[k]);
+        renewed.drop_others(|k| continued[k]);
     }
 }
 
@@ -306,7 +338,7 @@ fn match_old_contacts<S: Space>(
     contact_points: &[ContactPoint<S::Vector>],
     origin: &S::Vector,
     matched: &mut Vec<Option<usize>>,
-    ways: &mut Vec<(f64, usize, usize)>,
+    distances: &mut Vec<(f64, usize, usize)>,
 ) {
     matched.clear();
     for m in contact_points {
@@ -315,17 +347,17 @@ fn match_old_contacts<S: Space>(
         let found = (0..old.len()).find(|k| same(k) && !matched.contains(&Some(*k)));
         matched.push(found);
     }
-    ways.clear();
+    distances.clear();
     for (k, m) in contact_points.iter().enumerate() {
         for (at, contact) in old.iter().enumerate() {
             if matched[k].is_none() && !matched.contains(&Some(at)) {
-                let way = contact.arms[0] - (m.on_candidate + *origin);
-                ways.push((way.norm(), k, at));
+                let apart = contact.arms[0] - (m.on_candidate + *origin);
+                distances.push((apart.norm(), k, at));
             }
         }
     }
-    ways.sort_by(|x, y| x.0.total_cmp(&y.0));
-    for (_, k, at) in ways.iter().copied() {
+    distances.sort_by(|x, y| x.0.total_cmp(&y.0));
+    for (_, k, at) in distances.iter().copied() {
         if matched[k].is_none() && !matched.contains(&Some(at)) {
             matched[k] = Some(at);
         }
@@ -356,11 +388,7 @@ mod tests {
         Contact {
             slot: 0,
             ..Contact::new(
-                Key {
-                    candidate: Key::PIECE,
-                    antagonist: Key::PIECE | 1,
-                    feature,
-                },
+                Key::new(Key::PIECE, Key::PIECE | 1, feature),
                 [0, 1],
                 0,
                 ContactGeometry {
@@ -379,8 +407,8 @@ mod tests {
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
         let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
-            let (mut matched, mut ways) = (vec![None], Vec::new());
-            match_old_contacts(old, new, &Vector2::zeros(), &mut matched, &mut ways);
+            let (mut matched, mut distances) = (vec![None], Vec::new());
+            match_old_contacts(old, new, &Vector2::zeros(), &mut matched, &mut distances);
             matched
         };
         let new = [contact_point(-1.0, 4), contact_point(1.0, 6)];

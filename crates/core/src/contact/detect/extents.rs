@@ -1,15 +1,16 @@
 //! Thickness and extent of the collision shapes, which decide whether a motion is fast.
 
+use super::CollisionScene;
 use crate::bodies::Bodies;
 use crate::geometry::convex::Core;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{fill, pays};
+use crate::threads::{fill, worth_dividing};
 
 /// Fraction of the half thickness of the thinnest body from which the relative motion in a step
 /// counts as fast.
 const FAST: f64 = 0.01;
-/// About what the displacement of a body takes (ns).
+/// Approximate time to compute the displacement of a body (ns).
 const TRAVEL: f64 = 5.0;
 
 /// Half thicknesses of the convex pieces, and the distance of each body's farthest point from its
@@ -24,7 +25,8 @@ pub struct Extents {
 }
 
 impl Extents {
-    pub(super) fn new<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Self {
+    pub(super) fn new<S: Space>(scene: &CollisionScene<S>) -> Self {
+        let CollisionScene { shapes, bodies, .. } = *scene;
         let mut levers = vec![0.0f64; bodies.len()];
         for ball in &shapes.balls {
             let lever = &mut levers[ball.body as usize];
@@ -36,13 +38,8 @@ impl Extents {
             let lever = &mut levers[piece.body as usize];
             *lever = lever.max(piece.offset.norm() + piece.bound);
         }
-        let thickness = shapes.pieces.iter();
-        Self {
-            pieces: thickness
-                .map(|p| p.core.half_thickness() + p.rounding)
-                .collect(),
-            levers,
-        }
+        let pieces = half_thicknesses(shapes).collect();
+        Self { pieces, levers }
     }
 
     /// Returns the distance of the farthest point of a body that moves when the body rotates (m).
@@ -50,8 +47,12 @@ impl Extents {
         self.levers.get(body).copied().unwrap_or(0.0)
     }
 
-    pub(super) fn fits<S: Space>(&self, shapes: &Shapes<S>, bodies: &Bodies<S>) -> bool {
-        self.levers.len() == bodies.len() && self.pieces.len() == shapes.pieces.len()
+    /// Recomputes them if the number of bodies or pieces has changed.
+    pub(super) fn update<S: Space>(&mut self, scene: &CollisionScene<S>) {
+        let counts = [scene.bodies.len(), scene.shapes.pieces.len()];
+        if [self.levers.len(), self.pieces.len()] != counts {
+            *self = Self::new(scene);
+        }
     }
 
     /// Returns the largest displacement of any point of each body in `h` seconds (m), excluding
@@ -72,7 +73,7 @@ impl Extents {
                 h * (v.norm() + turn)
             }
         };
-        let (mut travels, divide) = (Vec::new(), pays(parallel, bodies.len(), TRAVEL));
+        let (mut travels, divide) = (Vec::new(), worth_dividing(parallel, bodies.len(), TRAVEL));
         fill(divide, &mut travels, bodies.len(), of);
         travels
     }
@@ -81,15 +82,14 @@ impl Extents {
 /// Returns the relative motion in a step (m) from which a pair is followed through the step: a
 /// fraction of the smallest half thickness, at most the range of the alert distance.
 pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
+    // A point of a surface has no thickness of its own: behind it is its body.
+    let balls = shapes.balls.iter().map(|b| b.radius).filter(|r| *r > 0.0);
+    let thinnest = balls.chain(half_thicknesses(shapes));
+    alert.min(FAST * thinnest.fold(f64::INFINITY, f64::min))
+}
+
+/// Smallest half thickness of each convex piece, rounding radius included (m).
+fn half_thicknesses<S: Space>(shapes: &Shapes<S>) -> impl Iterator<Item = f64> + '_ {
     let pieces = shapes.pieces.iter();
-    let pieces = pieces.map(|p| p.core.half_thickness() + p.rounding);
-    let thinnest = shapes
-        .balls
-        .iter()
-        .map(|b| b.radius)
-        // A point of a surface is not thin: what is behind it belongs to its body.
-        .filter(|r| *r > 0.0)
-        .chain(pieces)
-        .fold(f64::INFINITY, f64::min);
-    alert.min(FAST * thinnest)
+    pieces.map(|p| p.core.half_thickness() + p.rounding)
 }

@@ -1,6 +1,6 @@
-//! How far two bodies may penetrate before a contact between them is predicted, or reported.
+//! The penetration of two bodies from which a contact between them is predicted, or reported.
 
-use super::sweep::Pair;
+use super::sweep::SweptPair;
 use crate::contact::network::{Contact, Network};
 use crate::geometry::space::Space;
 
@@ -8,17 +8,17 @@ use crate::geometry::space::Space;
 pub(super) const TOLERATED: f64 = 0.05;
 /// Fraction of the half thickness by which a pair may penetrate before it is reported.
 const PASSED: f64 = 0.25;
-/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on
-/// its normal may turn over.
+/// Fraction of the half thickness for a pair held by springs, which overlaps under load: beyond the
+/// middle its normal may reverse.
 const PASSED_SPRING: f64 = 1.0;
 
-/// Largest penetration that is accepted in addition to a known overlap, as a fraction of the
-/// further penetration that is seen.
-const SEEN: f64 = 0.5;
+/// Largest penetration accepted in addition to a known overlap, as a fraction of the further
+/// penetration that can be detected.
+const DETECTABLE: f64 = 0.5;
 
-/// Stage of the step at which pairs are examined.
+/// SearchStage of the step at which pairs are examined.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Stage {
+pub(super) enum SearchStage {
     /// Before the solve, with the free velocities.
     Before,
     /// After the solve, with its velocities.
@@ -40,8 +40,8 @@ pub(super) struct Margin {
 pub(super) fn margin<S: Space>(
     network: &Network<S>,
     of_pair: &[Contact<S>],
-    pair: &Pair<S>,
-    stage: Stage,
+    pair: &SweptPair<S>,
+    stage: SearchStage,
     compliant: bool,
 ) -> Option<Margin> {
     let (mut any, mut overlap) = (false, 0.0f64);
@@ -57,14 +57,14 @@ pub(super) fn margin<S: Space>(
     }
     let begins = TOLERATED * network.fast + overlap;
     let deepest = match stage {
-        Stage::Before if any => return None,
-        Stage::After if any => network.fast + overlap,
-        Stage::Before | Stage::After => begins,
-        Stage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
-        Stage::Report => PASSED * pair.half_thickness + overlap,
+        SearchStage::Before if any => return None,
+        SearchStage::After if any => network.fast + overlap,
+        SearchStage::Before | SearchStage::After => begins,
+        SearchStage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
+        SearchStage::Report => PASSED * pair.half_thickness + overlap,
     };
-    // Deeper than a surface sees a penetration would not be found.
-    let limit = overlap + SEEN * (pair.seen - overlap).max(0.0);
+    // A penetration deeper than the surface can detect would not be found.
+    let limit = overlap + DETECTABLE * (pair.detectable - overlap).max(0.0);
     Some(Margin {
         deepest: deepest.min(limit),
         begins: begins.min(limit),

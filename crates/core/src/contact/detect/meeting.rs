@@ -1,26 +1,24 @@
 //! The search for a pair that meets within a step.
 
-use super::LawTable;
-use super::margin::{Stage, margin};
-use super::sweep::{Course, Pair, Sweep};
-use crate::contact::network::{Contact, Key, Network};
+use super::margin::{SearchStage, margin};
+use super::sweep::{Sweep, SweepResult, SweptPair};
+use crate::contact::network::{Contact, Key, Network, ShapeIndex};
 use crate::geometry::space::Space;
 
 /// Bound of the rounding of gaps, relative to the motion.
 const ROUNDING: f64 = 1e-9;
 
 /// The search for pairs that meet in the step.
-pub(super) struct Search<'a, S: Space> {
+pub(super) struct MeetingSearch<'a, S: Space> {
     pub network: &'a Network<S>,
     pub sweep: &'a Sweep<'a, S>,
-    pub laws: &'a LawTable,
     /// Displacement of each ball, piece and surface in the step (m), and the greatest of all
     /// bodies.
     pub travels: Vec<f64>,
     pub farthest: f64,
     /// Whether a surface moves by rotation.
     pub turning: bool,
-    pub stage: Stage,
+    pub stage: SearchStage,
 }
 
 /// A pair that meets in the step.
@@ -37,8 +35,8 @@ pub(super) struct Meeting<S: Space> {
     pub passing: bool,
 }
 
-impl<'a, S: Space> Search<'a, S> {
-    /// Returns whether a surface moves into the way of the pair by rotation.
+impl<'a, S: Space> MeetingSearch<'a, S> {
+    /// Returns whether the rotation of a surface moves it relative to the pair.
     fn turns(&self, names: (u32, u32)) -> bool {
         self.turning && names.1 & Key::SURFACE != 0
     }
@@ -57,35 +55,26 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// Upper bound of the relative motion of a pair, without that of a rotating surface (m).
     fn travel(&self, names: (u32, u32)) -> f64 {
-        let shapes = self.sweep.shapes;
-        let [balls, pieces] = [shapes.balls.len(), shapes.pieces.len()];
-        let travel = |name: u32| {
-            let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
-            let first = match name & (Key::PIECE | Key::SURFACE) {
-                0 => 0,
-                Key::PIECE => balls,
-                _ => balls + pieces,
-            };
-            self.travels[first + k]
-        };
+        let counts = self.sweep.scene.counts();
+        let travel = |side: u32| self.travels[ShapeIndex::of(side).place(counts)];
         travel(names.0) + travel(names.1)
     }
 
-    /// Returns whether the relative motion of a pair is slow, at sight.
+    /// Returns whether the relative motion of a pair is slow by the cheap upper bound.
     pub fn is_slow(&self, names: (u32, u32)) -> bool {
         let slow = self.slow(names);
         !self.turns(names) && (2.0 * self.farthest <= slow || self.travel(names) <= slow)
     }
 
-    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart
-    /// than they move: it has no contact.
+    /// Returns whether a pair of convex bodies without a contact, at the places of detection, is
+    /// farther apart than it moves.
     pub fn detection_suffices(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
-        let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
+        let convex = names.1 & Key::SURFACE == 0 && self.stage != SearchStage::Report;
         convex && contacts.is_empty() && self.travel(names) <= self.network.alert
     }
 
     /// Returns the pair with these keys if its relative motion in the step is fast.
-    pub fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
+    pub fn fast_pair(&self, names: (u32, u32)) -> Option<SweptPair<'a, S>> {
         let slow = self.slow(names);
         let pair = self.sweep.pair(names);
         // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
@@ -96,33 +85,33 @@ impl<'a, S: Space> Search<'a, S> {
         }
     }
 
-    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that
-    /// it is to be reported.
+    /// Follows a fast pair with these contacts through the step. Returns its contacts if it meets, or
+    /// that it is to be reported.
     pub fn examine(
         &self,
         names: (u32, u32),
-        pair: &Pair<S>,
+        pair: &SweptPair<S>,
         contacts: &[Contact<S>],
     ) -> Option<Meeting<S>> {
         let sweep = self.sweep;
         let [one, other] = pair.materials();
-        let law = self.laws.get(one, other);
+        let law = sweep.scene.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
         let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
-        // The gap that detection found, in the same places, is enough for the motion along the
-        // normal, along which it closes.
+        // The gap at the places of detection is larger than the motion along the normal, along which
+        // the gap closes.
         let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
         let nearest = contacts.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         if let Some(nearest) = nearest
             && known
             && pair.travel.is_finite()
-            && self.stage == Stage::After
+            && self.stage == SearchStage::After
             && nearest.gap + margin.deepest
                 > (1.0 + ROUNDING) * sweep.h * pair.closing_speed(&nearest.normal)
         {
             return None;
         }
-        if sweep.course(pair, margin.deepest) == Course::Clear {
+        if sweep.follow(pair, margin.deepest) == SweepResult::Separate {
             return None;
         }
         let mut meeting = Meeting {
@@ -131,17 +120,17 @@ impl<'a, S: Space> Search<'a, S> {
             at: None,
             travel: pair.travel,
             contacts: Vec::new(),
-            passing: self.stage == Stage::Report,
+            passing: self.stage == SearchStage::Report,
         };
         if meeting.passing {
             return Some(meeting);
         }
-        if let (Course::Meets(s), Some(law)) = (sweep.course(pair, margin.begins), law) {
+        if let (SweepResult::Meets(s), Some(law)) = (sweep.follow(pair, margin.begins), law) {
             meeting.at = Some(s);
             sweep.contacts(pair, s, law, &mut meeting.contacts);
         }
         // A pair that cannot be followed, or cannot be held at the point of meeting, is reported.
-        meeting.passing = meeting.contacts.is_empty() && self.stage == Stage::After;
+        meeting.passing = meeting.contacts.is_empty() && self.stage == SearchStage::After;
         Some(meeting)
     }
 }

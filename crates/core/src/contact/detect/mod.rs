@@ -18,22 +18,22 @@ mod sweep;
 pub use edges::{Impact, record_edges};
 pub use extents::{Extents, fast_motion};
 pub use prediction::{
-    Motion, add_predicted, find_missed, is_calm, report_first_move, report_passing,
+    StepMotion, add_predicted, find_missed, is_calm, report_first_move, report_passing,
 };
 
 use super::network::{Contact, Network};
 use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
-use crate::geometry::shape::{Ball, Shapes};
+use crate::geometry::shape::{Ball, Carried, Shapes};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{any, fill, pays};
+use crate::threads::{any, fill, worth_dividing};
 use neighbours::{NeighbourSearch, joined};
-use renewal::{Scene, renew_contacts};
+use renewal::{PlacedScene, renew_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on
 /// the face.
 const SLACK: f64 = 0.01;
-/// About what a pass over centres takes for each (ns).
+/// Approximate time to compute or compare a centre (ns).
 const CENTRE: f64 = 4.0;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is
@@ -67,6 +67,46 @@ impl LawTable {
     }
 }
 
+/// What detection reads of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct CollisionScene<'a, S: Space> {
+    /// Collision shapes.
+    pub shapes: &'a Shapes<S>,
+    /// The bodies that carry them.
+    pub bodies: &'a Bodies<S>,
+    /// Laws of pairs of materials; pairs without one do not touch.
+    pub laws: &'a LawTable,
+}
+
+impl<'a, S: Space> CollisionScene<'a, S> {
+    /// Collects the parts of a scene.
+    pub fn new(shapes: &'a Shapes<S>, bodies: &'a Bodies<S>, laws: &'a LawTable) -> Self {
+        Self {
+            shapes,
+            bodies,
+            laws,
+        }
+    }
+
+    /// Numbers of balls and of convex pieces.
+    fn counts(&self) -> [usize; 2] {
+        [self.shapes.balls.len(), self.shapes.pieces.len()]
+    }
+
+    /// Velocities and spins of the bodies.
+    fn velocities(&self) -> Vec<(S::Vector, S::Spin)> {
+        let velocities = self.bodies.velocity.iter().copied();
+        velocities.zip(self.bodies.spin.iter().copied()).collect()
+    }
+
+    /// Returns whether a surface rotates, with these velocities or spins of bodies, such that more
+    /// than its frame moves; the vertices of a surface that deforms are watched one by one.
+    fn sweeps(&self, surface: &Carried<S>, spin: &S::Spin) -> bool {
+        let own = S::unrotate_spin(&self.bodies.rotation[surface.body as usize], spin);
+        !surface.shape.deforms() && !surface.shape.is_unchanged_by(&own)
+    }
+}
+
 /// Returns the centre of a ball (m).
 #[inline]
 pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
@@ -85,46 +125,40 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 /// threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
+    scene: &CollisionScene<S>,
     [time, h]: [f64; 2],
     parallel: bool,
 ) {
-    let centres = centres(shapes, bodies, parallel);
-    if must_rebuild(network, shapes, bodies, &centres, parallel) {
-        let velocities = bodies.velocity.iter().copied();
-        let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-        let motion = Motion {
+    let centres = centres(scene, parallel);
+    if must_rebuild(network, scene, &centres, parallel) {
+        let velocities = scene.velocities();
+        let motion = StepMotion {
             velocities: &velocities,
             time,
             h,
             parallel,
         };
-        rebuild(network, shapes, bodies, laws, &centres, &motion);
+        rebuild(network, scene, &centres, &motion);
     }
-    let scene = Scene {
-        shapes,
-        bodies,
+    let placed = PlacedScene {
+        scene,
         centres: &centres,
-        laws,
         time,
         h,
     };
-    renew_contacts(network, &scene, parallel);
+    renew_contacts(network, &placed, parallel);
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
-fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>, parallel: bool) -> Vec<S::Vector> {
-    let balls = &shapes.balls;
-    let count = balls.len() + shapes.pieces.len();
-    let mut centres = Vec::new();
-    fill(pays(parallel, count, CENTRE), &mut centres, count, |k| {
-        if k < balls.len() {
-            return centre(&balls[k], bodies);
+fn centres<S: Space>(scene: &CollisionScene<S>, parallel: bool) -> Vec<S::Vector> {
+    let [balls, pieces] = scene.counts();
+    let (shapes, bodies, count) = (scene.shapes, scene.bodies, balls + pieces);
+    let (mut centres, divide) = (Vec::new(), worth_dividing(parallel, count, CENTRE));
+    fill(divide, &mut centres, count, |k| {
+        match k.checked_sub(balls) {
+            Some(k) => piece_centre(&shapes.pieces[k], bodies),
+            None => centre(&shapes.balls[k], bodies),
         }
-        let piece = &shapes.pieces[k - balls.len()];
-        frame(piece.body, &piece.offset, bodies).0
     });
     centres
 }
@@ -132,40 +166,32 @@ fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>, parallel: bool) -> 
 /// Returns the points that the neighbour list tracks beside the centres of balls and pieces: the
 /// frames of the surfaces, and the vertices of surfaces that deform.
 fn watched_of_surfaces<'a, S: Space>(
-    shapes: &'a Shapes<S>,
-    bodies: &'a Bodies<S>,
+    scene: &'a CollisionScene<S>,
 ) -> impl Iterator<Item = S::Vector> + 'a {
-    let frames = shapes
-        .surfaces
+    let surfaces = &scene.shapes.surfaces;
+    let frames = surfaces
         .iter()
-        .map(|s| bodies.position[s.body as usize]);
-    let vertices = shapes.surfaces.iter().flat_map(move |s| {
-        let (origin, rotation) = frame(s.body, &s.offset, bodies);
+        .map(|s| scene.bodies.position[s.body as usize]);
+    let vertices = surfaces.iter().flat_map(|s| {
+        let (origin, rotation) = frame(s, scene.bodies);
         let vertices = s.shape.moving_vertices().iter();
         vertices.map(move |x| origin + S::rotate(&rotation, x))
     });
     frames.chain(vertices)
 }
 
+/// Returns whether the neighbour list no longer covers all pairs within the search distance.
 fn must_rebuild<S: Space>(
     network: &Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
+    scene: &CollisionScene<S>,
     centres: &[S::Vector],
     parallel: bool,
 ) -> bool {
-    let surfaces = shapes.surfaces.iter();
-    let vertices: usize = surfaces.map(|s| s.shape.moving_vertices().len()).sum();
-    if network.seen_at.len() != centres.len() + shapes.surfaces.len() + vertices {
-        return true;
-    }
-    // A rotating surface moves more than its frame does; of one that deforms each vertex is
-    // watched.
-    if shapes.surfaces.iter().any(|s| {
-        let b = s.body as usize;
-        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-        !s.shape.keeps_place(&spin) && !s.shape.deforms()
-    }) {
+    let surfaces = &scene.shapes.surfaces;
+    let vertices = surfaces.iter().map(|s| s.shape.moving_vertices().len());
+    let watched = centres.len() + surfaces.len() + vertices.sum::<usize>();
+    let spin = |s: &Carried<S>| &scene.bodies.spin[s.body as usize];
+    if network.seen_at.len() != watched || surfaces.iter().any(|s| scene.sweeps(s, spin(s))) {
         return true;
     }
     let half = (0.5 * network.skin - network.grown).max(0.0);
@@ -176,54 +202,55 @@ fn must_rebuild<S: Space>(
     };
     let seen_at = &network.seen_at;
     let centre = |k: usize| left(centres[k], &seen_at[k]);
-    let mut surfaces = watched_of_surfaces(shapes, bodies).zip(&seen_at[centres.len()..]);
+    let mut surfaces = watched_of_surfaces(scene).zip(&seen_at[centres.len()..]);
     any(parallel, centres.len(), CENTRE, centre) || surfaces.any(|(x, seen)| left(x, seen))
 }
 
 /// Builds the neighbour list: the pairs that may touch before one of them leaves its skin.
 fn rebuild<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
+    scene: &CollisionScene<S>,
     centres: &[S::Vector],
-    motion: &Motion<S>,
+    motion: &StepMotion<S>,
 ) {
-    // The old list makes room for the new one.
+    // Frees the memory of the old list before the new one is built.
     network.candidates = Vec::new();
-    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres, motion.parallel);
+    let search = NeighbourSearch::new(network, scene, centres, motion.parallel);
     let pairs = search.pairs_of_balls();
     let (mut more, turning) =
         search.pairs_with_surfaces(&network.widened, motion.velocities, motion.h);
     // A bond may be longer than the search distance.
     let held = |c: &&Contact<S>| {
         network.bond(c).is_some_and(|b| b.intact())
-            && !c.bodies.iter().any(|b| bodies.removed[*b as usize])
+            && !c.bodies.iter().any(|b| scene.bodies.removed[*b as usize])
     };
     more.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
     network.candidates = joined(pairs, more);
     network.turning = turning;
     network.seen_at.clear();
     network.seen_at.extend_from_slice(centres);
-    let of_surfaces = watched_of_surfaces(shapes, bodies);
-    network.seen_at.extend(of_surfaces);
+    network.seen_at.extend(watched_of_surfaces(scene));
     network.grown = 0.0;
     network.rebuilds += 1;
 }
 
-/// Where the centre of a piece stands (m).
+/// Returns the centre of a convex piece (m).
 pub fn piece_centre<S: Space>(piece: &ConvexCollider<S>, bodies: &Bodies<S>) -> S::Vector {
     let b = piece.body as usize;
     bodies.position[b] + S::rotate(&bodies.rotation[b], &piece.offset)
 }
 
-/// Origin and rotation of a surface carried by a body.
-fn frame<S: Space>(body: u32, offset: &S::Vector, bodies: &Bodies<S>) -> (S::Vector, S::Rotation) {
-    let b = body as usize;
+/// Returns origin (m) and rotation of a surface.
+fn frame<S: Space>(surface: &Carried<S>, bodies: &Bodies<S>) -> (S::Vector, S::Rotation) {
+    let b = surface.body as usize;
     let rotation = bodies.rotation[b];
-    (bodies.position[b] + S::rotate(&rotation, offset), rotation)
+    (
+        bodies.position[b] + S::rotate(&rotation, &surface.offset),
+        rotation,
+    )
 }
 
+/// Frees the memory of a contact that ends; an intact bond breaks.
 fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     let Some(slot) = contact.memory() else {
         return;
@@ -231,7 +258,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     let law = contact.law as usize;
     let bond = &mut network.memory[law].bonds[slot];
     if bond.intact() {
-        // A grain beyond the end of its surface breaks the bond.
+        // The contact of an intact bond ends only beyond the end of a surface.
         let (torn, damage) = (bond.energy, bond.damage);
         bond.life.fracture += torn;
         network.torn_energy += torn;
@@ -245,6 +272,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     network.memory[law].release(slot as u32);
 }
 
+/// Returns whether an old contact, if there is one, has an intact bond.
 #[inline]
 fn held<S: Space>(network: &Network<S>, old: Option<&Contact<S>>) -> bool {
     old.is_some_and(|c| network.bond(c).is_some_and(|b| b.intact()))

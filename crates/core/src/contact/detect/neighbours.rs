@@ -1,17 +1,15 @@
 //! Broad phase: pairs of shapes within the range of the neighbour list.
 
 use super::sorted::Sorted;
-use super::{LawTable, frame};
-use crate::bodies::Bodies;
+use super::{CollisionScene, frame};
 use crate::contact::network::{Key, Network};
-use crate::geometry::grid;
-use crate::geometry::shape::Shapes;
+use crate::geometry::grid::{self, Balls};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads;
 
 /// Shapes per task.
 const CHUNK: usize = 2048;
-/// Time of a shape near a surface (ns).
+/// Approximate time to test a shape against a surface (ns).
 const COST: f64 = 20.0;
 
 /// The neighbour list is built for this multiple of the spin of rotating surfaces.
@@ -24,9 +22,7 @@ fn widening(widened: &[f64], body: u32) -> f64 {
 
 /// A search for all pairs that may touch.
 pub(super) struct NeighbourSearch<'a, S: Space> {
-    shapes: &'a Shapes<S>,
-    bodies: &'a Bodies<S>,
-    laws: &'a LawTable,
+    scene: &'a CollisionScene<'a, S>,
     /// Centres of the balls, then of the convex pieces (m).
     centres: &'a [S::Vector],
     /// Radii of their bounding balls (m), widened around fast bodies.
@@ -41,12 +37,11 @@ pub(super) struct NeighbourSearch<'a, S: Space> {
 impl<'a, S: Space> NeighbourSearch<'a, S> {
     pub(super) fn new(
         network: &Network<S>,
-        shapes: &'a Shapes<S>,
-        bodies: &'a Bodies<S>,
-        laws: &'a LawTable,
+        scene: &'a CollisionScene<'a, S>,
         centres: &'a [S::Vector],
         parallel: bool,
     ) -> Self {
+        let shapes = scene.shapes;
         let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
         radii.extend(shapes.pieces.iter().map(|p| p.bound));
         if !network.widened.is_empty() {
@@ -56,13 +51,11 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             radii.for_each(|(r, b)| *r += widening(&network.widened, b));
         }
         Self {
-            shapes,
-            bodies,
-            laws,
+            scene,
             centres,
             radii,
             reach: network.alert + network.skin,
-            still: bodies.still(),
+            still: scene.bodies.still(),
             parallel,
         }
     }
@@ -70,11 +63,12 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
     /// Returns body, material and key of the ball or piece at an index in the list of centres.
     #[inline]
     fn owner(&self, at: u32) -> (u32, u16, u32) {
-        match self.shapes.balls.get(at as usize) {
+        let shapes = self.scene.shapes;
+        match shapes.balls.get(at as usize) {
             Some(ball) => (ball.body, ball.material, at),
             None => {
-                let k = at - self.shapes.balls.len() as u32;
-                let piece = &self.shapes.pieces[k as usize];
+                let k = at - shapes.balls.len() as u32;
+                let piece = &shapes.pieces[k as usize];
                 (piece.body, piece.material, k | Key::PIECE)
             }
         }
@@ -83,30 +77,29 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
     /// Returns whether two bodies can touch at all.
     #[inline]
     fn may_touch(&self, i: u32, j: u32) -> bool {
-        let (a, b) = (i as usize, j as usize);
+        let (a, b, bodies) = (i as usize, j as usize, self.scene.bodies);
         !(i == j
-            || self.bodies.removed[a]
-            || self.bodies.removed[b]
+            || bodies.removed[a]
+            || bodies.removed[b]
             || (self.still[a] && self.still[b])
-            || self.bodies.belong_together(a, b))
+            || bodies.belong_together(a, b))
     }
 
     /// Returns the pairs of balls and pieces.
     pub(super) fn pairs_of_balls(&self) -> Vec<(u32, u32)> {
-        let (periodic, reach) = (&self.shapes.periodic, self.reach);
+        let (shapes, reach) = (self.scene.shapes, self.reach);
         let keep = |a: u32, b: u32| {
             let (a, b) = (self.owner(a), self.owner(b));
-            self.may_touch(a.0, b.0) && self.laws.get(a.1, b.1).is_some()
+            self.may_touch(a.0, b.0) && self.scene.laws.get(a.1, b.1).is_some()
         };
-        let mut pairs = grid::pairs(
-            self.centres,
-            &self.radii,
+        let balls = Balls {
+            centres: self.centres,
+            radii: &self.radii,
             reach,
-            periodic,
-            self.parallel,
-            keep,
-        );
-        if !self.shapes.pieces.is_empty() {
+            periodic: &shapes.periodic,
+        };
+        let mut pairs = grid::pairs(&balls, self.parallel, keep);
+        if !shapes.pieces.is_empty() {
             let name = |at: u32| self.owner(at).2;
             pairs.iter_mut().for_each(|p| *p = (name(p.0), name(p.1)));
         }
@@ -121,21 +114,19 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         velocities: &[(S::Vector, S::Spin)],
         h: f64,
     ) -> (Vec<(u32, u32)>, Vec<f64>) {
-        let surfaces = &self.shapes.surfaces;
+        let (surfaces, periodic) = (&self.scene.shapes.surfaces, &self.scene.shapes.periodic);
         let all: Vec<u32> = (0..self.radii.len() as u32).collect();
         let any_closed = surfaces.iter().any(|s| s.shape.is_closed());
-        let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, &self.shapes.periodic));
+        let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, periodic));
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
-        let divide = threads::pays(self.parallel, surfaces.len() * all.len(), COST);
-        let size_of_task = threads::any_size(CHUNK);
+        let divide = threads::worth_dividing(self.parallel, surfaces.len() * all.len(), COST);
+        let size_of_task = threads::chunk_size(CHUNK);
         let of_surface = |s: usize| {
             let surface = &surfaces[s];
             let vertices = surface.shape.moving_vertices().iter();
             let size = vertices.map(|x| x.norm()).fold(0.0, f64::max);
             let spin = velocities[surface.body as usize].1;
-            let rotation = &self.bodies.rotation[surface.body as usize];
-            let own = S::unrotate_spin(rotation, &spin);
-            let sweeps = !surface.shape.deforms() && !surface.shape.keeps_place(&own);
+            let sweeps = self.scene.sweeps(surface, &spin);
             let search = SurfaceSearch {
                 s,
                 size,
@@ -145,7 +136,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             let mut around = Vec::new();
             let candidates = match &sorted {
                 Some(sorted) if surface.shape.is_closed() => {
-                    let (origin, _) = frame(surface.body, &surface.offset, self.bodies);
+                    let (origin, _) = frame(surface, self.scene.bodies);
                     let most = size + largest + self.reach + search.extra;
                     sorted.near(&origin, most, &mut around);
                     &around
@@ -169,15 +160,20 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
 
     /// Returns the pairs of some balls and pieces with a surface.
     fn near_surface(&self, search: &SurfaceSearch, candidates: &[u32]) -> Vec<(u32, u32)> {
-        let surface = &self.shapes.surfaces[search.s];
-        let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
-        let pivot = self.bodies.position[surface.body as usize];
+        let CollisionScene {
+            shapes,
+            bodies,
+            laws,
+        } = *self.scene;
+        let surface = &shapes.surfaces[search.s];
+        let (origin, rotation) = frame(surface, bodies);
+        let pivot = bodies.position[surface.body as usize];
         let closed = surface.shape.is_closed();
         let mut pairs = Vec::new();
         for at in candidates {
             let (body, material, name) = self.owner(*at);
             let radius = self.radii[*at as usize];
-            let known = self.laws.get(material, surface.material).is_some();
+            let known = laws.get(material, surface.material).is_some();
             if !known || !self.may_touch(body, surface.body) {
                 continue;
             }
@@ -186,7 +182,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             let mut apart = centre - origin;
             let pair = (name, search.s as u32 | Key::SURFACE);
             if closed {
-                apart = self.shapes.periodic.shortest(apart);
+                apart = shapes.periodic.shortest(apart);
                 let far = apart.norm();
                 if far > search.size + reach {
                     continue;

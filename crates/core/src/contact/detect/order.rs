@@ -1,10 +1,10 @@
 //! Order of the impacts predicted in one step. The first impact of a body changes the motion from
-//! which its later ones were predicted.
+//! which its later impacts were predicted.
 
 use super::margin::TOLERATED;
-use super::sweep::{Course, Sweep};
+use super::sweep::{Sweep, SweepResult};
 use crate::bodies::Bodies;
-use crate::contact::network::Contact;
+use crate::contact::network::{Contact, ShapeIndex};
 use crate::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -30,12 +30,15 @@ pub(super) fn mark_later<S: Space>(
     meetings: &[PredictedMeeting],
     sweep: &Sweep<S>,
     candidates: &[(u32, u32)],
-    body: impl Fn(u32) -> usize,
     fast: f64,
 ) {
     if meetings.len() < 2 {
         return;
     }
+    let mut mark = |meeting: &PredictedMeeting| {
+        let contacts = found[meeting.contacts.clone()].iter_mut();
+        contacts.for_each(|c| c.later = true);
+    };
     let mut order: Vec<&PredictedMeeting> = meetings.iter().collect();
     order.sort_by(|m, n| m.at.total_cmp(&n.at));
     // Time of the first impact of each movable body, among the first meetings.
@@ -47,13 +50,11 @@ pub(super) fn mark_later<S: Space>(
                 .is_some_and(|s| (meeting.at - s) * meeting.travel > fast)
         };
         if meeting.bodies.iter().any(after) {
-            found[meeting.contacts.clone()]
-                .iter_mut()
-                .for_each(|c| c.later = true);
+            mark(meeting);
             continue;
         }
         for b in meeting.bodies {
-            if is_movable(sweep.bodies, b as usize) {
+            if is_movable(sweep.scene.bodies, b as usize) {
                 first.entry(b).or_insert(meeting.at);
             }
         }
@@ -70,8 +71,8 @@ pub(super) fn mark_later<S: Space>(
         ..*sweep
     };
     for &names in candidates {
-        let of = [names.0, names.1].map(|name| body(name) as u32);
-        let [Some(one), Some(other)] = of.map(|b| first.get(&b).copied()) else {
+        let of = [names.0, names.1].map(|side| ShapeIndex::of(side).body(sweep.scene.shapes));
+        let [Some(one), Some(other)] = of.map(|b| first.get(&b?).copied()) else {
             continue;
         };
         let pair = stopped.pair(names);
@@ -79,13 +80,11 @@ pub(super) fn mark_later<S: Space>(
         if own || (one - other).abs() * sweep.pair(names).travel.max(pair.travel) <= fast {
             continue;
         }
-        if stopped.course(&pair, TOLERATED * fast) != Course::Clear {
-            let blocked = if one > other { of[0] } else { of[1] };
-            for meeting in meetings.iter().filter(|m| m.bodies.contains(&blocked)) {
-                found[meeting.contacts.clone()]
-                    .iter_mut()
-                    .for_each(|c| c.later = true);
-            }
+        if stopped.follow(&pair, TOLERATED * fast) != SweepResult::Separate
+            && let Some(blocked) = if one > other { of[0] } else { of[1] }
+        {
+            let of_blocked = meetings.iter().filter(|m| m.bodies.contains(&blocked));
+            of_blocked.for_each(&mut mark);
         }
     }
 }

@@ -1,17 +1,16 @@
-//! The pieces that each ball and piece may touch, and those beside a pair.
+//! The pieces that each ball and piece may touch, and those adjacent to a pair.
 
-use crate::contact::network::Key;
-use crate::geometry::convex::seam::Beside;
+use crate::contact::network::{Key, ShapeIndex};
+use crate::geometry::convex::seam::Adjacent;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use std::sync::OnceLock;
 
-/// Lists of pieces by ball or piece, made when the first is asked for: few steps of few scenes need
-/// them.
+/// Lists of pieces by ball or piece, built on first use: few steps of few scenes need them.
 #[derive(Default)]
 pub(super) struct Partners(OnceLock<Lists>);
 
-/// The lists one after the other, and where each starts.
+/// The concatenated lists, and the start of each.
 struct Lists {
     starts: Vec<u32>,
     names: Vec<u32>,
@@ -22,21 +21,20 @@ impl Partners {
     /// of balls and pieces, `balls` that of balls.
     pub fn of(&self, pairs: &[(u32, u32)], count: usize, balls: usize, name: u32) -> &[u32] {
         let lists = self.0.get_or_init(|| Lists::new(pairs, count, balls));
-        let at = place(name, balls);
+        let at = ShapeIndex::of(name).place([balls, 0]);
         &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
     }
 
-    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a
-    /// piece. `cores` are those of the pieces in world axes, and `centre` gives where a piece
-    /// stands (m).
-    pub fn beside<'a, S: Space>(
+    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the antagonist
+    /// is a piece. `cores` are those of the pieces in world axes, `centre` gives their centres (m).
+    pub fn adjacent<'a, S: Space>(
         &self,
         pairs: &[(u32, u32)],
         shapes: &Shapes<S>,
         cores: &'a [S::Core],
         centre: impl Fn(usize) -> S::Vector,
         pair: [u32; 2],
-    ) -> Vec<Beside<'a, S>> {
+    ) -> Vec<Adjacent<'a, S>> {
         let balls = shapes.balls.len();
         let origin = centre((pair[1] & !Key::PIECE) as usize);
         let mut out = Vec::new();
@@ -44,11 +42,11 @@ impl Partners {
             let others = self.of(pairs, balls + shapes.pieces.len(), balls, name);
             for other in others.iter().filter(|other| **other != pair[1 - side]) {
                 let k = (*other & !Key::PIECE) as usize;
-                out.push(Beside {
+                out.push(Adjacent {
                     core: &cores[k],
                     at: shapes.periodic.shortest(centre(k) - origin),
                     rounding: shapes.pieces[k].rounding,
-                    // What is near the candidate is beside the antagonist.
+                    // A piece near the candidate is adjacent to the antagonist.
                     of_candidate: side == 1,
                     name: *other,
                 });
@@ -58,12 +56,6 @@ impl Partners {
     }
 }
 
-/// Index in the list of centres.
-fn place(name: u32, balls: usize) -> usize {
-    let k = (name & !Key::PIECE) as usize;
-    if name & Key::PIECE == 0 { k } else { balls + k }
-}
-
 impl Lists {
     fn new(pairs: &[(u32, u32)], count: usize, balls: usize) -> Self {
         let with_pieces = || {
@@ -71,9 +63,10 @@ impl Lists {
             let ways = both.flat_map(|(a, b)| [(*a, *b), (*b, *a)]);
             ways.filter(|(_, piece)| piece & Key::PIECE != 0)
         };
+        let place = |name: u32| ShapeIndex::of(name).place([balls, 0]);
         let mut starts = vec![0; count + 1];
         for (name, _) in with_pieces() {
-            starts[place(name, balls) + 1] += 1;
+            starts[place(name) + 1] += 1;
         }
         for k in 0..count {
             starts[k + 1] += starts[k];
@@ -81,7 +74,7 @@ impl Lists {
         let mut names = vec![0; starts[count] as usize];
         let mut next = starts.clone();
         for (name, piece) in with_pieces() {
-            let at = &mut next[place(name, balls)];
+            let at = &mut next[place(name)];
             names[*at as usize] = piece;
             *at += 1;
         }

@@ -1,17 +1,16 @@
 //! Contacts that close within the step although their bodies are beyond the alert distance at its
-//! start. They are predicted for pairs whose relative motion in the step is fast. Scenes without
-//! fast motion only pay for a comparison of speeds.
+//! start. They are predicted for pairs whose relative motion in the step is fast. In scenes without
+//! fast motion the only cost is a comparison of speeds.
 
-use super::extents::Extents;
-use super::margin::Stage;
-use super::meeting::{Meeting, Search};
+use super::margin::SearchStage;
+use super::meeting::{Meeting, MeetingSearch};
 use super::order::{PredictedMeeting, mark_later};
 use super::sweep::Sweep;
-use super::{LawTable, centres, rebuild};
-use crate::bodies::Bodies;
-use crate::contact::network::{Contact, Key, Network};
-use crate::geometry::grid;
-use crate::geometry::shape::Shapes;
+use super::{CollisionScene, centres, rebuild};
+use crate::contact::Occurrence;
+use crate::contact::network::{Contact, Network};
+use crate::geometry::grid::{self, Balls};
+use crate::geometry::shape::{Carried, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads;
 
@@ -28,13 +27,13 @@ const COMPARE: f64 = 2.0;
 /// constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
-/// Motion of a step: velocities (m/s, rad/s) of all bodies, its start and length (s).
-pub struct Motion<'a, S: Space> {
+/// StepMotion of a step: velocities (m/s, rad/s) of all bodies, its start and length (s).
+pub struct StepMotion<'a, S: Space> {
     /// Velocities and spins of the bodies.
     pub velocities: &'a [(S::Vector, S::Spin)],
     /// Time at the start of the step (s).
     pub time: f64,
-    /// Its length (s).
+    /// Length of the step (s).
     pub h: f64,
     /// Whether pairs are distributed over threads; the results are the same.
     pub parallel: bool,
@@ -44,20 +43,17 @@ pub struct Motion<'a, S: Space> {
 /// contact has to be predicted. Cheap. `velocity` gives velocity and spin of a body.
 pub fn is_calm<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
+    scene: &CollisionScene<S>,
     velocity: impl Fn(usize) -> (S::Vector, S::Spin) + Sync,
     h: f64,
     parallel: bool,
 ) -> bool {
-    if !network.extents.fits(shapes, bodies) {
-        network.extents = Extents::new(shapes, bodies);
-    }
+    network.extents.update(scene);
     if !network.widened.is_empty() || network.turning.iter().any(|w| *w > 0.0) {
         return false;
     }
     let levers = &network.extents.levers;
-    // What is not a number is reported where it is solved for.
+    // NaN is reported by the solver.
     let known = |x: f64| if x.is_nan() { 0.0 } else { x };
     let largest = |of: &(dyn Fn(usize) -> f64 + Sync)| {
         threads::largest(parallel, levers.len(), COMPARE, |b| known(of(b)))
@@ -72,11 +68,9 @@ pub fn is_calm<S: Space>(
     });
     // The bound is below what requires a wider list or a check of pairs. A rotating surface always
     // requires them.
-    let still = shapes.surfaces.iter().all(|s| {
-        let b = s.body as usize;
-        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-        s.shape.keeps_place(&spin) || s.shape.deforms()
-    });
+    let surfaces = &scene.shapes.surfaces;
+    let spin = |s: &Carried<S>| &scene.bodies.spin[s.body as usize];
+    let still = !surfaces.iter().any(|s| scene.sweeps(s, spin(s)));
     still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
 }
 
@@ -84,12 +78,10 @@ pub fn is_calm<S: Space>(
 /// not find.
 pub fn add_predicted<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
-    motion: &Motion<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
 ) {
-    let found = find_closing(network, shapes, bodies, laws, motion, Stage::Before);
+    let found = find_closing(network, scene, motion, SearchStage::Before);
     network.merge_contacts(found);
 }
 
@@ -98,12 +90,10 @@ pub fn add_predicted<S: Space>(
 /// [`Network::merge_contacts`].
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
-    motion: &Motion<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
 ) -> Vec<Contact<S>> {
-    let found = find_closing(network, shapes, bodies, laws, motion, Stage::After);
+    let found = find_closing(network, scene, motion, SearchStage::After);
     network.step_size.repeated_solves += u64::from(!found.is_empty());
     found
 }
@@ -111,37 +101,32 @@ pub fn find_missed<S: Space>(
 /// Reports the pairs that penetrate in the step despite the contacts solved for.
 pub fn report_passing<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
-    motion: &Motion<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
 ) {
-    find_closing(network, shapes, bodies, laws, motion, Stage::Report);
+    find_closing(network, scene, motion, SearchStage::Report);
 }
 
 /// Reports the pairs that penetrate in a move before detection, at the current velocities, which no
 /// previous step has checked.
 pub fn report_first_move<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
+    scene: &CollisionScene<S>,
     time: f64,
     length: f64,
 ) {
-    let velocities = bodies.velocity.iter().copied();
-    let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-    let motion = Motion {
+    let velocities = scene.velocities();
+    let motion = StepMotion {
         velocities: &velocities,
         time,
         h: length,
         parallel: false,
     };
     if network.seen_at.is_empty() {
-        let centres = centres(shapes, bodies, motion.parallel);
-        rebuild(network, shapes, bodies, laws, &centres, &motion);
+        let centres = centres(scene, motion.parallel);
+        rebuild(network, scene, &centres, &motion);
     }
-    report_passing(network, shapes, bodies, laws, &motion);
+    report_passing(network, scene, &motion);
 }
 
 /// The longest of some lengths (m), without those that are NaN.
@@ -154,14 +139,11 @@ fn longest(parallel: bool, list: &[f64]) -> f64 {
 /// bodies accordingly.
 fn widen<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
-    motion: &Motion<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
 ) -> Vec<f64> {
-    if !network.extents.fits(shapes, bodies) {
-        network.extents = Extents::new(shapes, bodies);
-    }
+    let bodies = scene.bodies;
+    network.extents.update(scene);
     let travels = network
         .extents
         .travels(bodies, motion.velocities, motion.h, motion.parallel);
@@ -170,7 +152,7 @@ fn widen<S: Space>(
     let longest = |list: &[f64]| longest(motion.parallel, list);
     let farthest = longest(&travels);
     let widest = longest(&network.widened);
-    let turn_faster = surfaces_turn_faster(network, shapes, bodies, motion);
+    let turn_faster = surfaces_turn_faster(network, scene, motion);
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
@@ -185,8 +167,8 @@ fn widen<S: Space>(
             return travels;
         }
     }
-    let seen = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
-    let short = |b: usize| need(&travels[b]) > seen(b);
+    let listed = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
+    let short = |b: usize| need(&travels[b]) > listed(b);
     let must = network.seen_at.is_empty()
         || turn_faster
         || threads::any(motion.parallel, bodies.len(), COMPARE, short);
@@ -196,18 +178,17 @@ fn widen<S: Space>(
         } else {
             Vec::new()
         };
-        let centres = centres(shapes, bodies, motion.parallel);
-        limit(network, shapes, &centres);
-        rebuild(network, shapes, bodies, laws, &centres, motion);
-        let looked = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
-        let beyond = |b: &usize| need(&travels[*b]) > looked(*b);
+        let centres = centres(scene, motion.parallel);
+        limit(network, scene.shapes, &centres);
+        rebuild(network, scene, &centres, motion);
+        let listed = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
+        let beyond = |b: &usize| need(&travels[*b]) > listed(*b);
         let farthest = (0..bodies.len())
             .filter(beyond)
             .max_by(|a, b| travels[*a].total_cmp(&travels[*b]));
         if let Some(body) = farthest {
-            network
-                .step_size
-                .record_unwatched(motion.time, bodies, body as u32);
+            let first = || Occurrence::new(motion.time, bodies, &[body as u32]);
+            network.step_size.record_unwatched(motion.time, first);
         }
     }
     travels
@@ -216,20 +197,13 @@ fn widen<S: Space>(
 /// Returns whether a surface moves by rotation faster than the neighbour list allows.
 fn surfaces_turn_faster<S: Space>(
     network: &Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    motion: &Motion<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
 ) -> bool {
-    let mut surfaces = shapes.surfaces.iter().zip(&network.turning);
-    surfaces.any(|(surface, seen)| {
-        let b = surface.body as usize;
-        let spin = motion.velocities[b].1;
-        // A surface that is invariant under its rotation does not move.
-        spin.norm() > *seen
-            && !surface.shape.deforms()
-            && !surface
-                .shape
-                .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &spin))
+    let mut surfaces = scene.shapes.surfaces.iter().zip(&network.turning);
+    surfaces.any(|(surface, listed)| {
+        let spin = motion.velocities[surface.body as usize].1;
+        spin.norm() > *listed && scene.sweeps(surface, &spin)
     })
 }
 
@@ -251,8 +225,15 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     let bodies = bodies.chain(shapes.pieces.iter().map(|p| (p.body, p.bound)));
     let bodies: Vec<(u32, f64)> = bodies.collect();
     let radii: Vec<f64> = bodies.iter().map(|b| b.1).collect();
-    let look_at = |radii: &[f64]| grid::most_pairs(centres, radii, reach, &shapes.periodic);
-    let most = MAX_PAIRS.0 * look_at(&radii) + MAX_PAIRS.1;
+    let pairs = |radii: &[f64]| {
+        grid::pairs_bound(&Balls {
+            centres,
+            radii,
+            reach,
+            periodic: &shapes.periodic,
+        })
+    };
+    let most = MAX_PAIRS.0 * pairs(&radii) + MAX_PAIRS.1;
     // After some halvings the widening vanishes.
     for _ in 0..64 {
         let widened = &network.widened;
@@ -260,7 +241,7 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
             .iter()
             .map(|(b, r)| r + widened[*b as usize])
             .collect();
-        if look_at(&wide) <= most {
+        if pairs(&wide) <= most {
             return;
         }
         network.widened.iter_mut().for_each(|w| *w *= 0.5);
@@ -272,13 +253,11 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
 /// pairs.
 fn find_closing<S: Space>(
     network: &mut Network<S>,
-    shapes: &Shapes<S>,
-    bodies: &Bodies<S>,
-    laws: &LawTable,
-    motion: &Motion<S>,
-    stage: Stage,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
+    stage: SearchStage,
 ) -> Vec<Contact<S>> {
-    let travels = widen(network, shapes, bodies, laws, motion);
+    let travels = widen(network, scene, motion);
     let farthest = longest(motion.parallel, &travels);
     let turning = network.turning.iter().any(|w| *w > 0.0);
     if 2.0 * farthest <= network.fast && !turning {
@@ -287,8 +266,7 @@ fn find_closing<S: Space>(
     let extents = std::mem::take(&mut network.extents);
     let candidates = std::mem::take(&mut network.candidates);
     let sweep = Sweep {
-        shapes,
-        bodies,
+        scene,
         extents: &extents,
         velocities: motion.velocities,
         time: motion.time,
@@ -296,26 +274,14 @@ fn find_closing<S: Space>(
         alert: network.alert,
     };
     let fast = network.fast;
-    let (balls, pieces) = (shapes.balls.len(), shapes.pieces.len());
-    let count = balls + pieces + shapes.surfaces.len();
-    let travel = |k: usize| {
-        let body = if k < balls {
-            shapes.balls[k].body
-        } else if k < balls + pieces {
-            shapes.pieces[k - balls].body
-        } else {
-            shapes.surfaces[k - balls - pieces].body
-        };
-        travels[body as usize]
-    };
-    let mut of_shapes = Vec::new();
-    let divide = threads::pays(motion.parallel, count, COMPARE);
-    threads::fill(divide, &mut of_shapes, count, travel);
-    let search = Search {
+    let shapes = scene.shapes;
+    let bodies = shapes.balls.iter().map(|b| b.body);
+    let bodies = bodies.chain(shapes.pieces.iter().map(|p| p.body));
+    let bodies = bodies.chain(shapes.surfaces.iter().map(|s| s.body));
+    let search = MeetingSearch {
         network,
         sweep: &sweep,
-        laws,
-        travels: of_shapes,
+        travels: bodies.map(|b| travels[b as usize]).collect(),
         // A pair with NaN is followed, and reported.
         farthest: threads::largest(motion.parallel, travels.len(), COMPARE, |b| travels[b]),
         turning,
@@ -351,13 +317,16 @@ fn find_closing<S: Space>(
         };
         pairs.filter_map(examine).collect()
     };
-    let divide = threads::pays(motion.parallel, candidates.len(), COST);
-    let met = threads::map_chunks(divide, &candidates, threads::any_size(CHUNK), |_, pairs| {
-        examine(pairs)
-    });
+    let divide = threads::worth_dividing(motion.parallel, candidates.len(), COST);
+    let met = threads::map_chunks(
+        divide,
+        &candidates,
+        threads::chunk_size(CHUNK),
+        |_, pairs| examine(pairs),
+    );
     let (mut found, mut meetings) = (Vec::new(), Vec::new());
     for meeting in met.into_iter().flatten() {
-        let known = found.len();
+        let first = found.len();
         found.extend(meeting.contacts);
         if let Some(at) = meeting.at {
             meetings.push(PredictedMeeting {
@@ -365,53 +334,39 @@ fn find_closing<S: Space>(
                 bodies: meeting.bodies,
                 at,
                 travel: meeting.travel,
-                contacts: known..found.len(),
+                contacts: first..found.len(),
             });
         }
         if meeting.passing {
-            let step_size = &mut network.step_size;
-            step_size.record_passing(sweep.time, sweep.bodies, meeting.bodies);
+            let first = || Occurrence::new(motion.time, scene.bodies, &meeting.bodies);
+            network.step_size.record_passing(first);
         }
     }
-    if stage == Stage::Before {
-        let body = |name| body_of(shapes, name);
-        mark_later(&mut found, &meetings, &sweep, &candidates, body, fast);
+    if stage == SearchStage::Before {
+        mark_later(&mut found, &meetings, &sweep, &candidates, fast);
     }
     network.candidates = candidates;
     network.extents = extents;
     found
 }
 
-/// Returns the body of the shape with this key.
-fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> usize {
-    let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
-    let body = if name & Key::SURFACE != 0 {
-        shapes.surfaces[k].body
-    } else if name & Key::PIECE != 0 {
-        shapes.pieces[k].body
-    } else {
-        shapes.balls[k].body
-    };
-    body as usize
-}
-
 impl<S: Space> Network<S> {
     /// Merges contacts that close in the step into the network; contacts that already exist get the
     /// new geometry.
     pub fn merge_contacts(&mut self, found: Vec<Contact<S>>) {
-        let there = self.contacts.len();
+        let known = self.contacts.len();
         self.step_size.foreseen += found.len() as u64;
         for mut contact in found {
-            let at = self.contacts[..there].binary_search_by_key(&contact.key, |c| c.key);
+            let at = self.contacts[..known].binary_search_by_key(&contact.key, |c| c.key);
             match at {
                 Ok(at) => {
-                    let known = &mut self.contacts[at];
-                    known.closing = true;
-                    known.later |= contact.later;
-                    known.central = false;
-                    known.gap = contact.gap;
-                    known.normal = contact.normal;
-                    known.arms = contact.arms;
+                    let old = &mut self.contacts[at];
+                    old.closing = true;
+                    old.later |= contact.later;
+                    old.central = false;
+                    old.gap = contact.gap;
+                    old.normal = contact.normal;
+                    old.arms = contact.arms;
                 }
                 Err(_) => {
                     contact.broken = self.broken_pairs.contains(&contact.key.pair());
@@ -419,7 +374,7 @@ impl<S: Space> Network<S> {
                 }
             }
         }
-        if self.contacts.len() > there {
+        if self.contacts.len() > known {
             self.contacts.sort_by_key(|c| c.key);
         }
     }

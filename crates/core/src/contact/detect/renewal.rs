@@ -1,26 +1,25 @@
 //! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the
 //! old ones, so that a second list is not needed.
 
-use super::narrow::{Narrow, Round};
+use super::narrow::{BallData, Narrow};
 use super::partners::Partners;
-use super::{LawTable, drop_contact};
-use crate::bodies::Bodies;
+use super::{CollisionScene, drop_contact};
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
-use crate::geometry::shape::Shapes;
+use crate::geometry::convex::Core;
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads;
 
 /// Pairs of balls per task, and pairs of other shapes.
 const CHUNK: [usize; 2] = [512, 128];
-/// Time of a pair of balls, and of other shapes (ns).
+/// Approximate time for a pair of balls, and for other shapes (ns).
 const COST: [f64; 2] = [15.0, 200.0];
-/// Time of a ball (ns).
-const ROUND: f64 = 5.0;
+/// Approximate time to collect the data of a ball (ns).
+const BALL: f64 = 5.0;
 /// Tasks whose new contacts are kept at a time: a few megabytes.
 const BATCH: usize = 64;
 
-/// A contact as it is found in this step.
-pub(super) struct Touch<S: Space> {
+/// A contact as found in this step, without memory.
+pub(super) struct Hit<S: Space> {
     pub key: Key,
     pub bodies: [u32; 2],
     pub law: u16,
@@ -29,8 +28,8 @@ pub(super) struct Touch<S: Space> {
     pub geometry: ContactGeometry<S>,
 }
 
-/// What the renewal of contacts changes beside them, in their order.
-enum Event<S: Space> {
+/// An event of the renewal that changes more than the contact; events are in the order of contacts.
+enum RenewalEvent<S: Space> {
     /// A contact with memory separated.
     Dropped(Contact<S>),
     /// A new contact, whose pair penetrates by this much (m) elsewhere, and its size (m).
@@ -45,54 +44,58 @@ struct Turned<S: Space> {
     rotation: Option<S::Spin>,
 }
 
-/// New contacts of the pairs of a task.
-pub(super) struct Found<'c, S: Space> {
+/// The contacts of the pairs of a task while they are renewed.
+pub(super) struct Renewed<'c, S: Space> {
     contacts: &'c mut [Contact<S>],
-    /// Number of contacts renewed in place, and of old ones read.
-    kept: usize,
-    read: usize,
-    /// Those after them, for which there was no place.
-    more: Vec<Contact<S>>,
     /// The old contacts of the current pair.
     old: Vec<Contact<S>>,
-    turned: Vec<Turned<S>>,
-    events: Vec<Event<S>>,
+    out: TaskResult<S>,
 }
 
-impl<'c, S: Space> Found<'c, S> {
+/// What a task changes beside the contacts that it renews in place.
+#[derive(Default)]
+struct TaskResult<S: Space> {
+    /// Number of contacts renewed in place.
+    kept: usize,
+    /// Number of old contacts read.
+    read: usize,
+    /// New contacts after those in place, for which there was no room.
+    more: Vec<Contact<S>>,
+    turned: Vec<Turned<S>>,
+    events: Vec<RenewalEvent<S>>,
+}
+
+impl<'c, S: Space> Renewed<'c, S> {
     pub fn new(contacts: &'c mut [Contact<S>]) -> Self {
         Self {
             contacts,
-            kept: 0,
-            read: 0,
-            more: Vec::new(),
             old: Vec::new(),
-            turned: Vec::new(),
-            events: Vec::new(),
+            out: TaskResult::default(),
         }
     }
 
     /// Drops the old contacts of pairs before this one.
     #[inline]
     fn skip_to(&mut self, pair: (u32, u32)) {
-        while self.read < self.contacts.len() && self.contacts[self.read].key.pair() < pair {
-            self.drop_old(self.read);
-            self.read += 1;
+        while self.out.read < self.contacts.len() && self.contacts[self.out.read].key.pair() < pair
+        {
+            self.drop_old(self.out.read);
+            self.out.read += 1;
         }
     }
 
     fn is_next(&self, pair: (u32, u32)) -> bool {
-        let next = self.contacts.get(self.read);
+        let next = self.contacts.get(self.out.read);
         next.is_some_and(|c| c.key.pair() == pair)
     }
 
-    /// Takes the old contacts of a pair; see [`Self::old`].
+    /// Reads the old contacts of a pair, see [`Self::old`].
     pub fn begin_pair(&mut self, pair: (u32, u32)) {
         self.skip_to(pair);
         self.old.clear();
         while self.is_next(pair) {
-            self.old.push(self.contacts[self.read].clone());
-            self.read += 1;
+            self.old.push(self.contacts[self.out.read].clone());
+            self.out.read += 1;
         }
     }
 
@@ -101,129 +104,131 @@ impl<'c, S: Space> Found<'c, S> {
         &self.old
     }
 
-    /// Takes the old contact of a pair of balls, of which there is one at most.
+    /// Reads the old contact of a pair of balls, of which there is at most one, and returns its place.
     #[inline]
     pub fn old_of_balls(&mut self, pair: (u32, u32)) -> Option<usize> {
         self.skip_to(pair);
         self.old.clear();
-        let first = self.read;
+        let first = self.out.read;
         while self.is_next(pair) {
-            self.read += 1;
+            self.out.read += 1;
         }
-        (self.read > first).then_some(first)
+        (self.out.read > first).then_some(first)
     }
 
-    /// The contact that [`Self::old_of_balls`] gave.
+    /// Returns the contact found by [`Self::old_of_balls`].
     pub fn contact(&self, k: usize) -> &Contact<S> {
         &self.contacts[k]
     }
 
-    /// Drops the contact that [`Self::old_of_balls`] gave.
+    /// Records that the contact returned by [`Self::old_of_balls`] ends.
     #[inline]
     pub fn drop_old(&mut self, k: usize) {
         let contact = &self.contacts[k];
         if contact.memory().is_some() {
-            self.events.push(Event::Dropped(contact.clone()));
+            self.out.events.push(RenewalEvent::Dropped(contact.clone()));
         }
     }
 
-    /// Drops the old contacts of the pair that do not go on.
-    pub fn drop_others(&mut self, goes_on: impl Fn(usize) -> bool) {
+    /// Drops the old contacts of the pair that do not continue.
+    pub fn drop_others(&mut self, continues: impl Fn(usize) -> bool) {
         for (k, contact) in self.old.iter().enumerate() {
-            if !goes_on(k) && contact.memory().is_some() {
-                self.events.push(Event::Dropped(contact.clone()));
+            if !continues(k) && contact.memory().is_some() {
+                self.out.events.push(RenewalEvent::Dropped(contact.clone()));
             }
         }
     }
 
     /// Drops the old contacts after the last pair.
     pub fn end(&mut self) {
-        for k in self.read..self.contacts.len() {
+        for k in self.out.read..self.contacts.len() {
             self.drop_old(k);
         }
-        self.read = self.contacts.len();
+        self.out.read = self.contacts.len();
     }
 
-    /// Renews the contact that [`Self::old_of_balls`] gave.
+    /// Renews the contact found by [`Self::old_of_balls`].
     #[inline]
-    pub fn renew_in_place(&mut self, narrow: &Narrow<S>, k: usize, touch: &Touch<S>) {
-        if self.more.is_empty() {
-            if self.kept < k {
-                self.contacts.swap(self.kept, k);
+    pub fn renew_in_place(&mut self, narrow: &Narrow<S>, k: usize, hit: &Hit<S>) {
+        if self.out.more.is_empty() {
+            if self.out.kept < k {
+                self.contacts.swap(self.out.kept, k);
             }
             renew(
                 narrow,
-                &mut self.contacts[self.kept],
-                touch,
-                &mut self.turned,
+                &mut self.contacts[self.out.kept],
+                hit,
+                &mut self.out.turned,
             );
-            self.kept += 1;
+            self.out.kept += 1;
         } else {
             let mut contact = self.contacts[k].clone();
-            renew(narrow, &mut contact, touch, &mut self.turned);
-            self.more.push(contact);
+            renew(narrow, &mut contact, hit, &mut self.out.turned);
+            self.out.more.push(contact);
         }
     }
 
     /// Adds the contact that continues the old contact `k` of the pair.
-    pub fn renew(&mut self, narrow: &Narrow<S>, k: usize, touch: &Touch<S>) {
-        // Mostly it stays at its place, which still holds it.
-        if self.more.is_empty() && self.kept == self.read - self.old.len() + k {
-            let contact = &mut self.contacts[self.kept];
-            renew(narrow, contact, touch, &mut self.turned);
-            self.kept += 1;
+    pub fn renew(&mut self, narrow: &Narrow<S>, k: usize, hit: &Hit<S>) {
+        // In most cases it keeps its place, which still holds it.
+        if self.out.more.is_empty() && self.out.kept == self.out.read - self.old.len() + k {
+            let contact = &mut self.contacts[self.out.kept];
+            renew(narrow, contact, hit, &mut self.out.turned);
+            self.out.kept += 1;
             return;
         }
         let mut contact = self.old[k].clone();
-        renew(narrow, &mut contact, touch, &mut self.turned);
+        renew(narrow, &mut contact, hit, &mut self.out.turned);
         self.push(contact);
     }
 
     /// Adds a new contact of bodies of the reduced radius `size` (m).
-    pub fn add(&mut self, narrow: &Narrow<S>, touch: &Touch<S>, size: f64) {
+    pub fn add(&mut self, narrow: &Narrow<S>, hit: &Hit<S>, size: f64) {
         let mut contact = Contact {
-            central: touch.central,
-            vertex_contact: touch.vertex_contact,
+            central: hit.central,
+            vertex_contact: hit.vertex_contact,
             ..Contact::new(
-                touch.key,
-                touch.bodies,
-                touch.law,
-                touch.geometry,
-                narrow.time,
+                hit.key,
+                hit.bodies,
+                hit.law,
+                hit.geometry,
+                narrow.placed.time,
             )
         };
-        contact.broken = narrow.network.broken_pairs.contains(&touch.key.pair());
+        contact.broken = narrow.network.broken_pairs.contains(&hit.key.pair());
         // Penetrations in the initial state belong to the sample.
-        if narrow.time > 0.0 {
+        if narrow.placed.time > 0.0 {
             let known = self.old.iter().map(|c| -c.gap).fold(0.0, f64::max);
-            // A point of a grain is as thick as its grain.
-            let bodies = narrow.bodies;
+            // The thickness behind a point of a grain is that of the grain.
+            let bodies = narrow.placed.scene.bodies;
             let grain = |b: &&u32| bodies.carrier(**b as usize).is_some_and(|c| c.grain);
             let grain = contact.bodies.iter().find(grain);
             let size = grain.map_or(size, |b| bodies.length[*b as usize]);
             if contact.gap < 0.0 {
-                self.events.push(Event::New(contact.clone(), [known, size]));
+                self.out
+                    .events
+                    .push(RenewalEvent::New(contact.clone(), [known, size]));
             }
         }
         self.push(contact);
     }
 
     fn push(&mut self, contact: Contact<S>) {
-        if self.more.is_empty() && self.kept < self.read {
-            self.contacts[self.kept] = contact;
-            self.kept += 1;
+        if self.out.more.is_empty() && self.out.kept < self.out.read {
+            self.contacts[self.out.kept] = contact;
+            self.out.kept += 1;
         } else {
-            self.more.push(contact);
+            self.out.more.push(contact);
         }
     }
 }
 
-/// Gives an old contact the geometry of this step; what it remembers turns with the pair.
+/// Gives an old contact the geometry of this step; its memory rotates with the pair.
 #[inline]
 fn renew<S: Space>(
     narrow: &Narrow<S>,
     contact: &mut Contact<S>,
-    touch: &Touch<S>,
+    hit: &Hit<S>,
     turned: &mut Vec<Turned<S>>,
 ) {
     let from = contact.normal;
@@ -232,23 +237,25 @@ fn renew<S: Space>(
         normal,
         arms,
         radius,
-    } = touch.geometry;
-    contact.key = touch.key;
-    contact.bodies = touch.bodies;
-    contact.law = touch.law;
-    contact.central = touch.central;
-    contact.vertex_contact = touch.vertex_contact;
+    } = hit.geometry;
+    contact.key = hit.key;
+    contact.bodies = hit.bodies;
+    contact.law = hit.law;
+    contact.central = hit.central;
+    contact.vertex_contact = hit.vertex_contact;
     (contact.gap, contact.normal) = (gap, normal);
     (contact.arms, contact.radius) = (arms, radius);
     (contact.closing, contact.later) = (false, false);
     contact.beyond = false;
     let springs = contact.spring.force_t != S::Tangent::zero();
-    // In the plane tangential parts turn with their frame.
+    // In 2D tangential parts rotate with their frame.
     if S::D == 2 || !(springs || contact.memory().is_some()) {
         return;
     }
-    let [i, j] = touch.bodies.map(|b| narrow.bodies.spin[b as usize]);
-    let angle = 0.5 * narrow.h * S::split_spin(&normal, &(i + j)).0;
+    let [i, j] = hit
+        .bodies
+        .map(|b| narrow.placed.scene.bodies.spin[b as usize]);
+    let angle = 0.5 * narrow.placed.h * S::split_spin(&normal, &(i + j)).0;
     if springs {
         let force = &mut contact.spring.force_t;
         *force = S::transport(&from, &normal, angle, force);
@@ -266,32 +273,39 @@ fn renew<S: Space>(
     }
 }
 
-/// What the narrow phase needs beside the network.
-pub(super) struct Scene<'a, S: Space> {
-    pub shapes: &'a Shapes<S>,
-    pub bodies: &'a Bodies<S>,
+/// A scene at the places where contacts are detected.
+pub(super) struct PlacedScene<'a, S: Space> {
+    pub scene: &'a CollisionScene<'a, S>,
+    /// Centres of the balls, then of the pieces (m).
     pub centres: &'a [S::Vector],
-    pub laws: &'a LawTable,
+    /// Time at the start of the step (s).
     pub time: f64,
+    /// Time since the last detection (s).
     pub h: f64,
 }
 
 /// Renews all contacts of the network from its candidate pairs, on several threads if `parallel`.
-pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S>, parallel: bool) {
+pub(super) fn renew_contacts<S: Space>(
+    network: &mut Network<S>,
+    placed: &PlacedScene<S>,
+    parallel: bool,
+) {
     let candidates = std::mem::take(&mut network.candidates);
-    let cores = turned_cores(network, scene, parallel);
-    let surfaces = scene.shapes.surfaces.iter();
-    let frame =
-        |s: &crate::geometry::shape::Carried<S>| super::frame(s.body, &s.offset, scene.bodies);
-    let frames: Vec<_> = surfaces.map(frame).collect();
-    let balls = &scene.shapes.balls;
-    let (mut round, divide) = (Vec::new(), threads::pays(parallel, balls.len(), ROUND));
-    threads::fill(divide, &mut round, balls.len(), |k| {
-        Round::new(&balls[k], scene.centres[k], scene.bodies)
+    let (shapes, bodies) = (placed.scene.shapes, placed.scene.bodies);
+    let cores = turned_cores(network, placed.scene, parallel);
+    let surfaces = shapes.surfaces.iter();
+    let frames: Vec<_> = surfaces.map(|s| super::frame(s, bodies)).collect();
+    let balls = &shapes.balls;
+    let (mut ball_data, divide) = (
+        Vec::new(),
+        threads::worth_dividing(parallel, balls.len(), BALL),
+    );
+    threads::fill(divide, &mut ball_data, balls.len(), |k| {
+        BallData::new(&balls[k], placed.centres[k], bodies)
     });
-    let kind = usize::from(!(scene.shapes.pieces.is_empty() && frames.is_empty()));
-    let divide = threads::pays(parallel, candidates.len(), COST[kind]);
-    let size = threads::any_size(CHUNK[kind]);
+    let kind = usize::from(!(shapes.pieces.is_empty() && frames.is_empty()));
+    let divide = threads::worth_dividing(parallel, candidates.len(), COST[kind]);
+    let size = threads::chunk_size(CHUNK[kind]);
     let batch = if divide { BATCH } else { 1 };
     let mut renewal = Renewal {
         contacts: std::mem::take(&mut network.contacts),
@@ -305,17 +319,12 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
         rest = after;
         let narrow = Narrow {
             network,
-            shapes: scene.shapes,
-            bodies: scene.bodies,
-            centres: scene.centres,
+            placed,
             cores: &cores,
             frames: &frames,
-            round: &round,
-            laws: scene.laws,
+            ball_data: &ball_data,
             pairs: &candidates,
             partners: &partners,
-            time: scene.time,
-            h: scene.h,
         };
         let mut tasks = Vec::with_capacity(batch);
         let mut contacts = &mut renewal.contacts[renewal.read..];
@@ -327,14 +336,14 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
             contacts = others;
             tasks.push((chunk, own));
         }
-        let found = threads::map_tasks(divide, tasks, |(pairs, contacts)| {
-            Part::from(narrow.renew(pairs, contacts))
+        let results = threads::map_tasks(divide, tasks, |(pairs, contacts)| {
+            narrow.renew(pairs, contacts).out
         });
-        for part in found {
-            part.settle(network, &mut renewal, scene);
+        for result in results {
+            result.apply(network, &mut renewal, placed);
         }
     }
-    // Without candidates nothing goes on.
+    // Where there are no candidates all old contacts end.
     for contact in &renewal.contacts[renewal.read..] {
         drop_contact(network, contact);
     }
@@ -343,8 +352,8 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     network.cores = cores;
 }
 
-/// Returns the place of the first contact whose pair is not before this one: probably near the
-/// start.
+/// Returns the place of the first contact whose pair is not before this one. It is probably near
+/// the start, hence the search by doubling.
 fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
     let before = |c: &Contact<S>| c.key.pair() < *pair;
     let mut end = 64;
@@ -357,18 +366,18 @@ fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
 /// Cores of the convex pieces in world axes.
 fn turned_cores<S: Space>(
     network: &mut Network<S>,
-    scene: &Scene<S>,
+    scene: &CollisionScene<S>,
     parallel: bool,
 ) -> Vec<S::Core> {
-    use crate::geometry::convex::Core;
+    /// Approximate time to rotate a core (ns).
     const TURN: f64 = 100.0;
     let pieces = &scene.shapes.pieces;
     let mut cores = std::mem::take(&mut network.cores);
     if cores.len() != pieces.len() {
         cores = pieces.iter().map(|p| p.core.clone()).collect();
     }
-    let divide = threads::pays(parallel, pieces.len(), TURN);
-    let size = threads::any_size(CHUNK[1]);
+    let divide = threads::worth_dividing(parallel, pieces.len(), TURN);
+    let size = threads::chunk_size(CHUNK[1]);
     threads::for_chunks(divide, &mut cores, size, |first, cores| {
         for (core, piece) in cores.iter_mut().zip(&pieces[first..]) {
             let rotation = &scene.bodies.rotation[piece.body as usize];
@@ -378,29 +387,9 @@ fn turned_cores<S: Space>(
     cores
 }
 
-/// What a task found, without its slice.
-struct Part<S: Space> {
-    kept: usize,
-    read: usize,
-    more: Vec<Contact<S>>,
-    turned: Vec<Turned<S>>,
-    events: Vec<Event<S>>,
-}
-
-impl<S: Space> From<Found<'_, S>> for Part<S> {
-    fn from(found: Found<'_, S>) -> Self {
-        Self {
-            kept: found.kept,
-            read: found.read,
-            more: found.more,
-            turned: found.turned,
-            events: found.events,
-        }
-    }
-}
-
-impl<S: Space> Part<S> {
-    fn settle(self, network: &mut Network<S>, renewal: &mut Renewal<S>, scene: &Scene<S>) {
+impl<S: Space> TaskResult<S> {
+    /// Applies it to the network; tasks are applied in the order of their pairs.
+    fn apply(self, network: &mut Network<S>, renewal: &mut Renewal<S>, placed: &PlacedScene<S>) {
         for turned in self.turned {
             let memory = &mut network.memory[turned.law as usize];
             memory.bonds[turned.slot as usize].opening_t = turned.opening;
@@ -410,12 +399,13 @@ impl<S: Space> Part<S> {
         }
         for event in self.events {
             match event {
-                Event::Dropped(contact) => drop_contact(network, &contact),
-                Event::New(contact, sizes) => {
+                RenewalEvent::Dropped(contact) => drop_contact(network, &contact),
+                RenewalEvent::New(contact, sizes) => {
                     let compliant = network.memory[contact.law as usize].compliant;
                     let step_size = &mut network.step_size;
-                    let times = [scene.time, scene.h];
-                    step_size.record_late(&contact, sizes, compliant, times, scene.bodies);
+                    let times = [placed.time, placed.h];
+                    let bodies = placed.scene.bodies;
+                    step_size.record_late(&contact, sizes, compliant, times, bodies);
                 }
             }
         }
@@ -426,12 +416,13 @@ impl<S: Space> Part<S> {
     }
 }
 
-/// The list of contacts while it is renewed: the new ones, room, and the old ones of pairs to come.
+/// The list of contacts while it is renewed: the new ones, free places, and the old ones of later
+/// pairs.
 struct Renewal<S: Space> {
     contacts: Vec<Contact<S>>,
-    /// Number of new ones.
+    /// Number of new contacts.
     written: usize,
-    /// Place of the first of the old ones to come.
+    /// Place of the first old contact that has not been read.
     read: usize,
 }
 
@@ -457,7 +448,7 @@ impl<S: Space> Renewal<S> {
         }
         let (written, count) = (self.written, self.contacts.len());
         if written < count {
-            // Room for this one and some to come moves the old ones once.
+            // The old contacts are moved once, to make room for this one and some more.
             let room = 16 + count / 64;
             self.contacts.reserve_exact(room);
             self.contacts.resize(count + room, contact.clone());
@@ -473,7 +464,7 @@ impl<S: Space> Renewal<S> {
 
     fn end(mut self) -> Vec<Contact<S>> {
         self.contacts.truncate(self.written);
-        // A list that grew by doubling, or once was longer.
+        // Frees memory if the list grew by doubling, or was longer before.
         let most = self.written + self.written / 4;
         if self.contacts.capacity() > most + 64 {
             self.contacts.shrink_to(self.written + self.written / 16);

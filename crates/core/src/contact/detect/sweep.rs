@@ -7,17 +7,18 @@
 //! fraction of the half thickness of the thinner body; a penetration missed in this way is
 //! shallower than that.
 
+use super::CollisionScene;
 use super::extents::Extents;
-use crate::bodies::Bodies;
-use crate::contact::network::{Contact, ContactGeometry, Key};
-use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core, DEEP};
-use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes, reduced_radius};
+use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
+use crate::geometry::convex::{
+    ContactPoint, ContactTolerances, ConvexCollider, Core, CorePair, DEEP,
+};
+use crate::geometry::shape::{Ball, Carried, ClosestPoint, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
 /// The bodies, and their velocities over the step.
 pub(super) struct Sweep<'a, S: Space> {
-    pub shapes: &'a Shapes<S>,
-    pub bodies: &'a Bodies<S>,
+    pub scene: &'a CollisionScene<'a, S>,
     pub extents: &'a Extents,
     pub velocities: &'a [(S::Vector, S::Spin)],
     pub time: f64,
@@ -105,17 +106,17 @@ struct Probe<V> {
 
 /// Result of following a pair through the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Course {
+pub(super) enum SweepResult {
     /// They do not meet.
-    Clear,
+    Separate,
     /// They meet after this fraction of the step.
     Meets(f64),
     /// They rotate or move too far to be followed.
-    Lost,
+    Unresolved,
 }
 
 /// A pair of collision shapes and its relative motion.
-pub(super) struct Pair<'a, S: Space> {
+pub(super) struct SweptPair<'a, S: Space> {
     names: (u32, u32),
     shapes: [Shape<'a, S>; 2],
     /// Velocity of the candidate's body relative to the antagonist's (m/s).
@@ -126,14 +127,14 @@ pub(super) struct Pair<'a, S: Space> {
     image: S::Vector,
     /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
-    /// Penetration up to which a surface sees the other shape (m): behind it there may be another
-    /// part of it.
-    pub seen: f64,
+    /// Penetration up to which a surface detects the other shape (m): farther behind it there may be
+    /// another part of it.
+    pub detectable: f64,
     /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
 }
 
-impl<'a, S: Space> Pair<'a, S> {
+impl<'a, S: Space> SweptPair<'a, S> {
     pub fn bodies(&self) -> [u32; 2] {
         [self.shapes[0].body(), self.shapes[1].body()]
     }
@@ -150,25 +151,26 @@ impl<'a, S: Space> Pair<'a, S> {
 
 /// Smallest increment of the motion, as a fraction of the half thickness.
 const STRIDE: f64 = 0.25;
-/// The same, as a fraction of the penetration that remains to be seen.
-const SEEN: f64 = 0.5;
+/// Largest increment of the motion, as a fraction of the penetration that remains detectable.
+const DETECTABLE: f64 = 0.5;
 /// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
-/// The least of these increments, as a fraction of the penetration that is seen.
+/// Smallest such increment, as a fraction of the detectable penetration.
 const LEAST: f64 = 0.01;
 /// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
 
 impl<'a, S: Space> Sweep<'a, S> {
     fn shape(&self, name: u32) -> Shape<'a, S> {
-        if name & Key::SURFACE != 0 {
-            Shape::Surface(&self.shapes.surfaces[(name & !Key::SURFACE) as usize])
-        } else if name & Key::PIECE != 0 {
-            let k = (name & !Key::PIECE) as usize;
-            Shape::ConvexCollider(&self.shapes.pieces[k], self.extents.pieces[k])
-        } else {
-            let ball = &self.shapes.balls[name as usize];
-            Shape::Ball(ball, ball.size(&self.bodies.length))
+        let CollisionScene { shapes, bodies, .. } = *self.scene;
+        match ShapeIndex::of(name) {
+            ShapeIndex::Ball(k) => {
+                Shape::Ball(&shapes.balls[k], shapes.balls[k].size(&bodies.length))
+            }
+            ShapeIndex::Piece(k) => {
+                Shape::ConvexCollider(&shapes.pieces[k], self.extents.pieces[k])
+            }
+            ShapeIndex::Surface(k) => Shape::Surface(&shapes.surfaces[k]),
         }
     }
 
@@ -176,11 +178,11 @@ impl<'a, S: Space> Sweep<'a, S> {
     fn pose(&self, shape: &Shape<S>, s: f64) -> Pose<S> {
         let b = shape.body() as usize;
         let (v, w) = &self.velocities[b];
-        let mut rotation = self.bodies.rotation[b];
+        let mut rotation = self.scene.bodies.rotation[b];
         if s > 0.0 && *w != S::Spin::zero() {
             rotation = S::turned(&rotation, &(*w * (s * self.h)));
         }
-        let body = self.bodies.position[b] + *v * (s * self.h);
+        let body = self.scene.bodies.position[b] + *v * (s * self.h);
         let centre = if *shape.offset() == S::Vector::zero() {
             body
         } else {
@@ -194,7 +196,7 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 
     /// Returns the pair with these keys.
-    pub fn pair(&self, names: (u32, u32)) -> Pair<'a, S> {
+    pub fn pair(&self, names: (u32, u32)) -> SweptPair<'a, S> {
         let shapes = [self.shape(names.0), self.shape(names.1)];
         let [one, other] = [0, 1].map(|k: usize| self.pose(&shapes[k], 0.0));
         let [(v, w), (v_other, w_other)] =
@@ -212,9 +214,9 @@ impl<'a, S: Space> Sweep<'a, S> {
                 let own = S::unrotate_spin(&other.rotation, &w_other);
                 if surface.shape.is_closed() {
                     let apart = one.centre - other.centre;
-                    image = apart - self.shapes.periodic.shortest(apart);
+                    image = apart - self.scene.shapes.periodic.shortest(apart);
                 }
-                if !surface.shape.keeps_place(&own) {
+                if !surface.shape.is_unchanged_by(&own) {
                     let far = (one.centre - other.body).norm() + shapes[0].bound();
                     turning += w_other.norm() * (far + self.h * (approach.norm() + turning));
                 }
@@ -222,31 +224,31 @@ impl<'a, S: Space> Sweep<'a, S> {
             shape => {
                 turning += w_other.norm() * lever(shape);
                 let apart = one.centre - other.centre;
-                image = apart - self.shapes.periodic.shortest(apart);
+                image = apart - self.scene.shapes.periodic.shortest(apart);
             }
         }
         let half = |k: usize| shapes[k].half_thickness();
         let half_thickness = half(0).min(half(1));
-        let seen = match &shapes[1] {
+        let detectable = match &shapes[1] {
             Shape::Surface(surface) if !surface.shape.any_depth() => {
-                self.seen(&shapes[0], surface, half_thickness)
+                self.detectable(&shapes[0], surface, half_thickness)
             }
             _ => f64::INFINITY,
         };
-        Pair {
+        SweptPair {
             names,
             approach,
             turning,
             image,
             half_thickness,
-            seen,
+            detectable,
             travel: self.h * (approach.norm() + turning),
             shapes,
         }
     }
 
     /// Penetration up to which the narrow phase finds contact points of a shape with a surface (m).
-    fn seen(&self, shape: &Shape<S>, surface: &Carried<S>, half_thickness: f64) -> f64 {
+    fn detectable(&self, shape: &Shape<S>, surface: &Carried<S>, half_thickness: f64) -> f64 {
         match shape {
             Shape::Ball(ball, _) => 2.0 * ball.radius + self.reach(surface, half_thickness),
             Shape::ConvexCollider(piece, _) => DEEP * piece.bound + piece.rounding,
@@ -254,8 +256,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// Distance at which contact points with a surface are searched (m). What passed through a
-    /// grain is behind its surface by more than the alert distance.
+    /// Distance at which contact points with a surface are searched (m). A shape that passed through a
+    /// grain is behind the surface of the grain by more than the alert distance.
     fn reach(&self, surface: &Carried<S>, half_thickness: f64) -> f64 {
         if surface.shape.is_closed() {
             self.alert.max(half_thickness)
@@ -265,41 +267,47 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 
     /// Follows a pair through the step; it meets where its gap falls below `-margin` (m).
-    pub fn course(&self, pair: &Pair<S>, margin: f64) -> Course {
+    pub fn follow(&self, pair: &SweptPair<S>, margin: f64) -> SweepResult {
         if !pair.travel.is_finite() {
-            return Course::Lost;
+            return SweepResult::Unresolved;
         }
         let travel = pair.travel;
-        // None is longer than half of the penetration in which the pair is both beyond the margin
-        // and seen.
-        let left_to_see = SEEN * (pair.seen - margin).max(0.0);
-        let stride = (STRIDE * pair.half_thickness).min(left_to_see.max(LEAST * pair.seen));
+        // No increment is longer than half of the penetration in which the pair is both beyond the
+        // margin and detected.
+        let remaining = DETECTABLE * (pair.detectable - margin).max(0.0);
+        let stride = (STRIDE * pair.half_thickness).min(remaining.max(LEAST * pair.detectable));
         let (mut before, mut s) = (0.0, 0.0);
         for _ in 0..MAX_INSTANTS {
             let left = (1.0 - s) * travel;
             let Probe { gap, normal } = self.probe(pair, s, left + margin);
             let room = gap + margin;
             if room < 0.0 {
-                return Course::Meets(self.instant(pair, margin, before, s));
+                return SweepResult::Meets(self.meeting_time(pair, margin, before, s));
             }
             if room > left || s >= 1.0 {
-                return Course::Clear;
+                return SweepResult::Separate;
             }
             let closing = match normal {
                 Some(n) => pair.closing_speed(&n),
                 None => travel / self.h,
             };
             if closing <= 0.0 {
-                return Course::Clear;
+                return SweepResult::Separate;
             }
             before = s;
             s = (s + (room / (self.h * closing)).max(stride / travel)).min(1.0);
         }
-        Course::Lost
+        SweepResult::Unresolved
     }
 
     /// Bisects for the time at which a pair meets.
-    fn instant(&self, pair: &Pair<S>, margin: f64, mut before: f64, mut after: f64) -> f64 {
+    fn meeting_time(
+        &self,
+        pair: &SweptPair<S>,
+        margin: f64,
+        mut before: f64,
+        mut after: f64,
+    ) -> f64 {
         while (after - before) * pair.travel > EXACT * pair.half_thickness {
             let middle = 0.5 * (before + after);
             if middle <= before || middle >= after {
@@ -315,7 +323,7 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 
     /// Evaluates the gap of a pair at one time; beyond `range` only a lower bound.
-    fn probe(&self, pair: &Pair<S>, s: f64, range: f64) -> Probe<S::Vector> {
+    fn probe(&self, pair: &SweptPair<S>, s: f64, range: f64) -> Probe<S::Vector> {
         let [one, other] = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let bound = pair.shapes[0].bound();
         if let Shape::Surface(surface) = &pair.shapes[1] {
@@ -359,7 +367,7 @@ impl<'a, S: Space> Sweep<'a, S> {
     /// bodies.
     fn contact_points(
         &self,
-        pair: &Pair<S>,
+        pair: &SweptPair<S>,
         [one, other]: &[Pose<S>; 2],
         reach: f64,
         out: &mut Vec<ContactPoint<S::Vector>>,
@@ -378,16 +386,22 @@ impl<'a, S: Space> Sweep<'a, S> {
                 out.push(core.contact_point_with_ball(&apart, a.radius, b.rounding));
             }
             (Shape::ConvexCollider(a, _), Shape::ConvexCollider(b, _)) => {
-                let roundings = [a.rounding, b.rounding];
-                let (a, b) = (turned(a, one), turned(b, other));
-                a.contact_points(&b, &apart, roundings, &tolerances, out);
+                let cores = [turned(a, one), turned(b, other)];
+                let pair = CorePair::<S> {
+                    cores: cores.each_ref(),
+                    apart,
+                    roundings: [a.rounding, b.rounding],
+                    tolerances,
+                };
+                S::Core::contact_points(&pair, out);
             }
             (Shape::Ball(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
-                let mut touches = Vec::new();
-                b.shape.touches(&place, a.radius + reach, &mut touches);
-                keep_same_side(&mut touches);
-                out.extend(touches.iter().map(|t| ContactPoint {
+                let mut closest_points = Vec::new();
+                b.shape
+                    .closest_points(&place, a.radius + reach, &mut closest_points);
+                keep_same_side(&mut closest_points);
+                out.extend(closest_points.iter().map(|t| ContactPoint {
                     on_candidate: place - t.normal * a.radius,
                     on_antagonist: t.closest_point,
                     normal: t.normal,
@@ -400,23 +414,15 @@ impl<'a, S: Space> Sweep<'a, S> {
             (Shape::ConvexCollider(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
                 let core = turned(a, one).turned(&S::inverse(&other.rotation));
-                core.contact_points_with_surface(
-                    b.shape.as_ref(),
-                    &place,
-                    a.rounding,
-                    &tolerances,
-                    out,
-                );
+                let surface = b.shape.as_ref();
+                core.contact_points_with_surface(surface, &place, a.rounding, &tolerances, out);
             }
             // Candidates precede antagonists in the order balls, pieces, surfaces.
             _ => {}
         }
         if let Shape::Surface(_) = &pair.shapes[1] {
-            for m in out.iter_mut() {
-                m.normal = S::rotate(&other.rotation, &m.normal);
-                m.on_candidate = S::rotate(&other.rotation, &m.on_candidate);
-                m.on_antagonist = S::rotate(&other.rotation, &m.on_antagonist);
-            }
+            let turned = |m: &mut ContactPoint<_>| *m = m.rotated::<S>(&other.rotation);
+            out.iter_mut().for_each(turned);
         }
         let from_candidate = other.centre + pair.image - one.body;
         let from_antagonist = other.centre - other.body;
@@ -428,7 +434,7 @@ impl<'a, S: Space> Sweep<'a, S> {
 
     /// Adds the contacts of a pair that meets after the fraction `s` of the step, as constraints of
     /// the step: at its end the bodies must lie on their sides of the common tangent planes.
-    pub fn contacts(&self, pair: &Pair<S>, s: f64, law: u16, out: &mut Vec<Contact<S>>) {
+    pub fn contacts(&self, pair: &SweptPair<S>, s: f64, law: u16, out: &mut Vec<Contact<S>>) {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();
         let reach = self.alert.max(EXACT * pair.half_thickness);
@@ -438,7 +444,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         met.dedup_by_key(|m| m.feature);
         let [i, j] = pair.bodies();
         let [(v, w), (v_other, w_other)] = [i, j].map(|b| self.velocities[b as usize]);
-        let sizes = [0, 1].map(|k: usize| pair.shapes[k].size(&self.bodies.length));
+        let sizes = [0, 1].map(|k: usize| pair.shapes[k].size(&self.scene.bodies.length));
         let radius = match (&pair.shapes[0], &pair.shapes[1]) {
             (_, Shape::Surface(_)) | (Shape::Ball(..), Shape::ConvexCollider(..)) => sizes[0],
             (Shape::Ball(a, _), Shape::Ball(b, _)) => reduced_radius([a.radius, b.radius], sizes),
@@ -455,11 +461,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 closing: true,
                 beyond: true,
                 ..Contact::new(
-                    Key {
-                        candidate: pair.names.0,
-                        antagonist: pair.names.1,
-                        feature: m.feature,
-                    },
+                    Key::new(pair.names.0, pair.names.1, m.feature),
                     [i, j],
                     law,
                     ContactGeometry {
@@ -495,13 +497,13 @@ fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> Conta
     }
 }
 
-/// A ball near a thin part is also behind the part's other side: keeps the points on the side of
-/// the nearest one.
-fn keep_same_side<V>(touches: &mut Vec<ClosestPoint<V>>) {
-    let nearest = touches
+/// Keeps the points on the side of the nearest one: a ball near a thin part is also behind the other
+/// side of the part.
+fn keep_same_side<V>(closest_points: &mut Vec<ClosestPoint<V>>) {
+    let nearest = closest_points
         .iter()
         .min_by(|t, u| t.distance.abs().total_cmp(&u.distance.abs()));
     if let Some(behind) = nearest.map(|t| t.distance < 0.0) {
-        touches.retain(|t| (t.distance < 0.0) == behind);
+        closest_points.retain(|t| (t.distance < 0.0) == behind);
     }
 }

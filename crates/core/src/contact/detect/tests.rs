@@ -23,21 +23,21 @@ fn touching(mut s: Simulation<Dim2>) -> Simulation<Dim2> {
 
 fn find(s: &mut Simulation<Dim2>) {
     let times = [s.state.time, H];
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    detect(network, &s.shapes, bodies, &s.table, times, false);
+    let scene = CollisionScene::new(&s.shapes, &s.state.bodies, &s.table);
+    detect(&mut s.state.network, &scene, times, false);
 }
 
 /// Adds the contacts that bodies meet in a step with these velocities.
 fn predict(s: &mut Simulation<Dim2>, velocities: &[Vector2<f64>]) {
     let velocities: Vec<_> = velocities.iter().map(|v| (*v, Vector1::zeros())).collect();
-    let motion = Motion {
+    let motion = StepMotion {
         velocities: &velocities,
         time: 0.0,
         h: H,
         parallel: false,
     };
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    add_predicted(network, &s.shapes, bodies, &s.table, &motion);
+    let scene = CollisionScene::new(&s.shapes, &s.state.bodies, &s.table);
+    add_predicted(&mut s.state.network, &scene, &motion);
 }
 
 /// A pair whose bond broke is known as such in each new contact: when it has separated and meets

@@ -122,8 +122,42 @@ pub struct ContactPoint<V> {
     pub facing: bool,
 }
 
-/// Tolerances for finding contact points.
+impl<V: VectorLike> ContactPoint<V> {
+    /// Transforms it from the frame of a body or surface to world axes.
+    #[must_use]
+    pub fn rotated<S: Space<Vector = V>>(&self, rotation: &S::Rotation) -> Self {
+        Self {
+            on_candidate: S::rotate(rotation, &self.on_candidate),
+            on_antagonist: S::rotate(rotation, &self.on_antagonist),
+            normal: S::rotate(rotation, &self.normal),
+            ..*self
+        }
+    }
+}
+
+/// Two convex pieces, of which contact points are sought. Vectors are in world axes, positions
+/// relative to the antagonist's centre.
 #[derive(Clone, Copy, Debug)]
+pub struct CorePair<'a, S: Space> {
+    /// Cores of candidate and antagonist.
+    pub cores: [&'a S::Core; 2],
+    /// Centre of the candidate (m).
+    pub apart: S::Vector,
+    /// Rounding radii of candidate and antagonist (m).
+    pub roundings: [f64; 2],
+    /// Tolerances of the search.
+    pub tolerances: ContactTolerances,
+}
+
+impl<S: Space> CorePair<'_, S> {
+    /// Sum of the rounding radii (m).
+    pub fn thickness(&self) -> f64 {
+        self.roundings[0] + self.roundings[1]
+    }
+}
+
+/// Tolerances for finding contact points.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct ContactTolerances {
     /// Largest gap that is searched (m).
     pub reach: f64,
@@ -149,17 +183,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// of the same corners.
     fn scale_into(&self, factor: f64, out: &mut Self);
 
-    /// Finds contact points with another core, in the order of their features. `self` is the
-    /// candidate, with its centre at `apart`; `roundings` are those of candidate and antagonist
-    /// (m).
-    fn contact_points(
-        &self,
-        other: &Self,
-        apart: &S::Vector,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<S::Vector>>,
-    );
+    /// Finds the contact points of two cores, in the order of their features.
+    fn contact_points(pair: &CorePair<S>, out: &mut Vec<ContactPoint<S::Vector>>);
 
     /// Returns the contact point with a ball whose centre is at `apart`; the ball is the candidate,
     /// and the gap refers to the rounded core.
@@ -190,20 +215,11 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns a corner of a face (m).
     fn corner_of(&self, face: usize) -> S::Vector;
 
-    /// Finds the points of a pair, as in [`Core::contact_points`], that touch the plane of a face
+    /// Finds the points of a pair, as [`Core::contact_points`] does, that touch the plane of a face
     /// of one of the two.
-    fn points_on_face(
-        &self,
-        other: &Self,
-        apart: &S::Vector,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        face: PairFace,
-        out: &mut Vec<ContactPoint<S::Vector>>,
-    );
+    fn points_on_face(pair: &CorePair<S>, face: PairFace, out: &mut Vec<ContactPoint<S::Vector>>);
 
-    /// The name that a feature of a pair of cores has where the antagonist is taken for the
-    /// candidate.
+    /// Returns the name of a feature of a pair of cores after candidate and antagonist are swapped.
     fn feature_from_other_side(feature: u64) -> u64;
 
     /// Signed distance of a point from the core (m, negative inside) and the unit normal at the

@@ -7,7 +7,7 @@
 //! face that leaves most room at its end takes their place: the axis along which the bodies stay
 //! separate the longest.
 
-use super::{ContactPoint, ContactTolerances, Core};
+use super::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -82,13 +82,15 @@ pub struct PairFace {
     pub face: usize,
 }
 
-/// The corners of a pair, its centres apart (m).
-pub(super) struct Pair<'a, S: Space> {
-    pub(super) corners: [&'a [S::Vector]; 2],
-    pub(super) apart: S::Vector,
-    /// Sum of the roundings (m).
-    pub(super) thickness: f64,
-    pub(super) motion: &'a PairMotion<S>,
+/// The corners of a pair and their motion in a step.
+pub(super) struct MovingPair<'a, S: Space> {
+    /// Corners of candidate and antagonist, from their centres (m).
+    corners: [&'a [S::Vector]; 2],
+    /// Centre of the candidate relative to that of the antagonist (m).
+    apart: S::Vector,
+    /// Rounding radii (m).
+    roundings: [f64; 2],
+    motion: &'a PairMotion<S>,
 }
 
 /// A direction from the antagonist to the candidate, and where the two are along it.
@@ -103,13 +105,26 @@ struct Plane<V> {
     lowest: V,
 }
 
-impl<S: Space> Pair<'_, S> {
+impl<'a, S: Space> MovingPair<'a, S> {
+    pub(super) fn new(pair: &CorePair<'a, S>, motion: &'a PairMotion<S>) -> Self {
+        Self {
+            corners: pair.cores.map(Core::corners),
+            apart: pair.apart,
+            roundings: pair.roundings,
+            motion,
+        }
+    }
+
+    fn thickness(&self) -> f64 {
+        self.roundings[0] + self.roundings[1]
+    }
+
     /// Gap along a direction now (m), and the point of the candidate that is lowest along it;
     /// `None` where it is less than `least`.
     pub(super) fn gap(&self, normal: &S::Vector, least: f64) -> Option<(f64, S::Vector)> {
         let [a, b] = self.corners;
         let top = b.iter().map(|q| normal.dot(q));
-        let below = top.fold(f64::NEG_INFINITY, f64::max) + self.thickness;
+        let below = top.fold(f64::NEG_INFINITY, f64::max) + self.thickness();
         let (mut gap, mut lowest) = (f64::INFINITY, self.apart);
         for p in a {
             let now = *p + self.apart;
@@ -124,10 +139,9 @@ impl<S: Space> Pair<'_, S> {
         Some((gap, lowest))
     }
 
-    /// How low the candidate and how high the antagonist reach along a direction now, with these
-    /// roundings (m).
-    pub(super) fn ends(&self, normal: &S::Vector, roundings: [f64; 2]) -> [f64; 2] {
-        let [a, b] = self.corners;
+    /// Lowest coordinate of the candidate and highest of the antagonist along a direction now (m).
+    pub(super) fn ends(&self, normal: &S::Vector) -> [f64; 2] {
+        let ([a, b], roundings) = (self.corners, self.roundings);
         let low = a.iter().map(|p| normal.dot(&(*p + self.apart)));
         let top = b.iter().map(|q| normal.dot(q));
         [
@@ -144,7 +158,7 @@ impl<S: Space> Pair<'_, S> {
         let low = a.iter().map(end).fold(f64::INFINITY, f64::min);
         let end = |q: &S::Vector| normal.dot(&(*q + S::spin_velocity(other, q)));
         let top = b.iter().map(end).fold(f64::NEG_INFINITY, f64::max);
-        normal.dot(&shift) + low - top - self.thickness
+        normal.dot(&shift) + low - top - self.thickness()
     }
 }
 
@@ -160,38 +174,31 @@ pub(super) fn faces<S: Space>(cores: [&S::Core; 2]) -> impl Iterator<Item = (S::
     of(true).chain(of(false))
 }
 
-/// Puts points on a plane that keeps a pair apart in place of those that close in the step although
-/// the pair passes; `apart` and `roundings` as in [`Core::contact_points`].
+/// Replaces the contact points of a pair by points on a plane that keeps the two apart, if they
+/// close in the step although the pair passes.
 pub fn keep_apart<S: Space>(
-    cores: [&S::Core; 2],
-    apart: &S::Vector,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
+    pair: &CorePair<S>,
     motion: &PairMotion<S>,
     out: &mut Vec<ContactPoint<S::Vector>>,
 ) {
+    let (cores, roundings, slack) = (pair.cores, pair.roundings, pair.tolerances.slack);
     let closing = out.iter().filter_map(|m| {
-        let left = motion.closing(m, apart, tolerances.slack)?;
+        let left = motion.closing(m, &pair.apart, slack)?;
         Some((left, *m))
     });
     let Some((least, nearest)) = closing.min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return;
     };
-    let pair = Pair::<S> {
-        corners: cores.map(Core::corners),
-        apart: *apart,
-        thickness: roundings[0] + roundings[1],
-        motion,
-    };
-    let beside = beside::<S>(&nearest, pair.thickness, apart, motion);
+    let moving = MovingPair::new(pair, motion);
+    let sideways = sideways::<S>(&nearest, pair.thickness(), &pair.apart, motion);
     let planes = faces::<S>(cores).map(|(n, face)| (n, Some(face)));
-    let mut room = room(least, tolerances.slack);
+    let mut room = room(least, slack);
     let mut best: Option<Plane<S::Vector>> = None;
-    for (normal, face) in planes.chain(beside.map(|n| (n, None))) {
-        let Some((gap, lowest)) = pair.gap(&normal, -tolerances.slack) else {
+    for (normal, face) in planes.chain(sideways.map(|n| (n, None))) {
+        let Some((gap, lowest)) = moving.gap(&normal, -slack) else {
             continue;
         };
-        let left = pair.left(&normal);
+        let left = moving.left(&normal);
         if left > room {
             room = left;
             best = Some(Plane {
@@ -207,7 +214,7 @@ pub fn keep_apart<S: Space>(
     };
     out.clear();
     if let Some(face) = plane.face {
-        cores[0].points_on_face(cores[1], apart, roundings, tolerances, face, out);
+        S::Core::points_on_face(pair, face, out);
         return;
     }
     let n = plane.normal;
@@ -222,8 +229,9 @@ pub fn keep_apart<S: Space>(
     });
 }
 
-/// The direction across the motion of the nearest points on which the candidate passes.
-fn beside<S: Space>(
+/// Returns the direction across the motion of the nearest points, to the side on which the candidate
+/// passes.
+fn sideways<S: Space>(
     nearest: &ContactPoint<S::Vector>,
     thickness: f64,
     apart: &S::Vector,
@@ -234,7 +242,7 @@ fn beside<S: Space>(
     let along = way.dot(&moved) / moved.dot(&moved);
     let across = way - moved * along;
     let length = across.norm();
-    // What is of rounding has no direction.
+    // A vector of the size of rounding errors has no direction.
     (length > ALIKE * way.norm()).then(|| across * (1.0 / length))
 }
 
@@ -252,15 +260,15 @@ pub fn keep_ball_apart<S: Space>(
         return;
     };
     let centre = [S::Vector::zero()];
-    let pair = Pair::<S> {
+    let pair = MovingPair::<S> {
         corners: [&centre, core.corners()],
         apart: *apart,
-        thickness: radius + rounding,
+        roundings: [radius, rounding],
         motion,
     };
-    let beside = beside::<S>(point, pair.thickness, apart, motion);
+    let sideways = sideways::<S>(point, radius + rounding, apart, motion);
     let mut room = room(least, tolerances.slack);
-    for n in core.normals().iter().copied().chain(beside) {
+    for n in core.normals().iter().copied().chain(sideways) {
         let Some((gap, _)) = pair.gap(&n, -tolerances.slack) else {
             continue;
         };
@@ -303,11 +311,11 @@ pub fn keep_apart_from_surface<S: Space>(
         fan.normals.clear();
         fan.spokes.clear();
         surface.fan(&point.on_antagonist, alike, &mut fan);
-        let beside = beside::<S>(point, rounding, at, motion);
+        let sideways = sideways::<S>(point, rounding, at, motion);
         let own = core.normals().iter().map(|n| -*n);
         let foot = point.on_antagonist;
         let mut room = room(least, tolerances.slack);
-        for n in fan.normals.iter().copied().chain(own).chain(beside) {
+        for n in fan.normals.iter().copied().chain(own).chain(sideways) {
             let rises = |spoke: &S::Vector| spoke.dot(&n) > BEHIND * spoke.norm() + alike;
             if fan.spokes.is_empty() || fan.spokes.iter().any(rises) {
                 continue;

@@ -1,12 +1,14 @@
 //! Convex polygons in 2D.
 
 use super::{
-    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, mass, polygon_line,
-    polygon_pair, polygon_surface,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, CorePair, PairFace, mass,
+    polygon_line, polygon_pair, polygon_surface,
 };
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Dim2, Space};
 use nalgebra::{Matrix1, Vector2};
+
+type V = Vector2<f64>;
 
 /// Cosine of the largest angle between two sides that count as opposite: about five degrees.
 const FACING: f64 = 0.996;
@@ -18,8 +20,8 @@ const ROUNDING: f64 = 1e-12;
 /// are a segment with two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
-    points: Vec<Vector2<f64>>,
-    normals: Vec<Vector2<f64>>,
+    points: Vec<V>,
+    normals: Vec<V>,
     /// Least distance of a side from the origin (m), slightly less for rounding; none if that is
     /// outside. Rotation keeps it.
     inner: f64,
@@ -63,7 +65,7 @@ impl Polygon {
     ///
     /// # Errors
     /// Too few, coincident or non-finite points, points on a line, a polygon that is not convex.
-    pub fn new(points: Vec<Vector2<f64>>) -> Result<Self, PolygonError> {
+    pub fn new(points: Vec<V>) -> Result<Self, PolygonError> {
         let n = points.len();
         if n < 3 {
             return Err(PolygonError::TooFew(n));
@@ -104,7 +106,7 @@ impl Polygon {
     }
 
     /// Creates the segment between two different points (m), the core of a capsule.
-    pub fn segment(from: Vector2<f64>, to: Vector2<f64>) -> Self {
+    pub fn segment(from: V, to: V) -> Self {
         Self::with_normals(vec![from, to])
     }
 
@@ -112,21 +114,21 @@ impl Polygon {
     /// (m) and at least three sides.
     pub fn regular(sides: usize, radius: f64) -> Self {
         let angle = |k: usize| std::f64::consts::TAU * k as f64 / sides as f64;
-        let corner = |k: usize| Vector2::new(angle(k).cos(), angle(k).sin()) * radius;
+        let corner = |k: usize| V::new(angle(k).cos(), angle(k).sin()) * radius;
         Self::with_normals((0..sides).map(corner).collect())
     }
 
-    fn with_normals(points: Vec<Vector2<f64>>) -> Self {
+    fn with_normals(points: Vec<V>) -> Self {
         let n = points.len();
         let normal = |k: usize| {
             let along = points[(k + 1) % n] - points[k];
-            Vector2::new(along.y, -along.x) / along.norm()
+            V::new(along.y, -along.x) / along.norm()
         };
         let normals = (0..n).map(normal).collect();
         Self::of(points, normals)
     }
 
-    fn of(points: Vec<Vector2<f64>>, normals: Vec<Vector2<f64>>) -> Self {
+    fn of(points: Vec<V>, normals: Vec<V>) -> Self {
         let height = points.iter().zip(&normals).map(|(p, n)| p.dot(n));
         let inner = height.fold(f64::INFINITY, f64::min);
         let far = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
@@ -158,23 +160,23 @@ impl Polygon {
     }
 
     /// Returns the corners (m).
-    pub fn points(&self) -> &[Vector2<f64>] {
+    pub fn points(&self) -> &[V] {
         &self.points
     }
 
     /// Returns the outward unit normals of the sides; side k goes from corner k to the next.
-    pub fn normals(&self) -> &[Vector2<f64>] {
+    pub fn normals(&self) -> &[V] {
         &self.normals
     }
 
     /// Returns whether a side with this outward normal is parallel to the opposite side, within
     /// about five degrees. Always true for the round end of a capsule.
-    pub fn faces(&self, normal: &Vector2<f64>) -> bool {
+    pub fn faces(&self, normal: &V) -> bool {
         self.points.len() == 2 || self.normals[self.facing(normal)].dot(normal) < -FACING
     }
 
     /// Returns the two ends of a side (m).
-    pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
+    pub fn side(&self, k: usize) -> (V, V) {
         let next = if k + 1 == self.points.len() { 0 } else { k + 1 };
         (self.points[k], self.points[next])
     }
@@ -187,7 +189,7 @@ impl Polygon {
 
     /// Returns the largest error of rounding of a distance to another polygon near it, with its
     /// centre at `apart` (m).
-    pub(super) fn rounding(&self, other: &Self, apart: &Vector2<f64>) -> f64 {
+    pub(super) fn rounding(&self, other: &Self, apart: &V) -> f64 {
         ROUNDING * (self.far + other.far + apart.amax())
     }
 
@@ -198,7 +200,7 @@ impl Polygon {
     }
 
     /// Returns the side whose normal is most opposed to a direction.
-    pub fn facing(&self, direction: &Vector2<f64>) -> usize {
+    pub fn facing(&self, direction: &V) -> usize {
         let mut best: (f64, usize) = (f64::INFINITY, 0);
         for (k, normal) in self.normals.iter().enumerate() {
             let along = normal.dot(direction);
@@ -211,7 +213,7 @@ impl Polygon {
 
     /// Returns the signed distance of a point from the boundary (m, negative inside), the unit
     /// normal at the nearest point, and the corner if that is one.
-    pub fn distance(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>, Option<usize>) {
+    pub fn distance(&self, point: &V) -> (f64, V, Option<usize>) {
         let n = self.points.len();
         let (mut deepest, mut depth): (_, f64) = (0, f64::NEG_INFINITY);
         for (k, (corner, normal)) in self.points.iter().zip(&self.normals).enumerate() {
@@ -266,7 +268,7 @@ impl Core<Dim2> for Polygon {
 
     fn turn_into(&self, rotation: &f64, out: &mut Self) {
         let (s, c) = rotation.sin_cos();
-        let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);
+        let turn = |v: &V| V::new(c * v.x - s * v.y, s * v.x + c * v.y);
         out.points.clear();
         out.points.extend(self.points.iter().map(turn));
         out.normals.clear();
@@ -281,46 +283,31 @@ impl Core<Dim2> for Polygon {
         (out.inner, out.far) = (self.inner * factor, self.far * factor);
     }
 
-    fn contact_points(
-        &self,
-        other: &Self,
-        apart: &Vector2<f64>,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<Vector2<f64>>>,
-    ) {
-        polygon_pair::contact_points(self, other, apart, roundings, tolerances, out);
+    fn contact_points(pair: &CorePair<Dim2>, out: &mut Vec<ContactPoint<V>>) {
+        polygon_pair::contact_points(pair, out);
     }
 
-    fn corners(&self) -> &[Vector2<f64>] {
+    fn corners(&self) -> &[V] {
         &self.points
     }
 
-    fn normals(&self) -> &[Vector2<f64>] {
+    fn normals(&self) -> &[V] {
         &self.normals
     }
 
-    fn corner_of(&self, face: usize) -> Vector2<f64> {
+    fn corner_of(&self, face: usize) -> V {
         self.points[face]
     }
 
-    fn points_on_face(
-        &self,
-        other: &Self,
-        apart: &Vector2<f64>,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        face: PairFace,
-        out: &mut Vec<ContactPoint<Vector2<f64>>>,
-    ) {
-        polygon_line::points_on_line(self, other, apart, roundings, tolerances, face, out);
+    fn points_on_face(pair: &CorePair<Dim2>, face: PairFace, out: &mut Vec<ContactPoint<V>>) {
+        polygon_line::points_on_line(pair, face, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {
         feature ^ 1
     }
 
-    fn outward(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    fn outward(&self, point: &V) -> (f64, V) {
         let (distance, normal, _) = self.distance(point);
         (distance, normal)
     }
@@ -332,15 +319,15 @@ impl Core<Dim2> for Polygon {
     fn contact_points_with_surface(
         &self,
         surface: &dyn Surface<Dim2>,
-        at: &Vector2<f64>,
+        at: &V,
         rounding: f64,
         tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<Vector2<f64>>>,
+        out: &mut Vec<ContactPoint<V>>,
     ) {
         polygon_surface::contact_points(self, surface, at, rounding, tolerances, out);
     }
 
-    fn outline(&self, rounding: f64) -> Vec<Vec<Vector2<f64>>> {
+    fn outline(&self, rounding: f64) -> Vec<Vec<V>> {
         if rounding == 0.0 {
             return vec![self.points.clone()];
         }
@@ -361,11 +348,11 @@ impl Core<Dim2> for Polygon {
         vec![out]
     }
 
-    fn boundary(&self) -> Boundary<Vector2<f64>> {
+    fn boundary(&self) -> Boundary<V> {
         self.as_boundary()
     }
 
-    fn bounded_by(boundary: Boundary<Vector2<f64>>) -> Result<Self, String> {
+    fn bounded_by(boundary: Boundary<V>) -> Result<Self, String> {
         Self::of_boundary(boundary)
     }
 }
@@ -375,7 +362,7 @@ mod tests {
     use super::*;
 
     fn polygon(points: &[(f64, f64)]) -> Result<Polygon, PolygonError> {
-        Polygon::new(points.iter().map(|p| Vector2::new(p.0, p.1)).collect())
+        Polygon::new(points.iter().map(|p| V::new(p.0, p.1)).collect())
     }
 
     #[test]
@@ -402,12 +389,12 @@ mod tests {
     #[test]
     fn a_ball_meets_sides_and_corners() {
         let square = polygon(&[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]).unwrap();
-        let m = square.contact_point_with_ball(&Vector2::new(0.3, 1.7), 0.5, 0.1);
-        assert!((m.gap - 0.1).abs() < 1e-15 && m.normal == Vector2::new(0.0, 1.0));
-        assert!((m.on_antagonist - Vector2::new(0.3, 1.1)).norm() < 1e-15);
-        let m = square.contact_point_with_ball(&Vector2::new(4.0, 5.0), 0.5, 0.0);
-        assert!((m.gap - 4.5).abs() < 1e-15 && (m.normal - Vector2::new(0.6, 0.8)).norm() < 1e-15);
-        let m = square.contact_point_with_ball(&Vector2::new(0.9, 0.2), 0.5, 0.0);
-        assert!((m.gap + 0.6).abs() < 1e-15 && m.normal == Vector2::new(1.0, 0.0));
+        let m = square.contact_point_with_ball(&V::new(0.3, 1.7), 0.5, 0.1);
+        assert!((m.gap - 0.1).abs() < 1e-15 && m.normal == V::new(0.0, 1.0));
+        assert!((m.on_antagonist - V::new(0.3, 1.1)).norm() < 1e-15);
+        let m = square.contact_point_with_ball(&V::new(4.0, 5.0), 0.5, 0.0);
+        assert!((m.gap - 4.5).abs() < 1e-15 && (m.normal - V::new(0.6, 0.8)).norm() < 1e-15);
+        let m = square.contact_point_with_ball(&V::new(0.9, 0.2), 0.5, 0.0);
+        assert!((m.gap + 0.6).abs() < 1e-15 && m.normal == V::new(1.0, 0.0));
     }
 }

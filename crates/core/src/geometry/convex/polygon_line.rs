@@ -1,26 +1,19 @@
 //! Two convex polygons along the line through a side of one of them.
 
-use super::polygon::Polygon;
 use super::polygon_pair::{name, points_on_side};
-use super::{ContactPoint, ContactTolerances, PairFace};
+use super::{ContactPoint, CorePair, PairFace};
+use crate::geometry::space::Dim2;
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
 /// Finds the points of a pair that touch the line of a side of one of the two: the opposite side
 /// clipped to it, and its lowest corner where that is beside the side and lower.
-pub fn points_on_line(
-    a: &Polygon,
-    b: &Polygon,
-    apart: &V,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
-    face: PairFace,
-    out: &mut Vec<ContactPoint<V>>,
-) {
+pub fn points_on_line(pair: &CorePair<Dim2>, face: PairFace, out: &mut Vec<ContactPoint<V>>) {
     let first = out.len();
-    points_on_side(a, b, apart, roundings, tolerances, face, out);
+    points_on_side(pair, face, out);
     let of_candidate = face.of_candidate;
+    let ([a, b], apart) = (pair.cores, pair.apart);
     let (own, other, sign) = if of_candidate {
         (a, b, -1.0)
     } else {
@@ -33,6 +26,7 @@ pub fn points_on_line(
     let Some((corner, height)) = heights.min_by(|x, y| x.1.total_cmp(&y.1)) else {
         return;
     };
+    let (roundings, tolerances) = (pair.roundings, &pair.tolerances);
     let gap = height - roundings[0] - roundings[1];
     let lower = out[first..].iter().all(|m| m.gap > gap + tolerances.slack);
     if !lower || gap > tolerances.reach {
@@ -43,7 +37,7 @@ pub fn points_on_line(
     } else {
         [roundings[1], roundings[0]]
     };
-    let origin = if of_candidate { V::zeros() } else { *apart };
+    let origin = if of_candidate { V::zeros() } else { apart };
     let at = other.points()[corner] + origin;
     let on_other = at - normal * other_rounding;
     let on_own = at - normal * (height - own_rounding);

@@ -7,21 +7,16 @@
 //! named after their corners, so that the names do not change when the two sides exchange roles.
 
 use super::polygon::Polygon;
-use super::{ContactPoint, ContactTolerances, PairFace};
+use super::{ContactPoint, CorePair, PairFace};
+use crate::geometry::space::Dim2;
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the
-/// origin, in the order of their features; `roundings` are those of both (m).
-pub fn contact_points(
-    a: &Polygon,
-    b: &Polygon,
-    apart: &V,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
-    out: &mut Vec<ContactPoint<V>>,
-) {
+/// Finds the contact points of two polygons, in the order of their features.
+pub fn contact_points(pair: &CorePair<Dim2>, out: &mut Vec<ContactPoint<V>>) {
+    let ([a, b], apart) = (pair.cores, &pair.apart);
+    let (roundings, tolerances) = (pair.roundings, &pair.tolerances);
     let reach = tolerances.reach + roundings[0] + roundings[1];
     let (from_a, side_a) = separation(a, b, &-apart);
     if from_a > reach {
@@ -68,32 +63,22 @@ pub fn contact_points(
         of_candidate: a_leads,
         face: if a_leads { side_a } else { side_b },
     };
-    points_on_side(a, b, apart, roundings, tolerances, face, out);
+    points_on_side(pair, face, out);
 }
 
 /// Finds the points of a pair that touch the line of a side of one of the two: the opposite side
 /// clipped to it.
-pub fn points_on_side(
-    a: &Polygon,
-    b: &Polygon,
-    apart: &V,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
-    face: PairFace,
-    out: &mut Vec<ContactPoint<V>>,
-) {
+pub fn points_on_side(pair: &CorePair<Dim2>, face: PairFace, out: &mut Vec<ContactPoint<V>>) {
     let (a_leads, side) = (face.of_candidate, face.face);
+    let ([a, b], [one, two], apart) = (pair.cores, pair.roundings, pair.apart);
     let first = out.len();
     let (lead, other, at_lead, at_other) = if a_leads {
-        (a, b, *apart, V::zeros())
+        (a, b, apart, V::zeros())
     } else {
-        (b, a, V::zeros(), *apart)
+        (b, a, V::zeros(), apart)
     };
-    let (lead_rounding, other_rounding) = if a_leads {
-        (roundings[0], roundings[1])
-    } else {
-        (roundings[1], roundings[0])
-    };
+    let (lead_rounding, other_rounding) = if a_leads { (one, two) } else { (two, one) };
+    let tolerances = &pair.tolerances;
     let normal = lead.normals()[side];
     let ends = clip(lead, other, side, &(at_other - at_lead), tolerances.slack);
     let along = ends.as_slice().len() == 2 && other.faces(&normal);
@@ -248,7 +233,7 @@ fn is_nearer(
 }
 
 /// An end of the overlap of two sides.
-struct End {
+struct OverlapEnd {
     /// Position on the other side, relative to the reference polygon's centre (m).
     at: V,
     /// Its height above the reference side (m).
@@ -261,13 +246,13 @@ struct End {
 }
 
 /// One end or two.
-enum Ends {
-    One(End),
-    Two([End; 2]),
+enum OverlapEnds {
+    One(OverlapEnd),
+    Two([OverlapEnd; 2]),
 }
 
-impl Ends {
-    fn as_slice(&self) -> &[End] {
+impl OverlapEnds {
+    fn as_slice(&self) -> &[OverlapEnd] {
         match self {
             Self::One(end) => std::slice::from_ref(end),
             Self::Two(ends) => ends,
@@ -276,7 +261,7 @@ impl Ends {
 }
 
 /// Clips the side of `other` opposite a side of `lead` to that side; returns its ends.
-fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> Ends {
+fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> OverlapEnds {
     let normal = lead.normals()[side];
     let (from, to) = lead.side(side);
     let length = (to - from).norm();
@@ -296,7 +281,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         (high, low)
     };
     let height = |p: &V| (p - from).dot(&normal);
-    let of_other = |end: (f64, V, usize)| End {
+    let of_other = |end: (f64, V, usize)| OverlapEnd {
         at: end.1,
         height: height(&end.1),
         corner: end.2,
@@ -307,7 +292,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
     let over = |t: f64, corner: usize| {
         let s = ((t - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
         let at = low.1 + (high.1 - low.1) * s;
-        End {
+        OverlapEnd {
             at,
             height: height(&at),
             corner,
@@ -325,11 +310,11 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         };
         let inside = lower.0 >= -slack && lower.0 <= length + slack;
         return if inside || high.0 <= low.0 {
-            Ends::One(of_other(lower))
+            OverlapEnds::One(of_other(lower))
         } else if lower.0 < 0.0 {
-            Ends::One(over(0.0, side))
+            OverlapEnds::One(over(0.0, side))
         } else {
-            Ends::One(over(length, (side + 1) % lead.points().len()))
+            OverlapEnds::One(over(length, (side + 1) % lead.points().len()))
         };
     }
     let mut ends = [
@@ -347,13 +332,13 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
     for end in &mut ends {
         end.share = 0.5 * (right - left);
     }
-    Ends::Two(ends)
+    OverlapEnds::Two(ends)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::convex::Core;
+    use crate::geometry::convex::{ContactTolerances, Core};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -364,8 +349,24 @@ mod tests {
     };
 
     fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<ContactPoint<V>> {
+        found(a, b, apart, roundings, EXACT)
+    }
+
+    fn found(
+        a: &Polygon,
+        b: &Polygon,
+        apart: V,
+        roundings: [f64; 2],
+        tolerances: ContactTolerances,
+    ) -> Vec<ContactPoint<V>> {
         let mut out = Vec::new();
-        contact_points(a, b, &apart, roundings, &EXACT, &mut out);
+        let pair = CorePair {
+            cores: [a, b],
+            apart,
+            roundings,
+            tolerances,
+        };
+        contact_points(&pair, &mut out);
         out
     }
 
@@ -490,18 +491,14 @@ mod tests {
         };
         for shift in [0.0, 1e-12, -1e-9, 5e-7] {
             for gap in [-1e-9, 0.0, 1e-13, 1e-9, 0.05] {
-                let mut out = Vec::new();
-                let apart = V::new(shift, 2.0 + gap);
-                contact_points(&top, &top, &apart, [0.0; 2], &tolerances, &mut out);
+                let out = found(&top, &top, V::new(shift, 2.0 + gap), [0.0; 2], tolerances);
                 assert_eq!(out.len(), 2, "{shift:e} {gap:e}");
                 assert!(out.iter().all(|m| (m.normal.y - 1.0).abs() < 1e-15));
                 assert!(out.iter().all(|m| (m.gap - gap).abs() < 1e-15));
             }
         }
         // Next to each other's corners: one point, along the line between the corners.
-        let mut out = Vec::new();
-        let apart = V::new(2.03, 2.04);
-        contact_points(&top, &top, &apart, [0.0; 2], &tolerances, &mut out);
+        let out = found(&top, &top, V::new(2.03, 2.04), [0.0; 2], tolerances);
         assert_eq!(out.len(), 1);
         assert!((out[0].gap - 0.05).abs() < 1e-14);
         assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
@@ -527,8 +524,7 @@ mod tests {
                 slack: 1e-6,
                 held,
             };
-            let mut out = Vec::new();
-            contact_points(&top, &low, &apart, [0.0; 2], &tolerances, &mut out);
+            let out = found(&top, &low, apart, [0.0; 2], tolerances);
             assert_eq!(out.len(), 1 + usize::from(held), "{out:?}");
             let share: f64 = out.iter().map(|m| m.share).sum();
             assert!(!held || (share - 2.0).abs() < 0.01, "{share}");
@@ -546,7 +542,7 @@ mod tests {
         let points = met(&standing, &lying, V::new(0.2, 1.3), [0.1, 0.1]);
         let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
         assert!((least - 0.1).abs() < 1e-15);
-        // End to end.
+        // OverlapEnd to end.
         let points = met(&lying, &lying, V::new(2.3, 0.4), [0.1, 0.1]);
         assert!(points.len() == 1 && (points[0].gap - 0.3).abs() < 1e-15);
     }

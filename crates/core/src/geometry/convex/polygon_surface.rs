@@ -29,35 +29,35 @@ pub fn contact_points(
     let reach = tolerances.reach + rounding;
     let deep = reach.max(DEEP * (polygon.farthest() + rounding));
     let n = polygon.points().len();
-    let mut touches: Vec<ClosestPoint<V>> = Vec::new();
+    let mut closest_points: Vec<ClosestPoint<V>> = Vec::new();
     for (k, point) in polygon.points().iter().enumerate() {
         let p = point + at;
-        touches.clear();
-        surface.touches(&p, deep, &mut touches);
-        keep_nearest(&mut touches, reach);
-        for (t, touch) in touches.iter().enumerate() {
+        closest_points.clear();
+        surface.closest_points(&p, deep, &mut closest_points);
+        keep_nearest(&mut closest_points, reach);
+        for (t, closest) in closest_points.iter().enumerate() {
             // At a seam both faces give the same point.
-            let alike = |other: &ClosestPoint<V>| {
-                (other.closest_point - touch.closest_point).norm() <= SEAM * reach
-                    && other.normal.dot(&touch.normal) >= 1.0 - SEAM
+            let same = |other: &ClosestPoint<V>| {
+                (other.closest_point - closest.closest_point).norm() <= SEAM * reach
+                    && other.normal.dot(&closest.normal) >= 1.0 - SEAM
             };
-            if touches[..t].iter().any(alike) {
+            if closest_points[..t].iter().any(same) {
                 continue;
             }
             // Corners of the opposite side, or a corner that points to the surface.
-            let facing = polygon.facing(&touch.normal);
+            let facing = polygon.facing(&closest.normal);
             if k != facing && k != (facing + 1) % n {
                 continue;
             }
             let (from, to) = polygon.side(facing);
             out.push(ContactPoint {
-                on_candidate: p - touch.normal * rounding,
-                on_antagonist: touch.closest_point,
-                normal: touch.normal,
-                gap: touch.distance - rounding,
-                feature: ((u64::from(touch.feature) << 24) | k as u64) << 1,
+                on_candidate: p - closest.normal * rounding,
+                on_antagonist: closest.closest_point,
+                normal: closest.normal,
+                gap: closest.distance - rounding,
+                feature: ((u64::from(closest.feature) << 24) | k as u64) << 1,
                 share: 0.5 * (to - from).norm(),
-                facing: polygon.faces(&touch.normal),
+                facing: polygon.faces(&closest.normal),
             });
         }
     }
@@ -73,13 +73,13 @@ pub fn contact_points(
         let normal = -outward;
         let [before, after] = corner.normals;
         let mean = before + after;
-        let touches = if surface.deforms() {
+        let faces = if surface.deforms() {
             normal.dot(&mean) > STEEPEST * mean.norm()
         } else {
             let inside = before.perp(&normal) <= CONE && normal.perp(&after) <= CONE;
             inside && normal.dot(&mean) > 0.0
         };
-        if !touches {
+        if !faces {
             continue;
         }
         out.push(ContactPoint {
@@ -98,13 +98,16 @@ pub fn contact_points(
 /// Keeps the points of a corner within the search distance. If there are none, the corner may have
 /// penetrated deeper within a step: then keeps the nearest point if the corner is behind it. A
 /// corner near a thin part is far behind its other side.
-fn keep_nearest(touches: &mut Vec<ClosestPoint<V>>, reach: f64) {
+fn keep_nearest(closest_points: &mut Vec<ClosestPoint<V>>, reach: f64) {
     let depth = |t: &ClosestPoint<V>| t.distance.abs();
-    let nearest = touches.iter().map(depth).fold(f64::INFINITY, f64::min);
+    let nearest = closest_points
+        .iter()
+        .map(depth)
+        .fold(f64::INFINITY, f64::min);
     if nearest < reach {
-        touches.retain(|t| depth(t) < reach);
+        closest_points.retain(|t| depth(t) < reach);
     } else {
-        touches.retain(|t| t.distance < 0.0 && depth(t) == nearest);
+        closest_points.retain(|t| t.distance < 0.0 && depth(t) == nearest);
     }
 }
 

@@ -1,10 +1,10 @@
 //! Convex polyhedra in 3D, and the segments of capsules.
 
-pub use super::polyhedron_hull::{PolyhedronError, normal};
+pub use super::polyhedron_hull::{CUBOID_FACES, PolyhedronError, normal};
 pub use super::topology::{Edge, MAX_EDGES, Topology};
 use super::{
-    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, polyhedron_mass,
-    polyhedron_pair, polyhedron_surface,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, CorePair, PairFace,
+    polyhedron_mass, polyhedron_pair, polyhedron_surface,
 };
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Dim3, Space};
@@ -183,15 +183,8 @@ impl Core<Dim3> for Polyhedron {
         }
     }
 
-    fn contact_points(
-        &self,
-        other: &Self,
-        apart: &V,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<V>>,
-    ) {
-        polyhedron_pair::contact_points(self, other, apart, roundings, tolerances, out);
+    fn contact_points(pair: &CorePair<Dim3>, out: &mut Vec<ContactPoint<V>>) {
+        polyhedron_pair::contact_points(pair, out);
     }
 
     fn corners(&self) -> &[V] {
@@ -206,16 +199,8 @@ impl Core<Dim3> for Polyhedron {
         self.points[self.topology.faces[face][0] as usize]
     }
 
-    fn points_on_face(
-        &self,
-        other: &Self,
-        apart: &V,
-        roundings: [f64; 2],
-        tolerances: &ContactTolerances,
-        face: PairFace,
-        out: &mut Vec<ContactPoint<V>>,
-    ) {
-        polyhedron_pair::points_on_face(self, other, apart, roundings, tolerances, face, out);
+    fn points_on_face(pair: &CorePair<Dim3>, face: PairFace, out: &mut Vec<ContactPoint<V>>) {
+        polyhedron_pair::points_on_face(pair, face, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {

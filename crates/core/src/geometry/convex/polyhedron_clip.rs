@@ -45,7 +45,7 @@ pub struct Lead<'a> {
 }
 
 /// A point of the opposite face.
-pub struct Point {
+pub struct ClipPoint {
     /// Position (m).
     pub at: V,
     /// Height above the reference face (m).
@@ -62,7 +62,7 @@ pub struct Point {
 
 /// Origin of a side of the current polygon.
 #[derive(Clone, Copy)]
-enum Side {
+enum ClipSide {
     /// An edge of the other polyhedron.
     Other(usize),
     /// A side of the reference face.
@@ -71,15 +71,15 @@ enum Side {
 
 /// A corner of the current polygon, and the side that starts at it.
 #[derive(Clone, Copy)]
-struct Corner {
+struct ClipCorner {
     at: V,
     feature: u64,
-    side: Side,
+    side: ClipSide,
 }
 
 /// Returns the points of the opposite face that are above the reference face, or beside it by at
 /// most `slack` (m).
-pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
+pub fn clip(lead: &Lead, slack: f64) -> Vec<ClipPoint> {
     let normal = lead.own.normals()[lead.face];
     let mut polygon = facing(lead, &normal);
     let sides = &lead.own.topology().sides[lead.face];
@@ -87,7 +87,7 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
     for k in 0..corners.len() {
         let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
         let inward = normal.cross(&(to - from)).normalize();
-        let depth = |c: &Corner| (c.at - from).dot(&inward);
+        let depth = |c: &ClipCorner| (c.at - from).dot(&inward);
         let mut kept = Vec::with_capacity(polygon.len() + 2);
         for (i, now) in polygon.iter().enumerate() {
             let next = &polygon[(i + 1) % polygon.len()];
@@ -98,10 +98,10 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
             }
             if inside != goes_on {
                 let at = now.at + (next.at - now.at) * (d / (d - e)).clamp(0.0, 1.0);
-                kept.push(Corner {
+                kept.push(ClipCorner {
                     at,
                     feature: lead.name(now.side, k, sides),
-                    side: if inside { Side::Lead(k) } else { now.side },
+                    side: if inside { ClipSide::Lead(k) } else { now.side },
                 });
             }
         }
@@ -109,10 +109,10 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
     }
     merge(&mut polygon, slack);
     let (share, facing) = (share(&polygon, &normal), lead.other.faces(&normal));
-    let height = |c: &Corner| (c.at - corners[0]).dot(&normal);
+    let height = |c: &ClipCorner| (c.at - corners[0]).dot(&normal);
     polygon
         .iter()
-        .map(|c| Point {
+        .map(|c| ClipPoint {
             at: c.at,
             height: height(c),
             normal,
@@ -124,12 +124,12 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
 }
 
 /// Returns the face of the other polyhedron opposite the reference face; for a segment its edge.
-fn facing(lead: &Lead, normal: &V) -> Vec<Corner> {
+fn facing(lead: &Lead, normal: &V) -> Vec<ClipCorner> {
     let topology = lead.other.topology();
-    let corner = |c: u32, side: u32| Corner {
+    let corner = |c: u32, side: u32| ClipCorner {
         at: lead.other.points()[c as usize] + lead.apart,
         feature: name::corner(c as usize, !lead.of_candidate),
-        side: Side::Other(side as usize),
+        side: ClipSide::Other(side as usize),
     };
     match lead.other.facing(normal) {
         Some(f) => {
@@ -147,13 +147,13 @@ fn facing(lead: &Lead, normal: &V) -> Vec<Corner> {
 impl Lead<'_> {
     /// Returns the name of the point where a side of the current polygon crosses side `k` of the
     /// reference face.
-    fn name(&self, side: Side, k: usize, sides: &[u32]) -> u64 {
+    fn name(&self, side: ClipSide, k: usize, sides: &[u32]) -> u64 {
         let edge = |k: usize| sides[k] as usize;
         match side {
-            Side::Other(other) if self.of_candidate => name::crossing(edge(k), other),
-            Side::Other(other) => name::crossing(other, edge(k)),
-            Side::Lead(j) => {
-                // Side j goes from corner j to the next.
+            ClipSide::Other(other) if self.of_candidate => name::crossing(edge(k), other),
+            ClipSide::Other(other) => name::crossing(other, edge(k)),
+            ClipSide::Lead(j) => {
+                // ClipSide j goes from corner j to the next.
                 let corner = if j == (k + 1) % sides.len() { j } else { k };
                 let corner = self.own.topology().faces[self.face][corner];
                 name::corner(corner as usize, self.of_candidate)
@@ -163,14 +163,14 @@ impl Lead<'_> {
 }
 
 /// Removes points closer than `slack` to the previous one.
-fn merge(polygon: &mut Vec<Corner>, slack: f64) {
+fn merge(polygon: &mut Vec<ClipCorner>, slack: f64) {
     polygon.dedup_by(|b, a| (b.at - a.at).norm() <= slack);
     while polygon.len() > 1 && (polygon[0].at - polygon[polygon.len() - 1].at).norm() <= slack {
         polygon.pop();
     }
 }
 
-fn share(polygon: &[Corner], normal: &V) -> f64 {
+fn share(polygon: &[ClipCorner], normal: &V) -> f64 {
     let n = polygon.len();
     if n < 3 {
         return 0.0;

@@ -10,6 +10,17 @@ use std::sync::Arc;
 
 type V = Vector3<f64>;
 
+/// Corners of the faces of a cuboid, anticlockwise seen from outside. Bit k of the number of a corner
+/// is its side along axis k.
+pub const CUBOID_FACES: [[u32; 4]; 6] = [
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+];
+
 /// Reason why points do not form a convex polyhedron.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum PolyhedronError {
@@ -137,15 +148,7 @@ impl Polyhedron {
                 V::new(side(0, x), side(1, y), side(2, z))
             })
             .collect();
-        let faces = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let faces = faces.iter().map(|f| f.to_vec()).collect();
+        let faces = CUBOID_FACES.iter().map(|f| f.to_vec()).collect();
         #[allow(clippy::expect_used, reason = "six faces that are written above")]
         Self::from_faces(points, faces).expect("the faces of a cuboid close")
     }
@@ -183,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hulls_have_the_faces_of_the_books() {
+    fn the_hull_of_a_dodecahedron_has_its_faces() {
         let golden = 0.5 * (1.0 + 5f64.sqrt());
         let mut points = Vec::new();
         for s in [-1.0, 1.0] {
@@ -214,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_make_no_polyhedron_are_told() {
+    fn invalid_points_are_refused() {
         let mut points = Polyhedron::cuboid([1.0, 2.0, 3.0]).points().to_vec();
         assert!(Polyhedron::new(&points).is_ok());
         let with = |p: V| {

@@ -10,7 +10,7 @@ type M = Matrix3<f64>;
 
 /// Mass properties at unit density.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassProperties {
+pub struct PolyhedronMass {
     /// Volume (m^3).
     pub volume: f64,
     /// Centre of mass (m).
@@ -21,10 +21,10 @@ pub struct MassProperties {
 
 /// Computes the mass properties of the points within `rounding` (m) of a convex core; a segment
 /// gives a capsule.
-pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
+pub fn of(core: &Polyhedron, rounding: f64) -> PolyhedronMass {
     // Relative to the first corner, to avoid cancellation far from the origin.
     let origin = core.points()[0];
-    let mut sum = Sum::default();
+    let mut sum = VolumeIntegrals::default();
     let (topology, normals) = (core.topology(), core.normals());
     for (face, n) in topology.faces.iter().zip(normals) {
         let at = |k: usize| core.points()[face[k] as usize] - origin;
@@ -39,8 +39,8 @@ pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
         for (e, edge) in topology.edges.iter().enumerate() {
             let ends = core.ends(e).map(|p| p - origin);
             let arc = match edge.faces {
-                Some(faces) => Arc2::between(faces.map(|f| normals[f as usize])),
-                None => Arc2::full(&(ends[1] - ends[0])),
+                Some(faces) => DirectionArc::between(faces.map(|f| normals[f as usize])),
+                None => DirectionArc::full(&(ends[1] - ends[0])),
             };
             sum.wedge(ends, &arc, rounding);
         }
@@ -48,9 +48,9 @@ pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
             let corner = core.points()[c] - origin;
             let cone = if about.is_empty() {
                 // An end of a segment: half a ball.
-                Cone::half(&(corner - (core.points()[1 - c] - origin)).normalize())
+                DirectionCone::half(&(corner - (core.points()[1 - c] - origin)).normalize())
             } else {
-                Cone::of(
+                DirectionCone::of(
                     &about
                         .iter()
                         .map(|f| normals[*f as usize])
@@ -62,7 +62,7 @@ pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
     }
     let centre = sum.first / sum.volume;
     let second = sum.second - centre * centre.transpose() * sum.volume;
-    MassProperties {
+    PolyhedronMass {
         volume: sum.volume,
         centre: centre + origin,
         inertia: M::identity() * second.trace() - second,
@@ -71,7 +71,7 @@ pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
 
 /// Integrals of 1, x and x x^T.
 #[derive(Default)]
-struct Sum {
+struct VolumeIntegrals {
     volume: f64,
     first: V,
     second: M,
@@ -85,7 +85,7 @@ fn both(a: &V, b: &V) -> M {
     dyad(a, b) + dyad(b, a)
 }
 
-impl Sum {
+impl VolumeIntegrals {
     fn add(&mut self, volume: f64, first: V, second: M) {
         self.volume += volume;
         self.first += first;
@@ -117,7 +117,7 @@ impl Sum {
     }
 
     /// Adds the points within `radius` of an edge, between the directions of the arc.
-    fn wedge(&mut self, [a, b]: [V; 2], arc: &Arc2, radius: f64) {
+    fn wedge(&mut self, [a, b]: [V; 2], arc: &DirectionArc, radius: f64) {
         let length = (b - a).norm();
         let along = (a + b) * (0.5 * length);
         let line = (both(&a, &b) + (dyad(&a, &a) + dyad(&b, &b)) * 2.0) * (length / 6.0);
@@ -131,7 +131,7 @@ impl Sum {
     }
 
     /// Adds the points within `radius` of a corner, between the directions of the cone.
-    fn sector(&mut self, corner: V, cone: &Cone, radius: f64) {
+    fn sector(&mut self, corner: V, cone: &DirectionCone, radius: f64) {
         let volume = cone.angle * radius.powi(3) / 3.0;
         let out = cone.first * (radius.powi(4) / 4.0);
         self.add(
@@ -145,13 +145,13 @@ impl Sum {
 }
 
 /// Integrals of 1, u and u u^T over the unit vectors of an arc.
-struct Arc2 {
+struct DirectionArc {
     angle: f64,
     first: V,
     second: M,
 }
 
-impl Arc2 {
+impl DirectionArc {
     fn between([a, b]: [V; 2]) -> Self {
         let angle = a.cross(&b).norm().atan2(a.dot(&b));
         let middle = (a + b).normalize();
@@ -177,13 +177,13 @@ impl Arc2 {
 }
 
 /// Integrals of 1, u and u u^T over the unit vectors of a convex cone.
-struct Cone {
+struct DirectionCone {
     angle: f64,
     first: V,
     second: M,
 }
 
-impl Cone {
+impl DirectionCone {
     /// Integrates over the cone of unit vectors given anticlockwise.
     ///
     /// The solid angle follows van Oosterom and Strackee (1983); the others follow from Stokes'
@@ -201,7 +201,7 @@ impl Cone {
         let (mut first, mut second) = (V::zeros(), M::identity() * (angle / 3.0));
         for (k, a) in normals.iter().enumerate() {
             let b = &normals[(k + 1) % normals.len()];
-            let arc = Arc2::between([*a, *b]);
+            let arc = DirectionArc::between([*a, *b]);
             let Some(m) = a.cross(b).try_normalize(0.0) else {
                 continue;
             };

@@ -11,7 +11,8 @@
 
 use super::polyhedron::{Polyhedron, across};
 use super::polyhedron_clip::{self, Lead, name};
-use super::{ContactPoint, ContactTolerances, PairFace};
+use super::{ContactPoint, CorePair, PairFace};
+use crate::geometry::space::Dim3;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -21,84 +22,48 @@ const ALIKE: f64 = 1e-3;
 /// plus, for rounding, this fraction of the distance of the centres.
 const ROUNDING: f64 = 1e-13;
 
-/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the
-/// origin, in the order of their features; `roundings` are those of both (m).
-pub fn contact_points(
-    a: &Polyhedron,
-    b: &Polyhedron,
-    apart: &V,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
-    out: &mut Vec<ContactPoint<V>>,
-) {
-    let reach = tolerances.reach + roundings[0] + roundings[1];
-    let alike = ALIKE * tolerances.slack + ROUNDING * apart.norm();
-    let pair = Pair {
-        a,
-        b,
-        apart: *apart,
-        roundings,
-    };
-    let Some(reference) = pair.reference_face(reach, alike, tolerances.slack) else {
+/// Finds the contact points of two polyhedra, in the order of their features.
+pub fn contact_points(pair: &CorePair<Dim3>, out: &mut Vec<ContactPoint<V>>) {
+    let tolerances = &pair.tolerances;
+    let reach = tolerances.reach + pair.roundings[0] + pair.roundings[1];
+    let alike = ALIKE * tolerances.slack + ROUNDING * pair.apart.norm();
+    let Some(reference) = pair.reference_face(reach, alike) else {
         return;
     };
     let first = out.len();
-    match pair.closest(&reference, alike, tolerances) {
+    match pair.closest(&reference, alike) {
         Closest::Face => {
-            pair.face(&reference.points, reference.of_candidate, tolerances, out);
+            pair.face(&reference.points, reference.of_candidate, out);
             out[first..].sort_by_key(|m| m.feature);
         }
         Closest::Edges(near) => {
             if near.difference.norm() <= reach {
-                pair.edges(&near, tolerances, out);
+                pair.edges(&near, out);
             }
         }
-        Closest::Crossing(crossed) => pair.push(
-            &crossed.points,
-            &crossed.normal,
-            crossed.depth,
-            crossed.feature,
-            out,
-        ),
+        Closest::Crossing(crossed) => {
+            let Crossing { normal, depth, .. } = crossed;
+            pair.push(&crossed.points, &normal, depth, crossed.feature, out);
+        }
     }
 }
 
 /// Finds the points of a pair that touch the plane of a face of one of the two: those of the
 /// opposite face above it, and its lowest corner where that is beside the face and lower.
-pub fn points_on_face(
-    a: &Polyhedron,
-    b: &Polyhedron,
-    apart: &V,
-    roundings: [f64; 2],
-    tolerances: &ContactTolerances,
-    PairFace { of_candidate, face }: PairFace,
-    out: &mut Vec<ContactPoint<V>>,
-) {
-    let pair = Pair {
-        a,
-        b,
-        apart: *apart,
-        roundings,
-    };
-    let (own, other, apart) = if of_candidate {
-        (a, b, -apart)
-    } else {
-        (b, a, *apart)
-    };
-    let lead = Lead {
-        own,
-        other,
-        face,
-        apart,
-        of_candidate,
-    };
-    let mut points = polyhedron_clip::clip(&lead, tolerances.slack);
+pub fn points_on_face(pair: &CorePair<Dim3>, face: PairFace, out: &mut Vec<ContactPoint<V>>) {
+    let slack = pair.tolerances.slack;
+    let lead = pair.lead(face);
+    let Lead {
+        own, other, apart, ..
+    } = lead;
+    let PairFace { of_candidate, face } = face;
+    let mut points = polyhedron_clip::clip(&lead, slack);
     let normal = own.normals()[face];
     let corner = other.lowest(&normal);
     let at = other.points()[corner] + apart;
     let height = (at - own.points()[own.topology().faces[face][0] as usize]).dot(&normal);
-    if points.iter().all(|p| p.height > height + tolerances.slack) {
-        points.push(polyhedron_clip::Point {
+    if points.iter().all(|p| p.height > height + slack) {
+        points.push(polyhedron_clip::ClipPoint {
             at,
             height,
             normal,
@@ -108,7 +73,7 @@ pub fn points_on_face(
         });
     }
     let first = out.len();
-    pair.face(&points, of_candidate, tolerances, out);
+    pair.face(&points, of_candidate, out);
     out[first..].sort_by_key(|m| m.feature);
 }
 
@@ -118,7 +83,7 @@ struct ReferenceFace {
     separation: f64,
     /// Whether it is a face of the candidate.
     of_candidate: bool,
-    points: Vec<polyhedron_clip::Point>,
+    points: Vec<polyhedron_clip::ClipPoint>,
 }
 
 /// The features of two polyhedra that are closest, or penetrate least.
@@ -131,20 +96,29 @@ enum Closest {
     Crossing(Crossing),
 }
 
-/// The two polyhedra and their positions.
-struct Pair<'a> {
-    a: &'a Polyhedron,
-    b: &'a Polyhedron,
-    apart: V,
-    roundings: [f64; 2],
-}
+impl CorePair<'_, Dim3> {
+    /// Takes a face of one of the two as the reference face.
+    fn lead(&self, PairFace { of_candidate, face }: PairFace) -> Lead<'_> {
+        let ([a, b], apart) = (self.cores, self.apart);
+        let (own, other, apart) = if of_candidate {
+            (a, b, -apart)
+        } else {
+            (b, a, apart)
+        };
+        Lead {
+            own,
+            other,
+            face,
+            apart,
+            of_candidate,
+        }
+    }
 
-impl Pair<'_> {
     /// Finds the reference face; `None` if the polyhedra are farther apart than `reach` (m). Of two
     /// faces that are equally good within `alike` (m) the candidate's is used, independent of
     /// rounding.
-    fn reference_face(&self, reach: f64, alike: f64, slack: f64) -> Option<ReferenceFace> {
-        let (a, b, apart) = (self.a, self.b, self.apart);
+    fn reference_face(&self, reach: f64, alike: f64) -> Option<ReferenceFace> {
+        let ([a, b], apart) = (self.cores, self.apart);
         let (from_a, face_a) = separation(a, b, &-apart, reach);
         if from_a > reach {
             return None;
@@ -156,24 +130,9 @@ impl Pair<'_> {
         let of_candidate = from_a + alike >= from_b;
         let separation = from_a.max(from_b);
         let points = if separation.is_finite() {
-            let (face, own) = if of_candidate {
-                (face_a, a)
-            } else {
-                (face_b, b)
-            };
-            let (other, apart) = if of_candidate {
-                (b, -apart)
-            } else {
-                (a, apart)
-            };
-            let lead = Lead {
-                own,
-                other,
-                face,
-                apart,
-                of_candidate,
-            };
-            polyhedron_clip::clip(&lead, slack)
+            let face = if of_candidate { face_a } else { face_b };
+            let lead = self.lead(PairFace { of_candidate, face });
+            polyhedron_clip::clip(&lead, self.tolerances.slack)
         } else {
             Vec::new()
         };
@@ -185,29 +144,25 @@ impl Pair<'_> {
     }
 
     /// Chooses between the reference face and two edges.
-    fn closest(
-        &self,
-        reference: &ReferenceFace,
-        alike: f64,
-        tolerances: &ContactTolerances,
-    ) -> Closest {
+    fn closest(&self, reference: &ReferenceFace, alike: f64) -> Closest {
         let (best, points) = (reference.separation, &reference.points);
-        let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
+        let ([a, b], tolerances) = (self.cores, &self.tolerances);
+        let over = |p: &polyhedron_clip::ClipPoint| p.height <= best + alike;
         // A bond over a face keeps it while it bends, even if edges become nearer.
         let bonded = tolerances.held && points.len() > 2;
         if bonded || best >= -tolerances.slack && points.iter().any(over) {
             return Closest::Face;
         }
-        let segments = self.a.normals().is_empty() && self.b.normals().is_empty();
+        let segments = a.normals().is_empty() && b.normals().is_empty();
         let crossed = if best > 0.0 || segments {
             None
         } else {
-            crossing(self.a, self.b, &self.apart)
+            crossing(a, b, &self.apart)
         };
         if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
-            let near = nearest(self.a, self.b, &self.apart);
+            let near = nearest(a, b, &self.apart);
             let distance = near.difference.norm();
-            // Beside the face by at most the slack.
+            // Adjacent the face by at most the slack.
             let beside = best > 0.0
                 && distance * distance - best * best <= tolerances.slack * tolerances.slack
                 && !points.is_empty();
@@ -222,10 +177,6 @@ impl Pair<'_> {
             Some(crossed) => Closest::Crossing(crossed),
             None => Closest::Face,
         }
-    }
-
-    fn thickness(&self) -> f64 {
-        self.roundings[0] + self.roundings[1]
     }
 
     /// Adds one point, from the points of the two cores (m) and their signed distance.
@@ -244,21 +195,20 @@ impl Pair<'_> {
             gap: distance - self.thickness(),
             feature,
             share: 0.0,
-            facing: self.a.normals().is_empty() || self.b.normals().is_empty(),
+            facing: self.cores.iter().any(|c| c.normals().is_empty()),
         });
     }
 
     /// Adds the points of a face contact.
     fn face(
         &self,
-        points: &[polyhedron_clip::Point],
+        points: &[polyhedron_clip::ClipPoint],
         a_leads: bool,
-        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
         for point in points {
             let gap = point.height - self.thickness();
-            if gap > tolerances.reach {
+            if gap > self.tolerances.reach {
                 continue;
             }
             // The point is on the other core; its projection on the reference core is below it.
@@ -282,21 +232,16 @@ impl Pair<'_> {
     }
 
     /// Adds the point of two nearest edges; two points where they are parallel.
-    fn edges(
-        &self,
-        near: &Nearest,
-        tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<V>>,
-    ) {
+    fn edges(&self, near: &Nearest, out: &mut Vec<ContactPoint<V>>) {
         let distance = near.difference.norm();
-        let [e, f] = near.edges;
+        let ([e, f], [a, b], slack) = (near.edges, self.cores, self.tolerances.slack);
         if let Some(ends) = side_by_side(
-            self.a.ends(e).map(|p| p + self.apart),
-            self.b.ends(f),
-            tolerances.slack + ROUNDING * distance,
+            a.ends(e).map(|p| p + self.apart),
+            b.ends(f),
+            slack + ROUNDING * distance,
         ) {
             let far = |at: &[V; 2]| (at[0] - at[1]).norm();
-            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + tolerances.slack) {
+            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + slack) {
                 for (k, at) in ends.iter().enumerate() {
                     let normal = (at[0] - at[1]) / far(at);
                     self.push(at, &normal, far(at), name::corner(k, true), out);
@@ -305,7 +250,7 @@ impl Pair<'_> {
             }
         }
         let along = |ends: [V; 2]| ends[1] - ends[0];
-        let (u, v) = (along(self.a.ends(e)), along(self.b.ends(f)));
+        let (u, v) = (along(a.ends(e)), along(b.ends(f)));
         let normal = edge_normal(&u, &v, &near.difference, ROUNDING * self.apart.norm());
         self.push(&near.points, &normal, distance, name::crossing(e, f), out);
     }

@@ -33,7 +33,7 @@ pub fn contact_points(
     let mut facets = Vec::new();
     surface.facets(&(at - extent), &(at + extent), &mut facets);
     let first = out.len();
-    let near = Near {
+    let placed = PlacedCore {
         core,
         at,
         rounding,
@@ -41,32 +41,34 @@ pub fn contact_points(
         deep: DEEP * size,
         same: SAME * size,
     };
-    near.corners(surface, !facets.is_empty(), out);
+    placed.corners(surface, !facets.is_empty(), out);
     if !facets.is_empty() {
         let deforms = surface.deforms();
         let ridges = facets::ridges(&facets, deforms);
         if deforms {
-            near.vertices(&facets, out);
+            placed.vertices(&facets, out);
         } else {
-            near.points(&facets, &ridges, out);
+            placed.points(&facets, &ridges, out);
         }
-        near.edges(&ridges, deforms, out);
+        placed.edges(&ridges, deforms, out);
     }
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// A polyhedron in place, and the search distance (m).
-struct Near<'a> {
+/// A polyhedron in the frame of a surface, and search distances.
+struct PlacedCore<'a> {
     core: &'a Polyhedron,
     at: &'a V,
     rounding: f64,
-    /// Search distance of the core.
+    /// Search distance of the core (m).
     reach: f64,
+    /// Depth up to which a corner behind facets is found (m).
     deep: f64,
+    /// Distance of positions that count as equal (m).
     same: f64,
 }
 
-impl Near<'_> {
+impl PlacedCore<'_> {
     /// Finds contacts of the polyhedron's corners with the surface.
     fn corners(&self, surface: &dyn Surface<Dim3>, faceted: bool, out: &mut Vec<ContactPoint<V>>) {
         let reach = if faceted {
@@ -74,29 +76,49 @@ impl Near<'_> {
         } else {
             self.reach
         };
-        let mut touches: Vec<ClosestPoint<V>> = Vec::new();
+        let mut closest_points: Vec<ClosestPoint<V>> = Vec::new();
         for (k, point) in self.core.points().iter().enumerate() {
             let p = point + self.at;
-            touches.clear();
-            surface.touches(&p, reach, &mut touches);
-            for touch in touches.iter().filter(|t| t.distance < self.reach) {
+            closest_points.clear();
+            surface.closest_points(&p, reach, &mut closest_points);
+            for closest in closest_points.iter().filter(|t| t.distance < self.reach) {
                 // Corners of the face opposite the surface; for a segment, which has no faces, both
                 // ends.
-                let facing = self.core.facing(&touch.normal);
+                let facing = self.core.facing(&closest.normal);
                 let faces = &self.core.topology().faces;
                 if facing.is_some_and(|f| !faces[f].contains(&(k as u32))) {
                     continue;
                 }
                 out.push(ContactPoint {
-                    on_candidate: p - touch.normal * self.rounding,
-                    on_antagonist: touch.closest_point,
-                    normal: touch.normal,
-                    gap: touch.distance - self.rounding,
-                    feature: u64::from(touch.feature) << 32 | k as u64,
+                    on_candidate: p - closest.normal * self.rounding,
+                    on_antagonist: closest.closest_point,
+                    normal: closest.normal,
+                    gap: closest.distance - self.rounding,
+                    feature: u64::from(closest.feature) << 32 | k as u64,
                     share: facing.map_or(0.0, |f| share(self.core, f)),
-                    facing: self.core.faces(&touch.normal),
+                    facing: self.core.faces(&closest.normal),
                 });
             }
+        }
+    }
+
+    /// The contact point of a corner of the surface, at a distance from the core (m).
+    fn point_at(
+        &self,
+        place: V,
+        distance: f64,
+        outward: V,
+        feature: u64,
+        facing: bool,
+    ) -> ContactPoint<V> {
+        ContactPoint {
+            on_candidate: place - outward * (distance - self.rounding),
+            on_antagonist: place,
+            normal: -outward,
+            gap: distance - self.rounding,
+            feature,
+            share: 0.0,
+            facing,
         }
     }
 
@@ -111,15 +133,8 @@ impl Near<'_> {
             if !self.core.normals().iter().any(face) || -outward.dot(&mean) <= STEEPEST {
                 return;
             }
-            out.push(ContactPoint {
-                on_candidate: place - outward * (distance - self.rounding),
-                on_antagonist: place,
-                normal: -outward,
-                gap: distance - self.rounding,
-                feature: u64::from(feature) << 32 | 1 << 30,
-                share: 0.0,
-                facing: false,
-            });
+            let feature = u64::from(feature) << 32 | 1 << 30;
+            out.push(self.point_at(place, distance, outward, feature, false));
         });
     }
 
@@ -144,15 +159,9 @@ impl Near<'_> {
                 {
                     continue;
                 }
-                out.push(ContactPoint {
-                    on_candidate: place - outward * (distance - self.rounding),
-                    on_antagonist: place,
-                    normal: -outward,
-                    gap: distance - self.rounding,
-                    feature: u64::from(ridge.facet) << 32 | 1 << 30 | (name & 0xfff_ffff),
-                    share: 0.0,
-                    facing: self.core.normals().is_empty(),
-                });
+                let feature = u64::from(ridge.facet) << 32 | 1 << 30 | (name & 0xfff_ffff);
+                let facing = self.core.normals().is_empty();
+                out.push(self.point_at(place, distance, outward, feature, facing));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Polyhedra against each other and against surfaces, compared with independent computations.
 
 use super::polyhedron::Polyhedron;
-use super::{ContactPoint, ContactTolerances, Core};
+use super::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::shape::{HalfSpace, Surface};
 use crate::geometry::space::Dim3;
@@ -34,7 +34,13 @@ fn met(
     tolerances: &ContactTolerances,
 ) -> Vec<ContactPoint<V>> {
     let mut out = Vec::new();
-    a.contact_points(b, &apart, roundings, tolerances, &mut out);
+    let pair = CorePair {
+        cores: [a, b],
+        apart,
+        roundings,
+        tolerances: *tolerances,
+    };
+    Polyhedron::contact_points(&pair, &mut out);
     out
 }
 

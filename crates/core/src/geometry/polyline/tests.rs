@@ -1,15 +1,15 @@
-//! Tests of the module above.
+//! Tests of profiles.
 
 use super::*;
 
-fn touches(profile: &Polyline, x: f64, y: f64, reach: f64) -> Vec<ClosestPoint<Vector2<f64>>> {
+fn closest_points(profile: &Polyline, x: f64, y: f64, reach: f64) -> Vec<ClosestPoint<V>> {
     let mut out = Vec::new();
-    profile.touches(&Vector2::new(x, y), reach, &mut out);
+    profile.closest_points(&V::new(x, y), reach, &mut out);
     out
 }
 
 fn chain(points: &[[f64; 2]], period: Option<f64>) -> Polyline {
-    Polyline::new(points.iter().map(|p| Vector2::from(*p)).collect(), period).unwrap()
+    Polyline::new(points.iter().map(|p| V::from(*p)).collect(), period).unwrap()
 }
 
 /// Points that lie on vertices of a flat chain to rounding, above it and in it, have one contact
@@ -18,16 +18,16 @@ fn chain(points: &[[f64; 2]], period: Option<f64>) -> Polyline {
 fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
     let size = 0.1;
     for slope in [0.0, 0.3] {
-        let at = |x: f64| Vector2::new(x, slope * x);
+        let at = |x: f64| V::new(x, slope * x);
         let points = (0..=20).map(|k| at(f64::from(k) * size)).collect();
         let line = Polyline::new(points, None).unwrap();
-        let outward = Vector2::new(-slope, 1.0).normalize();
+        let outward = V::new(-slope, 1.0).normalize();
         for k in 1..20 {
             for off in [0.0, 1e-17, -1e-17, 3e-17, -3e-17] {
                 for gap in [0.0, 1e-17, -1e-17, 1e-12, -1e-12, 1e-3, -1e-3] {
                     let centre = at(f64::from(k) * size + off) + outward * gap;
                     let mut out = Vec::new();
-                    line.touches(&centre, 0.01, &mut out);
+                    line.closest_points(&centre, 0.01, &mut out);
                     assert!(!out.is_empty(), "{slope} {k} {off:e} {gap:e}");
                     for touch in out {
                         assert!((touch.normal - outward).norm() < 1e-12, "{touch:?}");
@@ -47,23 +47,23 @@ fn a_surface_goes_on_beyond_its_ends() {
     let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
     let profile = chain(&flat, None);
     let mut surface = chain(&flat, None);
-    surface.move_vertices(&flat.map(Vector2::from));
+    surface.move_vertices(&flat.map(V::from));
     for beyond in [1e-6, 1e-3, 0.3] {
         for height in [0.2, 1e-4, 0.0, -1e-4, -0.1] {
             for x in [-beyond, 2.0 + beyond] {
-                let found = touches(&surface, x, height, 0.5);
+                let found = closest_points(&surface, x, height, 0.5);
                 let [touch] = &found[..] else {
                     panic!("{x} {height}: {found:?}")
                 };
-                assert_eq!((touch.normal, touch.distance), (Vector2::y(), height));
+                assert_eq!((touch.normal, touch.distance), (V::y(), height));
             }
-            let corner = touches(&profile, 2.0 + beyond, height, 0.5);
-            let way = Vector2::new(beyond, height);
+            let corner = closest_points(&profile, 2.0 + beyond, height, 0.5);
+            let way = V::new(beyond, height);
             assert!((corner[0].normal - way.normalize()).norm() < 1e-6);
         }
-        // What is lower is beside its end.
+        // A lower point is beside the end of the surface.
         for x in [-beyond, 2.0 + beyond] {
-            for touch in touches(&surface, x, -0.3, 0.5) {
+            for touch in closest_points(&surface, x, -0.3, 0.5) {
                 assert!(touch.normal.y < 0.0 && touch.distance > 0.0, "{touch:?}");
             }
         }
@@ -74,11 +74,11 @@ fn a_surface_goes_on_beyond_its_ends() {
 fn a_flat_seam_gives_one_contact() {
     let flat = chain(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None);
     for x in [0.2, 0.999, 1.0, 1.001, 1.7] {
-        let t = touches(&flat, x, 0.3, 0.5);
+        let t = closest_points(&flat, x, 0.3, 0.5);
         assert!(!t.is_empty() && t.len() <= 2, "{x}: {t:?}");
-        assert!(t.iter().all(|t| t.normal == Vector2::new(0.0, 1.0)));
+        assert!(t.iter().all(|t| t.normal == V::new(0.0, 1.0)));
     }
-    assert_eq!(touches(&flat, 0.7, 0.3, 0.5).len(), 1);
+    assert_eq!(closest_points(&flat, 0.7, 0.3, 0.5).len(), 1);
 }
 
 #[test]
@@ -87,8 +87,8 @@ fn below_a_valley_is_behind_it() {
     let again = chain(&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0]], Some(4.0));
     for (x, depth) in [(0.0, 1e-9), (0.0, 0.3), (0.05, 0.3), (-0.1, 0.3)] {
         for t in [
-            touches(&valley, x, -depth, 0.5),
-            touches(&again, x, -depth, 0.5),
+            closest_points(&valley, x, -depth, 0.5),
+            closest_points(&again, x, -depth, 0.5),
         ] {
             assert_eq!(t.len(), 1, "{x}, {depth}: {t:?}");
             assert_eq!(t[0].distance, -x.hypot(depth));
@@ -100,17 +100,17 @@ fn below_a_valley_is_behind_it() {
 #[test]
 fn a_summit_is_touched_once_and_a_valley_twice() {
     let roof = chain(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]], None);
-    let t = touches(&roof, 1.0, 1.4, 0.5);
+    let t = closest_points(&roof, 1.0, 1.4, 0.5);
     assert_eq!(t.len(), 1);
     assert!((t[0].distance - 0.4).abs() < 1e-15 && t[0].feature % 2 == 1);
     let valley = chain(&[[0.0, 1.0], [1.0, 0.0], [2.0, 1.0]], None);
-    assert_eq!(touches(&valley, 1.0, 0.5, 0.6).len(), 2);
+    assert_eq!(closest_points(&valley, 1.0, 0.5, 0.6).len(), 2);
 }
 
 #[test]
 fn the_inside_is_negative() {
     let flat = chain(&[[0.0, 0.0], [2.0, 0.0]], None);
-    assert!((touches(&flat, 1.0, -0.1, 0.5)[0].distance + 0.1).abs() < 1e-15);
+    assert!((closest_points(&flat, 1.0, -0.1, 0.5)[0].distance + 0.1).abs() < 1e-15);
 }
 
 #[test]
@@ -118,21 +118,21 @@ fn periodic_images_have_one_name() {
     let saw = chain(&[[0.0, 0.0], [0.5, 0.2], [1.0, 0.0]], Some(1.0));
     for x in [0.1, 0.49, 0.5, 0.97, 0.0] {
         let (near, far) = (
-            touches(&saw, x, 0.35, 0.4),
-            touches(&saw, x + 7.0, 0.35, 0.4),
+            closest_points(&saw, x, 0.35, 0.4),
+            closest_points(&saw, x + 7.0, 0.35, 0.4),
         );
         assert_eq!(near.len(), far.len());
         for (a, b) in near.iter().zip(&far) {
             assert_eq!(a.feature, b.feature);
-            assert!((a.closest_point - b.closest_point + Vector2::new(7.0, 0.0)).norm() < 1e-12);
+            assert!((a.closest_point - b.closest_point + V::new(7.0, 0.0)).norm() < 1e-12);
         }
     }
-    assert!(!touches(&saw, 1e-9, 0.1, 0.2).is_empty());
+    assert!(!closest_points(&saw, 1e-9, 0.1, 0.2).is_empty());
 }
 
 #[test]
 fn bad_profiles_are_refused() {
-    let v = Vector2::new;
+    let v = V::new;
     assert_eq!(
         Polyline::new(vec![v(0.0, 0.0)], None).unwrap_err(),
         ProfileError::TooFew(1)

@@ -89,7 +89,7 @@ fn a_law_of_transport_remembers_steps_without_a_flow_of_heat() {
     ] {
         network.thermal = heat.then(|| ContactHeat {
             conducts,
-            seen: vec![ContactTemperature::default()],
+            temperatures: vec![ContactTemperature::default()],
             conductance: vec![[0.0; 2]],
             pairs: PAIR.into(),
             ..ContactHeat::default()
@@ -111,7 +111,7 @@ fn a_law_without_memory_is_asked_where_heat_flows() {
         let mut network = network(0);
         network.thermal = Some(ContactHeat {
             conducts,
-            seen: vec![ContactTemperature::default()],
+            temperatures: vec![ContactTemperature::default()],
             conductance: vec![[0.0; 2]],
             pairs: PAIR.into(),
             ..ContactHeat::default()

@@ -16,11 +16,7 @@ fn scene() -> Simulation<Dim2> {
 }
 
 fn key([candidate, antagonist]: [u32; 2]) -> Key {
-    Key {
-        candidate,
-        antagonist,
-        feature: 0,
-    }
+    Key::new(candidate, antagonist, 0)
 }
 
 /// Bonds these bodies.
@@ -46,14 +42,25 @@ fn spec() -> Spec<Dim2> {
     }
 }
 
-fn circuit(s: &Simulation<Dim2>) -> Circuit<Dim2> {
-    Circuit::new(spec(), s)
+/// A zone of x from 0.5 to 1.5 m.
+fn zone(fate: EjectedFate) -> Zone<Dim2> {
+    Zone {
+        name: "drain".into(),
+        low: Vector2::new(0.5, f64::NEG_INFINITY),
+        high: Vector2::new(1.5, f64::INFINITY),
+        carrier: None,
+        fate,
+    }
+}
+
+fn circuit(s: &Simulation<Dim2>) -> GrainCircuit<Dim2> {
+    GrainCircuit::new(spec(), s)
 }
 
 /// Has the account see a step in which bonds formed and broke, these with so much work of opening
 /// and sliding and fracture energy (J/m).
 fn step(
-    circuit: &mut Circuit<Dim2>,
+    circuit: &mut GrainCircuit<Dim2>,
     s: &mut Simulation<Dim2>,
     formed: &[[u32; 2]],
     broken: &[([u32; 2], [f64; 2], f64)],
@@ -80,7 +87,7 @@ fn step(
             },
         });
     network.bond_breaks = broken.collect();
-    circuit.note(s);
+    circuit.record_bonds(s);
     circuit.update(s);
 }
 
@@ -138,11 +145,11 @@ fn bonds_of_earlier_debris_do_not_count_again() {
         let debris = &circuit.debris[0];
         assert_eq!((debris.bonds, debris.energy), (1, energy));
         assert_eq!(debris.mode_mix, work[1] / (work[0] + work[1]));
-        assert_eq!(circuit.place(1), Some(Place::Contact));
+        assert_eq!(circuit.place(1), Some(GrainPlace::Contact));
         step(&mut circuit, &mut s, &[], &[]);
         assert!(circuit.debris.is_empty());
         step(&mut circuit, &mut s, &[[0, 1]], &[]);
-        assert_eq!(circuit.place(1), Some(Place::Tied(0)));
+        assert_eq!(circuit.place(1), Some(GrainPlace::Tied(0)));
         assert_eq!(circuit.tied_to(0), 1);
     }
     // Source and reattachment, three times each.
@@ -177,19 +184,17 @@ fn other_bonds_do_not_tie() {
     bond(&mut s, [0, 1]);
     bond(&mut s, [1, 2]);
     s.state.network.contacts[0].law = 1;
-    s.state
-        .network
-        .memory
-        .push(s.state.network.memory[0].clone());
+    let memory = &mut s.state.network.memory;
+    memory.push(memory[0].clone());
     let mut circuit = circuit(&s);
-    assert_eq!(circuit.place(1), Some(Place::Contact));
+    assert_eq!(circuit.place(1), Some(GrainPlace::Contact));
     assert_eq!(circuit.place(2), None);
     step(&mut circuit, &mut s, &[[1, 2]], &[]);
-    assert_eq!(circuit.place(1), Some(Place::Contact));
+    assert_eq!(circuit.place(1), Some(GrainPlace::Contact));
     s.state.network.bonds_formed = vec![([0, 1], 1)];
-    circuit.note(&s);
+    circuit.record_bonds(&s);
     circuit.update(&mut s);
-    assert_eq!(circuit.place(1), Some(Place::Contact));
+    assert_eq!(circuit.place(1), Some(GrainPlace::Contact));
 }
 
 /// A zone of x from 0.5 to 1.5 m, which holds the first grain at first: after a time there the
@@ -197,38 +202,30 @@ fn other_bonds_do_not_tie() {
 #[test]
 fn a_grain_is_lost_after_its_time_in_the_zone() {
     let mut s = scene();
-    let infinity = f64::INFINITY;
-    let zone = Zone {
-        name: "drain".into(),
-        low: Vector2::new(0.5, -infinity),
-        high: Vector2::new(1.5, infinity),
-        carrier: None,
-        fate: Fate::LostAfter(2.0),
-    };
     let spec = Spec {
-        bases: vec![0],
-        interfaces: vec![0],
-        zones: vec![zone],
+        zones: vec![zone(EjectedFate::LostAfter(2.0))],
         scaling: 4.0,
+        ..spec()
     };
-    let mut circuit = Circuit::new(spec, &s);
-    assert_eq!(circuit.place(1), Some(Place::Ejected(0)));
-    assert_eq!(circuit.place(2), Some(Place::Contact));
+    let mut circuit = GrainCircuit::new(spec, &s);
+    assert_eq!(circuit.place(1), Some(GrainPlace::Ejected(0)));
+    assert_eq!(circuit.place(2), Some(GrainPlace::Contact));
     let mass = circuit.ledger.contents.ejected.mass;
     assert_eq!(mass, 0.25 * s.state.bodies.mass[1]);
     let times = [1.0, 1.5, 2.0, 3.5, 4.0];
     let places = [1.0, 9.0, 1.0, 1.0, 1.0];
-    let (zone, loose) = (Place::Ejected(0), Place::Contact);
-    for ((time, x), place) in times
-        .iter()
-        .zip(places)
-        .zip([zone, loose, zone, zone, Place::Lost])
+    let (zone, loose) = (GrainPlace::Ejected(0), GrainPlace::Contact);
+    for ((time, x), place) in
+        times
+            .iter()
+            .zip(places)
+            .zip([zone, loose, zone, zone, GrainPlace::Lost])
     {
         s.state.time = *time;
         s.state.bodies.position[1].x = x;
         circuit.update(&mut s);
         assert_eq!(circuit.place(1), Some(place), "{time} s");
-        assert_eq!(s.state.bodies.removed[1], place == Place::Lost);
+        assert_eq!(s.state.bodies.removed[1], place == GrainPlace::Lost);
     }
     let flows = circuit.ledger.flows;
     let grains = [flows.ejected, flows.recirculated, flows.wear].map(|a| a.grains);
@@ -288,13 +285,7 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
 #[test]
 fn a_zone_holds_images_and_follows_its_carrier() {
     let mut s = scene();
-    let mut zone = Zone::<Dim2> {
-        name: "drain".into(),
-        low: Vector2::new(0.5, f64::NEG_INFINITY),
-        high: Vector2::new(1.5, f64::INFINITY),
-        carrier: None,
-        fate: Fate::Stays,
-    };
+    let mut zone = zone(EjectedFate::Stays);
     let open = Periodic { period: [None; 3] };
     let periodic = Periodic {
         period: [Some(4.0), None, None],

@@ -6,13 +6,13 @@ use crate::contact::{ContactHeat, HeatSide};
 use crate::geometry::space::Space;
 use crate::heat::{CircuitState, DiffusionError, Heat, HeatState, Imposed};
 use crate::step::Simulation;
-use crate::threads::{fill, pays};
+use crate::threads::{fill, worth_dividing};
 use fretwork_math::diffusion::{Edge, Graph, steady, step_with_columns};
 
-/// Of a node that is of no first body.
+/// Index of the first body of a node that belongs to a grain.
 const NONE: u32 = u32::MAX;
-/// About what it takes to find the heat of what a contact dissipated (ns).
-const WARMS: f64 = 3.0;
+/// Approximate time to compute the heat dissipated at a contact (ns).
+const SOURCE_TIME: f64 = 3.0;
 
 /// Puts in the heat of the solved step, and has it flow.
 pub(super) fn conduct<S: Space>(heat: &Heat, s: &mut Simulation<S>) -> Result<(), DiffusionError> {
@@ -37,7 +37,7 @@ fn heat_of_step<S: Space>(
     let span = heat.clock * s.options.scheme.h;
     let dissipation = s.state.network.dissipation.as_ref();
     let dissipation = dissipation.filter(|_| has_begun(heat, s));
-    let divide = pays(s.options.solver.parallel, contacts.len(), WARMS);
+    let divide = worth_dividing(s.options.solver.parallel, contacts.len(), SOURCE_TIME);
     fill(divide, &mut thermal.source, contacts.len(), |k| {
         dissipation.map_or(0.0, |dissipation| heat.shares.heat(&dissipation[k]))
     });
@@ -53,7 +53,7 @@ fn heat_of_step<S: Space>(
             *received += part;
         }
     };
-    for (seen, source) in thermal.seen.iter().zip(&thermal.source) {
+    for (seen, source) in thermal.temperatures.iter().zip(&thermal.source) {
         if *source == 0.0 {
             continue;
         }
@@ -104,9 +104,12 @@ fn conduct_pending(
     first_bodies: &[u32],
 ) -> Result<(), DiffusionError> {
     let span = state.pending_time;
-    let mut graph = Graph::new(state.nodes.len(), Vec::with_capacity(thermal.seen.len()));
+    let mut graph = Graph::new(
+        state.nodes.len(),
+        Vec::with_capacity(thermal.temperatures.len()),
+    );
     graph.elements.clone_from(&heat.elements);
-    for (seen, [conductance, _]) in thermal.seen.iter().zip(&thermal.conductance) {
+    for (seen, [conductance, _]) in thermal.temperatures.iter().zip(&thermal.conductance) {
         if *conductance == 0.0 {
             continue;
         }
@@ -148,7 +151,7 @@ fn conduct_pending(
             }
         }
     }
-    state.ledger.book(&balance, exchanged);
+    state.ledger.add_step(&balance, exchanged);
     state.pending.fill(0.0);
     (state.pending_time, state.pending_steps) = (0.0, 0);
     Ok(())
@@ -205,7 +208,7 @@ fn flow_of_current<S: Space>(
     Ok(())
 }
 
-/// For each node the place of its first body, `NONE` where it is of a grain.
+/// Returns the index of the first body of each node, `NONE` for nodes of grains.
 fn nodes_of_first_bodies(heat: &Heat, nodes: usize) -> Vec<u32> {
     let mut of = vec![NONE; nodes];
     for ((_, range), place) in heat.first_bodies.iter().zip(0..) {

@@ -1,4 +1,5 @@
-//! Heat and current in the step: laws see the temperatures at its start, and at its end heat flows.
+//! Heat and current in the step: laws receive the temperatures at its start, and heat flows at its
+//! end.
 //!
 //! Temperatures and the account of heat are in [`crate::step::State::heat`], so that a checkpoint
 //! holds them.
@@ -18,7 +19,7 @@ use std::sync::Arc;
 pub struct HeatFlow(Arc<Heat>);
 
 impl HeatFlow {
-    /// Has a simulation compute heat, and current where there is a circuit, from here on.
+    /// Lets a simulation compute heat, and current if there is a circuit, from now on.
     pub fn add_to<S: Space>(s: &mut Simulation<S>, heat: Heat, state: HeatState) {
         s.fields.grains.add(heat_of_grains());
         for field in heat_of_contacts() {
@@ -53,7 +54,7 @@ impl<S: Space> Process<S> for HeatFlow {
         })
     }
 
-    /// Keeps the body from its surroundings: its heat leaves with it.
+    /// Isolates a removed body from its surroundings.
     fn body_removed(&mut self, s: &mut Simulation<S>, body: usize) {
         if let Some(state) = &mut s.state.heat {
             for node in &mut state.nodes[self.0.nodes[body].range()] {

@@ -1,4 +1,4 @@
-//! What laws see of heat: the temperatures of contacts, as at the start of the step.
+//! The temperatures of contacts at the start of the step, which laws receive.
 
 use super::has_begun;
 use crate::bodies::Nodes;
@@ -6,21 +6,21 @@ use crate::contact::{Bond, Contact, ContactTemperature, HeatSide};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{BodyNodes, Heat};
 use crate::step::Simulation;
-use crate::threads::{fill, pays};
+use crate::threads::{fill, worth_dividing};
 use std::sync::Arc;
 
-/// About what it takes to find the temperatures of a contact (ns).
-const SEES: f64 = 20.0;
+/// Approximate time to compute the temperatures of a contact (ns).
+const TEMPERATURE_TIME: f64 = 20.0;
 
 /// Where the heat of a contact enters one of its bodies, and the temperature there (K), without
 /// meaning where it is insulated.
 #[derive(Clone, Copy, Default)]
-struct End {
+struct HeatEntry {
     side: HeatSide,
     temperature: f64,
 }
 
-impl End {
+impl HeatEntry {
     fn insulated(&self) -> bool {
         self.side == HeatSide::Insulated
     }
@@ -68,16 +68,16 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
     thermal.pairs = Arc::clone(&heat.pairs);
     let flash = heat.flash.is_some() && has_begun(heat, s);
     let temperature = |node: usize| state.nodes[node].temperature;
-    let of_node = |node: u32| End {
+    let of_node = |node: u32| HeatEntry {
         side: HeatSide::Node(node),
         temperature: temperature(node as usize),
     };
     // Ends of bodies of one temperature, contiguous; none of those of several nodes.
-    let ends: Vec<Option<End>> = heat
+    let ends: Vec<Option<HeatEntry>> = heat
         .nodes
         .iter()
         .map(|nodes| match nodes {
-            BodyNodes::Insulated => Some(End::default()),
+            BodyNodes::Insulated => Some(HeatEntry::default()),
             BodyNodes::One(node) => Some(of_node(*node)),
             BodyNodes::Pieces(..) | BodyNodes::Mesh(..) => None,
         })
@@ -90,9 +90,9 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
         let place = || S::unrotate(&s.state.bodies.rotation[body], &contact.arms[side]);
         heat.nodes[body]
             .at::<S>(place)
-            .map_or(End::default(), of_node)
+            .map_or(HeatEntry::default(), of_node)
     };
-    let see = |contact: &Contact<S>, first: End, second: End| {
+    let temperatures_of = |contact: &Contact<S>, first: HeatEntry, second: HeatEntry| {
         let pair = heat.pair(contact.bodies);
         // An insulated body has the temperature of what it touches.
         let [a, b] = match (first.insulated(), second.insulated()) {
@@ -117,15 +117,15 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
         _ => None,
     };
     let meshes = (heat.nodes.iter()).any(|nodes| matches!(nodes, BodyNodes::Mesh(..)));
-    let mut seen = std::mem::take(&mut thermal.seen);
-    let divide = pays(s.options.solver.parallel, contacts.len(), SEES);
+    let mut seen = std::mem::take(&mut thermal.temperatures);
+    let divide = worth_dividing(s.options.solver.parallel, contacts.len(), TEMPERATURE_TIME);
     fill(divide, &mut seen, contacts.len(), |k| {
         let contact = &contacts[k];
         if meshes && contact.bodies.iter().any(|b| of_mesh(*b).is_some()) {
             // Found below.
             return ContactTemperature::default();
         }
-        see(contact, end(contact, 0), end(contact, 1))
+        temperatures_of(contact, end(contact, 0), end(contact, 1))
     });
     if meshes {
         for (contact, seen) in contacts.iter().zip(&mut seen) {
@@ -139,13 +139,13 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
                     let side = mesh_side(s, first, (contact, side), &mut thermal.between);
                     let temperature = thermal.temperature_of(side, temperature);
                     let temperature = temperature.unwrap_or(0.0);
-                    End { side, temperature }
+                    HeatEntry { side, temperature }
                 }
             });
-            *seen = see(contact, ends[0], ends[1]);
+            *seen = temperatures_of(contact, ends[0], ends[1]);
         }
     }
-    thermal.seen = seen;
+    thermal.temperatures = seen;
     s.state.network.thermal = Some(thermal);
 }
 

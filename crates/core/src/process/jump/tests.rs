@@ -4,7 +4,7 @@ use super::*;
 use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
-use crate::process::cycle::Rubbed;
+use crate::process::cycle::SlidingPart;
 use crate::wear::Scar;
 use nalgebra::Vector2;
 
@@ -16,6 +16,15 @@ const H: f64 = 0.25;
 struct Test {
     s: Simulation<Dim2>,
     jumps: Jumps,
+}
+
+/// Jumps after `after` cycles with `control` control cycles.
+fn spec(after: u32, control: u32) -> JumpSpec {
+    JumpSpec {
+        after,
+        control,
+        ..JumpSpec::default()
+    }
 }
 
 impl Test {
@@ -30,21 +39,17 @@ impl Test {
         s.drive(body, [speed, Dof::Fixed, Dof::Fixed]);
         s.options.scheme.h = H;
         let place = s.state.bodies.driven.len() - 1;
-        for velocity in [
-            &mut s.state.bodies.velocity[body as usize],
-            &mut s.state.started[place].0,
-        ] {
-            velocity.x = 1.0;
-        }
-        let test = RubbedBody {
-            rubbed: Rubbed::Driven(place),
+        s.state.bodies.velocity[body as usize].x = 1.0;
+        s.state.started[place].0.x = 1.0;
+        let test = SlidingBody {
+            part: SlidingPart::Driven(place),
             along: 0,
             normal: 1,
         };
         let clock = CycleClock::new(0.0, Some(f64::from(STEPS) * H), 1e9);
         let steps = [u64::from(STEPS), 1_000_000];
         let mut jumps = Jumps::new(spec, clock, test, steps, &s);
-        // What is before the first step.
+        // Processes act before the first step too.
         jumps.between_steps(&mut s).unwrap();
         Self { s, jumps }
     }
@@ -59,7 +64,9 @@ impl Test {
         for _ in 0..STEPS {
             for (vertex, part) in [(1, 0.75), (2, 0.25)] {
                 let part = part * worn / f64::from(STEPS);
-                s.state.scars[0].share([(vertex, 1.0)], part).unwrap();
+                s.state.scars[0]
+                    .wear_vertices([(vertex, 1.0)], part)
+                    .unwrap();
             }
             // The force that the drive gives against that of contacts, over a way of H at 1 m/s.
             let place = s.state.received.len() - 1;
@@ -80,10 +87,8 @@ impl Test {
 fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
     for control in 1..=4 {
         let mut test = Test::new(JumpSpec {
-            after: 5,
-            control,
             at_most: 40,
-            ..JumpSpec::default()
+            ..spec(5, control)
         });
         let stood: Vec<u32> = (0..60)
             .map(|_| test.cycle(|c| 2.0 + 0.125 * f64::from(c), 1.0))
@@ -103,7 +108,7 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
         let between: Vec<usize> = between.map(<[u32]>::len).collect();
         let (_, whole) = between.split_last().unwrap();
         assert!(whole.iter().all(|n| *n == control as usize), "{stood:?}");
-        // Those before the first jump, and those before each that follows.
+        // Cycles before the first jump, and before the second.
         let first = &summary.jumps[..2];
         assert_eq!((first[0].after, first[1].after), (5, 10 + control));
     }
@@ -113,11 +118,7 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
 /// over. At its end all six are done, of which two were.
 #[test]
 fn cycles_are_counted_within_one_that_stands_for_several() {
-    let mut test = Test::new(JumpSpec {
-        after: 3,
-        control: 2,
-        ..JumpSpec::default()
-    });
+    let mut test = Test::new(spec(3, 2));
     let at = |test: &Test, cycles: f64| {
         let time = cycles * f64::from(STEPS) * H;
         (test.jumps.cycles_at(time), test.jumps.jumped_at(time))
@@ -137,35 +138,23 @@ fn cycles_are_counted_within_one_that_stands_for_several() {
 /// twice 4 and 5, twice again.
 #[test]
 fn the_change_of_work_is_that_of_the_mean_control_cycle() {
-    let mut test = Test::new(JumpSpec {
-        after: 3,
-        control: 2,
-        ..JumpSpec::default()
-    });
+    let mut test = Test::new(spec(3, 2));
     let works = [1.0, 2.0, 3.0, 99.0, 4.0, 5.0, 99.0, 4.0, 2.0];
     let stood: Vec<u32> = works.iter().map(|w| test.cycle(|_| 1.0, *w)).collect();
     assert_eq!(stood, [1, 1, 1, 3, 1, 1, 6, 1, 1]);
     let summary = test.jumps.outcome(&test.s);
     let changes: Vec<f64> = summary.jumps.iter().map(|j| j.work_change).collect();
     // The second is compared with the last control cycle of the first.
-    assert!(
-        (changes[0] - (4.5 / 3.0 - 1.0)).abs() < 1e-12,
-        "{changes:?}"
-    );
-    assert!(
-        (changes[1] - (1.0 - 3.0 / 5.0)).abs() < 1e-12,
-        "{changes:?}"
-    );
+    for (found, expected) in changes.iter().zip([4.5 / 3.0 - 1.0, 1.0 - 3.0 / 5.0]) {
+        assert!((found - expected).abs() < 1e-12, "{changes:?}");
+    }
 }
 
 /// A jump of n cycles of constant wear w in which the laws wore a share too much is off by that
 /// share of n w, and so is the whole run at least.
 #[test]
 fn what_a_jump_wears_too_much_is_its_error() {
-    let mut test = Test::new(JumpSpec {
-        after: 2,
-        ..JumpSpec::default()
-    });
+    let mut test = Test::new(spec(2, 1));
     for _ in 0..2 {
         test.cycle(|_| 1.0, 1.0);
     }
@@ -189,9 +178,8 @@ fn what_a_jump_wears_too_much_is_its_error() {
 #[test]
 fn jumps_become_shorter_towards_the_end() {
     let mut test = Test::new(JumpSpec {
-        after: 2,
         cycles: Some(50),
-        ..JumpSpec::default()
+        ..spec(2, 1)
     });
     while !Process::<Dim2>::finished(&test.jumps) {
         let left = 50 - test.jumps.represented;

@@ -74,7 +74,7 @@ pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
         solver_bodies,
         what,
     };
-    // SAFETY: as asked for.
+    // SAFETY: guaranteed by the caller.
     unsafe { with.run(visit) }
 }
 

@@ -55,7 +55,7 @@ pub(in crate::step) fn begin_motion<S: Space>(s: &mut Simulation<S>) {
     s.state.bodies.begin_imposed_motion(s.state.time, h, theta);
     let after = energies_of_driven(s);
     let work: f64 = after.iter().zip(&before).map(|(a, b)| a - b).sum();
-    s.state.energy.see(work);
+    s.state.energy.raise_scale(work);
     if s.state.steps == 0 {
         s.state.energy.initial_kinetic += work;
     } else {

@@ -17,35 +17,29 @@ pub(in crate::step) fn watch_first_move<S: Space>(
 ) {
     let Scheme { h, theta } = s.options.scheme;
     let length = (1.0 - theta) * h;
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    if s.state.steps == 0 {
-        let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
-        if detect::is_calm(network, &s.shapes, bodies, velocity, length, false) {
-            return;
-        }
-    } else if !velocities_jump(s, before, length) {
-        return;
+    if s.state.steps == 0 || velocities_jump(s, before, length) {
+        let jumps = s.state.steps > 0;
+        report(s, length, jumps);
     }
-    detect::report_first_move(
-        &mut s.state.network,
-        &s.shapes,
-        &s.state.bodies,
-        &s.table,
-        s.state.time,
-        length,
-    );
+}
+
+/// Reports penetrations in a move of this length (s), unless all bodies are slow and `always` is
+/// false.
+fn report<S: Space>(s: &mut Simulation<S>, length: f64, always: bool) {
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    let scene = detect::CollisionScene::new(&s.shapes, bodies, &s.table);
+    let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+    if always || !detect::is_calm(network, &scene, velocity, length, false) {
+        detect::report_first_move(network, &scene, s.state.time, length);
+    }
 }
 
 /// Reports penetrations and passages in the move before detection if a process has applied an
 /// impulse.
 pub(in crate::step) fn watch_push<S: Space>(s: &mut Simulation<S>) {
     let Scheme { h, theta } = s.options.scheme;
-    let length = (1.0 - theta) * h;
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
-    if s.workspace.pushed && !detect::is_calm(network, &s.shapes, bodies, velocity, length, false) {
-        let (shapes, table) = (&s.shapes, &s.table);
-        detect::report_first_move(network, shapes, bodies, table, s.state.time, length);
+    if s.workspace.pushed {
+        report(s, (1.0 - theta) * h, false);
     }
 }
 
@@ -68,7 +62,7 @@ fn velocities_jump<S: Space>(
         let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
             && surfaces.filter(|s| s.body as usize == b).any(|s| {
                 !s.shape
-                    .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]))
+                    .is_unchanged_by(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]))
             });
         time * (jump + turn * lever) > s.state.network.fast || sweeps
     })

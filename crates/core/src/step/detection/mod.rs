@@ -17,8 +17,8 @@ use crate::laws::columns::StepInfo;
 pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {
     let time = [s.state.time, s.options.scheme.h];
     let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    let parallel = s.options.solver.parallel;
-    detect::detect(network, &s.shapes, bodies, &s.table, time, parallel);
+    let scene = detect::CollisionScene::new(&s.shapes, bodies, &s.table);
+    detect::detect(network, &scene, time, s.options.solver.parallel);
     mean_places::find(s);
 }
 
@@ -34,18 +34,17 @@ fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
     if s.options.grown > 0 {
         return;
     }
-    let motion = detect::Motion {
+    let motion = detect::StepMotion {
         velocities: free,
         time: s.state.time,
         h: s.options.scheme.h,
         parallel: s.options.solver.parallel,
     };
     let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    let (h, parallel) = (motion.h, motion.parallel);
-    if detect::is_calm(network, &s.shapes, bodies, |b| free[b], h, parallel) {
-        return;
+    let scene = detect::CollisionScene::new(&s.shapes, bodies, &s.table);
+    if !detect::is_calm(network, &scene, |b| free[b], motion.h, motion.parallel) {
+        detect::add_predicted(network, &scene, &motion);
     }
-    detect::add_predicted(network, &s.shapes, bodies, &s.table, &motion);
 }
 
 /// Adds contacts that were found after a solve of the step, to the places of detection.

@@ -14,7 +14,7 @@
 //! Dynamical systems do not take part: a scene with one is refused.
 
 use crate::bodies::Bodies;
-use crate::contact::detect::detect;
+use crate::contact::detect::{CollisionScene, detect};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
@@ -76,7 +76,7 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
     if !moves.iter().all(|(x, w)| x.is_finite() && w.is_finite()) {
         return None;
     }
-    let against_loads = book_moves(s, &moves);
+    let against_loads = record_moves(s, &moves);
     for (b, (shift, turn)) in moves.iter().enumerate() {
         displace(&mut s.state.bodies, b, shift, turn);
     }
@@ -89,14 +89,9 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
         s.state.network.forget_neighbours();
     }
     // No time passes: bond openings follow the normals and are not rotated by spins again.
-    detect(
-        &mut s.state.network,
-        &s.shapes,
-        &s.state.bodies,
-        &s.table,
-        [s.state.time, 0.0],
-        s.options.solver.parallel,
-    );
+    let scene = CollisionScene::new(&s.shapes, &s.state.bodies, &s.table);
+    let (time, parallel) = ([s.state.time, 0.0], s.options.solver.parallel);
+    detect(&mut s.state.network, &scene, time, parallel);
     s.state.projection_work += against_loads;
     Some(Projected {
         before,
@@ -143,7 +138,7 @@ pub(in crate::step) fn overlap<S: Space>(
 }
 
 /// Books the work of displacements against gravity and imposed forces; returns the latter (J).
-fn book_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
+fn record_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
     let bodies = &s.state.bodies;
     let Scheme { h, theta } = s.options.scheme;
     let weights = moves.iter().zip(&bodies.mass);
@@ -158,7 +153,7 @@ fn book_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
             external += force * if k < S::D { shift[k] } else { turn[k - S::D] };
         }
     }
-    s.state.energy.book_projection(potential, external);
+    s.state.energy.add_projection(potential, external);
     -external
 }
 

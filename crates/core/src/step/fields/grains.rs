@@ -173,12 +173,12 @@ pub fn orientation<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
         .collect()
 }
 
-/// Whether a grain was taken out, for simulations from which grains go.
+/// Whether a grain was removed, for simulations that remove grains.
 pub fn removed<S: Space>() -> Field<S, GrainPart<S>> {
     Field::number(
-        "gone",
+        "removed",
         "",
-        "1 for grains that were taken out",
+        "1 for grains that were removed",
         |s: &Simulation<S>, g: &GrainPart<S>| {
             f64::from(u8::from(s.state.bodies.removed[g.index()]))
         },

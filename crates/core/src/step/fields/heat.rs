@@ -40,7 +40,7 @@ pub fn heat_of_contacts<S: Space>() -> [Field<S, Contact<S>>; 4] {
             "K",
             "temperature that laws saw in the last step, with the flash temperature where there is one",
             |s: &Simulation<S>, c: &Contact<S>| {
-                of_contact(s, c, |t, k| Some(t.seen.get(k)?.temperature[0]))
+                of_contact(s, c, |t, k| Some(t.temperatures.get(k)?.temperature[0]))
             },
         ),
         Field::number(

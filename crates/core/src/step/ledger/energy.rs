@@ -5,7 +5,7 @@ use crate::laws::{Interface, SpringForm};
 use crate::step::control::watch_imposed;
 use crate::step::motion::{Motion, StepStart, end_systems};
 use crate::step::{Scheme, Simulation, StepReport};
-use crate::threads::{map_chunks, pays};
+use crate::threads::{map_chunks, worth_dividing};
 
 /// Contacts of a task.
 const CHUNK: usize = 1024;
@@ -13,7 +13,7 @@ const CHUNK: usize = 1024;
 const RECEIVED: f64 = 5.0;
 
 /// Books the step in the energy ledger.
-pub(in crate::step) fn book_energy<S: Space>(
+pub(in crate::step) fn close_energy<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
     report: &mut StepReport,
@@ -46,7 +46,7 @@ pub(in crate::step) fn book_energy<S: Space>(
     if !s.state.systems.is_empty() {
         (kinetic, elastic) = (kinetic + moving, elastic + stored);
     }
-    s.state.energy.book(totals, &work, kinetic, elastic);
+    s.state.energy.add_step(totals, &work, kinetic, elastic);
     s.state.received = received;
 }
 
@@ -67,7 +67,7 @@ fn received<S: Space>(s: &Simulation<S>) -> Vec<Motion<S>> {
     for (driven, d) in driven.iter().zip(0..) {
         place[driven.body as usize] = d;
     }
-    let divide = pays(s.options.solver.parallel, contacts.len(), RECEIVED);
+    let divide = worth_dividing(s.options.solver.parallel, contacts.len(), RECEIVED);
     let parts = map_chunks(divide, contacts, CHUNK, |_, contacts| {
         let mut received = Vec::new();
         for contact in contacts {

@@ -1,5 +1,6 @@
 //! Checks that the state is finite at the end of each step, before any output is recorded.
 
+use crate::contact::Occurrence;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::{Simulation, StepError};
 use crate::threads::any;
@@ -81,7 +82,8 @@ fn watch_rounding<S: Space>(s: &mut Simulation<S>) {
     if any(s.options.solver.parallel, lost.len(), LOOK, stuck)
         && let Some(body) = (0..lost.len()).find(|b| stuck(*b))
     {
-        let step_size = &mut s.state.network.step_size;
-        step_size.record_lost_motion(s.state.time, &s.state.bodies, body as u32);
+        let (time, bodies) = (s.state.time, &s.state.bodies);
+        let first = || Occurrence::new(time, bodies, &[body as u32]);
+        s.state.network.step_size.record_lost_motion(first);
     }
 }

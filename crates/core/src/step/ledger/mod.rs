@@ -4,9 +4,9 @@ mod energy;
 mod finite;
 mod momentum;
 
-pub(super) use energy::book_energy;
+pub(super) use energy::close_energy;
 pub(super) use finite::check_finite;
-pub(super) use momentum::book_momentum;
+pub(super) use momentum::close_momentum;
 
 use super::Simulation;
 use crate::geometry::space::Space;

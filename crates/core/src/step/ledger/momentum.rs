@@ -5,7 +5,7 @@ use crate::momentum::MomentumSum;
 use crate::step::detection::projection;
 use crate::step::motion::StepStart;
 use crate::step::{Simulation, StepReport};
-use crate::threads::{map_ranges, pays};
+use crate::threads::{map_ranges, worth_dividing};
 
 /// Bodies and contacts of a task.
 const CHUNK: usize = 1024;
@@ -16,7 +16,7 @@ const CONTACT: f64 = 4.0;
 
 /// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the
 /// angular momentum of a step by its moment, whatever theta is.
-pub(in crate::step) fn book_momentum<S: Space>(
+pub(in crate::step) fn close_momentum<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
     report: &mut StepReport,
@@ -35,7 +35,7 @@ pub(in crate::step) fn book_momentum<S: Space>(
     let h = s.options.scheme.h;
     let pushed = s.state.gravity * h;
     let parallel = s.options.solver.parallel;
-    let divide = pays(parallel, bodies.len(), BODY);
+    let divide = worth_dividing(parallel, bodies.len(), BODY);
     let of_bodies = map_ranges(divide, bodies.len(), CHUNK, |some| {
         let mut sum = MomentumSum::<S>::zero();
         for b in some.filter(|b| free[*b]) {
@@ -56,7 +56,7 @@ pub(in crate::step) fn book_momentum<S: Space>(
     // What is less deep than the deepest share of the smallest body is not the deepest of any, and
     // is not looked into.
     let smallest = bodies.length.iter().copied().fold(f64::INFINITY, f64::min);
-    let divide = pays(parallel, network.contacts.len(), CONTACT);
+    let divide = worth_dividing(parallel, network.contacts.len(), CONTACT);
     let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {
         let (mut sum, mut deepest) = (MomentumSum::<S>::zero(), 0.0f64);
         for contact in &network.contacts[some] {
@@ -87,7 +87,7 @@ pub(in crate::step) fn book_momentum<S: Space>(
         report.overlap = report.overlap.max(*deepest);
     }
     s.state.momentum.about = Some(about.padded());
-    s.state.momentum.book(&step);
+    s.state.momentum.add_step(&step);
 }
 
 /// The mean place of some bodies (m).

@@ -6,7 +6,7 @@
 use crate::bodies::Bodies;
 use crate::energy::BodyWork;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, map_ranges, pays};
+use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, map_ranges, worth_dividing};
 
 /// Bodies of a task.
 const CHUNK: usize = 1024;
@@ -15,7 +15,7 @@ const EACH: f64 = 10.0;
 
 /// Advances positions and orientations by `time` (s) without forces.
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64, parallel: bool) {
-    let divide = pays(parallel, bodies.len(), EACH);
+    let divide = worth_dividing(parallel, bodies.len(), EACH);
     let Bodies {
         position,
         rotation,
@@ -72,7 +72,7 @@ pub fn free_velocities<S: Space>(
 ) -> Vec<(S::Vector, S::Spin)> {
     let mut free = Vec::new();
     fill(
-        pays(parallel, bodies.len(), EACH),
+        worth_dividing(parallel, bodies.len(), EACH),
         &mut free,
         bodies.len(),
         |b| {
@@ -169,7 +169,7 @@ impl<S: Space> StepStart<S> {
         [h, theta]: [f64; 2],
         parallel: bool,
     ) -> BodyWork {
-        let divide = pays(parallel, bodies.len(), EACH);
+        let divide = worth_dividing(parallel, bodies.len(), EACH);
         let parts = map_ranges(divide, bodies.len(), CHUNK, |some| {
             let (mut potential, mut scheme) = (0.0, 0.0);
             for b in some.filter(|b| bodies.carrier(*b).is_none()) {

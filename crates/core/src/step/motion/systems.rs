@@ -68,8 +68,8 @@ pub(in crate::step) fn add_system<S: Space>(
     s.state.energy.initial_kinetic += kinetic;
     s.state.energy.elastic += stored;
     s.state.energy.external_work += stored;
-    s.state.energy.see(kinetic);
-    s.state.energy.see(stored);
+    s.state.energy.raise_scale(kinetic);
+    s.state.energy.raise_scale(stored);
     index
 }
 

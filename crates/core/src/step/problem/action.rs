@@ -3,7 +3,7 @@
 use crate::contact::{Acts, Contact};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
-use crate::threads::{map_chunks_mut, pays};
+use crate::threads::{map_chunks_mut, worth_dividing};
 
 /// Contacts of a task.
 const CHUNK: usize = 4096;
@@ -35,7 +35,7 @@ pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
     let bodies = &s.state.bodies;
     let deforms = !s.state.systems.is_empty();
     let (network, memory) = (&mut s.state.network.contacts, &s.state.network.memory);
-    let divide = pays(s.options.solver.parallel, network.len(), LOOK);
+    let divide = worth_dividing(s.options.solver.parallel, network.len(), LOOK);
     map_chunks_mut(divide, network, CHUNK, |_, contacts| {
         for contact in contacts {
             let law = usize::from(contact.law);

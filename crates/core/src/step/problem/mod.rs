@@ -17,10 +17,10 @@ mod turning;
 use super::detection::{add_contacts, prepare_contacts};
 use super::motion::{Motion, StepStart, restart};
 use super::{Simulation, StepError, StepReport};
-use crate::contact::{Key, detect};
+use crate::contact::{Key, Occurrence, detect};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
-use crate::threads::{count, fill, pays};
+use crate::threads::{count, fill, worth_dividing};
 use std::time::Instant;
 
 /// Maximum number of solves of a step: each may close contacts that the previous one did not.
@@ -68,23 +68,24 @@ fn solve_with_all<S: Space>(
         report.solves = solves as u32;
         let (network, bodies) = (&mut s.state.network, &s.state.bodies);
         let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+        let scene = detect::CollisionScene::new(&s.shapes, bodies, &s.table);
         let parallel = s.options.solver.parallel;
-        if detect::is_calm(network, &s.shapes, bodies, velocity, info.h, parallel) {
+        if detect::is_calm(network, &scene, velocity, info.h, parallel) {
             return Ok(());
         }
-        let (mut velocities, divide) = (Vec::new(), pays(parallel, bodies.len(), COPY));
+        let (mut velocities, divide) = (Vec::new(), worth_dividing(parallel, bodies.len(), COPY));
         fill(divide, &mut velocities, bodies.len(), velocity);
-        let motion = detect::Motion {
+        let motion = detect::StepMotion {
             velocities: &velocities,
             time: s.state.time,
             h: info.h,
             parallel,
         };
         if solves == MAX_SOLVES {
-            detect::report_passing(network, &s.shapes, bodies, &s.table, &motion);
+            detect::report_passing(network, &scene, &motion);
             return Ok(());
         }
-        let found = detect::find_missed(network, &s.shapes, bodies, &s.table, &motion);
+        let found = detect::find_missed(network, &scene, &motion);
         if found.is_empty() {
             return Ok(());
         }
@@ -106,8 +107,9 @@ fn report_held_back<S: Space>(s: &mut Simulation<S>) {
     for k in &s.workspace.evaluator.held_back {
         if s.workspace.solved.contact_steps[*k].solution.impulse != S::Vector::zero() {
             let pair = s.state.network.contacts[*k].bodies;
-            let step_size = &mut s.state.network.step_size;
-            step_size.record_held_back(s.state.time, &s.state.bodies, pair);
+            let (time, bodies) = (s.state.time, &s.state.bodies);
+            let first = || Occurrence::new(time, bodies, &pair);
+            s.state.network.step_size.record_held_back(first);
         }
     }
 }

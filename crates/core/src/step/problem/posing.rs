@@ -9,7 +9,7 @@ use crate::solve::form::Mobility;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm};
 use crate::step::{Simulation, StepError, StepReport};
-use crate::threads::{fill, map_chunks_of_two, pays};
+use crate::threads::{fill, map_chunks_of_two, worth_dividing};
 
 /// Bodies of a task.
 const CHUNK: usize = 1024;
@@ -137,7 +137,7 @@ fn pose<S: Space>(s: &mut Simulation<S>, free: &[(S::Vector, S::Spin)]) {
 
 fn adopt_velocities<S: Space>(s: &mut Simulation<S>) -> Result<(), StepError> {
     let (bodies, problem) = (&mut s.state.bodies, &s.workspace.problem);
-    let divide = pays(s.options.solver.parallel, bodies.len(), ADOPT);
+    let divide = worth_dividing(s.options.solver.parallel, bodies.len(), ADOPT);
     let both = (&mut bodies.velocity[..], &mut bodies.spin[..]);
     let wrong = map_chunks_of_two(divide, CHUNK, both, |first, velocity, spin| {
         for ((velocity, spin), b) in velocity.iter_mut().zip(spin).zip(first..) {

@@ -13,12 +13,14 @@ use std::collections::{HashMap, HashSet};
 
 const ROOT: &str = "views/grains/PointData";
 /// Fields that are used otherwise than as colours.
-const OF_GEOMETRY: [&str; 6] = [
+const OF_GEOMETRY: [&str; 7] = [
     "angle",
     "orientation_w",
     "orientation_x",
     "orientation_y",
     "orientation_z",
+    "removed",
+    // Name in older files.
     "gone",
 ];
 
@@ -111,12 +113,11 @@ impl Grains {
         let rows = states::points(run, "grains", state)?;
         let points = run.reader.values("views/grains/Points", rows, 3)?;
         let column = |name: &str| run.reader.values(&format!("{ROOT}/{name}"), rows, 1);
-        let gone = match run.reader.has(&format!("{ROOT}/gone")) {
-            true => column("gone")?,
-            false => vec![0.0; rows.1],
-        };
+        let mut names = ["removed", "gone"].into_iter();
+        let name = names.find(|name| run.reader.has(&format!("{ROOT}/{name}")));
+        let removed = name.map_or_else(|| Ok(vec![0.0; rows.1]), column)?;
         let kept: Vec<usize> = (0..rows.1)
-            .filter(|k| gone[*k] == 0.0 && k.is_multiple_of(detail.every))
+            .filter(|k| removed[*k] == 0.0 && k.is_multiple_of(detail.every))
             .collect();
         let pick = |values: &[f64]| kept.iter().map(|k| values[*k]).collect::<Vec<f64>>();
         let at = |k: &usize| [points[3 * k], points[3 * k + 1], points[3 * k + 2]];

@@ -2,7 +2,7 @@
 //! are bonds.
 
 use crate::{ColourScale, Paint};
-use fretwork_core::contact::{BondState, Key};
+use fretwork_core::contact::{BondState, ShapeIndex};
 use fretwork_core::fields::Field;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
@@ -97,22 +97,10 @@ fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     }
     for &(candidate, antagonist) in &s.state.network.broken_pairs {
         for key in [candidate, antagonist] {
-            if let Some(body) = carrier(s, key) {
+            if let Some(body) = ShapeIndex::of(key).body(&s.shapes) {
                 add(body, 1.0);
             }
         }
     }
     sums.into_iter().map(|(sum, n)| sum / n).collect()
-}
-
-/// Body of a ball, convex part or surface, from its collider key.
-fn carrier<S: Space>(s: &Simulation<S>, key: u32) -> Option<u32> {
-    let index = (key & !(Key::SURFACE | Key::PIECE)) as usize;
-    if key & Key::SURFACE != 0 {
-        s.shapes.surfaces.get(index).map(|f| f.body)
-    } else if key & Key::PIECE != 0 {
-        s.shapes.pieces.get(index).map(|p| p.body)
-    } else {
-        s.shapes.balls.get(index).map(|b| b.body)
-    }
 }
