@@ -1,7 +1,6 @@
 //! A simulation with the observers of a run, stepped by hand.
 
 use fretwork::AnySimulation;
-use fretwork::in_dimension;
 use fretwork::record::{Observers, run_observers};
 use fretwork::scene::{Built, Loaded, processes};
 use fretwork::step::{StepError, StepReport};
@@ -28,7 +27,7 @@ impl Stepper {
     pub(crate) fn new(loaded: &Loaded, built: Built, threads: usize) -> Self {
         let mut simulation = built.simulation;
         simulation.options_mut().solver.parallel = threads > 1;
-        in_dimension!(&mut simulation, |s| processes::install(&loaded.case, s));
+        processes::install(&loaded.case, simulation.setup());
         let mut observers = run_observers(loaded, simulation.view());
         observers.begin(&mut *simulation);
         Self {

@@ -12,7 +12,7 @@ use super::output::answer;
 use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
 use crate::experiments::runs::trial::Trial;
-use crate::geometry::space::{Dim2, Dim3, Space};
+use crate::geometry::space::ball_volume;
 use crate::record::biaxial::Biaxial;
 use crate::record::check_names;
 use crate::scene::interfaces::without_interface;
@@ -323,10 +323,6 @@ fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMu
         return;
     };
     line("pressure", format!("{pressure:.3e} Pa"));
-    let ball_volume = match s.dimension() {
-        2 => Dim2::ball_volume,
-        _ => Dim3::ball_volume,
-    };
     let mut flags = vec![false; bodies.len()];
     s.grains().into_iter().for_each(|grain| flags[grain] = true);
     // For convex parts the radius of the ball of the same volume.
@@ -335,7 +331,7 @@ fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMu
     let volume: f64 = balls
         .chain(pieces)
         .filter(|(body, _)| flags[*body as usize])
-        .map(|(_, radius)| ball_volume(radius))
+        .map(|(_, radius)| ball_volume(s.dimension(), radius))
         .sum();
     let masses = bodies.mass.iter().zip(&flags);
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();

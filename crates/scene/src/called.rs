@@ -1,21 +1,20 @@
 //! What messages about a scene call its bodies: as their user knows them.
 
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// A body by its name in the case, or a grain by where it is, which has none: of rigid bodies and
 /// of those that deform.
-pub(super) fn body<S: Space>(s: &Simulation<S>, body: u32) -> String {
-    let bodies = &s.state.bodies;
+pub(super) fn body(s: &dyn RunView, body: u32) -> String {
+    let bodies = s.bodies();
     let carrier = bodies.carrier(body as usize);
-    let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
+    let system = carrier.and_then(|c| s.system(c.system as usize));
     let driven = bodies.driven.iter().find(|d| d.body == body);
     match (driven, system.filter(|system| !system.is_grain())) {
         (Some(driven), _) => format!("the body `{}`", driven.name),
         (None, Some(system)) => format!("the body `{}`", system.name()),
         (None, None) => {
-            let at = bodies.position[body as usize].padded();
-            format!("the grain at {:?} m", &at[..S::D])
+            let at = s.motion(body as usize).position;
+            format!("the grain at {:?} m", &at[..s.dimension()])
         }
     }
 }

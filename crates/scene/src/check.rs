@@ -7,11 +7,10 @@ use super::phases::PhaseSpec;
 use super::processes;
 use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Kind;
 use fretwork_core::step::Coupling;
-use fretwork_core::step::Simulation;
 use fretwork_core::step::control::Until;
+use fretwork_core::view::{ContactView, RunControl};
 
 /// Most materials and most interfaces of a case.
 const MOST: usize = 10_000;
@@ -426,19 +425,19 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
 ///
 /// # Errors
 /// The pair with the largest overlap.
-pub(super) fn overlaps<S: Space>(
-    simulation: &mut Simulation<S>,
+pub(super) fn overlaps(
+    simulation: &mut dyn RunControl,
     smallest: f64,
     origins: &[Origin],
 ) -> Result<(), ValidationError> {
     simulation.detect();
     let s = simulation;
-    let worst = s
-        .state
-        .network
-        .contacts
-        .iter()
-        .min_by(|a, b| a.gap.total_cmp(&b.gap));
+    let mut worst: Option<ContactView> = None;
+    s.visit_contacts(&mut |contact| {
+        if worst.is_none_or(|w| contact.gap.total_cmp(&w.gap).is_lt()) {
+            worst = Some(*contact);
+        }
+    });
     let Some(worst) = worst.filter(|c| c.gap < -0.01 * smallest) else {
         return Ok(());
     };
@@ -451,7 +450,7 @@ pub(super) fn overlaps<S: Space>(
     // The error is reported at the last grain of the pair in the case, or at the body if neither is
     // a grain.
     let at = worst.bodies.iter().max_by_key(|b| {
-        let driven = s.state.bodies.driven.iter().any(|d| d.body == **b);
+        let driven = s.bodies().driven.iter().any(|d| d.body == **b);
         let place = match origins.get(**b as usize) {
             Some(Origin::Grain(k, g)) => (*k, g.unwrap_or(0)),
             Some(Origin::Body(k) | Origin::Elastic(k) | Origin::HalfSpace(k)) => (*k, 0),

@@ -3,10 +3,9 @@
 
 use super::case::Case;
 use super::source::{ValidationError, nearest};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::{Interface, Kind};
 use fretwork_core::process::circuit::{EjectedFate, Spec, Zone};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// The account of grains between first bodies, contact and outside.
@@ -219,22 +218,15 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), ValidationError> {
 }
 
 /// The circuit's specification in terms of the built scene; the case must have been checked.
-pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
+pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
     let circuit = case.circuit.as_ref()?;
-    let index = |name: &String| {
-        s.state
-            .bodies
-            .driven
-            .iter()
-            .find(|d| d.name == *name)
-            .map(|d| d.body)
-    };
+    let index = |name: &String| s.bodies().driven_named(name).map(|d| d.body);
     let ties = tying(case, circuit).unwrap_or_default();
-    let opens = |i: &usize| s.laws.get(*i).is_some_and(Interface::opens);
+    let opens = |i: &usize| s.laws().get(*i).is_some_and(Interface::opens);
     let zones = circuit.zones.iter().map(|z| Zone {
         name: z.name.clone(),
-        low: S::Vector::from_slice(&z.low),
-        high: S::Vector::from_slice(&z.high),
+        low: components(&z.low),
+        high: components(&z.high),
         carrier: z.carried_by.as_ref().and_then(index),
         fate: z
             .lost_after
@@ -246,4 +238,9 @@ pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
         zones: zones.collect(),
         scaling: case.inertia_scaling,
     })
+}
+
+/// A corner with three components, zero where it has none.
+fn components(values: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
 }

@@ -5,9 +5,7 @@
 use super::build::Origin;
 use super::called;
 use super::source::ValidationError;
-use fretwork_core::contact::detect;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunSetup;
 
 /// How far behind a surface points are looked for in space, in their sizes: searches cost the
 /// square of it there.
@@ -17,46 +15,17 @@ const SIZES: f64 = 20.0;
 ///
 /// # Errors
 /// The first point that lies behind a surface.
-pub(super) fn points<S: Space>(
-    s: &Simulation<S>,
-    origins: &[Origin],
-) -> Result<(), ValidationError> {
-    let bodies = &s.state.bodies;
-    let system = |body: u32| bodies.carrier(body as usize).map(|c| c.system);
-    for point in s.shapes.balls.iter().filter(|b| b.radius == 0.0) {
-        let centre = detect::centre(point, bodies);
-        let own = system(point.body);
-        let length = own.and_then(|k| s.state.systems.get(k as usize));
-        let reach = match S::D {
-            2 => length.map_or(0.0, |s| 2.0 * s.length()),
-            _ => SIZES * bodies.length[point.body as usize],
-        };
-        for surface in &s.shapes.surfaces {
-            let other = surface.body as usize;
-            let apart = own != system(surface.body);
-            if !apart || s.table.get(point.material, surface.material).is_none() {
-                continue;
-            }
-            let arm = S::unrotate(&bodies.rotation[other], &(centre - bodies.position[other]));
-            let mut near = Vec::new();
-            surface
-                .shape
-                .closest_points(&(arm - surface.offset), reach, &mut near);
-            let nearest = near
-                .iter()
-                .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
-            let depth = nearest.map_or(0.0, |touch| -touch.distance);
-            if depth > s.state.network.alert {
-                let message = format!(
-                    "points of {} lie {depth:.3e} m behind the surface of {} at the start, beyond the alert distance; move them apart",
-                    called::body(s, point.body),
-                    called::body(s, surface.body)
-                );
-                let place = origins.get(point.body as usize);
-                let place = place.map_or_else(|| "elastic".to_owned(), |o| o.path());
-                return Err(ValidationError::new(place, message));
-            }
-        }
-    }
-    Ok(())
+pub(super) fn points(s: &dyn RunSetup, origins: &[Origin]) -> Result<(), ValidationError> {
+    let Some(behind) = s.point_behind(SIZES) else {
+        return Ok(());
+    };
+    let message = format!(
+        "points of {} lie {:.3e} m behind the surface of {} at the start, beyond the alert distance; move them apart",
+        called::body(s, behind.point),
+        behind.depth,
+        called::body(s, behind.surface)
+    );
+    let place = origins.get(behind.point as usize);
+    let place = place.map_or_else(|| "elastic".to_owned(), |o| o.path());
+    Err(ValidationError::new(place, message))
 }

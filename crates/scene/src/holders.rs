@@ -4,8 +4,7 @@ use super::case::Case;
 use super::phases::Redriven;
 use super::source::ValidationError;
 use fretwork_core::bodies::{Dof, HeldAxis};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_elastic::half_space::HOLDER;
 
 /// The names of the holders in `drives`: a half-space by its name, a part of a body of finite
@@ -67,12 +66,7 @@ pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
 
 /// What holds a deformable body in a scene, of a name in `drives`; none if there is no holder of
 /// this name.
-pub(crate) fn find<S: Space>(
-    case: &Case,
-    s: &Simulation<S>,
-    holder: &str,
-    axis: usize,
-) -> Option<HeldAxis> {
+pub(crate) fn find(case: &Case, s: &dyn RunView, holder: &str, axis: usize) -> Option<HeldAxis> {
     let half_spaces = case.half_spaces.iter();
     let mut half_spaces = half_spaces.map(|b| (&b.name, b.name.clone(), HOLDER));
     let parts = case.elastic.iter().flat_map(|body| {
@@ -84,7 +78,7 @@ pub(crate) fn find<S: Space>(
         .chain(parts)
         .find(|(_, name, _)| name == holder)?;
     Some(HeldAxis {
-        system: s.state.systems.named(body)?,
+        system: s.system_named(body)?,
         part: part.to_owned(),
         axis,
     })

@@ -3,8 +3,7 @@
 
 use super::build::Origin;
 use super::source::ValidationError;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Displacement lost to rounding over the run, as a fraction of the alert distance, above which a
 /// case is rejected.
@@ -14,13 +13,9 @@ const LOST: f64 = 2e-5;
 ///
 /// # Errors
 /// The first one that double precision cannot represent, at its place in the case.
-pub(super) fn check<S: Space>(
-    s: &Simulation<S>,
-    origins: &[Origin],
-    end: f64,
-) -> Result<(), ValidationError> {
-    let bodies = &s.state.bodies;
-    let h = s.options.scheme.h;
+pub(super) fn check(s: &dyn RunView, origins: &[Origin], end: f64) -> Result<(), ValidationError> {
+    let (bodies, dimension, scheme) = (s.bodies(), s.dimension(), s.options().scheme);
+    let h = scheme.h;
     // Contactors of deformable bodies have no mass of their own.
     for b in (0..bodies.len()).filter(|b| bodies.carrier(*b).is_none()) {
         let refuse = |message: String| {
@@ -40,20 +35,22 @@ pub(super) fn check<S: Space>(
                  density, and their units"
             ));
         }
-        let energy = bodies.energy_of(b);
+        let energy = s.kinetic_energy(b);
+        let motion = s.motion(b);
         if !energy.is_finite() {
+            let spin = if dimension == 2 { 2.. } else { 0.. };
             return refuse(format!(
                 "its kinetic energy at the start is {energy} J: velocity {:?} m/s, spin {:?} rad/s; check their units",
-                &bodies.velocity[b].padded()[..S::D],
-                &bodies.spin[b].padded()[..S::Spin::N]
+                &motion.velocity[..dimension],
+                &motion.spin[spin]
             ));
         }
-        let (x, v) = (&bodies.position[b], &bodies.velocity[b]);
-        let fastest = (0..S::D).max_by(|i, j| v[*i].abs().total_cmp(&v[*j].abs()));
+        let (x, v) = (motion.position, motion.velocity);
+        let fastest = (0..dimension).max_by(|i, j| v[*i].abs().total_cmp(&v[*j].abs()));
         if let Some(k) = fastest
             && v[k] != 0.0
-            && x[k] + v[k] * (s.options.scheme.theta * h) == x[k]
-            && v[k].abs() * end > LOST * s.state.network.alert
+            && x[k] + v[k] * (scheme.theta * h) == x[k]
+            && v[k].abs() * end > LOST * s.alert()
         {
             return refuse(format!(
                 "at {:e} m from the origin adjacent numbers are {:.1e} m apart, and it moves {:.1e} m in a step: it would never \
@@ -65,7 +62,7 @@ pub(super) fn check<S: Space>(
         }
     }
     let heaviest = bodies.mass.iter().copied().fold(0.0, f64::max);
-    let gravity = (0..S::D).fold(0.0f64, |g, k| g.max(s.state.gravity[k].abs()));
+    let gravity = s.gravity().iter().fold(0.0f64, |g, x| g.max(x.abs()));
     let fall = 0.5 * heaviest * (gravity * end) * (gravity * end);
     if !(gravity.is_finite() && fall.is_finite()) {
         let message = format!(

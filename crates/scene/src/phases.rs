@@ -7,10 +7,9 @@ use super::case::{BodySpec, Case};
 use super::holders;
 use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
-use fretwork_core::bodies::pressure::{Pushed, Servo};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::bodies::pressure::Pushed;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
+use fretwork_core::view::{RunSetup, RunView};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -366,25 +365,21 @@ fn known<'a>(
 ///
 /// # Errors
 /// A pressure without an area, or a friction coefficient that the law does not have: with its path.
-pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), ValidationError> {
-    s.state.control.gravity = s.state.gravity;
-    s.state
-        .control
-        .gravity_drive
-        .clone_from(&case.gravity_drive);
+pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), ValidationError> {
+    let dimension = s.dimension();
+    s.set_gravity(s.gravity(), case.gravity_drive.clone());
     for (k, body) in case.bodies.iter().enumerate() {
         let Some(place) = place(s, &body.name) else {
             continue;
         };
-        for (dof, drive) in body.ordered(S::D).iter().enumerate() {
-            let name = BodySpec::names(S::D)[dof];
+        for (dof, drive) in body.ordered(dimension).iter().enumerate() {
+            let name = BodySpec::names(dimension)[dof];
             let pushed = Pushed::Body(place, dof);
-            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, drive)
+            s.add_pressures(&pushed, drive)
                 .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
-            s.state.control.servos.extend(servos);
         }
         if let Some(time) = body.vanishes {
-            s.state.control.gates.push((place, time));
+            s.add_gate(place, time);
         }
     }
     for (path, holder, axes) in holders::own(case) {
@@ -393,10 +388,9 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
                 continue;
             };
             let pushed = Pushed::Holder(held);
-            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, drive).map_err(|m| {
+            s.add_pressures(&pushed, drive).map_err(|m| {
                 ValidationError::new(format!("{path}.{}", ["x", "y", "z"][axis]), m)
             })?;
-            s.state.control.servos.extend(servos);
         }
     }
     let mut phases = Vec::new();
@@ -412,25 +406,21 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
         for round in 1..=times {
             let recurs = round < times;
             let once = phases[group.clone()].iter().cloned();
-            s.phases.extend(once.map(|p| Phase { recurs, ..p }));
+            once.for_each(|p| s.add_phase(Phase { recurs, ..p }));
         }
     }
     s.measure_areas();
     Ok(())
 }
 
-fn place<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
-    s.state.bodies.driven.iter().position(|d| d.name == name)
+fn place(s: &dyn RunView, name: &str) -> Option<usize> {
+    s.bodies().driven.iter().position(|d| d.name == name)
 }
 
-fn changes<S: Space>(
-    case: &Case,
-    spec: &PhaseSpec,
-    s: &Simulation<S>,
-) -> Result<Changes<S>, ValidationError> {
+fn changes(case: &Case, spec: &PhaseSpec, s: &dyn RunSetup) -> Result<Changes, ValidationError> {
     let (mut drives, mut held) = (Vec::new(), Vec::new());
     for (name, redriven) in &spec.drives {
-        for (dof, k, drive) in redriven.given(S::D) {
+        for (dof, k, drive) in redriven.given(s.dimension()) {
             let Some(k) = k else { continue };
             let pushed = match (place(s, name), holders::find(case, s, name, k)) {
                 (Some(place), _) => {
@@ -443,17 +433,17 @@ fn changes<S: Space>(
                 }
                 (None, None) => continue,
             };
-            Servo::of(&s.state.bodies, &s.shapes, &pushed, drive)
+            s.check_pressures(&pushed, drive)
                 .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
         }
     }
     let mut contact = Vec::new();
     for (name, mu) in &spec.friction {
         let path = format!("friction.{name}");
-        let Some(k) = s.laws.iter().position(|l| l.name == *name) else {
+        let Some(k) = s.laws().iter().position(|l| l.name == *name) else {
             continue;
         };
-        let law = s.laws[k].contact();
+        let law = s.laws()[k].contact();
         let Some(p) = law.plugin.parameters.iter().position(|p| p.name == "mu") else {
             let message = format!(
                 "the contact law `{}` has no parameter `mu` to change",
@@ -473,10 +463,15 @@ fn changes<S: Space>(
     Ok(Changes {
         drives,
         holders: held,
-        gravity: spec.gravity.as_deref().map(S::Vector::from_slice),
+        gravity: spec.gravity.as_deref().map(components),
         gravity_drive: spec.gravity_drive.clone(),
         contact,
         open: spec.open.iter().filter_map(|n| place(s, n)).collect(),
         tolerance: spec.tolerance,
     })
+}
+
+/// A vector of the case with three components, zero where it has none.
+fn components(values: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
 }

@@ -5,11 +5,9 @@ use super::case::Case;
 use super::circuit;
 use super::phases::{drives_of_holder, holder_name};
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::process::circuit::{CircuitProcess, Intervals};
+use fretwork_core::process::circuit::Intervals;
 use fretwork_core::process::cycle::{CycleClock, SlidingBody, SlidingPart};
-use fretwork_core::process::jump::Jumps;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{RunSetup, RunView};
 
 /// The friction test of a case, in its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +23,7 @@ pub struct FrictionTest {
 
 impl FrictionTest {
     /// Finds the test of a case in its scene; none where the case has none.
-    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
+    pub fn of(case: &Case, s: &dyn RunView) -> Option<Self> {
         let test = case.friction.as_ref()?;
         let (rubbed, dof) = rubbed(case, s)?;
         let period = test
@@ -48,17 +46,15 @@ impl FrictionTest {
 }
 
 /// The body of the test of a case in its scene, and the drive that rubs it.
-fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(SlidingPart, &'a Dof)> {
+fn rubbed<'a>(case: &'a Case, s: &'a dyn RunView) -> Option<(SlidingPart, &'a Dof)> {
     let test = case.friction.as_ref()?;
-    let driven = &s.state.bodies.driven;
+    let driven = s.bodies().driven;
     if let Some(place) = driven.iter().position(|d| d.name == test.body) {
         return Some((SlidingPart::Driven(place), &driven[place].dofs[test.along]));
     }
     let (part, dof) = held(case, &test.body, test.along)?;
-    let systems = &s.state.systems;
-    let named = |k: &usize| systems.get(*k).is_some_and(|s| s.name() == test.body);
-    let system = (0..systems.len()).find(named)?;
-    let holders = systems.get(system)?.holders();
+    let system = s.system_named(&test.body)?;
+    let holders = s.system(system)?.holders();
     let holder = holders
         .iter()
         .position(|h| h.part == part && h.axis == test.along)?;
@@ -89,24 +85,26 @@ pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a 
 
 /// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the
 /// tribological circuit. Wear recession came with the surfaces that wear.
-pub fn install<S: Space>(case: &Case, s: &mut Simulation<S>) {
-    if let Some(jumps) = jumps(case, s) {
-        s.add_process(jumps);
-    }
+pub fn install(case: &Case, s: &mut dyn RunSetup) {
+    add_jumps(case, s);
     if let (Some(spec), Some(words)) = (circuit::install(case, s), &case.circuit) {
         let intervals = Intervals {
             every: words.every,
             rows: (case.output.every > 1).then_some(case.output.every),
         };
-        s.add_process(CircuitProcess::new(spec, words.start, intervals));
+        s.add_circuit(spec, words.start, intervals);
     }
 }
 
-/// Jumps over cycles, where the case jumps and its friction test has cycles.
-fn jumps<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Jumps> {
-    let spec = case.jump.clone()?;
-    let test = FrictionTest::of(case, s)?;
+/// Adds jumps over cycles, where the case jumps and its friction test has cycles.
+fn add_jumps(case: &Case, s: &mut dyn RunSetup) {
+    let (Some(spec), Some(test)) = (case.jump.clone(), FrictionTest::of(case, s)) else {
+        return;
+    };
+    let Some(period) = test.clock.period else {
+        return;
+    };
     let count = |time: f64| (time / case.time.step).round() as u64;
-    let steps = [count(test.clock.period?), count(case.time.end)];
-    Some(Jumps::new(spec, test.clock, test.body, steps, s))
+    let steps = [count(period), count(case.time.end)];
+    s.add_jumps(spec, test.clock, test.body, steps);
 }

@@ -275,7 +275,7 @@ impl<'a> Recorder<'a> {
         let checkpoint_writer = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
         let simulation = &mut built.simulation;
         simulation.options_mut().solver.parallel = options.threads > 1;
-        in_dimension!(simulation, |s| processes::install(case, s));
+        processes::install(case, simulation.setup());
         let mut observers = run_observers(loaded, simulation.view());
         observers.append(run.observers);
         names::check(loaded, &observers)?;

@@ -119,6 +119,22 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     const BALL_INERTIA: f64;
 }
 
+/// The volume of a ball in a space of so many dimensions; see [`Space::ball_volume`].
+pub fn ball_volume(dimension: usize, radius: f64) -> f64 {
+    match dimension {
+        2 => Dim2::ball_volume(radius),
+        _ => Dim3::ball_volume(radius),
+    }
+}
+
+/// The radius of the ball of a volume; see [`Space::ball_radius`].
+pub fn ball_radius(dimension: usize, volume: f64) -> f64 {
+    match dimension {
+        2 => Dim2::ball_radius(volume),
+        _ => Dim3::ball_radius(volume),
+    }
+}
+
 /// Two dimensions; masses and forces are per metre of depth.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Dim2;

@@ -25,14 +25,14 @@ pub enum EjectedFate {
 
 /// An ejection zone outside the contact.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Zone<S: Space> {
+pub struct Zone {
     /// Its name.
     pub name: String,
-    /// Lowest corner (m); minus infinity in unbounded directions.
-    pub low: S::Vector,
+    /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third number
+    /// counts for nothing.
+    pub low: [f64; 3],
     /// Highest corner (m); infinity in unbounded directions.
-    pub high: S::Vector,
+    pub high: [f64; 3],
     /// The body that carries it; its corners are then in the frame of that body, which may move but
     /// not rotate.
     pub carrier: Option<u32>,
@@ -40,9 +40,9 @@ pub struct Zone<S: Space> {
     pub fate: EjectedFate,
 }
 
-impl<S: Space> Zone<S> {
+impl Zone {
     /// Returns whether a position, or one of its periodic images, is in the zone.
-    fn holds(&self, bodies: &Bodies<S>, periodic: &Periodic, at: &S::Vector) -> bool {
+    fn holds<S: Space>(&self, bodies: &Bodies<S>, periodic: &Periodic, at: &S::Vector) -> bool {
         let origin = self.carrier.map(|b| bodies.position[b as usize]);
         let x = origin.map_or(*at, |o| *at - o);
         (0..S::D).all(|k| match periodic.period[k] {
@@ -59,14 +59,13 @@ impl<S: Space> Zone<S> {
 
 /// Definition of a circuit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Spec<S: Space> {
+pub struct Spec {
     /// First bodies that grains can belong to: bodies with bonds to grains.
     pub bases: Vec<u32>,
     /// Indices of the interfaces whose bonds connect grains to first bodies.
     pub interfaces: Vec<u16>,
     /// Ejection zones; a grain is in the first zone that contains its centre.
-    pub zones: Vec<Zone<S>>,
+    pub zones: Vec<Zone>,
     /// Factor by which masses in the simulation exceed the real ones, see `inertia_scaling`.
     pub scaling: f64,
 }
@@ -105,7 +104,7 @@ struct BrokenBond {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct GrainCircuit<S: Space> {
-    spec: Spec<S>,
+    spec: Spec,
     /// Body indices of the grains.
     grains: Vec<u32>,
     /// Grain index of each body.
@@ -129,7 +128,7 @@ pub struct GrainCircuit<S: Space> {
 
 impl<S: Space> GrainCircuit<S> {
     /// Creates the circuit from the current bonds.
-    pub fn new(spec: Spec<S>, s: &Simulation<S>) -> Self {
+    pub fn new(spec: Spec, s: &Simulation<S>) -> Self {
         let grains: Vec<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
         let mut number = vec![None; s.state.bodies.len()];
         for (k, b) in grains.iter().enumerate() {
@@ -322,7 +321,7 @@ pub struct Intervals {
 /// grains between steps.
 #[derive(Clone, Debug)]
 pub struct CircuitProcess<S: Space> {
-    spec: Spec<S>,
+    spec: Spec,
     start: f64,
     intervals: Intervals,
     state: AccountState<S>,
@@ -353,7 +352,7 @@ pub struct NoBonds {
 
 impl<S: Space> CircuitProcess<S> {
     /// A circuit whose account begins after the first step that ends at a time (s) or later.
-    pub fn new(spec: Spec<S>, start: f64, intervals: Intervals) -> Self {
+    pub fn new(spec: Spec, start: f64, intervals: Intervals) -> Self {
         Self {
             spec,
             start,
@@ -442,7 +441,7 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
 
 /// Returns whether bonds of a body count: those of grains and bases. Another first body is not
 /// debris, and connects no grain to a base.
-fn counts<S: Space>(body: u32, number: &[Option<u32>], spec: &Spec<S>) -> bool {
+fn counts(body: u32, number: &[Option<u32>], spec: &Spec) -> bool {
     number[body as usize].is_some() || spec.bases.contains(&body)
 }
 

@@ -30,7 +30,7 @@ pub struct Simulation<S: Space> {
     /// Interface law of each pair of materials.
     pub table: LawTable,
     /// Phases in the order in which they run; the schedule of the state tells which one it is.
-    pub phases: Vec<Phase<S>>,
+    pub phases: Vec<Phase>,
     /// How it is computed; no step changes it.
     pub options: Options,
     /// Heat and current; `None` where none is computed. See [`crate::process::heat::HeatFlow`].

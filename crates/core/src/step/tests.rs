@@ -175,7 +175,7 @@ fn phases_change_gravity_and_friction() {
         until: Some(Until::Steps(steps)),
         changes: Changes {
             contact: vec![(0, 0, friction)],
-            gravity: Some(Vector2::new(0.0, -gravity)),
+            gravity: Some([0.0, -gravity, 0.0]),
             drives: Vec::new(),
             holders: Vec::new(),
             gravity_drive: None,

@@ -1,6 +1,6 @@
 //! A simulation of either dimension.
 
-use super::{RunControl, RunView};
+use super::{RunControl, RunSetup, RunView};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use crate::step::{InDimension, Simulation, StepError, StepReport};
 use std::any::Any;
@@ -33,6 +33,11 @@ impl AnySimulation {
     /// The simulation for reading.
     pub fn view(&self) -> &dyn RunView {
         in_dimension!(self, |s| &**s)
+    }
+
+    /// The simulation before its first step, to be set up.
+    pub fn setup(&mut self) -> &mut dyn RunSetup {
+        in_dimension!(self, |s| &mut **s)
     }
 
     /// The simulation in dimension `S`; `None` if it has the other.

@@ -44,6 +44,7 @@ mod memory;
 pub mod placement;
 mod rows;
 mod run_view;
+mod setup;
 mod systems;
 
 pub use any::AnySimulation;
@@ -54,6 +55,7 @@ pub use rows::{
     BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
 };
 pub use run_view::RunView;
+pub use setup::{PointBehind, RunSetup};
 pub use systems::{SystemTrial, SystemView};
 
 #[cfg(test)]

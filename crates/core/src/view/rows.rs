@@ -95,6 +95,8 @@ pub struct PieceView {
     pub material: u16,
     /// Radius of the ball (2D: disk) of the same volume (m).
     pub size: f64,
+    /// Radius of the ball about its centre that holds it (m).
+    pub bound: f64,
     /// Rounding radius (m).
     pub rounding: f64,
     /// Its centre (m).
@@ -116,6 +118,8 @@ pub struct SurfaceView {
     pub material: u16,
     /// Its origin in the frame of the body (m).
     pub offset: [f64; 3],
+    /// Whether it is a plane.
+    pub flat: bool,
 }
 
 /// A line of a shape: of a surface, or around a piece or one of its faces.

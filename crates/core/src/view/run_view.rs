@@ -86,6 +86,8 @@ pub trait RunView: Debug {
     fn pieces(&self) -> Vec<PieceView>;
     /// The surfaces of all bodies.
     fn surfaces(&self) -> Vec<SurfaceView>;
+    /// Lines of a surface in its own frame (m).
+    fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>>;
     /// Lines of the surfaces of bodies that are still there.
     fn surface_outlines(&self) -> Vec<Outline>;
     /// Lines around the pieces: one around each in 2D, one around each face in 3D.
@@ -96,6 +98,8 @@ pub trait RunView: Debug {
     fn system_count(&self) -> usize;
     /// A dynamical system.
     fn system(&self, system: usize) -> Option<Box<dyn SystemView + '_>>;
+    /// The dynamical system of a name.
+    fn system_named(&self, name: &str) -> Option<usize>;
     /// The bodies that stand for the contactors of a dynamical system, in their order.
     fn bodies_of_system(&self, system: usize) -> &[u32];
 
@@ -303,6 +307,7 @@ impl<S: Space> RunView for Simulation<S> {
                 body: piece.body,
                 material: piece.material,
                 size: piece.size,
+                bound: piece.bound,
                 rounding: piece.rounding,
                 centre: detect::piece_centre(piece, bodies).padded(),
                 offset: piece.offset.padded(),
@@ -317,8 +322,13 @@ impl<S: Space> RunView for Simulation<S> {
             body: surface.body,
             material: surface.material,
             offset: surface.offset.padded(),
+            flat: surface.shape.flat().is_some(),
         });
         surfaces.collect()
+    }
+    fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>> {
+        let lines = self.shapes.surfaces[surface].shape.outline();
+        lines.into_iter().map(padded).collect()
     }
     fn surface_outlines(&self) -> Vec<Outline> {
         let bodies = &self.state.bodies;
@@ -372,6 +382,9 @@ impl<S: Space> RunView for Simulation<S> {
             gravity: self.state.gravity,
         };
         Some(Box::new(SystemReader { system, step }))
+    }
+    fn system_named(&self, name: &str) -> Option<usize> {
+        self.state.systems.named(name)
     }
     fn bodies_of_system(&self, system: usize) -> &[u32] {
         self.state.systems.bodies(system)

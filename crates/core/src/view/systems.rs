@@ -1,6 +1,6 @@
 //! Dynamical systems without their dimension.
 
-use crate::bodies::{Contactor, DynamicalSystem, Holder, SystemSize, SystemStep};
+use crate::bodies::{Conduction, Contactor, DynamicalSystem, Holder, SystemSize, SystemStep};
 use crate::geometry::space::{Space, VectorLike};
 
 /// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
@@ -14,6 +14,12 @@ pub trait SystemView {
     fn is_grain(&self) -> bool;
     /// A length of its size (m).
     fn length(&self) -> f64;
+    /// Its mass (kg; kg/m in 2D).
+    fn mass(&self) -> f64;
+    /// Whether it can change its size with its temperature.
+    fn expands(&self) -> bool;
+    /// Its mesh for the conduction of heat; `None` where it has none.
+    fn conduction(&self) -> Option<Conduction>;
     /// Its parts that can touch.
     fn contactors(&self) -> Vec<Contactor>;
     /// Its holders.
@@ -57,6 +63,15 @@ impl<S: Space> SystemView for SystemReader<'_, S> {
     }
     fn length(&self) -> f64 {
         self.system.length()
+    }
+    fn mass(&self) -> f64 {
+        self.system.mass()
+    }
+    fn expands(&self) -> bool {
+        self.system.expands()
+    }
+    fn conduction(&self) -> Option<Conduction> {
+        self.system.conduction()
     }
     fn contactors(&self) -> Vec<Contactor> {
         self.system.contactors()

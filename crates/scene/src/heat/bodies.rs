@@ -2,13 +2,11 @@
 
 use crate::case::{BodyHeatSpec, Case, DepthSpec, HeatSpec, StoreSpec};
 use crate::source::ValidationError;
-use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{
     BodyNodes, Columns, Edge, Grid, HalfSpace, Imposed, Node, PieceAxis, Pieces, Store,
     ThermalMaterial,
 };
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -31,22 +29,22 @@ pub(super) struct Nodes {
 }
 
 /// What nodes of bodies are made from.
-pub(super) struct Scene<'a, S: Space> {
+pub(super) struct Scene<'a> {
     pub case: &'a Case,
     pub spec: &'a HeatSpec,
     pub materials: &'a [ThermalMaterial],
     pub material: &'a [u16],
-    pub simulation: &'a Simulation<S>,
+    pub simulation: &'a dyn RunView,
 }
 
 impl Nodes {
     /// Of the bodies of a case.
-    pub fn of<S: Space>(
+    pub fn of(
         case: &Case,
         spec: &HeatSpec,
         materials: &[ThermalMaterial],
         material: &[u16],
-        simulation: &Simulation<S>,
+        simulation: &dyn RunView,
     ) -> Result<Self, ValidationError> {
         let scene = Scene {
             case,
@@ -56,7 +54,7 @@ impl Nodes {
             simulation,
         };
         let mut nodes = Self::default();
-        let bodies = &simulation.state.bodies;
+        let bodies = simulation.bodies();
         let of_systems = nodes.of_systems(&scene)?;
         for (body, surface) in scene.surface_of_grains().into_iter().enumerate() {
             if let Some(carrier) = bodies.carrier(body) {
@@ -70,13 +68,12 @@ impl Nodes {
                 Some(driven) => nodes.first_body(&scene, body, &driven.name)?,
             }
         }
-        for driven in &bodies.driven {
+        for driven in bodies.driven {
             let range = nodes.of_bodies[driven.body as usize].range();
             nodes.first_bodies.push((driven.name.clone(), range));
         }
-        let systems = &simulation.state.systems;
         for (system, own) in of_systems.iter().enumerate() {
-            if let Some(system) = systems.get(system).filter(|s| !s.is_grain()) {
+            if let Some(system) = simulation.system(system).filter(|s| !s.is_grain()) {
                 let name = system.name().to_owned();
                 nodes.first_bodies.push((name, own.range()));
             }
@@ -89,7 +86,7 @@ impl Nodes {
         self.list.push(node);
     }
 
-    fn grain<S: Space>(&mut self, scene: &Scene<'_, S>, body: usize, surface: f64) {
+    fn grain(&mut self, scene: &Scene<'_>, body: usize, surface: f64) {
         let temperature = scene.temperature_of_grain(body);
         let mut node = Node::new(temperature, Store::Lumped(scene.capacity(body)));
         if let Some(convection) = scene.spec.convection {
@@ -99,9 +96,9 @@ impl Nodes {
         self.one(node);
     }
 
-    fn first_body<S: Space>(
+    fn first_body(
         &mut self,
-        scene: &Scene<'_, S>,
+        scene: &Scene<'_>,
         body: usize,
         name: &str,
     ) -> Result<(), ValidationError> {
@@ -183,7 +180,7 @@ impl Nodes {
     }
 }
 
-impl<S: Space> Scene<'_, S> {
+impl Scene<'_> {
     pub fn material_of(&self, body: usize) -> &ThermalMaterial {
         &self.materials[usize::from(self.material[body])]
     }
@@ -198,7 +195,7 @@ impl<S: Space> Scene<'_, S> {
 
     /// Heat capacity of a body with a volume (J/K; J/(K m) in 2D), without inertia scaling.
     fn capacity(&self, body: usize) -> f64 {
-        let mass = self.simulation.state.bodies.mass[body] / self.case.inertia_scaling;
+        let mass = self.simulation.bodies().mass[body] / self.case.inertia_scaling;
         mass * self.material_of(body).heat_capacity
     }
 
@@ -208,21 +205,20 @@ impl<S: Space> Scene<'_, S> {
     }
 
     fn has_volume(&self, body: usize) -> bool {
-        let shapes = &self.simulation.shapes;
-        let balls = shapes.balls.iter().map(|b| b.body);
-        let pieces = shapes.pieces.iter().map(|p| p.body);
+        let balls = self.simulation.balls().into_iter().map(|b| b.body);
+        let pieces = self.simulation.pieces().into_iter().map(|p| p.body);
         balls.chain(pieces).any(|b| b as usize == body)
     }
 
     /// Surface of each grain (m^2; circumference in 2D, m): of others than balls that of the ball
     /// of the same volume.
     fn surface_of_grains(&self) -> Vec<f64> {
-        let shapes = &self.simulation.shapes;
-        let mut surface = vec![0.0; self.simulation.state.bodies.len()];
-        let balls = shapes.balls.iter().map(|b| (b.body, b.radius));
-        let pieces = shapes.pieces.iter().map(|p| (p.body, p.size));
+        let s = self.simulation;
+        let mut surface = vec![0.0; s.bodies().len()];
+        let balls = s.balls().into_iter().map(|b| (b.body, b.radius));
+        let pieces = s.pieces().into_iter().map(|p| (p.body, p.size));
         for (body, radius) in balls.chain(pieces) {
-            surface[body as usize] += match S::D {
+            surface[body as usize] += match s.dimension() {
                 2 => 2.0 * PI * radius,
                 _ => 4.0 * PI * radius * radius,
             };
@@ -237,17 +233,18 @@ impl<S: Space> Scene<'_, S> {
         body: usize,
         depth: &DepthSpec,
     ) -> Result<Pieces, ValidationError> {
+        let dimension = self.simulation.dimension();
         let given = [depth.x, depth.y, depth.z];
         let axes: Vec<usize> = (0..3).filter(|k| given[*k].is_some()).collect();
-        if axes.len() != S::D - 1 || axes.iter().any(|k| *k >= S::D) {
+        if axes.len() != dimension - 1 || axes.iter().any(|k| *k >= dimension) {
             let message = format!(
                 "the surface is divided along {} of the case",
-                match S::D {
+                match dimension {
                     2 => "one axis",
                     _ => "two axes",
                 }
             );
-            let example = match S::D {
+            let example = match dimension {
                 2 => "`HalfSpace(x: 40)`",
                 _ => "`HalfSpace(x: 40, y: 10)`",
             };
@@ -275,7 +272,7 @@ impl<S: Space> Scene<'_, S> {
                     return Err(ValidationError::new(here, message));
                 }
                 let length = high - low;
-                let period = self.simulation.shapes.periodic.period[axis];
+                let period = self.simulation.periodic().period[axis];
                 if let Some(period) = period.filter(|p| (p - length).abs() > 1e-9 * length) {
                     let message = format!(
                         "the case is periodic along {} with {period} m, and the range is {length} m long",
@@ -307,7 +304,7 @@ impl<S: Space> Scene<'_, S> {
         count: u32,
     ) -> Result<PieceAxis, ValidationError> {
         let s = self.simulation;
-        if let Some(length) = s.shapes.periodic.period[axis] {
+        if let Some(length) = s.periodic().period[axis] {
             return Ok(PieceAxis {
                 axis,
                 low: -0.5 * length,
@@ -318,24 +315,28 @@ impl<S: Space> Scene<'_, S> {
         }
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut see = |x: f64| (low, high) = (low.min(x), high.max(x));
-        for surface in s.shapes.surfaces.iter().filter(|f| f.body as usize == body) {
-            if surface.shape.flat().is_some() {
+        for (k, surface) in s.surfaces().into_iter().enumerate() {
+            if surface.body as usize != body {
+                continue;
+            }
+            if surface.flat {
                 let message = "a plane has no ends; say over which part of it the pieces are";
                 return Err(ValidationError::new(here, message).expected(
                     "`over: [(-1e-3, 1e-3)]` (m), or a period of the case along the axis",
                 ));
             }
-            for point in surface.shape.outline().into_iter().flatten() {
-                see(point.padded()[axis] + surface.offset.padded()[axis]);
+            for point in s.surface_lines(k).into_iter().flatten() {
+                see(point[axis] + surface.offset[axis]);
             }
         }
-        for ball in s.shapes.balls.iter().filter(|b| b.body as usize == body) {
-            see(ball.offset.padded()[axis] - ball.radius);
-            see(ball.offset.padded()[axis] + ball.radius);
+        let of_body = |of: u32| of as usize == body;
+        for ball in s.balls().iter().filter(|b| of_body(b.body)) {
+            see(ball.offset[axis] - ball.radius);
+            see(ball.offset[axis] + ball.radius);
         }
-        for piece in s.shapes.pieces.iter().filter(|p| p.body as usize == body) {
-            for corner in piece.core.boundary().corners {
-                see((piece.offset + corner).padded()[axis]);
+        for piece in s.pieces().iter().filter(|p| of_body(p.body)) {
+            for corner in &piece.corners {
+                see(piece.offset[axis] + corner[axis]);
             }
         }
         if low < high && (high - low).is_finite() {

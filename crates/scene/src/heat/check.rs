@@ -3,10 +3,9 @@
 use crate::case::{Case, HeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
 use fretwork_abi::FLAG_TEMPERATURE;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::Supply;
 use fretwork_core::laws::Kind;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Checks numbers and names.
 ///
@@ -242,11 +241,11 @@ fn temperature(here: &str, t: f64) -> Result<(), ValidationError> {
 }
 
 /// Refuses laws that read temperatures in a case without any.
-pub(super) fn refuse_laws_without_heat<S: Space>(
+pub(super) fn refuse_laws_without_heat(
     case: &Case,
-    s: &Simulation<S>,
+    s: &dyn RunView,
 ) -> Result<(), ValidationError> {
-    for (k, law) in s.laws.iter().enumerate() {
+    for (k, law) in s.laws().iter().enumerate() {
         let mut reading = law.loaded().filter(|l| l.has(FLAG_TEMPERATURE));
         let Some(found) = reading.next() else {
             continue;

@@ -3,10 +3,8 @@
 use super::Properties;
 use crate::case::{Case, HeatSpec};
 use crate::source::ValidationError;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{BodyNodes, ExpandingSystem, Node, Store};
-use fretwork_core::process::expansion::ThermalExpansion;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{RunSetup, RunView};
 use std::collections::BTreeMap;
 
 /// Largest coefficient of linear expansion (1/K): one hundred times that of a metal.
@@ -56,12 +54,12 @@ impl Coefficients<'_> {
 
 /// Has bodies of a case expand: rigid ones of balls, polygons and polyhedra that have one
 /// temperature which may change, and bodies of finite elements.
-pub(super) fn install<S: Space>(
+pub(super) fn install(
     case: &Case,
     spec: &HeatSpec,
     properties: &Properties,
     material: &[u16],
-    s: &mut Simulation<S>,
+    s: &mut dyn RunSetup,
 ) -> Result<(), ValidationError> {
     let mut coefficients = Coefficients {
         case,
@@ -75,27 +73,27 @@ pub(super) fn install<S: Space>(
         let message = "no body of the case expands; bodies that do are rigid grains, first bodies of balls, polygons or polyhedra with the store `Lumped`, and bodies of `elastic`, of a material with an `expansion` other than zero";
         return Err(ValidationError::new("heat.expansion", message));
     }
-    ThermalExpansion::add_to(s, rigid, systems);
+    s.add_expansion(rigid, systems);
     Ok(())
 }
 
 /// The coefficient of each rigid body (1/K), 0 of those that do not expand.
-fn rigid<S: Space>(
+fn rigid(
     coefficients: &mut Coefficients<'_>,
     material: &[u16],
-    s: &Simulation<S>,
+    s: &dyn RunView,
 ) -> Result<Vec<f64>, ValidationError> {
-    let bodies = &s.state.bodies;
+    let bodies = s.bodies();
     let mut expands = vec![false; bodies.len()];
-    let balls = s.shapes.balls.iter().map(|b| b.body);
-    for body in balls.chain(s.shapes.pieces.iter().map(|p| p.body)) {
+    let balls = s.balls().into_iter().map(|b| b.body);
+    for body in balls.chain(s.pieces().into_iter().map(|p| p.body)) {
         expands[body as usize] = bodies.carrier(body as usize).is_none();
     }
     // A surface has no size of its own.
-    for surface in &s.shapes.surfaces {
+    for surface in s.surfaces() {
         expands[surface.body as usize] = false;
     }
-    let (heat, state) = (s.heat(), s.state.heat.as_ref());
+    let (heat, state) = (s.heat(), s.heat_state());
     for (body, expands) in expands.iter_mut().enumerate() {
         let warms = heat.zip(state).is_some_and(|(heat, state)| {
             matches!(heat.nodes[body], BodyNodes::One(node) if state.nodes[node as usize].store != Store::Fixed)
@@ -130,13 +128,15 @@ fn rigid<S: Space>(
 }
 
 /// Whether a body is longer than half of a period of the case.
-fn spans_period<S: Space>(s: &Simulation<S>, body: u32) -> bool {
-    let balls = s.shapes.balls.iter().map(|b| (b.body, b.offset, b.radius));
-    let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.offset, p.bound));
+fn spans_period(s: &dyn RunView, body: u32) -> bool {
+    let balls = s.balls().into_iter();
+    let balls = balls.map(|b| (b.body, b.offset, b.radius));
+    let pieces = s.pieces().into_iter();
+    let pieces = pieces.map(|p| (p.body, p.offset, p.bound));
     let own = balls.chain(pieces).filter(|(of, ..)| *of == body);
-    let parts: Vec<(S::Vector, f64)> = own.map(|(_, at, radius)| (at, radius)).collect();
-    (0..S::D).any(|k| {
-        let Some(period) = s.shapes.periodic.period[k] else {
+    let parts: Vec<([f64; 3], f64)> = own.map(|(_, at, radius)| (at, radius)).collect();
+    (0..s.dimension()).any(|k| {
+        let Some(period) = s.periodic().period[k] else {
             return false;
         };
         let high = parts
@@ -152,20 +152,20 @@ fn spans_period<S: Space>(s: &Simulation<S>, body: u32) -> bool {
 }
 
 /// The bodies that deform and expand.
-fn systems<S: Space>(
+fn systems(
     coefficients: &mut Coefficients<'_>,
     spec: &HeatSpec,
     material: &[u16],
-    s: &Simulation<S>,
+    s: &dyn RunView,
 ) -> Result<Vec<ExpandingSystem>, ValidationError> {
-    let (Some(heat), Some(state)) = (s.heat(), s.state.heat.as_ref()) else {
+    let (Some(heat), Some(state)) = (s.heat(), s.heat_state()) else {
         return Ok(Vec::new());
     };
-    let systems = &s.state.systems;
+    let systems = (0..s.system_count()).filter_map(|k| Some((k, s.system(k)?)));
     let mut out = Vec::new();
-    for (index, system) in (0..systems.len()).filter_map(|k| Some((k, systems.get(k)?))) {
+    for (index, system) in systems {
         let name = system.name();
-        let (nodes, material) = match systems.bodies(index).first() {
+        let (nodes, material) = match s.bodies_of_system(index).first() {
             Some(body) if system.is_grain() => {
                 let body = *body as usize;
                 (heat.nodes[body].range(), usize::from(material[body]))

@@ -11,10 +11,8 @@ use crate::case::{Case, HeatSpec};
 use crate::material::Sourced;
 use crate::source::ValidationError;
 use bodies::Nodes;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Circuit, Heat, HeatState, ThermalMaterial};
-use fretwork_core::process::heat::HeatFlow;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{RunSetup, RunView};
 use std::collections::BTreeMap;
 
 /// Properties of the materials of a case, in its order.
@@ -22,11 +20,11 @@ pub(crate) type Properties = [BTreeMap<String, Sourced>];
 
 /// Has a simulation compute the heat of its case, where it has any. Densities are without inertia
 /// scaling (kg/m^3).
-pub(crate) fn install<S: Space>(
+pub(crate) fn install(
     case: &Case,
     properties: &Properties,
     densities: &[f64],
-    s: &mut Simulation<S>,
+    s: &mut dyn RunSetup,
 ) -> Result<(), ValidationError> {
     let Some(spec) = &case.heat else {
         return check::refuse_laws_without_heat(case, s);
@@ -36,7 +34,10 @@ pub(crate) fn install<S: Space>(
     refuse_materials_without_grains(case, spec, &material, s)?;
     let nodes = Nodes::of(case, spec, &materials, &material, s)?;
     let circuit = spec.circuit.as_ref().map(|c| {
-        let named = |name: &str| s.body_named(name).unwrap_or_default() as u32;
+        let named = |name: &str| {
+            let driven = s.bodies().driven_named(name);
+            driven.map_or(0, |d| d.body)
+        };
         Circuit {
             from: named(&c.from),
             to: named(&c.to),
@@ -63,7 +64,7 @@ pub(crate) fn install<S: Space>(
         circuit,
     };
     let state = HeatState::new(nodes.list, heat.first_bodies.len());
-    HeatFlow::add_to(s, heat, state);
+    s.add_heat(heat, state);
     match spec.expansion {
         true => expansion::install(case, spec, properties, &material, s),
         false => Ok(()),
@@ -71,15 +72,15 @@ pub(crate) fn install<S: Space>(
 }
 
 /// Refuses temperatures of grains of materials that no grain has.
-fn refuse_materials_without_grains<S: Space>(
+fn refuse_materials_without_grains(
     case: &Case,
     spec: &HeatSpec,
     material: &[u16],
-    s: &Simulation<S>,
+    s: &dyn RunView,
 ) -> Result<(), ValidationError> {
     let known = |name: &String| {
         let index = case.materials.keys().position(|m| m == name);
-        let mut grains = s.state.bodies.grains();
+        let mut grains = s.grains().into_iter();
         grains.any(|g| Some(usize::from(material[g])) == index)
     };
     match spec.grains.keys().find(|name| !known(name)) {
@@ -94,11 +95,11 @@ fn refuse_materials_without_grains<S: Space>(
 }
 
 /// The material of each body: that of its shapes.
-fn material_of_bodies<S: Space>(s: &Simulation<S>) -> Vec<u16> {
-    let mut of = vec![0; s.state.bodies.len()];
-    let balls = s.shapes.balls.iter().map(|b| (b.body, b.material));
-    let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.material));
-    let surfaces = s.shapes.surfaces.iter().map(|f| (f.body, f.material));
+fn material_of_bodies(s: &dyn RunView) -> Vec<u16> {
+    let mut of = vec![0; s.bodies().len()];
+    let balls = s.balls().into_iter().map(|b| (b.body, b.material));
+    let pieces = s.pieces().into_iter().map(|p| (p.body, p.material));
+    let surfaces = s.surfaces().into_iter().map(|f| (f.body, f.material));
     for (body, material) in balls.chain(pieces).chain(surfaces) {
         of[body as usize] = material;
     }

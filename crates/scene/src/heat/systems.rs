@@ -3,36 +3,38 @@
 use super::bodies::{Nodes, Scene};
 use crate::case::{BodyHeatSpec, Case, MeshHeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
-use fretwork_core::bodies::{Conduction, DynamicalSystem};
-use fretwork_core::geometry::space::Space;
+use fretwork_core::bodies::Conduction;
+use fretwork_core::geometry::space::ball_radius;
 use fretwork_core::heat::{BodyNodes, Edge, Imposed, Node, Store};
+use fretwork_core::view::SystemView;
 use std::f64::consts::PI;
 
 impl Nodes {
     /// Nodes of the bodies of each dynamical system.
-    pub(super) fn of_systems<S: Space>(
+    pub(super) fn of_systems(
         &mut self,
-        scene: &Scene<'_, S>,
+        scene: &Scene<'_>,
     ) -> Result<Vec<BodyNodes>, ValidationError> {
-        let systems = &scene.simulation.state.systems;
-        let mut out = Vec::with_capacity(systems.len());
-        for (index, system) in (0..systems.len()).filter_map(|k| Some((k, systems.get(k)?))) {
-            let bodies = systems.bodies(index);
+        let s = scene.simulation;
+        let systems = (0..s.system_count()).filter_map(|k| Some((k, s.system(k)?)));
+        let mut out = Vec::with_capacity(s.system_count());
+        for (index, system) in systems {
+            let bodies = s.bodies_of_system(index);
             if system.is_grain() {
                 let body = bodies.first().copied().unwrap_or_default() as usize;
                 out.push(BodyNodes::One(self.list.len() as u32));
-                self.list.push(scene.grain_that_deforms(system, body));
+                self.list.push(scene.grain_that_deforms(&*system, body));
             } else {
-                out.push(self.system(scene, system, bodies.first().copied())?);
+                out.push(self.system(scene, &*system, bodies.first().copied())?);
             }
         }
         Ok(out)
     }
 
-    fn system<S: Space>(
+    fn system(
         &mut self,
-        scene: &Scene<'_, S>,
-        system: &dyn DynamicalSystem<S>,
+        scene: &Scene<'_>,
+        system: &dyn SystemView,
         body: Option<u32>,
     ) -> Result<BodyNodes, ValidationError> {
         let name = system.name();
@@ -91,9 +93,9 @@ impl Nodes {
         Ok(BodyNodes::One(first))
     }
 
-    fn mesh<S: Space>(
+    fn mesh(
         &mut self,
-        scene: &Scene<'_, S>,
+        scene: &Scene<'_>,
         (here, spec): (&str, &MeshHeatSpec),
         conduction: &Conduction,
         (material, temperature): (usize, f64),
@@ -164,9 +166,9 @@ impl Nodes {
     }
 }
 
-impl<S: Space> Scene<'_, S> {
+impl Scene<'_> {
     /// The node of a grain that deforms, which has one temperature.
-    fn grain_that_deforms(&self, system: &dyn DynamicalSystem<S>, body: usize) -> Node {
+    fn grain_that_deforms(&self, system: &dyn SystemView, body: usize) -> Node {
         let material = self.material_of(body);
         let mass = system.mass() / self.case.inertia_scaling;
         let mut node = Node::new(
@@ -175,8 +177,9 @@ impl<S: Space> Scene<'_, S> {
         );
         if let Some(convection) = self.spec.convection {
             // Of the ball of the same volume.
-            let radius = S::ball_radius(mass / material.density);
-            let surface = match S::D {
+            let dimension = self.simulation.dimension();
+            let radius = ball_radius(dimension, mass / material.density);
+            let surface = match dimension {
                 2 => 2.0 * PI * radius,
                 _ => 4.0 * PI * radius * radius,
             };

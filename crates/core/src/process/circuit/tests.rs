@@ -33,7 +33,7 @@ fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
     network.contacts.push(Contact { slot, ..contact });
 }
 
-fn spec() -> Spec<Dim2> {
+fn spec() -> Spec {
     Spec {
         bases: vec![0],
         interfaces: vec![0],
@@ -43,11 +43,11 @@ fn spec() -> Spec<Dim2> {
 }
 
 /// A zone of x from 0.5 to 1.5 m.
-fn zone(fate: EjectedFate) -> Zone<Dim2> {
+fn zone(fate: EjectedFate) -> Zone {
     Zone {
         name: "drain".into(),
-        low: Vector2::new(0.5, f64::NEG_INFINITY),
-        high: Vector2::new(1.5, f64::INFINITY),
+        low: [0.5, f64::NEG_INFINITY, 0.0],
+        high: [1.5, f64::INFINITY, 0.0],
         carrier: None,
         fate,
     }
@@ -310,6 +310,6 @@ fn a_zone_holds_images_and_follows_its_carrier() {
             assert_eq!(holds(&periodic, &at), image, "{x}");
         }
     }
-    zone.low.x = f64::NEG_INFINITY;
+    zone.low[0] = f64::NEG_INFINITY;
     assert!(zone.holds(&s.state.bodies, &periodic, &Vector2::new(99.0, 0.0)));
 }

@@ -76,6 +76,7 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
     }
     set_holder_drives(s);
     if let Some(gravity) = changes.gravity {
+        let gravity = S::Vector::from_slice(&gravity);
         (s.state.control.gravity, s.state.control.gravity_drive) = (gravity, None);
         s.state.gravity = gravity;
     }

@@ -2,7 +2,6 @@
 
 use super::GravityDrive;
 use crate::bodies::{Dof, HeldAxis};
-use crate::geometry::space::Space;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// When a phase ends.
@@ -35,14 +34,14 @@ pub enum Until {
 
 /// Changes at the start of a phase; everything else keeps its value.
 #[derive(Clone, Debug)]
-pub struct Changes<S: Space> {
+pub struct Changes {
     /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time
     /// since the phase began.
     pub drives: Vec<(usize, usize, Dof)>,
     /// The same of what holds deformable bodies.
     pub holders: Vec<(HeldAxis, Dof)>,
     /// Gravity (m/s^2).
-    pub gravity: Option<S::Vector>,
+    pub gravity: Option<[f64; 3]>,
     /// Time dependence of gravity, as a function of the time since the phase began.
     pub gravity_drive: Option<GravityDrive>,
     /// Parameters of contact laws: interface index, parameter index, value.
@@ -55,13 +54,13 @@ pub struct Changes<S: Space> {
 
 /// A phase.
 #[derive(Clone, Debug)]
-pub struct Phase<S: Space> {
+pub struct Phase {
     /// Name.
     pub name: String,
     /// End condition; `None` for the end of the run.
     pub until: Option<Until>,
     /// What changes at its start.
-    pub changes: Changes<S>,
+    pub changes: Changes,
     /// Whether the same phase is repeated; only the last repetition is then drawn.
     pub recurs: bool,
 }

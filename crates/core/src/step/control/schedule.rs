@@ -64,7 +64,7 @@ impl<S: Space> Control<S> {
     /// Whether it is at one of these phases, and sets no other parameters than these laws have.
     pub(in crate::step) fn fits(
         &self,
-        phases: &[Phase<S>],
+        phases: &[Phase],
         laws: &[Interface],
         driven: &[Driven],
     ) -> bool {

@@ -1,0 +1,142 @@
+//! What a case adds to a simulation before its first step.
+
+use super::RunControl;
+use crate::bodies::Dof;
+use crate::bodies::pressure::{Pushed, Servo};
+use crate::contact::detect;
+use crate::geometry::space::{Space, VectorLike};
+use crate::heat::{ExpandingSystem, Heat, HeatState};
+use crate::process::circuit::{CircuitProcess, Intervals, Spec};
+use crate::process::cycle::{CycleClock, SlidingBody};
+use crate::process::expansion::ThermalExpansion;
+use crate::process::heat::HeatFlow;
+use crate::process::jump::{JumpSpec, Jumps};
+use crate::step::Simulation;
+use crate::step::control::{GravityDrive, Phase};
+
+/// A point of a body that deforms, behind a surface of another body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointBehind {
+    /// The body of the point.
+    pub point: u32,
+    /// The body of the surface.
+    pub surface: u32,
+    /// How far behind it is (m).
+    pub depth: f64,
+}
+
+/// A simulation that is set up.
+pub trait RunSetup: RunControl {
+    /// Sets gravity (m/s^2), and how it changes in time.
+    fn set_gravity(&mut self, gravity: [f64; 3], drive: Option<GravityDrive>);
+    /// Checks the pressures of a drive.
+    ///
+    /// # Errors
+    /// A wall is missing or not plane, or no length is defined along an axis.
+    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    /// Adds the pressures of a drive.
+    ///
+    /// # Errors
+    /// As [`RunSetup::check_pressures`].
+    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    /// Measures the loaded areas of all pressures.
+    fn measure_areas(&mut self);
+    /// Removes a driven body, by its place among them, at a time (s).
+    fn add_gate(&mut self, place: usize, time: f64);
+    /// Adds a phase after those that are there.
+    fn add_phase(&mut self, phase: Phase);
+    /// Gives driven bodies their imposed velocities at time zero.
+    fn set_in_motion(&mut self);
+    /// Computes heat from here on.
+    fn add_heat(&mut self, heat: Heat, state: HeatState);
+    /// Has bodies expand by coefficients of linear expansion (1/K), one of each rigid body, and
+    /// dynamical systems; see [`ThermalExpansion::add_to`].
+    fn add_expansion(&mut self, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>);
+    /// Jumps over cycles; see [`Jumps::new`].
+    fn add_jumps(&mut self, spec: JumpSpec, clock: CycleClock, test: SlidingBody, steps: [u64; 2]);
+    /// Follows the tribological circuit from a time (s) on.
+    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals);
+    /// The first point of a body that deforms that lies further than the alert distance behind a
+    /// surface with which it interacts. Points are looked for up to twice the length of their body
+    /// in the plane, and up to `sizes` times their own size in space, where searches cost the
+    /// square of it.
+    fn point_behind(&self, sizes: f64) -> Option<PointBehind>;
+}
+
+impl<S: Space> RunSetup for Simulation<S> {
+    fn set_gravity(&mut self, gravity: [f64; 3], drive: Option<GravityDrive>) {
+        self.state.gravity = S::Vector::from_slice(&gravity);
+        self.state.control.gravity = self.state.gravity;
+        self.state.control.gravity_drive = drive;
+    }
+    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
+        Servo::of(&self.state.bodies, &self.shapes, pushed, drive).map(drop)
+    }
+    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
+        let servos = Servo::of(&self.state.bodies, &self.shapes, pushed, drive)?;
+        self.state.control.servos.extend(servos);
+        Ok(())
+    }
+    fn measure_areas(&mut self) {
+        self.measure_areas();
+    }
+    fn add_gate(&mut self, place: usize, time: f64) {
+        self.state.control.gates.push((place, time));
+    }
+    fn add_phase(&mut self, phase: Phase) {
+        self.phases.push(phase);
+    }
+    fn set_in_motion(&mut self) {
+        self.set_in_motion();
+    }
+    fn add_heat(&mut self, heat: Heat, state: HeatState) {
+        HeatFlow::add_to(self, heat, state);
+    }
+    fn add_expansion(&mut self, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>) {
+        ThermalExpansion::add_to(self, coefficient, systems);
+    }
+    fn add_jumps(&mut self, spec: JumpSpec, clock: CycleClock, test: SlidingBody, steps: [u64; 2]) {
+        let jumps = Jumps::new(spec, clock, test, steps, self);
+        self.add_process(jumps);
+    }
+    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals) {
+        self.add_process(CircuitProcess::<S>::new(spec, start, intervals));
+    }
+    fn point_behind(&self, sizes: f64) -> Option<PointBehind> {
+        let bodies = &self.state.bodies;
+        let system = |body: u32| bodies.carrier(body as usize).map(|c| c.system);
+        for point in self.shapes.balls.iter().filter(|b| b.radius == 0.0) {
+            let centre = detect::centre(point, bodies);
+            let own = system(point.body);
+            let length = own.and_then(|k| self.state.systems.get(k as usize));
+            let reach = match S::D {
+                2 => length.map_or(0.0, |s| 2.0 * s.length()),
+                _ => sizes * bodies.length[point.body as usize],
+            };
+            for surface in &self.shapes.surfaces {
+                let other = surface.body as usize;
+                let apart = own != system(surface.body);
+                if !apart || self.table.get(point.material, surface.material).is_none() {
+                    continue;
+                }
+                let arm = S::unrotate(&bodies.rotation[other], &(centre - bodies.position[other]));
+                let mut near = Vec::new();
+                surface
+                    .shape
+                    .closest_points(&(arm - surface.offset), reach, &mut near);
+                let nearest = near
+                    .iter()
+                    .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
+                let depth = nearest.map_or(0.0, |touch| -touch.distance);
+                if depth > self.state.network.alert {
+                    return Some(PointBehind {
+                        point: point.body,
+                        surface: surface.body,
+                        depth,
+                    });
+                }
+            }
+        }
+        None
+    }
+}
