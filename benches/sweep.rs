@@ -448,15 +448,8 @@ fn contact<S: Space>(a: u32, b: u32, normal: S::Vector, push: f64) -> ContactFor
         bodies: [a, b],
         normal,
         arms: [-normal, normal],
-        central: true,
-        apart: false,
-        shift_n: 0.0,
-        shift_t: S::Tangent::zero(),
         friction: 0.3,
-        tension: 0.0,
-        cohesion: 0.0,
-        elastic: None,
-        compliance: [0.0; 2],
         impulse: normal * push,
+        ..ContactForm::default()
     }
 }

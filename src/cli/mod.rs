@@ -28,7 +28,7 @@ pub use fretwork_view::{ReportError, compare as compare_runs};
 use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::experiments::Program;
 use crate::laws::watch::{Saved, watch};
-use crate::laws::{LawError, SearchPath, child};
+use crate::laws::{LawError, SearchPath, child, library, loading};
 use crate::record::{RunError, check_names};
 use crate::scene::InputError;
 use crate::shipped::built_in;
@@ -100,7 +100,7 @@ enum Command {
     )]
     Trade(trade::TradeArgs),
     /// Internal: opens libraries in a separate process
-    #[command(name = child::TRY_LIBRARIES, hide = true)]
+    #[command(name = loading::TRY_LIBRARIES, hide = true)]
     TryLibraries(ChildArgs),
     /// Internal: certifies a law in a separate process
     #[command(name = CERTIFY_APART, hide = true)]
@@ -320,7 +320,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Study(command) => study::study(&command),
         Command::Fit(args) => fit::fit(&args),
         Command::Trade(args) => trade::trade(&args),
-        Command::TryLibraries(args) => args.help(child::try_libraries),
+        Command::TryLibraries(args) => args.help(library::try_libraries),
         Command::CertifyApart(args) => args.help(|| certify_asked(&built_in())),
     }
 }

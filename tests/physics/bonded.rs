@@ -2,7 +2,8 @@
 //! contact and its bond at once.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
-use fretwork::solve::form::{ContactForm, Elastic, Problem};
+use fretwork::solve::Problem;
+use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
 use fretwork::solve::{AutoState, Options, solve};
 

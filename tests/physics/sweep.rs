@@ -45,16 +45,8 @@ fn contact<S: Space>(bodies: [u32; 2], normal: S::Vector) -> ContactForm<S> {
         bodies,
         normal,
         arms: [-normal, normal],
-        central: true,
-        apart: false,
-        shift_n: 0.0,
-        shift_t: S::Tangent::zero(),
         friction: 0.3,
-        tension: 0.0,
-        cohesion: 0.0,
-        elastic: None,
-        compliance: [0.0; 2],
-        impulse: S::Vector::zero(),
+        ..ContactForm::default()
     }
 }
 

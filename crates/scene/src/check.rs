@@ -358,7 +358,7 @@ fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), ValidationError
     }
     let dofs = body.ordered(dimension);
     for (name, dof) in BodySpec::names(dimension).iter().zip(&dofs) {
-        if let Some((below, fault)) = dof.fault() {
+        if let Some((below, fault)) = dof.error() {
             let path = format!("dofs.{name}.{below}");
             return Err(ValidationError::new(path.trim_end_matches('.'), fault));
         }

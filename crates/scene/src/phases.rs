@@ -237,7 +237,7 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), ValidationError
                     ValidationError::new(format!("{path}.{dof}"), message).expected("x, y or rz")
                 );
             }
-            if let Some((below, fault)) = drive.fault() {
+            if let Some((below, fault)) = drive.error() {
                 let at = format!("{path}.{dof}.{below}");
                 return Err(ValidationError::new(at.trim_end_matches('.'), fault));
             }
@@ -286,7 +286,7 @@ pub(super) fn gravity_drive(
     drive: Option<&GravityDrive>,
     dimension: usize,
 ) -> Result<(), ValidationError> {
-    match drive.and_then(|d| d.fault(dimension)) {
+    match drive.and_then(|d| d.error(dimension)) {
         Some((below, message)) => {
             let path = format!("gravity_drive.{below}");
             Err(ValidationError::new(path.trim_end_matches('.'), message))

@@ -8,7 +8,7 @@ use fretwork_abi as abi;
 use fretwork_core::certify::certify;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::in_dimension;
-use fretwork_core::laws::commit::SlotCommit;
+use fretwork_core::laws::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};
 use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, Loaded, SearchPath};

@@ -3,7 +3,8 @@
 //! every method against the laws, written out.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
-use fretwork::solve::form::{ContactForm, Elastic, Problem};
+use fretwork::solve::Problem;
+use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
 use fretwork::solve::{AutoState, MomentForm, Options, solve};
 

@@ -138,10 +138,10 @@ impl Dof {
 
     /// Returns the error of this drive, if any, and the path of its key relative to the drive
     /// (empty for the drive itself).
-    pub fn fault(&self) -> Option<(String, String)> {
+    pub fn error(&self) -> Option<(String, String)> {
         match self {
-            Self::Stages(stages) => fault_of_stages(stages),
-            simple => simple.function()?.fault().map(|f| (String::new(), f)),
+            Self::Stages(stages) => error_of_stages(stages),
+            simple => simple.function()?.error().map(|f| (String::new(), f)),
         }
     }
 
@@ -164,7 +164,7 @@ impl Dof {
 }
 
 /// Returns the error in a list of stages, if any, and the path of its key.
-fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
+fn error_of_stages(stages: &[Stage]) -> Option<(String, String)> {
     if stages.is_empty() {
         return Some((String::new(), "stages need at least one drive".into()));
     }
@@ -175,7 +175,7 @@ fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
         if matches!(stage.drive, Dof::Stages(_)) {
             return error("drive", "a stage cannot hold stages again".into());
         }
-        if let Some((_, message)) = stage.drive.fault() {
+        if let Some((_, message)) = stage.drive.error() {
             return error("drive", message);
         }
         match (stage.until, k + 1 == stages.len()) {
@@ -238,7 +238,7 @@ mod tests {
         assert!(dof.over(end - 0.1, 0.1).imposed_velocity(end).is_none());
         assert_eq!(dof.over(end, 0.1).imposed_velocity(end + 0.1), Some(-0.5));
         assert_eq!((dof.force(0.2), dof.force(0.4)), (-2.0, 0.0));
-        assert!(dof.yields() && dof.fault().is_none());
+        assert!(dof.yields() && dof.error().is_none());
     }
 
     #[test]

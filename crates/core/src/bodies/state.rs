@@ -97,7 +97,7 @@ impl<S: Space> Bodies<S> {
         let same = |(a, b): (&Driven, &Driven)| {
             a.body == b.body
                 && a.dofs.len() == b.dofs.len()
-                && a.dofs.iter().all(|d| d.fault().is_none())
+                && a.dofs.iter().all(|d| d.error().is_none())
         };
         let paths = self.paths.iter().zip(&first.paths);
         let numbers = self.mass.iter().chain(&self.inertia).chain(&self.length);

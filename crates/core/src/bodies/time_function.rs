@@ -79,7 +79,7 @@ impl TimeFunction {
     }
 
     /// Returns the error in the numbers, if any.
-    pub fn fault(&self) -> Option<String> {
+    pub fn error(&self) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
         let error = |is: bool, message: String| is.then_some(message);
         match self {
@@ -169,7 +169,7 @@ mod tests {
                 let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
                 assert!((difference - f.rate(t)).abs() < 1e-6, "{f:?} at {t}");
             }
-            assert!(f.fault().is_none());
+            assert!(f.error().is_none());
         }
     }
 
@@ -209,7 +209,7 @@ mod tests {
         };
         let two_values = TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)]);
         for f in [no_length, two_values, TimeFunction::Constant(f64::NAN)] {
-            assert!(f.fault().is_some(), "{f:?}");
+            assert!(f.error().is_some(), "{f:?}");
         }
     }
 }

@@ -1,13 +1,15 @@
 //! A batch of contacts: its columns, the calls of laws with them, and the checks of what these
 //! return.
 
-use super::bonds::BondStep;
-use super::columns::{Columns, StepInfo};
+use super::bond_step::BondStep;
+use super::columns::Columns;
 use super::error::LawError;
+use super::function::Call;
 use super::guarded::{self, Guarded};
 use super::interface::{Interface, Loaded};
-use super::library::{Call, Plugin};
+use super::library::Plugin;
 use super::range::{ColumnRange, Largest, settle};
+use super::step_info::StepInfo;
 use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::threads::map_tasks;
@@ -42,11 +44,11 @@ pub(super) enum CallChecks {
     /// Errors for values that are not finite or out of range, and for writes just beyond a column.
     #[default]
     Run,
-    /// As `Run`, but without the range check, which certification makes itself.
+    /// Those of `Run` without the range check, which certification makes itself.
     Lenient,
-    /// As `Run`; in addition every call is made twice in guarded memory.
+    /// Those of `Run`, and every call is made twice in guarded memory.
     Guarded(Box<Guarded>),
-    /// As `Lenient`; in addition every call is repeated.
+    /// Those of `Lenient`, and every call is repeated.
     Repeated,
 }
 
@@ -101,7 +103,7 @@ impl Batch {
         self.check_outputs(loaded, plugin, call)
     }
 
-    /// As [`Self::run`], with outputs that are zero before.
+    /// Sets the outputs to zero, then calls a function of a law as [`Self::run`] does.
     pub fn run_afresh(
         &mut self,
         loaded: &Loaded,
@@ -254,13 +256,13 @@ impl BatchPool {
 mod tests {
     use super::*;
     use crate::laws::kind::{Kind, Output};
-    use crate::laws::range::Range;
+    use crate::laws::outputs::Range;
 
     /// A value below zero by round-off of the largest one, which is in another batch, on any number
     /// of threads.
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
-        let judge = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {
+        let check = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {
             let ranges = [ColumnRange::of(column)];
             let mut outputs = [Output::ranged(("strength", column, Range::NotNegative))];
             match settle(&mut outputs, &ranges, Kind::CONTACT, &mut batch.largest) {
@@ -283,12 +285,12 @@ mod tests {
                 let (pool, mut largest) = (BatchPool::default(), Largest::default());
                 let mut given = Vec::new();
                 let mut take = |(): &mut (), _: &Vec<f64>, x| given.push(x);
-                let judged = pool.evaluate(divide, &mut largest, &mut (), tasks, judge, &mut take);
-                judged.unwrap();
+                let checked = pool.evaluate(divide, &mut largest, &mut (), tasks, check, &mut take);
+                checked.unwrap();
                 assert_eq!(order.map(|k| [0.0, 1e6][k]).to_vec(), given);
                 let tasks = vec![vec![-1e-7], vec![-1e-3]];
                 let wrong =
-                    pool.evaluate(divide, &mut largest, &mut (), tasks, judge, |(), _, _| ());
+                    pool.evaluate(divide, &mut largest, &mut (), tasks, check, |(), _, _| ());
                 assert!(wrong.unwrap_err().out_of_range());
             }
         }

@@ -6,12 +6,12 @@ pub mod scale;
 pub mod spring;
 
 use super::batch::{Batch, CallChecks};
-use super::bonds::BondStep;
-use super::columns::StepInfo;
+use super::bond_step::BondStep;
 use super::error::LawError;
+use super::function::Call;
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
-use super::library::Call;
+use super::step_info::StepInfo;
 use serde::Serialize;
 
 /// State of a contact on the bench.

@@ -1,13 +1,14 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
 use super::batch::{BATCH, Batch, locate};
-use super::columns::StepInfo;
+use super::bond_step::{BondStep, degradation_factor};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::{BondAfter, Motion, Source, store_states};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
-use super::library::Call;
+use super::step_info::StepInfo;
 use super::step_result::{MomentStep, SolvedStep, Totals, Velocities};
 use crate::contact::{Bond, Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
@@ -15,28 +16,6 @@ use crate::threads::chunk_size;
 
 /// About what the laws of a bond take (ns).
 const BOND: f64 = 100.0;
-
-/// What laws give for the bonds of a batch at their new openings, in the order of the members.
-#[derive(Debug, Default)]
-pub(super) struct BondStep {
-    /// Energy of the undamaged bond per area at the new opening (J/m^2).
-    intact: Vec<f64>,
-    /// The new damage.
-    pub damage: Vec<f64>,
-}
-
-impl BondStep {
-    /// Energy per area stored at the new opening and damage (J/m^2).
-    pub fn stored(&self, law: &Interface, k: usize) -> f64 {
-        let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
-        let share = if law.damages() {
-            degradation_factor(self.damage[k], m)
-        } else {
-            1.0
-        };
-        share * self.intact[k]
-    }
-}
 
 /// A bond at the end of a step.
 struct BondEnd<S: Space> {
@@ -491,18 +470,6 @@ fn store_bonds<S: Space>(
 fn raise(damage: &mut [f64], new: &[f64]) {
     for (old, new) in damage.iter_mut().zip(new) {
         *old = old.max(*new).min(1.0);
-    }
-}
-
-/// (1 - D)^m.
-fn degradation_factor(damage: f64, m: f64) -> f64 {
-    let intact = 1.0 - damage;
-    if m == 1.0 {
-        intact
-    } else if m == 2.0 {
-        intact * intact
-    } else {
-        intact.powf(m)
     }
 }
 

@@ -4,6 +4,7 @@
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
+use super::linked::hex;
 use fretwork_abi::FwPlugin;
 use sha2::{Digest, Sha256};
 use std::ffi::CStr;
@@ -100,9 +101,4 @@ fn file_sum(path: &Path) -> std::io::Result<String> {
         sum.update(&buffer[..n]);
     }
     Ok(hex(&sum.finalize()))
-}
-
-/// Formats bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

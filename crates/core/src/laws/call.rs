@@ -1,7 +1,8 @@
 //! Calls of plugin functions across the C ABI.
 
 use super::error::LawError;
-use super::library::{Call, Plugin};
+use super::function::Call;
+use super::library::Plugin;
 use super::{outside, watch};
 use fretwork_abi as abi;
 use std::ffi::c_char;

@@ -4,22 +4,14 @@
 //! Only the command-line program does so, after [`enable`]; other users of the library are not
 //! affected.
 
-use super::error::LawError;
-use super::library::Plugin;
-use super::linked::LawCode;
 use crate::program;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
-use std::sync::{Mutex, OnceLock, mpsc};
+use std::sync::{OnceLock, mpsc};
 use std::time::Duration;
-
-/// Hidden subcommand that tries to open libraries.
-pub const TRY_LIBRARIES: &str = "__try-libraries";
 
 /// Whether the program may be run as a child, and how.
 #[derive(Debug)]
@@ -264,136 +256,6 @@ fn describe_exit(status: ExitStatus, said: &str) -> String {
         None => "it ended the process".to_owned(),
     }
 }
-
-/// A library as it was when it was tried.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-struct Library {
-    path: PathBuf,
-    sha256: String,
-}
-
-/// Results of the trials: `None` for success, otherwise the reason why the library cannot be
-/// opened. The path is part of the key, since the same bytes in another folder may load other
-/// dependencies.
-static FOUND: Mutex<Option<HashMap<Library, Option<String>>>> = Mutex::new(None);
-
-fn cached_result(library: &Library) -> Option<Option<String>> {
-    let found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
-    found.as_ref()?.get(library).cloned()
-}
-
-fn cache_result(library: &Library, reason: Option<String>) {
-    let mut found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
-    let all = found.get_or_insert_default();
-    all.insert(library.clone(), reason);
-}
-
-/// Checks in a child process that a library can be opened without hanging or ending the process.
-pub(super) fn check_loads(path: &Path, sha256: &str) -> Result<(), String> {
-    if !enabled() {
-        return Ok(());
-    }
-    let library = Library {
-        path: path.to_owned(),
-        sha256: sha256.to_owned(),
-    };
-    if cached_result(&library).is_none() {
-        try_in_order(std::slice::from_ref(&library));
-    }
-    match cached_result(&library) {
-        Some(None) => Ok(()),
-        Some(Some(reason)) => Err(reason),
-        None => Err(UNANSWERED.to_owned()),
-    }
-}
-
-/// Tries several libraries in one child process; a library whose SHA-256 differs from its pin is
-/// not opened.
-pub(super) fn try_loading(libraries: &[(PathBuf, Option<&str>)]) {
-    if !enabled() {
-        return;
-    }
-    let mut wanted: Vec<Library> = Vec::new();
-    for (path, pin) in libraries {
-        let Ok(code) = LawCode::of(path) else {
-            continue;
-        };
-        let library = Library {
-            path: path.clone(),
-            sha256: code.sha256,
-        };
-        let pinned = pin.is_none_or(|p| p.eq_ignore_ascii_case(&library.sha256));
-        if pinned && cached_result(&library).is_none() && !wanted.contains(&library) {
-            wanted.push(library);
-        }
-    }
-    while !wanted.is_empty() {
-        let done = try_in_order(&wanted);
-        wanted.drain(..done);
-    }
-}
-
-const UNANSWERED: &str = "it was tried in a separate process, which ended without reporting on it; build or copy it again";
-
-/// Tries libraries in a child process and stores the results; returns the number of libraries with
-/// a result, at least one.
-fn try_in_order(libraries: &[Library]) -> usize {
-    let question = serde_json::to_value(libraries).map_err(|e| e.to_string());
-    let told = match question.and_then(|q| run_request(TRY_LIBRARIES, &q)) {
-        Ok(told) => told,
-        Err(reason) => {
-            let text = format!(
-                "it must first be tried in a separate process, which could not be started ({reason})"
-            );
-            cache_result(&libraries[0], Some(text));
-            return 1;
-        }
-    };
-    for (library, piece) in libraries.iter().zip(&told.messages) {
-        cache_result(library, piece.as_str().map(str::to_owned));
-    }
-    let answered = told.messages.len().min(libraries.len());
-    let Some(library) = libraries.get(answered) else {
-        return answered;
-    };
-    let why = match &told.end {
-        End::Early(why) => format!(
-            "opening it ended a process that tried it: {why}; the file may be damaged or cut short: build or copy it again"
-        ),
-        End::NoMemory(why) => format!("it could not be tried: {why}"),
-        // A library without an answer was not opened.
-        End::Done => UNANSWERED.to_owned(),
-    };
-    cache_result(library, Some(why));
-    answered + 1
-}
-
-/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is
-/// unchanged. The trial checks that opening returns, and brings no other libraries than were
-/// examined; other errors are reported later, when the parent opens it.
-///
-/// # Errors
-/// The request cannot be read.
-pub fn try_libraries() -> Result<(), String> {
-    let libraries: Vec<Library> =
-        serde_json::from_value(read_request()?).map_err(|e| e.to_string())?;
-    for library in libraries {
-        send_message(
-            &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
-                Err(LawError::Pinned { .. }) => json!(CHANGED),
-                // Its code does not get into the process that asks.
-                Err(LawError::Unexamined { reason, .. }) => json!(reason),
-                _ => Value::Null,
-            },
-        );
-    }
-    send_done();
-    Ok(())
-}
-
-/// Message for a library that changed after it was first read.
-pub(super) const CHANGED: &str =
-    "the file changed while it was being opened; wait until it is written and try again";
 
 #[cfg(test)]
 mod tests {

@@ -1,27 +1,13 @@
 //! The columns of a batch: collected from the network, passed to plugins, read back.
 
+use super::function::Call;
 use super::interface::Loaded;
 use super::kind::Kind;
-use super::library::Call;
 pub use super::outputs::{Outputs, Triple};
+use super::step_info::StepInfo;
 use crate::contact::ContactHeat;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
-
-/// Time and scheme of the step, as passed to plugins.
-#[derive(Clone, Copy, Debug)]
-pub struct StepInfo {
-    /// Dimension of space.
-    pub dimension: u32,
-    /// Time at the start of the step (s).
-    pub time: f64,
-    /// Step (s).
-    pub h: f64,
-    /// Theta of the scheme.
-    pub theta: f64,
-    /// Share of an overlap that is taken out in a step.
-    pub correction: f64,
-}
 
 /// The columns of one batch; the buffers are reused from step to step.
 #[derive(Debug, Default)]
@@ -64,7 +50,7 @@ pub struct Columns {
     pub effective_mass: Vec<f64>,
     /// Force of the tangential spring (N), along t1 and t2; as `overlap`.
     pub spring: [Vec<f64>; 2],
-    /// The same at the start of the step, for commit.
+    /// Force of the tangential spring at the start of the step (N), for commit.
     pub spring_before: [Vec<f64>; 2],
     /// Temperatures of contact, candidate and antagonist (K); empty where no heat is computed.
     pub temperature: [Vec<f64>; 3],

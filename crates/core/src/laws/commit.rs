@@ -1,14 +1,15 @@
 //! Commit: the laws' update at the end of a solved step.
 
 use super::batch::{BATCH, Batch, locate};
-use super::columns::Outputs;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::{Motion, Source, store_states};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::{Domain, Kind};
-use super::library::Call;
+use super::outputs::Outputs;
+use super::slot::SlotCommit;
 use super::spring::SpringStep;
 use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
@@ -242,7 +243,7 @@ fn pay_debts<S: Space>(
     history.negative_friction_work.not_negative(works)
 }
 
-/// Stores the impulses of the contacts, and books what they dissipated.
+/// Stores the impulses of the contacts, and adds up what they dissipated.
 fn commit_contacts<S: Space>(
     network: &mut Network<S>,
     step: &SolvedStep<'_, S>,
@@ -366,7 +367,7 @@ fn commit_contact<S: Space>(
     }
 }
 
-/// Stores the moments of the contacts that resist rotation, and books their friction.
+/// Stores the moments of the contacts that resist rotation, and adds up their friction.
 fn commit_moments<S: Space>(
     network: &mut Network<S>,
     moment_steps: &[MomentStep<S>],
@@ -381,38 +382,6 @@ fn commit_moments<S: Space>(
         if let Some(dissipation) = &mut network.dissipation {
             dissipation[moment_step.moment.contact as usize].friction += friction;
         }
-    }
-}
-
-/// The end of a step for one law of an interface that acts on contacts: what a
-/// [`CommitHook`](super::kind::CommitHook) works on, after the law was called.
-#[derive(Debug)]
-pub struct SlotCommit<'a, S: Space> {
-    /// The interface.
-    pub interface: &'a Interface,
-    /// The law, one of its slots.
-    pub law: &'a Loaded,
-    /// All contacts.
-    pub network: &'a mut Network<S>,
-    /// What each contact did, in the order of the network, and time and scheme.
-    pub step: &'a SolvedStep<'a, S>,
-    /// Energies and volumes of the step.
-    pub totals: &'a mut Totals,
-    pub(super) members: &'a [usize],
-    pub(super) outputs: &'a Outputs,
-}
-
-impl<S: Space> SlotCommit<'_, S> {
-    /// Contacts that the law acts on, as places in the network; values of outputs are in their
-    /// order.
-    pub fn contacts(&self) -> &[usize] {
-        self.members
-    }
-
-    /// What the law wrote: the columns that its kind names as outputs of a commit; the others are
-    /// empty.
-    pub fn outputs(&self) -> &Outputs {
-        self.outputs
     }
 }
 

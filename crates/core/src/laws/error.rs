@@ -1,8 +1,9 @@
 //! Errors of loading and calling laws.
 
+use super::function::Call;
 use super::kind::Kind;
-use super::library::Call;
-use super::range::Range;
+use super::names::{VARIABLE, name_is_valid};
+use super::outputs::Range;
 use std::path::PathBuf;
 
 /// Error of loading or calling a law.
@@ -236,12 +237,12 @@ impl LawError {
 fn advice(name: &str, nearest: Option<&str>) -> String {
     match nearest {
         Some(nearest) => format!("did you mean `{nearest}`?"),
-        None if !super::search::name_is_valid(name) => {
+        None if !name_is_valid(name) => {
             "a law is named by a-z, 0-9, `-` and `_`, never by a path".into()
         }
         None => format!(
             "name the folder of its library with --plugin-path or in {}",
-            super::search::VARIABLE
+            VARIABLE
         ),
     }
 }

@@ -7,7 +7,7 @@
 pub(super) struct FloatControl(registers::Control);
 
 impl FloatControl {
-    /// As it is now.
+    /// The control in force now.
     #[inline]
     pub fn now() -> Self {
         Self(registers::read())

@@ -1,13 +1,13 @@
 //! Formation of bonds, and memory for the internal variables of new contacts.
 
 use super::batch::{BATCH, Batch, locate};
-use super::columns::StepInfo;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::{Source, store_states};
 use super::history::LawHistory;
 use super::interface::{BondOpening, Interface, Loaded};
-use super::library::Call;
+use super::step_info::StepInfo;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;

@@ -1,8 +1,9 @@
 //! Fills the columns of a batch from the network.
 
 use super::batch::Batch;
-use super::columns::{Contents, StepInfo};
+use super::columns::Contents;
 use super::interface::{Interface, Loaded};
+use super::step_info::StepInfo;
 use super::step_result::{SolvedStep, Velocities};
 use crate::contact::{Bond, Contact, Memory, Network};
 use crate::geometry::space::{Space, VectorLike};
@@ -24,7 +25,7 @@ pub(super) enum Motion<'a, S: Space> {
     /// the last step: what is known of the load before the step is solved. Contacts that begin in
     /// this step carry nothing yet.
     Continued(&'a Velocities<S>),
-    /// As solved.
+    /// The motion that the solver found.
     Solved(&'a SolvedStep<'a, S>),
 }
 

@@ -43,7 +43,7 @@ impl Guarded {
     /// violation.
     ///
     /// # Safety
-    /// As the ABI requires of the batch, for a law with these numbers of parameters and variables.
+    /// The batch satisfies the ABI, for a law with these numbers of parameters and variables.
     pub unsafe fn call<R>(
         &mut self,
         batch: &FwBatch,
@@ -213,7 +213,7 @@ impl Guarded {
 /// whether any later one differs.
 ///
 /// # Safety
-/// As the ABI requires of the batch, for a law with this number of variables.
+/// The batch satisfies the ABI, for a law with this number of variables.
 pub(super) unsafe fn repeat<R>(
     batch: &FwBatch,
     variables: usize,

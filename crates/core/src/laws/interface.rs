@@ -150,7 +150,7 @@ impl Interface {
         Ok(law)
     }
 
-    /// The same with another law, in the place of that of its kind where there is one.
+    /// Returns the interface with another law, in the place of that of its kind where there is one.
     ///
     /// # Errors
     /// Slots that do not fit together.
@@ -161,7 +161,7 @@ impl Interface {
         Ok(self)
     }
 
-    /// The same without the laws that a test refuses.
+    /// Returns the interface without the laws that a test refuses.
     ///
     /// # Errors
     /// No contact law is left, or slots that do not fit together.
@@ -171,7 +171,7 @@ impl Interface {
         Ok(self)
     }
 
-    /// The same with another rule for when bonds are made, and a healing time (s).
+    /// Returns the interface with another rule for when bonds are made, and a healing time (s).
     ///
     /// # Errors
     /// Healing without a cohesion law that forms bonds in contact.

@@ -1,40 +1,20 @@
 //! A plugin: a shared library that is opened, validated and called at run time.
 
+use super::child::{read_request, send_done, send_message};
 use super::error::LawError;
+use super::function::Call;
 use super::kind::Kind;
 use super::linked::{LawCode, Opening};
+use super::loading::{self, Library};
+use super::names::name_is_valid;
 use super::outside::{self, Disturbed};
 use super::plugin_table::{Field, fields, read_table, text};
-use super::{child, watch};
+use super::watch;
 use fretwork_abi as abi;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-
-/// A call over a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Call {
-    /// New contacts.
-    Initialise,
-    /// Start of a step.
-    Prepare,
-    /// End of a step.
-    Commit,
-    /// Stored energy.
-    Energy,
-}
-
-impl Call {
-    /// The function of the plugin table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Initialise => "initialise",
-            Self::Prepare => "prepare",
-            Self::Commit => "commit",
-            Self::Energy => "energy",
-        }
-    }
-}
 
 /// The codes of kinds in words: those of the plugin interface, and those registered beside them.
 fn known_codes() -> String {
@@ -100,7 +80,7 @@ impl Plugin {
     /// runs.
     ///
     /// # Errors
-    /// As for [`Self::open`]; and [`LawError::Pinned`].
+    /// Those of [`Self::open`], and [`LawError::Pinned`].
     pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),
@@ -116,10 +96,10 @@ impl Plugin {
                 sha256,
             });
         }
-        child::check_loads(path, &sha256).map_err(&refuse)?;
+        loading::check_loads(path, &sha256).map_err(&refuse)?;
         // The trial may have taken seconds, in which the file can change.
         if read()? != code {
-            return Err(refuse(child::CHANGED.to_owned()));
+            return Err(refuse(loading::CHANGED.to_owned()));
         }
         let loading = watch::label(format!("the plugin {}", path.display()));
         let disturbed = Disturbed::default();
@@ -197,7 +177,7 @@ impl Plugin {
         let text =
             |p, what: &str| unsafe { text(p) }.map_err(|e| refuse(format!("its {what} {e}")));
         let name = text(table.name, "name")?;
-        if !super::search::name_is_valid(&name) {
+        if !name_is_valid(&name) {
             return Err(refuse(format!(
                 "its name `{name}` must be made of a-z, 0-9, - and _, and begin with a letter or digit"
             )));
@@ -335,14 +315,25 @@ unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Err
     unsafe { libloading::Library::new(path) }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn calls_have_the_names_of_their_functions() {
-        let calls = [Call::Initialise, Call::Prepare, Call::Commit, Call::Energy];
-        let names = calls.map(Call::name);
-        assert_eq!(names, ["initialise", "prepare", "commit", "energy"]);
+/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is
+/// unchanged. The trial checks that opening returns, and brings no other libraries than were
+/// examined; other errors are reported later, when the parent opens it.
+///
+/// # Errors
+/// The request cannot be read.
+pub fn try_libraries() -> Result<(), String> {
+    let libraries: Vec<Library> =
+        serde_json::from_value(read_request()?).map_err(|e| e.to_string())?;
+    for library in libraries {
+        send_message(
+            &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
+                Err(LawError::Pinned { .. }) => json!(loading::CHANGED),
+                // Its code does not get into the process that asks.
+                Err(LawError::Unexamined { reason, .. }) => json!(reason),
+                _ => Value::Null,
+            },
+        );
     }
+    send_done();
+    Ok(())
 }

@@ -10,7 +10,6 @@
 //! depend on the machine, a law is refused before it is opened, and after it the [libraries that
 //! came](Opening) are compared with those that were read.
 
-use super::built_in::hex;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -148,7 +147,7 @@ mod linux {
             Self::beside(library, program())
         }
 
-        /// The same, where these names are loaded.
+        /// Examines what a library links to, where these names are loaded already.
         fn beside(library: &Path, loaded: &BTreeSet<Vec<u8>>) -> Result<Self, String> {
             let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
             let mut walk = Self::default();
@@ -516,4 +515,9 @@ mod linux {
             std::fs::remove_dir_all(&folder).unwrap();
         }
     }
+}
+
+/// Formats bytes in hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -1,6 +1,7 @@
 //! Interface laws: plugins found by name, combined by the case, and called in batches.
 mod batch;
 pub mod bench;
+mod bond_step;
 mod bonds;
 pub mod built_in;
 mod call;
@@ -12,6 +13,7 @@ pub mod error;
 pub mod evaluator;
 mod float_control;
 mod formation;
+mod function;
 mod gather;
 mod guarded;
 mod history;
@@ -19,6 +21,8 @@ pub mod interface;
 pub mod kind;
 pub mod library;
 mod linked;
+pub mod loading;
+mod names;
 mod outputs;
 mod outside;
 mod plugin_table;
@@ -29,8 +33,10 @@ mod reach;
 #[cfg(test)]
 pub(crate) mod sample_laws;
 pub mod search;
+pub mod slot;
 mod spring;
 pub mod static_memory;
+mod step_info;
 mod step_result;
 mod trial;
 mod trust;
@@ -38,15 +44,17 @@ pub mod watch;
 
 pub use built_in::BuiltInLaws;
 pub use error::LawError;
+pub use function::Call;
 pub use history::LawHistory;
 pub use interface::{AreaRule, BondOpening, BondRule, Interface, Loaded};
 pub use kind::{Kind, KindSpec};
-pub use library::{Call, Plugin};
+pub use library::Plugin;
+pub use outputs::Range;
 pub use plugin_table::Field;
-
-pub use range::Range;
 pub use rate::FrictionAt;
 pub use search::{Place, SearchPath};
+pub use slot::SlotCommit;
 pub use spring::{SpringForm, SpringStep};
+pub use step_info::StepInfo;
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};
 pub use trial::Step;

@@ -1,4 +1,6 @@
-//! The columns that laws write.
+//! The columns that laws write, and what is accepted in them.
+
+use std::fmt;
 
 /// Vectors in the local frame, one column per component.
 pub type Triple = [Vec<f64>; 3];
@@ -90,5 +92,57 @@ impl Outputs {
     pub(super) fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let (all, springs, transport) = self.groups();
         all.into_iter().chain(springs).chain(transport)
+    }
+}
+
+/// A column that a call of a law writes.
+#[derive(Debug)]
+pub struct Output<'a> {
+    /// Its name in the plugin interface.
+    pub name: &'static str,
+    /// One value a contact.
+    pub values: &'a mut Vec<f64>,
+    /// What is accepted; any finite value without it.
+    pub range: Option<Range>,
+}
+
+impl<'a> Output<'a> {
+    /// A column with a range.
+    pub fn ranged((name, values, range): (&'static str, &'a mut Vec<f64>, Range)) -> Self {
+        Self {
+            name,
+            values,
+            range: Some(range),
+        }
+    }
+
+    /// A column of any finite values.
+    pub fn finite((name, values): (&'static str, &'a mut Vec<f64>)) -> Self {
+        Self {
+            name,
+            values,
+            range: None,
+        }
+    }
+}
+
+/// Accepted range of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
+    NotNegative,
+    /// From 0 to 1: damage, normal restitution.
+    Share,
+    /// From -1 to 1: tangential restitution.
+    Signed,
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotNegative => "[0, infinity)",
+            Self::Share => "[0, 1]",
+            Self::Signed => "[-1, 1]",
+        })
     }
 }

@@ -2,14 +2,15 @@
 //! standard local form.
 
 use super::batch::{BATCH, Batch, locate};
-use super::columns::{Outputs, StepInfo};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::{Source, contact_area};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
-use super::library::Call;
+use super::outputs::Outputs;
 use super::spring::SpringForm;
+use super::step_info::StepInfo;
 use super::step_result::Velocities;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
@@ -113,7 +114,7 @@ struct Asked<'a, S: Space> {
 enum ContactAsked {
     /// They are in the forms.
     Done,
-    /// The same for all contacts.
+    /// One answer for all contacts.
     Constant(Friction),
     /// The contact law.
     Each,

@@ -1,19 +1,8 @@
-//! The valid range of a law's outputs, where physics or the plugin interface defines one.
+//! Checks that what laws write is in its range, where physics or the plugin interface defines one.
 
-use super::kind::{Kind, Output};
+use super::kind::Kind;
+use super::outputs::{Output, Range};
 use serde::{Deserialize, Serialize};
-use std::fmt;
-
-/// Accepted range of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
-    /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
-    NotNegative,
-    /// From 0 to 1: damage, normal restitution.
-    Share,
-    /// From -1 to 1: tangential restitution.
-    Signed,
-}
 
 impl Range {
     /// Tolerance for rounding errors: a fraction may exceed its bound, and a difference may fall
@@ -114,16 +103,6 @@ impl Largest {
                 *ours = ours.max(*theirs);
             }
         }
-    }
-}
-
-impl fmt::Display for Range {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotNegative => "[0, infinity)",
-            Self::Share => "[0, 1]",
-            Self::Signed => "[-1, 1]",
-        })
     }
 }
 

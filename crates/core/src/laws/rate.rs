@@ -4,8 +4,8 @@
 use super::batch::{Batch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::Source;
-use super::library::Call;
 use super::trial::{Asked, Step};
 use crate::geometry::space::Space;
 

@@ -4,9 +4,9 @@
 use super::batch::locate;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::function::Call;
 use super::gather::Source;
 use super::interface::Interface;
-use super::library::Call;
 use super::trial::{Asked, Step};
 use crate::geometry::space::Space;
 

@@ -4,45 +4,49 @@ use super::interface::{Interface, Loaded};
 use super::library::Plugin;
 use fretwork_law::{
     CohesionLaw, Conductance, ContactLaw, Friction, Law, Site, Spring, Traction, TransportLaw,
-    Variable, abi, parameters,
+    Variable, abi, parameters, plugin_table,
 };
 use std::path::Path;
 
-parameters! {
+/// The law of a table of the wrapper, with the defaults of its parameters.
+fn loaded(table: *const abi::FwPlugin) -> Loaded {
+    // SAFETY: a static table of the wrapper.
+    let plugin = unsafe { Plugin::from_table(table, Path::new("a test"), "", true) };
+    Loaded::with_defaults(plugin.unwrap())
+}
+
+/// Declares a law: its parameters, what else the plugin table says of it, and the function that
+/// loads it with the defaults of its parameters.
+macro_rules! sample {
+    (
+        $(#[$doc:meta])*
+        $name:ident: $kind:ident $law:ident { $($parameters:tt)* } { $($constants:tt)* }
+    ) => {
+        parameters! {
+            $(#[$doc])*
+            pub struct $law { $($parameters)* }
+        }
+
+        impl Law for $law {
+            const NAME: &'static str = stringify!($name);
+            const DOC: &'static str = "a law of the tests";
+            const REFERENCE: &'static str = "a test";
+            $($constants)*
+        }
+
+        $(#[$doc])*
+        pub(crate) fn $name() -> Loaded {
+            plugin_table!($kind $law);
+            loaded(&TABLE.0)
+        }
+    };
+}
+
+sample! {
     /// Coulomb friction.
-    pub struct Coulomb {
+    coulomb: contact Coulomb {
         mu: "" = 0.5, 0.0, 10.0, "friction coefficient";
-    }
-}
-
-impl Law for Coulomb {
-    const NAME: &'static str = "coulomb";
-    const DOC: &'static str = "friction";
-    const REFERENCE: &'static str = "a test";
-}
-
-parameters! {
-    /// A linear spring without friction.
-    pub struct Elastic {
-        k: "N/m" = 8.0, 0.0, 1e30, "stiffness";
-    }
-}
-
-impl Law for Elastic {
-    const NAME: &'static str = "elastic";
-    const DOC: &'static str = "a linear spring";
-    const REFERENCE: &'static str = "a test";
-    const FLAGS: u64 = abi::FLAG_COMPLIANT;
-}
-
-impl ContactLaw for Elastic {
-    fn friction(&self, _: &Site, _: &[f64]) -> Friction {
-        Friction::default()
-    }
-
-    fn spring(&self, site: &Site, _: &[f64], _: f64) -> Spring {
-        Spring::linear(site, self.k, 0.0, 0.0)
-    }
+    } {}
 }
 
 impl ContactLaw for Coulomb {
@@ -54,23 +58,37 @@ impl ContactLaw for Coulomb {
     }
 }
 
-parameters! {
-    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension
-    /// only.
-    pub struct Bond {
-        k: "Pa/m" = 2.0, 0.0, 1e30, "stiffness";
+sample! {
+    /// A linear spring without friction.
+    elastic: contact LinearSpring {
+        k: "N/m" = 8.0, 0.0, 1e30, "stiffness";
+    } {
+        const FLAGS: u64 = abi::FLAG_COMPLIANT;
     }
 }
 
-impl Law for Bond {
-    const NAME: &'static str = "bond";
-    const DOC: &'static str = "a linear bond that resists rotation";
-    const REFERENCE: &'static str = "a test";
-    const FLAGS: u64 =
-        abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_MOMENT | abi::FLAG_FORMS;
+impl ContactLaw for LinearSpring {
+    fn friction(&self, _: &Site, _: &[f64]) -> Friction {
+        Friction::default()
+    }
+
+    fn spring(&self, site: &Site, _: &[f64], _: f64) -> Spring {
+        Spring::linear(site, self.k, 0.0, 0.0)
+    }
 }
 
-impl CohesionLaw for Bond {
+sample! {
+    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension
+    /// only.
+    bond: cohesion LinearBond {
+        k: "Pa/m" = 2.0, 0.0, 1e30, "stiffness";
+    } {
+        const FLAGS: u64 =
+            abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_MOMENT | abi::FLAG_FORMS;
+    }
+}
+
+impl CohesionLaw for LinearBond {
     const DEGRADATION: f64 = 1.0;
 
     fn traction(&self, site: &Site, _: &[f64]) -> Traction {
@@ -90,20 +108,15 @@ impl CohesionLaw for Bond {
     }
 }
 
-parameters! {
+sample! {
     /// Sticks without a bond: a shear cohesion, and no attraction. It has a variable, which it
     /// leaves as it is.
-    pub struct Sticky {
+    sticky: cohesion Sticky {
         strength: "Pa" = 3.0, 0.0, 1e30, "shear cohesion";
+    } {
+        const VARIABLES: &'static [Variable] =
+            &[Variable::new(c"nothing", c"", c"kept, and not used").starting_at(7.0)];
     }
-}
-
-impl Law for Sticky {
-    const NAME: &'static str = "sticky";
-    const DOC: &'static str = "a shear cohesion";
-    const REFERENCE: &'static str = "a test";
-    const VARIABLES: &'static [Variable] =
-        &[Variable::new(c"nothing", c"", c"kept, and not used").starting_at(7.0)];
 }
 
 impl CohesionLaw for Sticky {
@@ -115,18 +128,13 @@ impl CohesionLaw for Sticky {
     }
 }
 
-parameters! {
+sample! {
     /// Conducts 1 W/K for each second that the contact has had, which it counts itself.
-    pub struct Growing {
+    growing: transport Growing {
         per_time: "W/K/s" = 1.0, 0.0, 1e30, "conductance per time";
+    } {
+        const VARIABLES: &'static [Variable] = &[Variable::new(c"time", c"s", c"time so far")];
     }
-}
-
-impl Law for Growing {
-    const NAME: &'static str = "growing";
-    const DOC: &'static str = "a conductance that grows with time";
-    const REFERENCE: &'static str = "a test";
-    const VARIABLES: &'static [Variable] = &[Variable::new(c"time", c"s", c"time so far")];
 }
 
 impl TransportLaw for Growing {
@@ -139,17 +147,11 @@ impl TransportLaw for Growing {
     }
 }
 
-parameters! {
+sample! {
     /// Conducts 3 W/K, and remembers nothing.
-    pub struct Constant {
+    constant: transport Constant {
         conductance: "W/K" = 3.0, 0.0, 1e30, "conductance";
-    }
-}
-
-impl Law for Constant {
-    const NAME: &'static str = "constant";
-    const DOC: &'static str = "a constant conductance";
-    const REFERENCE: &'static str = "a test";
+    } {}
 }
 
 impl TransportLaw for Constant {
@@ -159,50 +161,6 @@ impl TransportLaw for Constant {
             electric: 0.0,
         }
     }
-}
-
-/// The law of a table of the wrapper, with the defaults of its parameters.
-fn loaded(table: *const abi::FwPlugin) -> Loaded {
-    // SAFETY: a static table of the wrapper.
-    let plugin = unsafe { Plugin::from_table(table, Path::new("a test"), "", true) };
-    Loaded::with_defaults(plugin.unwrap())
-}
-
-macro_rules! law {
-    ($kind:ident $law:ty) => {{
-        fretwork_law::plugin_table!($kind $law);
-        loaded(&TABLE.0)
-    }};
-}
-
-/// The laws of the tests, each with the defaults of its parameters.
-pub(crate) fn coulomb() -> Loaded {
-    law!(contact Coulomb)
-}
-
-/// See [`coulomb`].
-pub(crate) fn elastic() -> Loaded {
-    law!(contact Elastic)
-}
-
-/// See [`coulomb`].
-pub(crate) fn bond() -> Loaded {
-    law!(cohesion Bond)
-}
-
-/// See [`coulomb`].
-pub(crate) fn sticky() -> Loaded {
-    law!(cohesion Sticky)
-}
-
-/// See [`coulomb`].
-pub(crate) fn growing() -> Loaded {
-    law!(transport Growing)
-}
-
-/// See [`coulomb`].
-pub(crate) fn constant() -> Loaded {
-    law!(transport Constant)
 }
 
 /// An interface of friction and other laws.

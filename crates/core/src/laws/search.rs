@@ -4,11 +4,9 @@ use super::built_in::BuiltInLaws;
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
-use super::{child, trust};
+pub use super::names::{VARIABLE, name_is_valid};
+use super::{loading, trust};
 use std::path::{Path, PathBuf};
-
-/// Environment variable with additional folders.
-pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
 
 /// Folders in which plugins are looked for, in order.
 #[derive(Clone, Debug)]
@@ -27,13 +25,6 @@ pub enum Place {
     Library(PathBuf),
     /// In the program itself.
     BuiltIn,
-}
-
-/// Returns whether a law's name consists of a-z, 0-9, `-` and `_` and begins with a letter or
-/// digit.
-pub fn name_is_valid(name: &str) -> bool {
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
-    name.chars().next().is_some_and(plain) && name.chars().all(|c| plain(c) || c == '-' || c == '_')
 }
 
 /// Returns the file name of a law's library: `libfretwork_KIND_NAME.so`, with `-` in the name
@@ -96,10 +87,10 @@ impl SearchPath {
         self.find_pinned(kind, name, None)
     }
 
-    /// As [`Self::find`], for a library with a required SHA-256 (in hexadecimal).
+    /// Finds a law as [`Self::find`] does, in a library with a required SHA-256 (in hexadecimal).
     ///
     /// # Errors
-    /// As [`Self::find`]; and a different SHA-256, before any code of the library runs.
+    /// Those of [`Self::find`]; and a different SHA-256, before any code of the library runs.
     pub fn find_pinned(
         &self,
         kind: Kind,
@@ -169,7 +160,7 @@ impl SearchPath {
                 libraries.push((path, pin));
             }
         }
-        child::try_loading(&libraries);
+        loading::try_loading(&libraries);
     }
 
     /// Returns whether a law belongs to the program itself, so that whoever can change it can

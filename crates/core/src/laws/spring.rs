@@ -325,19 +325,10 @@ mod tests {
                 ..form()
             };
             let form = ContactForm {
-                bodies: [0, 1],
                 normal: Vector2::new(0.0, 1.0),
                 arms: [Vector2::zeros(); 2],
-                central: true,
-                apart: false,
-                shift_n: 0.0,
-                shift_t: Vector1::new(0.0),
-                friction: 0.0,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
                 compliance: [1.0, 0.0],
-                impulse: Vector2::zeros(),
+                ..ContactForm::default()
             };
             let solution = ContactSolution {
                 impulse: Vector2::new(0.0, 1.0),

@@ -1,8 +1,8 @@
 //! What the contacts did in a step, as the solver gives it to the laws, and the sums of their
 //! energies.
 
-use super::columns::StepInfo;
 use super::spring::SpringStep;
+use super::step_info::StepInfo;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentSolution;

@@ -10,7 +10,7 @@ use super::interface::Interface;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::threads::chunk_size;
 
 /// Where laws are asked: the contacts of the step, and what is known of them at its start.

@@ -12,8 +12,8 @@ pub(super) fn doubt(library: &Path) -> Option<String> {
     of_all(library, &[on_the_way::me()])
 }
 
-/// As [`doubt`], for a library in a folder of the program's: its owner is trusted too, since who
-/// owns the program can change it.
+/// Why a library in a folder of the program's is not trusted, if it is not: [`doubt`] with the
+/// owner of the folder trusted too, since who owns the program can change it.
 #[cfg(unix)]
 pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;

@@ -79,7 +79,7 @@ pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
 
-/// Indices of calls beside those of [`Call`](super::library::Call).
+/// Indices of calls beside those of [`Call`](super::function::Call).
 pub(super) const VALIDATE: usize = 4;
 pub(super) const LOADING: usize = 5;
 pub(super) const FRACTURE_ENERGY: usize = 6;

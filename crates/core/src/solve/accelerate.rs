@@ -3,9 +3,9 @@
 //! still does not fall, and that alone where momentum does not help.
 
 use super::body_anderson::{BodyAnderson, MEMORY};
-use super::form::Problem;
 use super::kinds::of_kind;
 use super::momentum::Momentum;
+use super::problem::Problem;
 use crate::geometry::space::Space;
 
 /// Iterations before Anderson extrapolation starts without momentum.

@@ -4,7 +4,7 @@
 //! extrapolation, about three iterations, is spread over ten.
 
 use super::extrapolation::{Extrapolation, Safeguard};
-use super::form::Problem;
+use super::problem::Problem;
 use crate::geometry::space::Space;
 
 /// Number of stored differences.
@@ -103,19 +103,11 @@ mod tests {
         }
         let normal = Vector2::new(0.0, 1.0);
         problem.push(&ContactForm {
-            bodies: [0, 1],
             normal,
             arms: [-normal, normal],
-            central: true,
-            apart: false,
-            shift_n: 0.0,
-            shift_t: Vector1::new(0.0),
             friction: 0.5,
-            tension: 0.0,
-            cohesion: 0.0,
-            elastic: None,
-            compliance: [0.0; 2],
             impulse: normal,
+            ..ContactForm::default()
         });
         crate::solve::nlgs::prepare(&mut problem);
         let mut anderson = BodyAnderson::default();

@@ -1,7 +1,9 @@
 //! Building a contact problem: bodies, then contacts, each as a row of the kind that it needs.
 
-use super::form::{ContactForm, Mobility, Place, Problem};
+use super::form::{ContactForm, Mobility, Place};
+
 use super::kinds::{KINDS, RowsOfKind, of_kind};
+use super::problem::Problem;
 use super::row::{RigidBodies, SolverBody};
 use crate::geometry::space::Space;
 use crate::threads::{fill, for_chunks, map_chunks, worth_dividing};
@@ -164,19 +166,12 @@ mod tests {
 
     fn contact(compliance: [f64; 2]) -> ContactForm<Dim2> {
         ContactForm {
-            bodies: [0, 1],
             normal: Vector2::new(0.0, 1.0),
             arms: [Vector2::new(0.0, -0.01), Vector2::new(0.0, 0.01)],
-            central: true,
-            apart: false,
-            shift_n: 0.0,
-            shift_t: Vector1::new(0.0),
             friction: 0.5,
-            tension: 0.0,
-            cohesion: 0.0,
-            elastic: None,
             compliance,
             impulse: Vector2::new(0.1, 0.2),
+            ..ContactForm::default()
         }
     }
 

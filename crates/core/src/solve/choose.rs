@@ -10,23 +10,24 @@
 //! machine.
 
 use super::chosen::{Attempt, SolvePath, hyperstaticity};
-use super::form::{ContactForm, Problem};
+use super::context::{AutoState, SolveContext};
+use super::form::ContactForm;
+
 use super::local::auto::sweeps_per_factorisation;
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
+use super::problem::Problem;
 use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
-use super::search::Search;
-use super::standard::{self, Standard};
+use super::standard::Standard;
 use super::sticking;
 use crate::geometry::space::{Space, VectorLike};
-use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Contacts of a problem whose start is judged before the first iteration, which costs about one
+/// Contacts of a problem whose start is checked before the first iteration, which costs about one
 /// more: of fewer, what is undetermined is sought in every step ([`super::sticking`]), and an
 /// iteration is often exact.
-const JUDGED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
+const CHECKED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
 
 /// Share of the tolerance up to which a start is left as it is. Iterations in one order may not
 /// contract: what is left of rounding in a body that rests would grow from step to step, up to the
@@ -54,65 +55,6 @@ const DETERMINED: f64 = 0.95;
 const ATTEMPTS: [u32; 2] = [4, 20];
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
-
-/// What `auto` learned from previous steps.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AutoState {
-    /// Factor on the number of iterations before Newton.
-    patience: f64,
-    /// Whether the interior point converged in the last step in which Newton failed; it is then
-    /// tried first.
-    interior_first: bool,
-    /// How often the interior point is still to be skipped, and was to be skipped after its last
-    /// failure.
-    passed_over: [u32; 2],
-    /// When another solution is sought.
-    pub(super) search: Search,
-}
-
-impl Default for AutoState {
-    fn default() -> Self {
-        Self {
-            patience: 1.0,
-            interior_first: false,
-            passed_over: [0; 2],
-            search: Search::default(),
-        }
-    }
-}
-
-impl AutoState {
-    /// When another solution is sought.
-    pub fn search(&self) -> &Search {
-        &self.search
-    }
-
-    /// Begins a step, whose problem may be solved several times.
-    pub fn begin_step(&mut self) {
-        self.search.begin_step();
-    }
-
-    /// Returns whether to try the interior point: after each failure it is skipped twice as often,
-    /// at most 64 times.
-    fn interior_is_due(&mut self) -> bool {
-        let due = self.passed_over[0] == 0;
-        self.passed_over[0] = self.passed_over[0].saturating_sub(1);
-        due
-    }
-
-    /// Changes the patience by whether a method that factorises has solved the last problem.
-    fn adapt(&mut self, ended: bool) {
-        self.patience *= if ended { 0.5 } else { 2.0 };
-        self.patience = self.patience.clamp(1.0, 64.0);
-    }
-
-    /// Records the result of an interior-point attempt.
-    fn learn(&mut self, ended: bool) {
-        self.interior_first = ended;
-        let next = (2 * self.passed_over[1]).clamp(1, 64);
-        self.passed_over = if ended { [0; 2] } else { [next; 2] };
-    }
-}
 
 /// Solves the problem in place, starting from the impulses of its forms.
 pub fn solve<S: Space>(
@@ -146,12 +88,6 @@ pub fn solve<S: Space>(
     }
 }
 
-pub(super) struct SolveContext<'a, S: Space> {
-    pub(super) forms: &'a [ContactForm<S>],
-    pub(super) moments: &'a [MomentForm<S>],
-    pub(super) options: &'a Options,
-}
-
 /// How methods that factorise and Gauss-Seidel alternate.
 struct Alternation {
     /// Iterations of Gauss-Seidel before the first attempt.
@@ -162,45 +98,6 @@ struct Alternation {
 }
 
 impl<S: Space> SolveContext<'_, S> {
-    /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
-    pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
-        let options = Options {
-            accelerated,
-            max_iterations: most,
-            ..*self.options
-        };
-        Report {
-            used: if accelerated {
-                Method::Anderson
-            } else {
-                Method::Nlgs
-            },
-            ..nlgs::solve(problem, &options)
-        }
-    }
-
-    /// Improves the solution by a matrix method, whose tolerance applies to its own error measure.
-    pub(super) fn improve(
-        &self,
-        problem: &mut Problem<S>,
-        method: Method,
-        tolerance: f64,
-        most: u32,
-    ) -> Report {
-        let limits = (self.options.norm, tolerance, most);
-        let (forms, moments) = (self.forms, self.moments);
-        let iterations = if S::D == 2 {
-            standard::improve::<S, 2>(problem, forms, moments, method, limits)
-        } else {
-            standard::improve::<S, 3>(problem, forms, moments, method, limits)
-        };
-        Report {
-            iterations,
-            used: method,
-            ..nlgs::judge(problem, self.options)
-        }
-    }
-
     /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance,
     /// the method continues.
     fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
@@ -290,18 +187,11 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Goes back to the impulses of the forms.
-    pub(super) fn start_anew(&self, problem: &mut Problem<S>) {
-        let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
-        let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
-        problem.adopt(&impulses, &moments);
-    }
-
     /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they
     /// cost.
     fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
         let options = self.options;
-        if JUDGED_FIRST.contains(&problem.contacts()) {
+        if CHECKED_FIRST.contains(&problem.contacts()) {
             let report = nlgs::arrange(problem, options);
             if report.error <= AT_REST * options.tolerance {
                 // Sweeps, of which none was needed.

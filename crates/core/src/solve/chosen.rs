@@ -1,7 +1,9 @@
 //! The choices of `auto` in a step, and the hyperstaticity of a contact set.
 
-use super::form::{ContactForm, Place, Problem};
+use super::form::{ContactForm, Place};
+
 use super::nodal::NodalSystem;
+use super::problem::Problem;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// Result of a method in a step.
@@ -71,7 +73,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
     for (k, form) in forms.iter().enumerate() {
         let solution = problem.solution(k);
         let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::zero();
-        let moves = |b: &u32| freedoms::<S>(problem, *b as usize, true) > 0;
+        let moves = |b: &u32| problem.masses[*b as usize].moves();
         let terms = match problem.places[k] {
             Place::System(r) => problem.of_systems[r as usize].terms(),
             _ => &[],
@@ -96,7 +98,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
         .iter()
         .enumerate()
         .filter(|(_, state)| **state != 0)
-        .map(|(b, state)| freedoms::<S>(problem, b, *state == TURNED))
+        .map(|(b, state)| problem.masses[b].freedoms(*state == TURNED))
         .sum();
     let of_nodes = problem.systems.iter().zip(&nodes);
     let of_nodes: usize = of_nodes
@@ -112,18 +114,10 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
     unknowns as f64 / (freedoms + of_nodes).max(1) as f64
 }
 
-/// Returns the number of degrees of freedom of a movable body, with or without rotation.
-fn freedoms<S: Space>(problem: &Problem<S>, body: usize, turns: bool) -> usize {
-    let mobility = &problem.masses[body];
-    let shifts = (0..S::D).filter(|k| mobility.mass[*k] > 0.0).count();
-    let axes = if S::D == 2 { 1 } else { 3 };
-    shifts + if turns && mobility.turns() { axes } else { 0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Dim2, MatrixLike, Space};
+    use crate::geometry::space::{Dim2, MatrixLike};
     use nalgebra::Vector2;
 
     /// Hyperstaticity of a ball on `supports` fixed bodies, all of them active.
@@ -144,16 +138,9 @@ mod tests {
                 bodies: [0, k as u32 + 1],
                 normal,
                 arms: [-normal, normal],
-                central: true,
-                apart: false,
-                shift_n: 0.0,
-                shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
-                compliance: [0.0; 2],
                 impulse: normal,
+                ..ContactForm::default()
             };
             problem.push(&form);
             forms.push(form);

@@ -1,19 +1,17 @@
 //! Sets of contacts that are connected through bodies that can move. Within a step nothing that
 //! happens in one of them acts on another: bodies whose motion is given pass no impulse on.
 
-use super::form::{Mobility, Problem};
-use super::kinds::{KINDS, RowsOfKind, of_kind};
-use crate::geometry::space::{Space, VectorLike};
+use super::kinds::KINDS;
 
 /// No set.
 const NONE: u32 = u32::MAX;
 
-/// See the module. It is that of the contacts of a problem until these change.
+/// The connected sets of the contacts of a problem, until these change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Connected {
     /// The contacts that it is of: the numbers of the orders of their rows
     /// ([`Order::changes`](super::colour::Order::changes)).
-    of: Option<[u64; KINDS]>,
+    pub of: Option<[u64; KINDS]>,
     /// The set of each body; none of those that do not move, or that nothing touches.
     of_body: Vec<u32>,
     /// The first body of each set.
@@ -23,14 +21,14 @@ pub(super) struct Connected {
     /// Whether contacts with dynamical systems are among them.
     with_systems: Vec<bool>,
     /// The controlled bodies, and the contacts of such with others that have several, see
-    /// [`Problem::of_several_controlled`].
-    controlled: Vec<u32>,
+    /// `Problem::of_several_controlled`.
+    pub controlled: Vec<u32>,
     pub of_several_controlled: Vec<usize>,
 }
 
 impl Connected {
     /// Of bodies, some of which move, and the pairs that touch.
-    fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
+    pub fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
         let mut parent: Vec<u32> = (0..moves.len() as u32).collect();
         pairs(&mut |[a, b]: [u32; 2]| {
             if moves[a as usize] && moves[b as usize] {
@@ -88,6 +86,13 @@ impl Connected {
         self.contacts[set] as usize
     }
 
+    /// Notes that a contact of a body is with a dynamical system.
+    pub fn touches_system(&mut self, body: u32) {
+        if let Some(set) = self.of_body(body) {
+            self.with_systems[set] = true;
+        }
+    }
+
     /// Whether contacts with dynamical systems are among those of a set.
     pub fn with_systems(&self, set: usize) -> bool {
         self.with_systems[set]
@@ -113,62 +118,6 @@ fn root(parent: &mut [u32], mut body: u32) -> u32 {
         body = above;
     }
     body
-}
-
-impl<S: Space> Problem<S> {
-    /// Finds its connected sets, unless those that are known are of the same contacts: packings at
-    /// rest keep theirs from step to step. Gives them out of the problem, to which they are to be
-    /// given back.
-    pub(super) fn take_connected(&mut self) -> Connected {
-        let of = self.contacts_of_rows();
-        let known = std::mem::take(&mut self.connected);
-        if of.is_some() && known.of == of && known.controlled == self.controlled {
-            return known;
-        }
-        let movable = self.movable(false);
-        let mut sets = Connected::new(&movable, |found| {
-            for rows in &self.rows {
-                of_kind!(rows, rows => rows.pairs().iter().for_each(|pair| found(*pair)));
-            }
-        });
-        for row in &self.of_systems {
-            for (body, _) in row.rigid_masses() {
-                if let Some(set) = sets.of_body(body) {
-                    sets.with_systems[set] = true;
-                }
-            }
-        }
-        sets.of = of;
-        sets.controlled.clone_from(&self.controlled);
-        sets.of_several_controlled = self.of_several_controlled();
-        sets
-    }
-
-    /// What tells the contacts of rigid bodies from others; nothing where they are not sorted, or
-    /// systems act.
-    fn contacts_of_rows(&self) -> Option<[u64; KINDS]> {
-        let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
-        let known = self.rows.iter().all(sorted) && self.systems.is_empty();
-        let rows = known.then(|| self.rows.each_ref())?;
-        Some(rows.map(|rows| of_kind!(rows, rows => rows.changes())))
-    }
-
-    /// Freedoms of the bodies of each connected set.
-    pub(super) fn freedoms(&self, sets: &Connected) -> Vec<usize> {
-        let mut freedoms = vec![0; sets.len()];
-        for (set, mobility) in sets.of_body.iter().zip(&self.masses) {
-            if *set != NONE {
-                freedoms[*set as usize] += freedoms_of::<S>(mobility);
-            }
-        }
-        freedoms
-    }
-}
-
-/// Along how many axes a body moves, and about how many it turns.
-pub(super) fn freedoms_of<S: Space>(mobility: &Mobility<S>) -> usize {
-    let turns = if mobility.turns() { S::Spin::N } else { 0 };
-    (0..S::D).filter(|k| mobility.mass[*k] > 0.0).count() + turns
 }
 
 #[cfg(test)]

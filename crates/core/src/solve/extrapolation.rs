@@ -194,7 +194,7 @@ impl Extrapolation {
 
     /// Takes g(start) and chooses the next point.
     pub fn next(&mut self, g: &[f64]) {
-        // The same operations in the same order for any vector width.
+        // Operations and their order do not depend on the vector width.
         Arch::new().dispatch(Next(self, g));
     }
 

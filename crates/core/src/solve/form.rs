@@ -1,11 +1,5 @@
-//! The input of a solver: bodies as velocity records, contacts in the standard form.
+//! One contact in the standard local form, its solution, and how a body answers to impulses.
 
-use super::connected::Connected;
-use super::kinds::{KINDS, RowsOfKind, of_kind};
-use super::loaded::Loaded;
-use super::nodal::NodalSystem;
-use super::row::{MomentForm, MomentRow, MomentSolution, Parts, SolverBody, SystemRow};
-use super::traction::Tractions;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// One contact in the standard local form. Impulses are in N s, velocities in m/s.
@@ -41,9 +35,9 @@ pub struct ContactForm<S: Space> {
     pub impulse: S::Vector,
 }
 
-impl<S: Space> ContactForm<S> {
-    /// Returns a contact on which nothing acts.
-    pub(super) fn idle() -> Self {
+impl<S: Space> Default for ContactForm<S> {
+    /// A central contact of the first two bodies on which nothing acts.
+    fn default() -> Self {
         Self {
             bodies: [0, 1],
             normal: S::Vector::zero(),
@@ -178,7 +172,13 @@ impl<S: Space> Mobility<S> {
 
     /// Returns whether the body can move.
     pub fn moves(&self) -> bool {
-        self.turns() || (0..S::D).any(|k| self.mass[k] > 0.0)
+        self.freedoms(true) > 0
+    }
+
+    /// Returns along how many axes the body moves, and with `turns` about how many it turns.
+    pub fn freedoms(&self, turns: bool) -> usize {
+        let about = if turns && self.turns() { S::Spin::N } else { 0 };
+        (0..S::D).filter(|k| self.mass[*k] > 0.0).count() + about
     }
 
     /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic
@@ -205,7 +205,7 @@ impl<S: Space> Mobility<S> {
         shift + self.energy_of_turning(dw)
     }
 
-    /// The same of rotation, where the inertia has directions.
+    /// Returns twice the energy of a change of rotation, where the inertia has directions (J).
     #[inline(never)]
     fn energy_of_turning(&self, dw: &S::Spin) -> f64 {
         let inertia = self.inertia.inverse();
@@ -222,195 +222,4 @@ pub(super) enum Place {
         row: u32,
     },
     System(u32),
-}
-
-/// The contact problem of one step. Push the bodies, then the contacts.
-///
-/// # Examples
-/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s
-/// downwards, and 0.001 m/s sideways, which is within what Coulomb friction with mu = 0.5 holds.
-/// ```
-/// use fretwork_core::geometry::space::{Dim2, Space, VectorLike};
-/// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
-/// use nalgebra::{Matrix1, Vector1, Vector2};
-///
-/// let mut problem = Problem::<Dim2>::default();
-/// let (spin, turned) = (Vector1::new(0.0), Matrix1::new(0.0));
-/// let free = Vector2::new(1e-3, -1e-2);
-/// problem.push_body(free, spin, Vector2::new(0.5, 0.5), turned, 0.01);
-/// problem.push_body(Vector2::zero(), spin, Vector2::zero(), turned, 0.01);
-/// problem.push(&ContactForm {
-///     bodies: [0, 1],
-///     normal: Vector2::new(0.0, 1.0),
-///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
-///     central: true,
-///     apart: false,
-///     shift_n: 0.0,
-///     shift_t: <Dim2 as Space>::Tangent::zero(),
-///     friction: 0.5,
-///     tension: 0.0,
-///     cohesion: 0.0,
-///     elastic: None,
-///     compliance: [0.0; 2],
-///     impulse: Vector2::zero(),
-/// });
-/// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
-/// assert!(report.converged);
-/// // The impulse that stops it: its mass times the change of velocity (N s).
-/// let impulse = problem.solution(0).impulse;
-/// assert!((impulse - Vector2::new(-2e-3, 2e-2)).norm() < 1e-9, "{impulse}");
-/// assert!(problem.velocity(0).0.norm() < 1e-9);
-/// ```
-#[derive(Debug)]
-pub struct Problem<S: Space> {
-    /// Velocities, updated in place, one record per body.
-    pub solver_bodies: Vec<SolverBody<S>>,
-    /// Free velocities of the bodies.
-    pub free: Vec<(S::Vector, S::Spin)>,
-    pub(super) lengths: Vec<f64>,
-    pub(super) masses: Vec<Mobility<S>>,
-    /// Contacts between rigid bodies, by kind.
-    pub(super) rows: [RowsOfKind<S>; KINDS],
-    /// Contacts with dynamical systems; they run after those above, in order.
-    pub(super) of_systems: Vec<SystemRow<S>>,
-    pub(super) tractions: Tractions,
-    /// The dynamical systems, as far as contacts see them.
-    pub(super) systems: Vec<NodalSystem<S>>,
-    /// Memory of large systems that were solved before.
-    pub(super) loaded: Vec<Loaded<S>>,
-    /// Moments of contacts that resist rotation; they run last, in order.
-    pub(super) moments: Vec<MomentRow<S>>,
-    pub(super) places: Vec<Place>,
-    /// Connected sets of the contacts that it had when these were asked for last.
-    pub(super) connected: Connected,
-    /// Whether a contact has a compliance.
-    pub(super) compliant: bool,
-    /// Contacts of each kind between rigid bodies, as they are added.
-    pub(super) of_kind: [Vec<u32>; KINDS],
-    /// Bodies whose motion is imposed or controlled, in order.
-    pub(super) controlled: Vec<u32>,
-}
-
-impl<S: Space> Default for Problem<S> {
-    fn default() -> Self {
-        Self {
-            solver_bodies: Vec::new(),
-            free: Vec::new(),
-            lengths: Vec::new(),
-            masses: Vec::new(),
-            rows: RowsOfKind::none(),
-            of_systems: Vec::new(),
-            tractions: Tractions::default(),
-            systems: Vec::new(),
-            loaded: Vec::new(),
-            moments: Vec::new(),
-            places: Vec::new(),
-            connected: Connected::default(),
-            compliant: false,
-            of_kind: Default::default(),
-            controlled: Vec::new(),
-        }
-    }
-}
-
-impl<S: Space> Problem<S> {
-    /// Bytes per body: its record, free velocity, length and inverse masses.
-    pub const BYTES_A_BODY: usize = size_of::<SolverBody<S>>()
-        + size_of::<(S::Vector, S::Spin)>()
-        + size_of::<f64>()
-        + size_of::<Mobility<S>>();
-
-    /// Bytes per row of a contact: of two balls, of two balls with a bond, with lever arms, with
-    /// lever arms and a bond.
-    pub const BYTES_A_CONTACT: [usize; KINDS] = RowsOfKind::<S>::BYTES;
-
-    /// Bytes per contact for the order of the iteration: its index as pushed, bodies, sequence and
-    /// places.
-    pub const BYTES_TO_SORT: usize =
-        size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
-
-    /// Clears the problem, keeping its buffers.
-    pub fn clear(&mut self) {
-        self.solver_bodies.clear();
-        self.free.clear();
-        self.lengths.clear();
-        self.masses.clear();
-        for rows in &mut self.rows {
-            of_kind!(rows, rows => rows.clear());
-        }
-        self.of_systems.clear();
-        self.tractions.clear();
-        self.clear_systems();
-        self.moments.clear();
-        self.places.clear();
-        self.compliant = false;
-    }
-
-    /// Adds the moments of a contact that was already pushed, given with its bodies and normal.
-    pub fn push_moment(&mut self, form: &MomentForm<S>, contact: &ContactForm<S>) {
-        let row = self.moment_row(form, contact);
-        self.moments.push(row);
-    }
-
-    /// The row of the moments of a contact between rigid bodies.
-    pub(super) fn moment_row(
-        &self,
-        form: &MomentForm<S>,
-        contact: &ContactForm<S>,
-    ) -> MomentRow<S> {
-        let [i, j] = contact.bodies.map(|b| b as usize);
-        MomentRow::new(
-            form,
-            self.places[form.contact as usize],
-            contact.bodies,
-            contact.normal,
-            [&self.masses[i], &self.masses[j]],
-            [self.lengths[i], self.lengths[j]],
-        )
-    }
-
-    /// Iterates over the moments, in the order pushed.
-    pub fn moments(&self) -> impl Iterator<Item = MomentSolution<S>> {
-        self.moments.iter().map(|row| {
-            let [i, j] = row.bodies.map(|b| &self.solver_bodies[b as usize]);
-            row.solution(i, j, &self.systems)
-        })
-    }
-
-    /// Returns the normal impulse of a contact (N s).
-    pub(super) fn normal(&self, place: Place) -> f64 {
-        self.local_impulse(place).n
-    }
-
-    /// Returns the normal and the tangential impulse of a contact (N s).
-    pub(super) fn local_impulse(&self, place: Place) -> Parts<S> {
-        match place {
-            Place::Row { kind, row } => {
-                of_kind!(&self.rows[kind as usize], rows => rows.row(row).local_impulse())
-            }
-            Place::System(r) => self.of_systems[r as usize].impulse(),
-        }
-    }
-
-    /// Returns the number of contacts.
-    pub fn contacts(&self) -> usize {
-        self.places.len()
-    }
-
-    /// Returns the solution of the `k`-th contact pushed.
-    pub fn solution(&self, k: usize) -> ContactSolution<S> {
-        let bodies = &self.solver_bodies;
-        match self.places[k] {
-            Place::Row { kind, row } => {
-                of_kind!(&self.rows[kind as usize], rows => rows.solution(row, bodies))
-            }
-            Place::System(r) => self.of_systems[r as usize].solution(bodies, &self.systems),
-        }
-    }
-
-    /// Returns velocity and angular velocity of a body after the solve.
-    pub fn velocity(&self, body: usize) -> (S::Vector, S::Spin) {
-        let record = &self.solver_bodies[body];
-        (record.v, record.s * (1.0 / self.lengths[body]))
-    }
 }

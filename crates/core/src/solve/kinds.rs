@@ -51,10 +51,10 @@ macro_rules! kinds {
 kinds! { $
     /// Contacts of two balls (or a ball and an immovable body), without bond: the fast path.
     Plain: Plain,
-    /// The same with springs, bonds, cohesion or tangential restitution.
+    /// Contacts of two balls with springs, bonds, cohesion or tangential restitution.
     Full: Full<S>,
     /// Contacts with lever arms, or of bodies that are free along some axes only, without bond.
     Unbonded: Unbonded<S>,
-    /// The same with bonds.
+    /// Contacts with lever arms and bonds.
     Bonded: Bonded<S>,
 }

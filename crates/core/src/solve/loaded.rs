@@ -126,8 +126,8 @@ impl Points {
     }
 }
 
-/// See the module. `column` gives the compliance of all nodes for an impulse on the node at a
-/// place, see [`crate::bodies::Compliance`].
+/// The loaded points of a system. `column` gives the compliance of all nodes for an impulse on the
+/// node at a place, see [`crate::bodies::Compliance`].
 #[derive(Clone, Debug)]
 pub(super) struct Loaded<S: Space> {
     points: Vec<u32>,

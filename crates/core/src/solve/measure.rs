@@ -1,8 +1,8 @@
 //! Sums for the error of a step's problem, at the current velocities.
 
 use super::error::{Norm, Scale, Sums};
-use super::form::Problem;
 use super::kinds::of_kind;
+use super::problem::Problem;
 use super::rocking;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
@@ -39,7 +39,7 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
 /// Adds the contacts with systems, which are counted from `first`.
 fn measure_systems<S: Space>(problem: &mut Problem<S>, first: usize, sums: &mut Sums) {
     let mut tractions = std::mem::take(&mut problem.tractions);
-    tractions.begin(problem);
+    tractions.begin(&problem.of_systems, &problem.systems, problem.masses.len());
     for (k, row) in problem.of_systems.iter().enumerate() {
         let residual = row.residual(&problem.solver_bodies, &problem.systems);
         sums.add(&residual, first + k);

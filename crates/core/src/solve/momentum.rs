@@ -13,8 +13,8 @@
 //! residual does not fall from one convergence test to the next, t is limited to half of its
 //! largest value between them.
 
-use super::form::Problem;
 use super::kinds::{KINDS, of_kind};
+use super::problem::Problem;
 use super::row::{Parts, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{fill, map_chunks_of_two, worth_dividing};
@@ -36,7 +36,7 @@ struct BodyIncrement<S: Space> {
     inertia: f64,
 }
 
-/// See the module.
+/// The state of the momentum iteration.
 #[derive(Debug)]
 pub(super) struct Momentum<S: Space> {
     /// t_k of the module.
@@ -157,7 +157,7 @@ impl<S: Space> Momentum<S> {
 
 #[cfg(test)]
 mod tests {
-    use crate::geometry::space::{Dim2, Space, VectorLike};
+    use crate::geometry::space::{Dim2, VectorLike};
     use crate::solve::{ContactForm, Options, Problem, nlgs};
     use nalgebra::{Matrix1, Vector1, Vector2};
 
@@ -177,16 +177,8 @@ mod tests {
                 bodies: [k, below],
                 normal: Vector2::new(0.0, 1.0),
                 arms: [Vector2::new(0.0, -1.0), Vector2::new(0.0, 1.0)],
-                central: true,
-                apart: false,
-                shift_n: 0.0,
-                shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
-                compliance: [0.0; 2],
-                impulse: Vector2::zero(),
+                ..ContactForm::default()
             });
         }
         problem

@@ -4,12 +4,14 @@
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
 use super::error::{ErrorParts, Norm};
-use super::form::{Place, Problem};
+use super::form::Place;
+
 use super::kinds::{RowsOfKind, of_kind};
 use super::local::solver::Method;
 use super::measure::{error, free_velocity, measure, scale};
 use super::momentum::Momentum;
 use super::nodal::NodalSystem;
+use super::problem::Problem;
 use super::row::{self, SolverBodies};
 use crate::geometry::space::Space;
 
@@ -90,11 +92,11 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
     }
     sort(problem);
     problem.solve_held();
-    judge(problem, options)
+    check_convergence(problem, options)
 }
 
 /// Computes velocities from the current impulses and evaluates the error.
-pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn check_convergence<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
@@ -185,7 +187,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             continue;
         }
         if acceleration.as_ref().is_none_or(Acceleration::relaxes) {
-            let cautious = caution.judge(sums.residual, relaxation);
+            let cautious = caution.next_relaxation(sums.residual, relaxation);
             if let Some(acceleration) = &mut acceleration
                 && cautious != relaxation
             {
@@ -253,7 +255,7 @@ impl Caution {
     const PATIENCE: u32 = 20;
 
     /// Returns the relaxation to continue with, given the squared residual at a test.
-    fn judge(&mut self, residual: f64, relaxation: f64) -> f64 {
+    fn next_relaxation(&mut self, residual: f64, relaxation: f64) -> f64 {
         if residual < 0.99 * self.least {
             (self.least, self.tests) = (residual, 0);
             return relaxation;
@@ -355,7 +357,7 @@ impl<S: Space> Problem<S> {
     }
 
     /// Solves the contacts and moments that move nothing: their impulses follow from velocities
-    /// that are given, and methods that judge first would leave them as they start.
+    /// that are given, and methods that check the start first would leave them as they start.
     fn solve_held(&mut self) {
         for k in 0..self.places.len() {
             if self.rho(self.places[k]) == 0.0 {
@@ -486,15 +488,15 @@ mod tests {
     fn caution_reduces_the_relaxation() {
         let mut caution = Caution::default();
         for residual in [1.0, 0.5, 1.9, 0.4] {
-            assert_eq!(caution.judge(residual, 1.5), 1.5);
+            assert_eq!(caution.next_relaxation(residual, 1.5), 1.5);
         }
-        assert_eq!(caution.judge(1.7, 1.5), 1.25);
-        assert_eq!(caution.judge(6.7, 1.25), 1.25);
+        assert_eq!(caution.next_relaxation(1.7, 1.5), 1.25);
+        assert_eq!(caution.next_relaxation(6.7, 1.25), 1.25);
         for _ in 0..18 {
-            assert_eq!(caution.judge(1.69, 1.25), 1.25);
+            assert_eq!(caution.next_relaxation(1.69, 1.25), 1.25);
         }
-        assert_eq!(caution.judge(1.69, 1.25), 1.125);
-        assert_eq!(caution.judge(10.0, 1.09), 1.0);
+        assert_eq!(caution.next_relaxation(1.69, 1.25), 1.125);
+        assert_eq!(caution.next_relaxation(10.0, 1.09), 1.0);
     }
 
     /// A contact with a bond is pushed first, then a plain one, which comes first in an iteration.
@@ -513,19 +515,10 @@ mod tests {
         }
         let normal = Vector2::new(0.0, 1.0);
         let plain = ContactForm {
-            bodies: [0, 1],
             normal,
             arms: [-normal, normal],
-            central: true,
-            apart: false,
-            shift_n: 0.0,
-            shift_t: Vector1::new(0.0),
             friction: 0.5,
-            tension: 0.0,
-            cohesion: 0.0,
-            elastic: None,
-            compliance: [0.0; 2],
-            impulse: Vector2::zeros(),
+            ..ContactForm::default()
         };
         let bonded = ContactForm {
             bodies: [1, 2],

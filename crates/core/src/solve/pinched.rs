@@ -1,8 +1,10 @@
 //! Bodies that controlled bodies squeeze, as debris between first bodies: where friction lets them
 //! go, another solution may hold them.
 
-use super::form::{ContactForm, Problem};
+use super::form::ContactForm;
+
 use super::kinds::of_kind;
+use super::problem::Problem;
 use crate::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 
@@ -100,7 +102,7 @@ impl<S: Space> Problem<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Dim2, Space};
+    use crate::geometry::space::Dim2;
     use nalgebra::{Matrix1, Vector1, Vector2};
 
     /// A grain between two bodies that push it along these directions (degrees), with this
@@ -130,16 +132,9 @@ mod tests {
                 bodies,
                 normal,
                 arms: [-normal, normal],
-                central: true,
-                apart: false,
-                shift_n: 0.0,
-                shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
-                compliance: [0.0; 2],
                 impulse: normal,
+                ..ContactForm::default()
             }
         };
         let forms = [form(0), form(1)];

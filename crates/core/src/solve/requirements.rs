@@ -1,8 +1,8 @@
 //! What each method needs of a problem, and what a problem has: a method that cannot serve a
 //! problem is refused with a sentence, and `auto` passes it over.
 
-use super::form::Problem;
 use super::local::solver::Method;
+use super::problem::Problem;
 use crate::geometry::space::Space;
 
 /// How W = H A^-1 H^T can be had, from the least to the most.
@@ -39,7 +39,8 @@ impl Method {
         }
     }
 
-    /// The same of a problem in local form, where sweeps go over the rows of the matrix.
+    /// What a method asks of W in a problem in local form, where sweeps go over the rows of the
+    /// matrix.
     pub fn operator_in_local_form(self) -> Operator {
         match self.operator() {
             Operator::Products => Operator::Products,

@@ -4,8 +4,8 @@
 
 use super::connected::Connected;
 use super::error::{Scale, Sums};
-use super::form::Problem;
 use super::kinds::of_kind;
+use super::problem::Problem;
 use super::row::{Kind, Moving, Row, SolverBody, noise};
 use super::rows::Rows;
 use crate::geometry::space::Space;

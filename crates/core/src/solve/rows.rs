@@ -17,10 +17,10 @@ const CHUNK: usize = 512;
 const MAKE: f64 = 15.0;
 /// About what a visit of a row takes (ns).
 const VISIT: f64 = 10.0;
-/// The same in a sweep, which pays from about 10,000 contacts on (ns).
+/// About what a contact takes in a sweep, which threads share from about 10,000 contacts on (ns).
 const ORDERED: f64 = 14.0;
 
-/// See the module. Rows are added in any order and sorted once.
+/// The contacts of one kind. Rows are added in any order and sorted once.
 #[derive(Debug)]
 pub(in crate::solve) struct Rows<S: Space, K: Kind<S>> {
     rows: Vec<Row<S, K>>,
@@ -119,7 +119,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         self.order.places()
     }
 
-    /// See [`Order::changes`].
+    /// A number that changes with the order of the rows ([`Order::changes`]).
     pub fn changes(&self) -> u64 {
         self.order.changes()
     }
@@ -167,8 +167,8 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         self.pass(solver_bodies, parallel, |_, _| Update(relaxation));
     }
 
-    /// As [`Self::sweep`], from impulses extrapolated by `factor` times their change since
-    /// `before`, which then holds them as they were.
+    /// A [`Self::sweep`] from impulses extrapolated by `factor` times their change since `before`,
+    /// which then holds them as they were.
     pub fn sweep_extrapolated(
         &mut self,
         solver_bodies: &SolverBodies<S>,

@@ -20,11 +20,13 @@
 //! nor those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide
 //! in a set of rigid contacts that is not solved again, it is told ([`Problem::is_not_searched`]).
 
-use super::choose::{AutoState, SolveContext};
-use super::connected::{Connected, freedoms_of};
-use super::form::{ContactForm, ContactSolution, Problem};
+use super::connected::Connected;
+use super::context::{AutoState, SolveContext};
+use super::form::{ContactForm, ContactSolution};
+
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
+use super::problem::Problem;
 use super::row::MomentForm;
 use super::search::Search;
 use crate::geometry::space::{Space, VectorLike};
@@ -63,8 +65,8 @@ const LOADED: f64 = 1e-3;
 /// is taken, and which their errors do not make.
 const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
-/// The same where a loaded contact slides in one of both that holds in the other: one grain of many
-/// that slips has little energy.
+/// The lower bound where a loaded contact slides in one solution and holds in the other: one grain
+/// of many that slips has little energy.
 const LOWER_HOLDS: f64 = 1e-9;
 /// No place in a list.
 const NONE: u32 = u32::MAX;
@@ -196,7 +198,7 @@ fn outnumber<'a, S: Space>(
         unknowns += if form.friction > 0.0 { S::D } else { 1 };
         for body in form.bodies {
             let mobility = &problem.masses[body as usize];
-            (touched.entry(body)).or_insert_with(|| freedoms_of::<S>(mobility));
+            (touched.entry(body)).or_insert_with(|| mobility.freedoms(true));
         }
     }
     is_undetermined(unknowns, touched.values().sum())
@@ -502,7 +504,7 @@ impl<S: Space> SolveContext<'_, S> {
         let impulses: Vec<_> = found.iter().flat_map(list).collect();
         let moments: Vec<_> = found.iter().flat_map(|of| of.moments.clone()).collect();
         problem.adopt_some(&impulses, &moments);
-        let mut whole = nlgs::judge(problem, self.options);
+        let mut whole = nlgs::check_convergence(problem, self.options);
         if !whole.converged {
             whole.add(&self.sweep(problem, true, ITERATIONS));
         }

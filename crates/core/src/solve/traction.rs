@@ -21,7 +21,6 @@
 //! at few, as a grain, takes part as a rigid body does.
 
 use super::error::Residual;
-use super::form::Problem;
 use super::nodal::NodalSystem;
 use super::row::SystemRow;
 use crate::geometry::space::{MatrixLike, Space};
@@ -35,7 +34,7 @@ const MANY: u32 = 8;
 /// Least compliance of a node against its neighbours, over its own: of nodes that move as one.
 const LEAST: f64 = 1e-3;
 
-/// See the module. It is that of the contacts of a problem until these change.
+/// Errors of single tractions, of the contacts of a problem until these change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tractions {
     /// 1/w_c of each contact with a system (kg); 0 where that touches at few points.
@@ -54,14 +53,19 @@ impl Tractions {
         self.stiffness.clear();
     }
 
-    /// Begins a measurement.
-    pub fn begin<S: Space>(&mut self, problem: &Problem<S>) {
-        if self.stiffness.len() != problem.of_systems.len() {
-            (self.stiffness, self.many) = stiffness(problem);
+    /// Begins a measurement of the contacts of `rows`, of a problem with a number of rigid bodies.
+    pub fn begin<S: Space>(
+        &mut self,
+        rows: &[SystemRow<S>],
+        systems: &[NodalSystem<S>],
+        bodies: usize,
+    ) {
+        if self.stiffness.len() != rows.len() {
+            (self.stiffness, self.many) = stiffness(rows, systems, bodies);
         }
         self.errors.clear();
         self.largest.clear();
-        self.largest.resize(problem.systems.len(), 0.0);
+        self.largest.resize(systems.len(), 0.0);
     }
 
     /// Adds the next contact.
@@ -94,11 +98,14 @@ impl Tractions {
 }
 
 /// 1/w_c of each contact with a system (kg), and whether each system touches at many points.
-fn stiffness<S: Space>(problem: &Problem<S>) -> (Vec<f64>, Vec<bool>) {
-    let rows = &problem.of_systems;
-    let mut contacts = vec![0u32; problem.systems.len()];
-    let mut of_bodies = vec![0u32; problem.masses.len()];
-    let mut touched: Vec<Vec<u32>> = vec![Vec::new(); problem.systems.len()];
+fn stiffness<S: Space>(
+    rows: &[SystemRow<S>],
+    systems: &[NodalSystem<S>],
+    bodies: usize,
+) -> (Vec<f64>, Vec<bool>) {
+    let mut contacts = vec![0u32; systems.len()];
+    let mut of_bodies = vec![0u32; bodies];
+    let mut touched: Vec<Vec<u32>> = vec![Vec::new(); systems.len()];
     for row in rows {
         row.systems().for_each(|k| contacts[k as usize] += 1);
         for (body, _) in row.rigid_masses() {
@@ -116,7 +123,7 @@ fn stiffness<S: Space>(problem: &Problem<S>) -> (Vec<f64>, Vec<bool>) {
         nodes.sort_unstable();
         nodes.dedup();
     }
-    let own = problem.systems.iter().zip(&touched).zip(&many);
+    let own = systems.iter().zip(&touched).zip(&many);
     let own: Vec<Vec<f64>> = own
         .map(|((system, nodes), many)| against_neighbours(system, nodes, *many))
         .collect();

@@ -41,7 +41,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s
-    /// in 2D), and books the work in the energy ledger. Degrees of freedom whose motion is imposed
+    /// in 2D), and adds the work to the energy ledger. Degrees of freedom whose motion is imposed
     /// take none, nor does a body that stands for a contactor of a dynamical system.
     pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
         let bodies = &mut self.state.bodies;
@@ -62,7 +62,7 @@ impl<S: Space> Simulation<S> {
         self.state.energy.carried += energy;
         self.state.energy.kinetic -= energy;
         self.state.bodies.remove_body(body);
-        self.tell(|process, simulation| process.body_removed(simulation, body));
+        self.notify(|process, simulation| process.body_removed(simulation, body));
         self.state.network.forget_neighbours();
     }
 }

@@ -70,10 +70,10 @@ impl<'a> InDimensionMut<'a> {
         }
     }
 
-    /// See [`Simulation::step`].
+    /// Makes one step ([`Simulation::step`]).
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    /// Those of [`Simulation::step`].
     pub fn step(self) -> Result<StepReport, StepError> {
         match self {
             Self::Dim2(simulation) => one_step(simulation),
@@ -81,7 +81,7 @@ impl<'a> InDimensionMut<'a> {
         }
     }
 
-    /// See [`Simulation::detect`].
+    /// Detects the contacts ([`Simulation::detect`]).
     pub fn detect(self) {
         match self {
             Self::Dim2(simulation) => touching(simulation),

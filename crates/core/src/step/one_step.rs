@@ -8,10 +8,10 @@ use super::process::Process;
 use super::{Scheme, Simulation, StepError, StepReport};
 use super::{control, detection, ledger, motion, problem};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use std::time::Instant;
 
-/// See [`Simulation::step`].
+/// Makes one step, for [`Simulation::step`].
 pub(super) fn one_step<S: Space>(s: &mut Simulation<S>) -> Result<StepReport, StepError> {
     detection::projection::check_bodies(s)?;
     s.between_steps()?;

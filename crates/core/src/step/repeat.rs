@@ -49,7 +49,7 @@ impl<S: Space> Simulation<S> {
         for scar in &self.state.scars {
             scar.reapply_depth(&mut self.shapes);
         }
-        self.tell(|process, simulation| process.follow_state(simulation));
+        self.notify(|process, simulation| process.follow_state(simulation));
         // Results may be asked for before the next step.
         self.state
             .systems
@@ -170,7 +170,7 @@ impl<S: Space> Simulation<S> {
         }
         self.processes.truncate(saved.processes.len());
         self.restore_processes(&saved.processes)?;
-        self.tell(|process, simulation| process.follow_state(simulation));
+        self.notify(|process, simulation| process.follow_state(simulation));
         Ok(())
     }
 }

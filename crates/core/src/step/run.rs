@@ -6,13 +6,13 @@ use crate::geometry::space::Space;
 use std::ops::ControlFlow;
 
 impl<S: Space> Simulation<S> {
-    /// Steps until a time (s) is reached, and hands the state and the report to `after` at the end
-    /// of every step, which stops the run by [`ControlFlow::Break`]; so does who wants to end with
-    /// the phases of a case, see [`Simulation::finished`]. It comes back whether and why it was
-    /// stopped; the simulation can go on.
+    /// Steps until a time (s) is reached, and calls `after` with the state and the report at the end
+    /// of every step. Break from `after` to stop early, for instance where the phases of a case
+    /// have ended ([`Simulation::finished`]). Returns why the run stopped early, if it did; the
+    /// simulation can go on.
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    /// Those of [`Simulation::step`].
     pub fn run_until<B>(
         &mut self,
         end: f64,
@@ -28,8 +28,8 @@ impl<S: Space> Simulation<S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Has the processes act on the state after a step, once a step. The next step does it first
-    /// where this was not called; who looks at each step calls it when that is done.
+    /// Calls the processes between two steps, once for each step. An observer of each step calls
+    /// this when it has seen the state; the next step does it first where nobody did.
     ///
     /// # Errors
     /// Why a process cannot go on. The processes after it have not acted then, and do not act on
@@ -41,8 +41,8 @@ impl<S: Space> Simulation<S> {
         self.act(Process::between_steps)
     }
 
-    /// Has the processes do after the last step what they do every so many steps, and first what is
-    /// due between steps.
+    /// Calls the processes after the last step, for what they do at intervals of steps only; what is
+    /// due between steps comes first.
     ///
     /// # Errors
     /// Why a process cannot.
@@ -51,7 +51,7 @@ impl<S: Space> Simulation<S> {
         self.act(Process::at_end)
     }
 
-    /// Has the features and then the processes act in their order, until one refuses.
+    /// Calls the features and then the processes in their order, until one fails.
     pub(super) fn act(
         &mut self,
         mut moment: impl FnMut(&mut (dyn Process<S> + 'static), &mut Self) -> Result<(), ProcessError>,
@@ -97,15 +97,15 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    /// Tells features and processes that they are to follow the state, or that a body was removed.
-    pub(super) fn tell(
+    /// Notifies features and processes that the state was replaced, or that a body was removed.
+    pub(super) fn notify(
         &mut self,
         mut what: impl FnMut(&mut (dyn Process<S> + 'static), &mut Self),
     ) {
-        let told = self.act(|process, simulation| {
+        let acted = self.act(|process, simulation| {
             what(process, simulation);
             Ok(())
         });
-        debug_assert!(told.is_ok(), "nothing refused");
+        debug_assert!(acted.is_ok(), "nothing refused");
     }
 }

@@ -142,7 +142,7 @@ impl Simulation<crate::geometry::space::Dim2> {
         Self::new(bodies, shapes, Vec::new(), LawTable::new(1), 1e-3, 1e-3)
     }
 
-    /// The same bodies and shapes, which touch by a law.
+    /// Returns a scene of these bodies and shapes, which touch by a law.
     pub(crate) fn with_law(self, law: Interface) -> Self {
         let mut table = LawTable::new(1);
         table.set(0, 0, 0);

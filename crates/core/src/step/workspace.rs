@@ -4,7 +4,7 @@ use super::problem::surfaces::Surfaces;
 use crate::bodies::{Nodes, TurningNode};
 use crate::contact::{Contact, Key};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::laws::evaluator::LawEvaluator;
 use crate::laws::{ContactStep, MomentStep, SolvedStep, SpringForm, SpringStep, Velocities};
 use crate::solve::{ContactForm, MomentForm, NodalSystem, Problem, Side};

@@ -288,7 +288,7 @@ impl<S: Space> Builder<'_, S> {
         if axis == "z" && S::D == 2 {
             return Err(self.fail(at, "a case in two dimensions has no z; leave it out"));
         }
-        if let Some((below, why)) = dof.fault() {
+        if let Some((below, why)) = dof.error() {
             let dot = if below.is_empty() { "" } else { "." };
             return Err(self.fail(format!("{at}{dot}{below}"), why));
         }

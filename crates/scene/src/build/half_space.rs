@@ -201,7 +201,7 @@ impl<S: Space> Builder<'_, S> {
         rolling: &TimeFunction,
         grid: &Grid,
     ) -> Result<(), InputError> {
-        if let Some(why) = rolling.fault() {
+        if let Some(why) = rolling.error() {
             return Err(self.fail(here, why));
         }
         let h = self.case.time.step;

@@ -2,7 +2,7 @@
 //! a force.
 
 use super::{Bench, Motion};
-use crate::laws::{LawError, library::Call};
+use crate::laws::{Call, LawError};
 
 /// Smallest and largest overlap of a search, over the reduced radius.
 const RANGE: [f64; 2] = [1e-15, 1e3];
@@ -34,7 +34,7 @@ impl Bench {
             gap: -overlap,
             ..Motion::default()
         };
-        let info = crate::laws::columns::StepInfo {
+        let info = crate::laws::StepInfo {
             dimension: self.dimension,
             time: 0.0,
             h: 1.0,

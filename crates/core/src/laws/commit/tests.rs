@@ -4,7 +4,7 @@ use super::*;
 use crate::contact::network::{ContactGeometry, Key};
 use crate::contact::{ContactHeat, ContactTemperature, MaterialPair};
 use crate::geometry::space::Dim2;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::laws::sample_laws::{constant, growing, interface};
 use crate::solve::form::ContactSolution;
 use nalgebra::{Vector1, Vector2};

@@ -4,9 +4,9 @@
 use super::{
     CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_record, fits_always, templates,
 };
-use crate::laws::columns::Outputs;
-use crate::laws::library::Call;
-use crate::laws::range::Range::{NotNegative, Share};
+use crate::laws::function::Call;
+use crate::laws::outputs::Outputs;
+use crate::laws::outputs::Range::{NotNegative, Share};
 
 /// The entry of the registry.
 pub static SPEC: KindSpec = KindSpec {

@@ -2,11 +2,11 @@
 //! `laws::bonds`.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_record, templates};
-use crate::laws::columns::Outputs;
 use crate::laws::error::LawError;
+use crate::laws::function::Call;
 use crate::laws::interface::Interface;
-use crate::laws::library::Call;
-use crate::laws::range::Range::Share;
+use crate::laws::outputs::Outputs;
+use crate::laws::outputs::Range::Share;
 use fretwork_abi::FLAG_OPENING;
 
 /// The entry of the registry.

@@ -1,12 +1,11 @@
 //! Kinds of interface laws: a registry with one entry a kind.
 //!
 //! An interface is a list of slots, at most one law of each kind. All that depends on the kind
-//! stands in its
-//! [`KindSpec`]: the word that cases, file names and the command line use, the code of the plugin table, the functions a law
-//! must have, at which contacts it acts, what it writes, what it needs of the other slots, what the
-//! host does with it at the end of a step, how it is certified, and the text that `fretwork law
-//! new` begins with. A further kind is one such entry, here or in another crate by
-//! [`Kind::register`].
+//! stands in its [`KindSpec`]: the word that cases, file names and the command line use, the code of
+//! the plugin table, the functions a law must have, at which contacts it acts, what it writes, what
+//! it needs of the other slots, what the host does with it at the end of a step, how it is
+//! certified, and the text that `fretwork law new` begins with. A further kind is one such entry,
+//! here or in another crate by [`Kind::register`].
 
 pub mod cohesion;
 pub mod contact;
@@ -14,12 +13,12 @@ pub mod damage;
 pub mod transport;
 pub mod wear;
 
-use super::columns::Outputs;
-use super::commit::SlotCommit;
 use super::error::LawError;
+use super::function::Call;
 use super::interface::Interface;
-use super::library::Call;
-use super::range::Range;
+pub use super::outputs::Output;
+use super::outputs::Outputs;
+use super::slot::SlotCommit;
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;
 use std::fmt;
@@ -68,37 +67,6 @@ pub enum Domain {
     Bonds,
     /// Intact bonds where the law has an opening (`FLAG_OPENING`), else as [`Domain::Near`].
     ByOpening,
-}
-
-/// A column that a call of a law writes.
-#[derive(Debug)]
-pub struct Output<'a> {
-    /// As the plugin interface names it.
-    pub name: &'static str,
-    /// One value a contact.
-    pub values: &'a mut Vec<f64>,
-    /// What is accepted; any finite value without it.
-    pub range: Option<Range>,
-}
-
-impl<'a> Output<'a> {
-    /// A column with a range.
-    pub fn ranged((name, values, range): (&'static str, &'a mut Vec<f64>, Range)) -> Self {
-        Self {
-            name,
-            values,
-            range: Some(range),
-        }
-    }
-
-    /// A column of any finite values.
-    pub fn finite((name, values): (&'static str, &'a mut Vec<f64>)) -> Self {
-        Self {
-            name,
-            values,
-            range: None,
-        }
-    }
 }
 
 /// What the host does with the answers of a law at the end of a step.
@@ -152,8 +120,8 @@ pub enum CheckSet {
     /// Work, damage and convergence of bonds, where the laws make bonds; else as
     /// [`CheckSet::Contact`].
     Bond,
-    /// As [`CheckSet::Contact`], and that the volume removed does not depend on the number of
-    /// steps.
+    /// Those of [`CheckSet::Contact`], and that the volume removed does not depend on the number
+    /// of steps.
     Removal,
     /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap,
     /// damage and temperature.

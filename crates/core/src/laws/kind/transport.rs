@@ -2,11 +2,11 @@
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
 use crate::geometry::space::Space;
-use crate::laws::columns::Outputs;
-use crate::laws::commit::SlotCommit;
 use crate::laws::error::LawError;
-use crate::laws::library::Call;
-use crate::laws::range::Range::NotNegative;
+use crate::laws::function::Call;
+use crate::laws::outputs::Outputs;
+use crate::laws::outputs::Range::NotNegative;
+use crate::laws::slot::SlotCommit;
 
 /// The entry of the registry.
 pub static SPEC: KindSpec = KindSpec {

@@ -5,11 +5,11 @@ use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_alwa
 use crate::contact::Loss;
 use crate::contact::network::Key;
 use crate::geometry::space::Space;
-use crate::laws::columns::Outputs;
-use crate::laws::commit::SlotCommit;
 use crate::laws::error::LawError;
-use crate::laws::library::Call;
-use crate::laws::range::Range::NotNegative;
+use crate::laws::function::Call;
+use crate::laws::outputs::Outputs;
+use crate::laws::outputs::Range::NotNegative;
+use crate::laws::slot::SlotCommit;
 use std::collections::HashSet;
 
 /// The entry of the registry.

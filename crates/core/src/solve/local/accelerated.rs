@@ -81,7 +81,7 @@ impl<const D: usize> Solver<D> for Accelerated {
             std::mem::swap(&mut state.p, &mut p);
             std::mem::swap(&mut state.u, &mut u);
             state.iterations += 1;
-            state.judge(form);
+            state.update_error(form);
             best.keep(state);
         }
         best.restore(form, state);

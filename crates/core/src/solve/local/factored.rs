@@ -1,8 +1,25 @@
 //! Factorisation of N W N + S for a matrix W and diagonal blocks S.
 
-use super::block::BlockMatrix;
-use super::form::{Shift, Shifted};
+use super::block::{Block, BlockMatrix};
 use super::linear::{Factor, Rows};
+
+/// Matrix added to W, and the scaling of the system.
+#[derive(Clone, Copy, Debug)]
+pub struct Shift<'a, const D: usize> {
+    /// S, as its diagonal blocks.
+    pub s: &'a [Block<D>],
+    /// Number of leading components of each block that belong to the system.
+    pub sizes: &'a [usize],
+    /// N: factor on the normal component of each block.
+    pub normal: &'a [f64],
+}
+
+/// Factors of N W N + S.
+pub trait Shifted<const D: usize> {
+    /// Computes x = (N W N + S)^-1 x, with zero in components outside the system; returns whether
+    /// the result is finite.
+    fn solve(&self, x: &mut [[f64; D]]) -> bool;
+}
 
 struct Factored {
     factor: Factor,

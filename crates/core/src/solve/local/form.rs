@@ -2,8 +2,8 @@
 //! block of unknowns.
 
 use super::block::{Block, BlockMatrix};
-use super::factored;
-use super::judge;
+use super::coulomb_sums;
+use super::factored::{self, Shift, Shifted};
 use super::law::{self, Law};
 use crate::solve::error::{Norm, Residual, Scale, Sums, residual};
 use crate::solve::extrapolation;
@@ -28,24 +28,6 @@ pub trait Delassus<const D: usize> {
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
         factored::factor(self.matrix()?, shift)
     }
-}
-
-/// Matrix added to W, and the scaling of the system.
-#[derive(Clone, Copy, Debug)]
-pub struct Shift<'a, const D: usize> {
-    /// S, as its diagonal blocks.
-    pub s: &'a [Block<D>],
-    /// Number of leading components of each block that belong to the system.
-    pub sizes: &'a [usize],
-    /// N: factor on the normal component of each block.
-    pub normal: &'a [f64],
-}
-
-/// Factors of N W N + S.
-pub trait Shifted<const D: usize> {
-    /// Computes x = (N W N + S)^-1 x, with zero in components outside the system; returns whether
-    /// the result is finite.
-    fn solve(&self, x: &mut [[f64; D]]) -> bool;
 }
 
 impl<const D: usize> Delassus<D> for BlockMatrix<D> {
@@ -132,7 +114,7 @@ impl<'a, const D: usize> Form<'a, D> {
     /// Returns the error of p, where u = W p + q.
     pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> Measure {
         let quick = match self.norm {
-            Norm::Field => judge::sums(p, u, self.laws),
+            Norm::Field => coulomb_sums::sums(p, u, self.laws),
             _ => None,
         };
         let (sums, mut finite) = match quick {
@@ -237,4 +219,14 @@ pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
 /// Returns Coulomb's law for each block, for problems from files.
 pub fn coulomb(mu: &[f64]) -> Vec<Law> {
     mu.iter().map(|mu| law::Law::Coulomb(*mu)).collect()
+}
+
+/// Returns the power of two below the largest number; 1 where all are 0.
+pub(super) fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
+    let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
+    if most > 0.0 {
+        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
+    } else {
+        1.0
+    }
 }

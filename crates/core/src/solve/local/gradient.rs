@@ -380,7 +380,7 @@ impl<const D: usize> Solver<D> for Gradient {
                 descent.step_safely(state);
                 descent.restart();
             }
-            state.judge(form);
+            state.update_error(form);
             best.keep(state);
         }
         best.restore(form, state);

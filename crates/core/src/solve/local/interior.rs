@@ -11,7 +11,8 @@
 //! <= 0.
 
 use super::block::Block;
-use super::form::{Form, Shift, Shifted, dot, largest};
+use super::factored::{Shift, Shifted};
+use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::lorentz::{Scaling, divide, longest_step, product};
 use super::state::{Best, Budget, Solver, State};

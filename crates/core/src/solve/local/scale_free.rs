@@ -13,9 +13,8 @@
 
 use super::LocalProblem;
 use super::block::BlockMatrix;
-use super::form::{Form, coulomb};
-use super::solver::{Limits, magnitude};
-use super::state::{Budget, State};
+use super::form::{Form, coulomb, magnitude};
+use super::state::{Budget, Limits, State};
 use crate::solve::error::Norm;
 
 /// The formula, for reports.
@@ -87,14 +86,14 @@ pub(super) fn meet<'a, const D: usize>(
             budget.tolerance = limit * within * tighter;
             // Reducing the other error may undo part of the progress.
             tighter *= 0.1;
-            state.judge(velocity);
+            state.update_error(velocity);
             solve(velocity, state, budget);
-        } else if state.judge(field) > limits.tolerance && !spent {
+        } else if state.update_error(field) > limits.tolerance && !spent {
             budget.tolerance = limits.tolerance * within;
             solve(field, state, budget);
         } else {
             break;
         }
     }
-    state.judge(field);
+    state.update_error(field);
 }

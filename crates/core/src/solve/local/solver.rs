@@ -5,13 +5,14 @@ use super::accelerated::Accelerated;
 use super::anderson::Anderson;
 use super::auto::Auto;
 use super::block::BlockMatrix;
-use super::form::{Form, coulomb};
+use super::form::{Form, coulomb, magnitude};
 use super::gradient::{Gradient, Kind};
 use super::interior::Interior;
 use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::scale_free;
+pub use super::state::Limits;
 use super::state::{Budget, Solver, State};
 use crate::solve::error::{Norm, lost, unbounded};
 use serde::{Deserialize, Serialize};
@@ -153,19 +154,6 @@ impl FromStr for Method {
             )
         })
     }
-}
-
-/// Stopping criteria.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// The [`field_error`] to reach.
-    pub tolerance: f64,
-    /// The [`Outcome::scale_free_error`] to reach as well; `None` to report it only.
-    pub scale_free: Option<f64>,
-    /// Maximum number of iterations.
-    pub max_iterations: u32,
-    /// Maximum time (s).
-    pub seconds: f64,
 }
 
 /// Result of a solve.
@@ -380,16 +368,6 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
         error: over(f64::sqrt(sum), scale),
         beside: over(f64::sqrt(unseen), scale).max(unbounded(growth)),
         worst: worst.map(|w| w.0),
-    }
-}
-
-/// Returns the power of two below the largest number; 1 where all are 0.
-pub(super) fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
-    let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
-    if most > 0.0 {
-        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
-    } else {
-        1.0
     }
 }
 

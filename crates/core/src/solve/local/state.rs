@@ -30,7 +30,7 @@ impl<const D: usize> State<D> {
         };
         if state.p.iter().all(|p| *p == [0.0; D]) {
             state.u.copy_from_slice(form.q);
-            state.judge(form);
+            state.update_error(form);
         } else {
             state.measure(form);
         }
@@ -40,11 +40,11 @@ impl<const D: usize> State<D> {
     /// Recomputes velocities and error; returns the error.
     pub fn measure(&mut self, form: &Form<D>) -> f64 {
         form.velocity(&self.p, &mut self.u);
-        self.judge(form)
+        self.update_error(form)
     }
 
     /// Recomputes the error; `u` must belong to `p`.
-    pub fn judge(&mut self, form: &Form<D>) -> f64 {
+    pub fn update_error(&mut self, form: &Form<D>) -> f64 {
         let measure = form.error(&self.p, &self.u);
         (self.error, self.scale) = (measure.error, measure.scale);
         if self.error.is_nan() {
@@ -88,7 +88,20 @@ impl<const D: usize> Best<D> {
     }
 }
 
-/// Stopping criteria.
+/// Stopping criteria of the solve of a problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The [`field_error`](super::solver::field_error) to reach.
+    pub tolerance: f64,
+    /// The [`scale_free_error`](super::solver::Outcome::scale_free_error) to reach as well; `None` to report it only.
+    pub scale_free: Option<f64>,
+    /// Maximum number of iterations.
+    pub max_iterations: u32,
+    /// Maximum time (s).
+    pub seconds: f64,
+}
+
+/// Stopping criteria of one run of a method.
 #[derive(Clone, Debug)]
 pub struct Budget {
     /// Error to reach.

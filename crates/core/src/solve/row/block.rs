@@ -1,10 +1,11 @@
 //! The law of a contact on a full block of W: without a bond, and with one.
 
 use super::cone::{Axes, Cone, compliant, in_frame};
+use super::kind::Kind;
 use super::law::{Law, Limits};
 use super::motion::Levers;
+use super::rigid_bodies::RigidBodies;
 use super::state::{Parts, State};
-use super::{Kind, RigidBodies};
 use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
 use crate::geometry::space::{MatrixLike, Space};
 use crate::lanes::{Batch, BatchMut, Lane, LaneMatrix, LaneVector, Mask, part, part_mut, record};
@@ -299,19 +300,10 @@ mod tests {
         let mut normal = S::Vector::zero();
         normal[0] = 1.0;
         ContactForm {
-            bodies: [0, 1],
             normal,
             arms: [S::Vector::zero(); 2],
             central: false,
-            apart: false,
-            shift_n: 0.0,
-            shift_t: S::Tangent::zero(),
-            friction: 0.0,
-            tension: 0.0,
-            cohesion: 0.0,
-            elastic: None,
-            compliance: [0.0; 2],
-            impulse: S::Vector::zero(),
+            ..ContactForm::default()
         }
     }
 

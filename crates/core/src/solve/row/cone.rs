@@ -3,8 +3,8 @@
 //! form, in space by Newton's method where it slides.
 
 use super::law::Limits;
+use super::response::{answer_to_slip, inverse, inverse_along, shift_along};
 use super::state::Parts;
-use super::{answer_to_slip, inverse, inverse_along, shift_along};
 use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike, least};
 use crate::lanes::{BatchMut, Lane, LaneMatrix, LaneVector, Mask, part_mut, record};

@@ -1,10 +1,12 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed
 //! form.
 
+use super::kind::Kind;
 use super::law::{Law, Limits};
 use super::motion::Reach;
+use super::response::{answer_to_slip, shift_along};
+use super::rigid_bodies::RigidBodies;
 use super::state::{Parts, State};
-use super::{Kind, RigidBodies, answer_to_slip, shift_along};
 use crate::geometry::lane_space::lanes_of;
 use crate::geometry::space::{Space, least};
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, part, record};
@@ -50,7 +52,7 @@ struct Test<S: Space, L: Lane = f64> {
 }
 record!(Test);
 
-/// See the module.
+/// The law of a contact of two balls with all that can act on it.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Full<S: Space> {

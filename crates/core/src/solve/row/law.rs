@@ -28,7 +28,7 @@ pub(in crate::solve) struct Limits<S: Space, L: Lane = f64> {
 }
 record!(Limits);
 
-/// See the module.
+/// A contact law in closed form, over lanes.
 pub(in crate::solve) trait Law<S: Space>:
     Clone + Debug + Send + Sync + 'static
 {

@@ -3,7 +3,9 @@
 //! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and
 //! M_sc opposes w with |M_sc| <= (friction length) p_n, separately for bending and twist.
 
-use super::{SolverBody, Term, inverse};
+use super::response::inverse;
+use super::solver_bodies::SolverBody;
+use super::system::Term;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::error::Residual;
 use crate::solve::form::{Mobility, Place};
@@ -28,7 +30,7 @@ pub struct MomentForm<S: Space> {
     /// loss_bend
     /// |w_t|^2 (J s^2).
     pub loss_twist: f64,
-    /// See `loss_twist`.
+    /// Dissipation of bending, see `loss_twist`.
     pub loss_bend: f64,
     /// Initial moment (N m s).
     pub moment: S::Spin,
@@ -91,8 +93,8 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    /// The same with systems on these sides, by the nodes that turn with them: their bodies have no
-    /// spin of their own.
+    /// Returns the row with systems on these sides, by the nodes that turn with them: their bodies
+    /// have no spin of their own.
     pub fn with_systems(mut self, nodes: [Option<Term>; 2], systems: &[NodalSystem<S>]) -> Self {
         for (side, term) in nodes.into_iter().enumerate() {
             let Some(term) = term else { continue };

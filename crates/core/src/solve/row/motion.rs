@@ -7,7 +7,7 @@ use crate::lanes::{Lane, LaneMatrix, LaneVector, Record, record};
 use crate::solve::form::{ContactForm, Mobility};
 use std::fmt::Debug;
 
-/// See the module.
+/// How the two bodies of a contact move at it, over lanes.
 pub(in crate::solve) trait Motion<S: Space>:
     Record + Debug + Send + Sync + 'static
 {

@@ -1,10 +1,12 @@
 //! Contact of two balls without a bond, solved in closed form: first the normal part, then the
 //! tangential part within the cone.
 
+use super::kind::Kind;
 use super::law::{Law, Limits};
 use super::motion::Surfaces;
+use super::response::{inverse, inverse_along, shift_along};
+use super::rigid_bodies::RigidBodies;
 use super::state::{Parts, State};
-use super::{Kind, RigidBodies, inverse, inverse_along, shift_along};
 use crate::geometry::space::{Space, VectorLike};
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, Mask, Record};
 use crate::solve::form::ContactForm;

@@ -1,7 +1,7 @@
 //! What rows of contacts are made of: the masses and lengths of rigid bodies.
 
-use super::SolverBody;
 use super::motion::Levers;
+use super::solver_bodies::SolverBody;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, Mobility};
 

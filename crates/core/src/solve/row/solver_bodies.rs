@@ -1,7 +1,20 @@
-//! Velocities that several threads update at the same time.
+//! Velocities of bodies, which several threads update at the same time.
 
-use super::SolverBody;
 use crate::geometry::space::Space;
+
+/// Velocity record of a body in the solver: 64 bytes in both dimensions.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct SolverBody<S: Space> {
+    /// Velocity of the centre (m/s).
+    pub v: S::Vector,
+    /// Angular velocity times the body's length (m/s).
+    pub s: S::Spin,
+    /// Inverse mass, the largest of all axes (1/kg).
+    pub im: f64,
+    /// Inverse inertia times the length squared, the largest about any axis (1/kg).
+    pub is: f64,
+}
 
 /// Velocities accessed by several threads, each at its own bodies.
 ///

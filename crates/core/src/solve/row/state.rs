@@ -1,6 +1,6 @@
 //! What changes in a sweep: the impulses of contacts and the velocities of bodies.
 
-use super::SolverBody;
+use super::solver_bodies::SolverBody;
 use crate::geometry::lane_space::{lanes_of, vector_of};
 use crate::geometry::space::Space;
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, record};
@@ -76,6 +76,22 @@ impl<S: Space, L: Lane> Mul<L> for Parts<S, L> {
             n: self.n * by,
             t: self.t * by,
         }
+    }
+}
+
+/// Appends the components of an impulse.
+pub(in crate::solve) fn store<S: Space>(p: Parts<S>, out: &mut Vec<f64>) {
+    out.push(p.n);
+    out.extend((0..<S::T<f64>>::N).map(|k| p.t[k]));
+}
+
+/// Takes them from the front of `from`.
+pub(in crate::solve) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
+    let (parts, rest) = from.split_at(1 + <S::T<f64>>::N);
+    *from = rest;
+    Parts {
+        n: parts[0],
+        t: LaneVector::from_fn(|k| parts[1 + k]),
     }
 }
 

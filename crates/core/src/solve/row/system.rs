@@ -1,9 +1,10 @@
 //! A contact of which a side is a dynamical system: solved as a block, its impulse changes the
 //! velocities of all nodes of the system that are touched.
 
+use super::block::Bonded;
 use super::law::{Law, Limits};
+use super::solver_bodies::SolverBody;
 use super::state::{Parts, State};
-use super::{Bonded, SolverBody};
 use crate::geometry::lane_space::{lanes_of, vector_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::lanes::{Batch, BatchMut};
@@ -31,14 +32,14 @@ struct RigidSide<S: Space> {
     inverse_spin: S::Tensor,
 }
 
-/// See the module.
+/// A contact with a dynamical system on at least one side.
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct SystemRow<S: Space> {
     rigid: [Option<RigidSide<S>>; 2],
     /// By side of a system its index, the point of it, and 1 for the candidate's and -1 for the
     /// antagonist's.
     points: [Option<(u32, u32, f64)>; 2],
-    /// The same by nodes.
+    /// What the contact acts on, by nodes.
     terms: Vec<Term>,
     /// W_cc in world axes (1/kg).
     block: S::Matrix,

@@ -63,16 +63,10 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
         bodies: [2 * pair, 2 * pair + 1],
         normal,
         arms: [-normal, normal],
-        central: true,
-        apart: false,
         shift_n: 0.1 * wave(30, pair),
-        shift_t: S::Tangent::zero(),
         friction: 0.3 + 0.3 * wave(31, pair),
-        tension: 0.0,
-        cohesion: 0.0,
-        elastic: None,
-        compliance: [0.0; 2],
         impulse: normal * (1.0 + wave(32, pair)),
+        ..ContactForm::default()
     }
 }
 

@@ -1,7 +1,9 @@
 //! Operations applied to every row in turn: several contacts at a time with vector instructions
 //! where available, otherwise one by one, with bitwise identical results.
 
-use super::{Kind, Moving, Row, SolverBodies, SolverBody};
+use super::kind::{Kind, Row};
+use super::solver_bodies::{SolverBodies, SolverBody};
+use super::state::Moving;
 use crate::geometry::space::Space;
 use crate::lanes::{BatchMut, Instructions, Lane, LaneVector, SUMS, Wide, prefetch};
 use crate::solve::error::{ROUNDINGS, Scale, Sums};

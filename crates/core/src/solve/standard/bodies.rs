@@ -4,12 +4,13 @@
 //! A side that is a dynamical system acts on nodes: its body, which stands for a contactor, has no
 //! inertia and no velocity here.
 
-use super::motion::Pattern;
+use super::pattern::Pattern;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, BlockMatrix};
 use crate::solve::local::factored;
-use crate::solve::local::form::{Delassus, Shift, Shifted};
+use crate::solve::local::factored::{Shift, Shifted};
+use crate::solve::local::form::Delassus;
 use crate::solve::nodal::NodalSystem;
 use crate::solve::row::{Term, turning};
 use std::cell::{OnceCell, RefCell};
@@ -134,7 +135,9 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
 
     /// Returns the pairs of bodies in contact.
     pub(super) fn pattern(&self) -> &Pattern {
-        self.pattern.get_or_init(|| Pattern::new(self))
+        let pairs = self.unknowns.iter().map(|unknown| unknown.bodies);
+        self.pattern
+            .get_or_init(|| Pattern::new(self.masses, pairs))
     }
 
     /// Returns M^-1 of an impulse and moment on a body.

@@ -8,9 +8,11 @@
 
 mod bodies;
 mod motion;
+mod pattern;
 
 use super::error::Norm;
-use super::form::{ContactForm, Mobility, Place, Problem};
+use super::form::{ContactForm, Mobility, Place};
+
 use super::local::csr::Csr;
 #[cfg(test)]
 use super::local::form::Delassus;
@@ -19,6 +21,7 @@ use super::local::law::Law;
 use super::local::solver::Method;
 use super::local::state::{Budget, State};
 use super::nodal::NodalSystem;
+use super::problem::Problem;
 use super::row::{HELD, MomentForm, SystemRow, Term, turning};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use bodies::{Axis, Bodies, Motions, Unknown};

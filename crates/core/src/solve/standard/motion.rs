@@ -10,56 +10,13 @@
 )]
 
 use super::bodies::Bodies;
+use super::pattern::{Pattern, size};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, times};
-use crate::solve::local::form::{Delassus, Shift, Shifted};
+use crate::solve::local::factored::{Shift, Shifted};
+use crate::solve::local::form::Delassus;
 use crate::solve::local::linear::{Factor, Rows};
-
-/// Pairs of bodies in contact.
-pub(super) struct Pattern {
-    /// First row of each body; immovable bodies have no rows.
-    starts: Vec<usize>,
-    /// Movable neighbours of each body, including itself, increasing.
-    near: Vec<Vec<u32>>,
-}
-
-/// Returns the number of degrees of freedom of a body.
-fn size<S: Space>() -> usize {
-    S::D + S::Spin::N
-}
-
-impl Pattern {
-    pub fn new<S: Space, const D: usize>(w: &Bodies<S, D>) -> Self {
-        let moves: Vec<bool> = w.masses.iter().map(Mobility::moves).collect();
-        let mut near: Vec<Vec<u32>> = (0..w.masses.len())
-            .map(|b| if moves[b] { vec![b as u32] } else { Vec::new() })
-            .collect();
-        for unknown in &w.unknowns {
-            let [a, b] = unknown.bodies;
-            if moves[a as usize] && moves[b as usize] {
-                near[a as usize].push(b);
-                near[b as usize].push(a);
-            }
-        }
-        let mut starts = vec![0];
-        for (near, moves) in near.iter_mut().zip(&moves) {
-            near.sort_unstable();
-            near.dedup();
-            starts.push(starts[starts.len() - 1] + if *moves { size::<S>() } else { 0 });
-        }
-        Self { starts, near }
-    }
-
-    /// Returns the total number of degrees of freedom.
-    pub fn rows(&self) -> usize {
-        self.starts[self.near.len()]
-    }
-
-    fn moves(&self, body: u32) -> bool {
-        !self.near[body as usize].is_empty()
-    }
-}
 
 /// Returns the mass matrix of a body, with ones for imposed degrees of freedom.
 fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {

@@ -63,7 +63,7 @@ impl GravityDrive {
 
     /// Returns the error of this drive in a case of the given dimension, if any, with the key at
     /// which it occurs.
-    pub fn fault(&self, dimension: usize) -> Option<(String, String)> {
+    pub fn error(&self, dimension: usize) -> Option<(String, String)> {
         match self {
             Self::Turned { angle, about } => {
                 let known = if dimension == 2 {
@@ -76,9 +76,9 @@ impl GravityDrive {
                     let message = format!("gravity cannot turn about axis {about}; use {axes}");
                     return Some(("about".into(), message));
                 }
-                angle.fault().map(|f| ("angle".into(), f))
+                angle.error().map(|f| ("angle".into(), f))
             }
-            Self::Scaled(f) => f.fault().map(|f| (String::new(), f)),
+            Self::Scaled(f) => f.error().map(|f| (String::new(), f)),
             Self::Axes(list) if list.len() != dimension => {
                 let message = format!(
                     "{} functions in a case of dimension {dimension}; give one function per axis",
@@ -88,7 +88,7 @@ impl GravityDrive {
             }
             Self::Axes(list) => list
                 .iter()
-                .find_map(|f| f.fault().map(|f| (String::new(), f))),
+                .find_map(|f| f.error().map(|f| (String::new(), f))),
         }
     }
 }
@@ -119,6 +119,6 @@ mod tests {
         let down = Vector3::new(0.0, 0.0, -2.0);
         let about_y = quarter(1).delayed(5.0).at::<Dim3>(&down, 6.0);
         assert!((about_y - Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-14);
-        assert!(quarter(1).fault(2).is_some() && quarter(1).fault(3).is_none());
+        assert!(quarter(1).error(2).is_some() && quarter(1).error(3).is_none());
     }
 }

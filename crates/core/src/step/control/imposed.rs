@@ -11,7 +11,7 @@ use crate::geometry::space::Space;
 use crate::step::detection::watch_first_move;
 use crate::step::{Scheme, Simulation};
 
-/// See [`Simulation::set_in_motion`].
+/// Sets driven bodies in motion before the first step, for [`Simulation::set_in_motion`].
 pub(in crate::step) fn set_in_motion<S: Space>(s: &mut Simulation<S>) {
     if s.state.steps > 0 {
         return;

@@ -99,7 +99,7 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
 fn take_away<S: Space>(s: &mut Simulation<S>, place: usize) {
     s.state.bodies.remove(place);
     let body = s.state.bodies.driven[place].body as usize;
-    s.tell(|process, simulation| process.body_removed(simulation, body));
+    s.notify(|process, simulation| process.body_removed(simulation, body));
 }
 
 fn loads<S: Space>(s: &mut Simulation<S>) {

@@ -38,7 +38,7 @@ pub struct Changes {
     /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time
     /// since the phase began.
     pub drives: Vec<(usize, usize, Dof)>,
-    /// The same of what holds deformable bodies.
+    /// Drives of what holds deformable bodies.
     pub holders: Vec<(HeldAxis, Dof)>,
     /// Gravity (m/s^2).
     pub gravity: Option<[f64; 3]>,

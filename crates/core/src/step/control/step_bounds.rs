@@ -17,7 +17,7 @@ pub struct StepBounds {
 }
 
 impl StepBounds {
-    /// See [`Simulation::step_bounds`].
+    /// What bounds the next step, for [`Simulation::step_bounds`].
     pub(in crate::step) fn of<S: Space>(s: &Simulation<S>) -> StepBounds {
         // An event that is due is one of the step that begins.
         let t = s.state.time + 1e-6 * s.options.event_step();

@@ -69,7 +69,7 @@ fn face<S: Space>(
     Some(())
 }
 
-/// See [`Simulation::nodes_of_side`].
+/// The nodes that a contact acts on, for [`Simulation::nodes_of_side`].
 pub(in crate::step) fn nodes_of_side<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,
@@ -85,7 +85,7 @@ pub(in crate::step) fn nodes_of_side<S: Space>(
     }
 }
 
-/// See [`Simulation::worn_shares`].
+/// The vertices below the facets of a point, for [`Simulation::worn_shares`].
 pub(in crate::step) fn worn_shares<'a, S: Space>(
     s: &'a Simulation<S>,
     contact: &Contact<S>,
@@ -96,7 +96,7 @@ pub(in crate::step) fn worn_shares<'a, S: Space>(
     }
 }
 
-/// See [`Simulation::acted_on_mean_places`].
+/// Where contacts with surfaces acted, for [`Simulation::acted_on_mean_places`].
 pub(in crate::step) fn acted_on_mean_places<S: Space>(
     s: &Simulation<S>,
 ) -> impl Iterator<Item = (&Contact<S>, bool)> {

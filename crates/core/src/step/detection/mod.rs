@@ -11,7 +11,7 @@ use super::process::Process;
 use super::{Simulation, StepError};
 use crate::contact::{Contact, detect};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 
 /// Finds the contacts at the current places of the bodies.
 pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {

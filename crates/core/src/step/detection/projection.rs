@@ -8,7 +8,7 @@
 //! projects in every step; here a step is projected only when a penetration exceeds a bound.
 //!
 //! Velocities do not change, so that kinetic energy is kept; bond openings do not change, so that
-//! elastic energy is kept. Work against gravity and imposed forces is booked in the ledger as work
+//! elastic energy is kept. Work against gravity and imposed forces is added to the ledger as work
 //! of the correction.
 //!
 //! Dynamical systems do not take part: a scene with one is refused.
@@ -47,7 +47,7 @@ pub(in crate::step) fn check_bodies<S: Space>(s: &Simulation<S>) -> Result<(), S
     }
 }
 
-/// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
+/// Removes penetrations if one exceeds the bound, repeats detection, and adds the work to the ledger.
 pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projected> {
     if s.options.projection <= 0.0 {
         return None;
@@ -101,7 +101,7 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
     })
 }
 
-/// See [`Simulation::deepest_overlap`].
+/// The deepest penetration, for [`Simulation::deepest_overlap`].
 pub(in crate::step) fn deepest_overlap<S: Space>(s: &Simulation<S>) -> f64 {
     let (bodies, network, laws) = (&s.state.bodies, &s.state.network, s.laws.as_slice());
     let grain = bodies.grain_flags();
@@ -204,15 +204,10 @@ fn pose<S: Space>(
             arms: contact.arms,
             central: contact.central,
             // Overlaps are taken out along normals, about which arms along them do not turn.
-            apart: false,
             shift_n: if kept { 0.0 } else { contact.gap },
-            shift_t: S::Tangent::zero(),
-            friction: 0.0,
             tension: hold,
             cohesion: hold,
-            elastic: None,
-            compliance: [0.0; 2],
-            impulse: S::Vector::zero(),
+            ..ContactForm::default()
         });
     }
 }

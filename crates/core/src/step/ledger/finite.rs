@@ -14,7 +14,7 @@ const LOOK: f64 = 2.0;
 /// Checks the state at the end of the step, and records motion that is lost to rounding.
 ///
 /// # Errors
-/// As [`find_overflow`].
+/// Names the first quantity that is not finite, and its body.
 pub(in crate::step) fn check_finite<S: Space>(s: &mut Simulation<S>) -> Result<(), StepError> {
     find_overflow(s)?;
     watch_rounding(s);

@@ -1,4 +1,4 @@
-//! Books the momentum of a step, and the deepest overlap in the same pass over its contacts.
+//! Adds up the momentum of a step, and the deepest overlap in the same pass over its contacts.
 
 use crate::geometry::space::{Space, VectorLike};
 use crate::momentum::MomentumSum;
@@ -14,7 +14,7 @@ const CHUNK: usize = 1024;
 const BODY: f64 = 10.0;
 const CONTACT: f64 = 4.0;
 
-/// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the
+/// Adds what the free rigid bodies gained in the step, at q_m: there an impulse changes the
 /// angular momentum of a step by its moment, whatever theta is.
 pub(in crate::step) fn close_momentum<S: Space>(
     s: &mut Simulation<S>,

@@ -7,7 +7,7 @@ use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 
-/// See [`Simulation::add_system`].
+/// Adds a dynamical system, for [`Simulation::add_system`].
 pub(in crate::step) fn add_system<S: Space>(
     s: &mut Simulation<S>,
     system: Box<dyn DynamicalSystem<S>>,

@@ -2,7 +2,7 @@
 
 use super::{answers, attraction, posing, sliding};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::solve;
 use crate::step::motion::StepStart;
 use crate::step::{Agreement, Simulation, StepError, StepReport};

@@ -2,7 +2,7 @@
 
 use crate::geometry::space::Space;
 use crate::laws::Step;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::laws::evaluator::LawEvaluator;
 use crate::step::Simulation;
 

@@ -15,7 +15,7 @@
 use super::asking::asks;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 

@@ -2,7 +2,7 @@
 
 use super::{agreement, systems};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::step::motion::{Motion, StepStart};
 use crate::step::{Coupling, CouplingReport, Simulation, StepError, StepReport};
 use std::time::Instant;

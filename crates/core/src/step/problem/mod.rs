@@ -19,7 +19,7 @@ use super::motion::{Motion, StepStart, restart};
 use super::{Simulation, StepError, StepReport};
 use crate::contact::{Key, Occurrence, detect};
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::threads::{count, fill, worth_dividing};
 use std::time::Instant;
 

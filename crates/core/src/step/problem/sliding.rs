@@ -16,7 +16,7 @@ use super::asking::asks;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::ContactStep;
-use crate::laws::columns::StepInfo;
+use crate::laws::StepInfo;
 use crate::laws::{FrictionAt, LawError};
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;

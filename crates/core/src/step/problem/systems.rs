@@ -70,7 +70,8 @@ pub(super) fn find_system_contacts<S: Space>(s: &mut Simulation<S>) {
     find_touched_nodes(s, &[]);
 }
 
-/// The same with the nodes that laws turn which resist rotation, once these laws were asked.
+/// Finds what the current contacts act on, with the nodes that turn by laws that resist rotation,
+/// once these laws were called.
 pub(super) fn find_turned_systems<S: Space>(s: &mut Simulation<S>) {
     let moments = std::mem::take(&mut s.workspace.moments);
     if !moments.is_empty() {

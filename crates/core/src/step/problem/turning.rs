@@ -45,7 +45,8 @@ pub(super) fn relative_spin_before<S: Space>(s: &Simulation<S>, contact: &Contac
     relative_spins(s, contact, &turned, now)[0]
 }
 
-/// The same over the step of the `k`-th contact that resists rotation, at its start and its end.
+/// The relative spins of the `k`-th contact that resists rotation, at the start and the end of the
+/// step.
 /// `start` gives the spin of a rigid body at the start.
 pub(super) fn relative_spins_of_moment<S: Space>(
     s: &Simulation<S>,

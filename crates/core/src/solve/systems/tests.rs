@@ -15,15 +15,8 @@ fn form(bodies: [u32; 2], normal: Vector2<f64>) -> ContactForm<Dim2> {
         normal,
         arms: [Vector2::zeros(); 2],
         central: false,
-        apart: false,
-        shift_n: 0.0,
-        shift_t: Vector1::zeros(),
         friction: 0.3,
-        tension: 0.0,
-        cohesion: 0.0,
-        elastic: None,
-        compliance: [0.0; 2],
-        impulse: Vector2::zeros(),
+        ..ContactForm::default()
     }
 }
 

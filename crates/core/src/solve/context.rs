@@ -1,0 +1,126 @@
+//! One solve of a step: what it is given, what earlier steps taught, and the runs of single methods
+//! that choices are made of.
+
+use super::form::ContactForm;
+use super::local::solver::Method;
+use super::nlgs::{self, Options, Report};
+use super::problem::Problem;
+use super::row::MomentForm;
+use super::search::Search;
+use super::standard;
+use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
+
+/// What `auto` learned from previous steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AutoState {
+    /// Factor on the number of iterations before Newton.
+    pub(super) patience: f64,
+    /// Whether the interior point converged in the last step in which Newton failed; it is then
+    /// tried first.
+    pub(super) interior_first: bool,
+    /// How often the interior point is still to be skipped, and was to be skipped after its last
+    /// failure.
+    skipped: [u32; 2],
+    /// When another solution is sought.
+    pub(super) search: Search,
+}
+
+impl Default for AutoState {
+    fn default() -> Self {
+        Self {
+            patience: 1.0,
+            interior_first: false,
+            skipped: [0; 2],
+            search: Search::default(),
+        }
+    }
+}
+
+impl AutoState {
+    /// When another solution is sought.
+    pub fn search(&self) -> &Search {
+        &self.search
+    }
+
+    /// Begins a step, whose problem may be solved several times.
+    pub fn begin_step(&mut self) {
+        self.search.begin_step();
+    }
+
+    /// Returns whether to try the interior point: after each failure it is skipped twice as often,
+    /// at most 64 times.
+    pub(super) fn interior_is_due(&mut self) -> bool {
+        let due = self.skipped[0] == 0;
+        self.skipped[0] = self.skipped[0].saturating_sub(1);
+        due
+    }
+
+    /// Changes the patience by whether a method that factorises has solved the last problem.
+    pub(super) fn adapt(&mut self, ended: bool) {
+        self.patience *= if ended { 0.5 } else { 2.0 };
+        self.patience = self.patience.clamp(1.0, 64.0);
+    }
+
+    /// Records the result of an interior-point attempt.
+    pub(super) fn learn(&mut self, ended: bool) {
+        self.interior_first = ended;
+        let next = (2 * self.skipped[1]).clamp(1, 64);
+        self.skipped = if ended { [0; 2] } else { [next; 2] };
+    }
+}
+
+/// What a solve is given beside the problem.
+pub(super) struct SolveContext<'a, S: Space> {
+    pub(super) forms: &'a [ContactForm<S>],
+    pub(super) moments: &'a [MomentForm<S>],
+    pub(super) options: &'a Options,
+}
+
+impl<S: Space> SolveContext<'_, S> {
+    /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
+    pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
+        let options = Options {
+            accelerated,
+            max_iterations: most,
+            ..*self.options
+        };
+        Report {
+            used: if accelerated {
+                Method::Anderson
+            } else {
+                Method::Nlgs
+            },
+            ..nlgs::solve(problem, &options)
+        }
+    }
+
+    /// Improves the solution by a matrix method, whose tolerance applies to its own error measure.
+    pub(super) fn improve(
+        &self,
+        problem: &mut Problem<S>,
+        method: Method,
+        tolerance: f64,
+        most: u32,
+    ) -> Report {
+        let limits = (self.options.norm, tolerance, most);
+        let (forms, moments) = (self.forms, self.moments);
+        let iterations = if S::D == 2 {
+            standard::improve::<S, 2>(problem, forms, moments, method, limits)
+        } else {
+            standard::improve::<S, 3>(problem, forms, moments, method, limits)
+        };
+        Report {
+            iterations,
+            used: method,
+            ..nlgs::check_convergence(problem, self.options)
+        }
+    }
+
+    /// Goes back to the impulses of the forms.
+    pub(super) fn start_anew(&self, problem: &mut Problem<S>) {
+        let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
+        let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
+        problem.adopt(&impulses, &moments);
+    }
+}
