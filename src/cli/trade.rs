@@ -28,10 +28,13 @@ pub struct TradeArgs {
     /// it
     #[arg(long = "exact", value_name = "NAME=VALUE")]
     exact: Vec<String>,
-    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction; and, only
-    /// where named, accuracy, grains, rung (what deforms)
-    #[arg(long = "knob", value_name = "NAME")]
+    /// Setting to vary: step, tolerance, solver, test_every, coupling, correction; and, only where
+    /// named, accuracy, grains, deformability (what deforms)
+    #[arg(long = "setting", value_name = "NAME")]
     parameters: Vec<String>,
+    /// Former name of --setting
+    #[arg(long = "knob", value_name = "NAME", hide = true)]
+    renamed: Vec<String>,
     /// Vary any value of the case; the first value is that of the reference
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
@@ -65,13 +68,29 @@ pub struct TradeArgs {
 }
 
 impl TradeArgs {
+    /// Names of the presets; former names are replaced and reported.
+    fn presets(&self) -> Vec<String> {
+        if !self.renamed.is_empty() {
+            report("warning: --knob was renamed: write --setting");
+        }
+        let named = self.parameters.iter().chain(&self.renamed);
+        let current = named.map(|name| match name.as_str() {
+            "rung" => {
+                report("warning: --setting rung was renamed: write --setting deformability");
+                "deformability".to_owned()
+            }
+            _ => name.clone(),
+        });
+        current.collect()
+    }
+
     fn request(&self) -> Request {
         Request {
             case: self.case.case.clone(),
             sets: self.case.sets.clone(),
             outputs: self.outputs.clone(),
             exact: self.exact.clone(),
-            presets: self.parameters.clone(),
+            presets: self.presets(),
             vary: self.vary.clone(),
             variants: self.variants.clone(),
             seeds: self.seeds,

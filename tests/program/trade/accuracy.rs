@@ -15,7 +15,7 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
         "time.step=2e-3",
         "--set",
         "solver.tolerance=1e-4",
-        "--knob",
+        "--setting",
         "accuracy",
         "--vary",
         "time.step=1.25e-4,2e-3",

@@ -79,7 +79,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
         .spawn()
         .unwrap_or_else(|e| panic!("{e}"));
     std::thread::sleep(Duration::from_secs(5));
-    // As Ctrl-C on a terminal does: the study and the runs that it started.
+    // Ctrl-C on a terminal interrupts the study and the runs that it started.
     let killed = Command::new("kill")
         .args(["-INT", "--", &format!("-{}", child.id())])
         .status();

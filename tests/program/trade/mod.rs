@@ -4,9 +4,9 @@
 
 mod accuracy;
 mod budget;
+mod deformability;
 mod errors;
 mod refusals;
-mod rung;
 mod scatter;
 
 use crate::temp::TempFolder;

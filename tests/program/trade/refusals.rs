@@ -8,9 +8,12 @@ fn wrong_input_is_answered_with_the_nearest_name() {
     let folder = Folder::new("wrong");
     let out = folder.out();
     for (arguments, said) in [
-        (&["--knob", "stpe"][..], "did you mean `step`?"),
-        (&["--knob", "precision"], "f64 only"),
-        (&["--knob", "grains"], "no lattice or deposit"),
+        (&["--setting", "stpe"][..], "did you mean `step`?"),
+        (&["--setting", "precision"], "f64 only"),
+        // The former name is read, and reported.
+        (&["--knob", "stpe"], "did you mean `step`?"),
+        (&["--knob", "precision"], "renamed: write --setting"),
+        (&["--setting", "grains"], "no lattice or deposit"),
         (
             &["--output", "frction_coefficient=1%"],
             "did you mean `friction_coefficient`?",
@@ -68,7 +71,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
             "2e-8 and 2.0e-8 are the same case",
         ),
         (
-            &["--set", "solver.method=Newton", "--knob", "test_every"],
+            &["--set", "solver.method=Newton", "--setting", "test_every"],
             "does not iterate in sweeps",
         ),
         (

@@ -41,7 +41,7 @@ impl Combination {
         if !parts.is_empty() {
             return parts.join(", ");
         }
-        // Beside its other forms the case's own is named too.
+        // The form of the case is named where other forms are compared with it.
         let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == Sense::Form);
         let forms: Vec<String> = forms.map(named).collect();
         match forms.is_empty() {

@@ -20,7 +20,7 @@ pub struct OutputError {
     pub error: Mean,
     /// Upper bound of the error from its interval.
     pub at_most: f64,
-    /// The same plus the reference's own error.
+    /// Upper bound of the error including the reference's own.
     pub bound: f64,
     /// Whether no other setting is cheaper with a smaller bound on the error.
     pub on_frontier: bool,

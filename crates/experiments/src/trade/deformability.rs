@@ -1,8 +1,9 @@
-//! The preset `rung`: the forms of one case by what may deform in it, from rigid contacts to grains
-//! of finite elements.
+//! The preset `deformability`: the forms of one case by what may deform in it, from rigid contacts
+//! to grains of finite elements.
 //!
 //! A level is a list of `--set` arguments. Numbers that a form needs are those of the scene: `mu`
-//! of its contact laws, properties of its materials. What would need others is not offered.
+//! of its contact laws, properties of its materials. A form that needs numbers which the scene does
+//! not have is left out.
 
 use super::variant::field;
 use super::varied::{Sense, Varied};
@@ -151,7 +152,7 @@ pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     let every: Vec<usize> = (0..case.interfaces.len()).collect();
     forms.push(("compliant", below(compliant_contacts(case, scene))));
     forms.push(("rigid", below(rigid_contacts(case, scene, &every, true))));
-    let mut parameter = Varied::new("rung", Sense::Form, Vec::new(), Some(0));
+    let mut parameter = Varied::new("deformability", Sense::Form, Vec::new(), Some(0));
     for (label, form) in forms {
         let sets = match form {
             _ if label == own => {
@@ -206,7 +207,7 @@ pub fn keep_accepted(
         .iter()
         .position(|l| Some(l) == own.as_ref());
     parameter.own = place.unwrap_or(0);
-    several(parameter).map_err(|why| Error::Usage(format!("--knob rung: {why}")))
+    several(parameter).map_err(|why| Error::Usage(format!("--setting deformability: {why}")))
 }
 
 /// Where an interface is in the case, for `--set`.
@@ -257,7 +258,7 @@ fn rigid_contacts(
     if sets.is_empty() {
         return Ok(sets);
     }
-    // Heat over that of slip is a measure for springs; rigid contacts are judged by their balance.
+    // Heat over that of slip is a measure for springs; rigid contacts are tested by their balance.
     if scene.norm == Norm::Power {
         if case.solver.norm.is_some() {
             sets.push("solver.norm=Balance".to_owned());

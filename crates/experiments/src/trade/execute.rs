@@ -25,7 +25,7 @@ pub enum Event<'a> {
     Ended(&'a str, u64, &'a Finished),
 }
 
-/// Is told of events.
+/// Called with every event.
 pub type Watch<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
 
 impl Trade {

@@ -4,7 +4,7 @@ use super::ordered::{steps, tolerances};
 use super::varied::{Sense, Varied};
 use crate::factor::Level;
 use crate::{Error, load};
-use fretwork_scene::{Loaded, unseen_fault};
+use fretwork_scene::{Loaded, invisible_characters};
 
 /// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
 pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<Varied, Error> {
@@ -56,8 +56,8 @@ pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<
     // The two parameters whose numeric values have an order.
     let numbers: Vec<f64> = levels.iter().filter_map(|l| l.number).collect();
     let positive = numbers.len() == levels.len() && numbers.iter().all(|x| *x > 0.0);
-    if let Some(fault) = unseen_fault(key.trim()) {
-        return Err(Error::Usage(format!("--vary {key:?}: {fault}")));
+    if let Some(reason) = invisible_characters(key.trim()) {
+        return Err(Error::Usage(format!("--vary {key:?}: {reason}")));
     }
     match key.trim() {
         "time.step" if positive => return Ok(steps(&loaded.case, numbers)),

@@ -19,14 +19,14 @@ pub fn parameters(
     search: &SearchPath,
     solving: &Solving,
 ) -> Result<Vec<Varied>, Error> {
-    // Forms of the case come first: the other parameters change what these write.
+    // Forms of the case come first, since the other parameters change values that forms set.
     let mut all: Vec<Varied> = variants(loaded, &request.variants)?.into_iter().collect();
     let only_variants = !all.is_empty() && request.presets.is_empty() && request.vary.is_empty();
     if !only_variants {
         all.extend(presets(loaded, solving, &request.presets, &request.vary)?);
     }
     all.sort_by_key(|k| k.sense != Sense::Form);
-    for forms in all.iter_mut().filter(|k| k.name == "rung") {
+    for forms in all.iter_mut().filter(|k| k.name == "deformability") {
         let before = request.sets.clone();
         keep_accepted(forms, |sets| {
             let scene = load(&request.case, &[&before[..], sets].concat())

@@ -65,25 +65,25 @@ pub struct Trade {
 #[derive(Debug, Serialize, Deserialize)]
 struct StoredPlan {
     fingerprint: String,
-    #[serde(rename = "knobs", alias = "parameters")]
+    #[serde(alias = "knobs")]
     parameters: String,
     reference: Vec<usize>,
     forecast: CostLaw,
 }
 
-/// What the runs of a trade say.
+/// Results of a trade.
 #[derive(Debug)]
 pub struct Findings {
     /// Each setting compared with the reference.
     pub found: Comparison,
     /// The cheapest settings for the errors wanted.
     pub verdicts: Vec<Verdict>,
-    /// Whether all was run that was planned.
+    /// Whether all planned runs were made.
     pub complete: bool,
 }
 
 impl Trade {
-    /// What the runs so far say; `interrupted` if there would have been more.
+    /// The results of the runs so far; `interrupted` if more were planned.
     pub fn answer(&self, interrupted: bool) -> Findings {
         let found = self.compare();
         Findings {

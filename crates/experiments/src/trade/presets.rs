@@ -34,23 +34,22 @@ pub const PRESETS: &[(&str, &str)] = &[
     ),
     ("grains", "half the grains of the first lattice or deposit"),
     (
-        "rung",
+        "deformability",
         "what deforms: nothing, contacts, first bodies, grains",
     ),
 ];
 
 /// Whether a preset is varied by default; the number of grains changes the problem itself, not only
 /// the accuracy, and a run that chooses its settings is compared with them where that is asked for;
-/// another rung is another model.
+/// another deformability is another model.
 fn wanted_by_default(name: &str) -> bool {
-    !matches!(name, "grains" | "accuracy" | "rung")
+    !matches!(name, "grains" | "accuracy" | "deformability")
 }
 
-/// What levels depend on beside the text of the case: how its scene is solved, and what may deform
-/// in it.
+/// Properties of the scene on which levels depend: how it is solved, and what may deform in it.
 #[derive(Debug)]
 pub struct Solving {
-    /// The methods that serve it.
+    /// The solvers that support it.
     pub methods: Vec<Method>,
     /// Its tolerance.
     pub tolerance: f64,
@@ -71,7 +70,7 @@ pub fn presets(
     let mut parameters = Vec::new();
     for name in names {
         if name == "precision" {
-            let text = "--knob precision: Fretwork computes and stores in f64 only, so precision cannot be varied";
+            let text = "--setting precision: Fretwork computes and stores in f64 only, so precision cannot be varied";
             return Err(Error::Usage(text.into()));
         }
         if !PRESETS.iter().any(|p| p.0 == name) {
@@ -79,7 +78,7 @@ pub fn presets(
         }
         match preset(loaded, solving, name) {
             Ok(parameter) => parameters.push(parameter),
-            Err(why) => return Err(Error::Usage(format!("--knob {name}: {why}"))),
+            Err(why) => return Err(Error::Usage(format!("--setting {name}: {why}"))),
         }
     }
     if names.is_empty() && vary.is_empty() {
@@ -106,7 +105,7 @@ fn unknown(name: &str) -> Error {
     let help = close.map_or(String::new(), |c| format!("; did you mean `{c}`?"));
     let names: Vec<&str> = PRESETS.iter().map(|p| p.0).collect();
     Error::Usage(format!(
-        "--knob {name}: there is no such knob{help} There are {}; `--vary key.path=a,b,c` varies any value of the case",
+        "--setting {name}: there is no such setting{help} There are {}; `--vary key.path=a,b,c` varies any value of the case",
         names.join(", ")
     ))
 }
@@ -132,7 +131,7 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, Stri
         "test_every" => test_every_levels(case)?,
         "coupling" => coupling_levels(case)?,
         "accuracy" => accuracy_levels(case),
-        "rung" => return forms(case, &solving.deformability),
+        "deformability" => return forms(case, &solving.deformability),
         "correction" => {
             let own = case.solver.correction;
             let mut all = vec![0.0, 0.05, 0.2, own];

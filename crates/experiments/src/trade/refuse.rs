@@ -6,8 +6,8 @@ use super::plan::Trade;
 use super::request::Request;
 use crate::Error;
 use crate::duration::seconds;
+use crate::runs::available::{AvailableQuantities, measure_names};
 use crate::runs::launcher::{Patience, Run};
-use crate::runs::offer::{Offer, measure_names};
 use crate::runs::stored::summary;
 use crate::runs::trial::Trial;
 use fretwork_scene::Built;
@@ -20,9 +20,9 @@ use std::time::{Duration, Instant};
 ///
 /// # Errors
 /// An output or an exact value is wrong.
-pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
+pub fn outputs(request: &Request, available: &AvailableQuantities) -> Result<Vec<Output>, Error> {
     let requested = request.outputs.iter().map(|t| Output::parse(t));
-    let usual = offer.usual();
+    let usual = available.usual();
     let usual = usual.iter().map(|name| Output::parse(name));
     let mut outputs: Vec<Output> = match request.outputs.is_empty() {
         true => usual.collect::<Result<_, _>>()?,
@@ -40,7 +40,7 @@ pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
                 output.name()
             )));
         }
-        offer
+        available
             .check(&output.quantity)
             .map_err(|why| output.refused(&why))?;
     }
@@ -97,8 +97,7 @@ pub fn budget(request: &Request, case: &Case, scene: Built) -> Result<(), Error>
     )))
 }
 
-/// Checks names in groups that only a run fills against a run of two steps, if the case allows one
-/// so short.
+/// Checks outputs in groups that only a run fills, by a run of two steps, if the case allows one.
 ///
 /// # Errors
 /// An output that the run does not have.

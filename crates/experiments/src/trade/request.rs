@@ -1,4 +1,4 @@
-//! What a trade is asked for, and the checks and first runs before it.
+//! The request for a trade, with its checks and first runs.
 
 use super::combination::Combination;
 use super::cost_law::CostLaw;
@@ -8,8 +8,8 @@ use super::plan::{Ledger, Trade};
 use super::presets::Solving;
 use super::varied::Varied;
 use super::{OWNER, parameters, refuse};
+use crate::runs::available::AvailableQuantities;
 use crate::runs::launcher::Launcher;
-use crate::runs::offer::Offer;
 use crate::runs::stored::Limits;
 use crate::{Error, Program, build, load};
 use fretwork_core::solve::local::solver::Method;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// What a trade is asked for, in the words of the command line.
+/// A request for a trade, with the texts of the command line.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// The case.
@@ -53,7 +53,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// Checks what is asked for, and makes the first runs: whether contacts are chaotic, and what
+    /// Checks the request and makes the first runs: whether contacts are chaotic, and what
     /// settings cost. Returns the lock on the folder of the results too.
     ///
     /// # Errors
@@ -67,10 +67,10 @@ impl Request {
         let loaded = load(&self.case, &self.sets)?;
         let (scene, random) = build(&loaded, program)?;
         let first = Facts::of(&loaded, &scene);
-        let outputs = refuse::outputs(self, &first.offer)?;
+        let outputs = refuse::outputs(self, &first.available)?;
         let parameters = parameters::parameters(self, &loaded, &program.search, &first.solving)?;
         if parameters.is_empty() {
-            let text = "nothing to vary; name a --knob or --vary";
+            let text = "nothing to vary; name a --setting or --vary";
             return Err(Error::Usage(text.into()));
         }
         // An earlier trade in the folder may have done all runs already.
@@ -151,7 +151,7 @@ impl Request {
 /// Properties of a scene that a trade needs.
 struct Facts {
     solving: Solving,
-    offer: Offer,
+    available: AvailableQuantities,
 }
 
 impl Facts {
@@ -160,7 +160,7 @@ impl Facts {
         let serves =
             |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
         Self {
-            offer: Offer::of(&loaded.case, built),
+            available: AvailableQuantities::of(&loaded.case, built),
             solving: Solving {
                 methods: Method::ALL.iter().copied().filter(serves).collect(),
                 tolerance: built.simulation.options().solver.tolerance,

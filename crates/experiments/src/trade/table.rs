@@ -9,7 +9,7 @@ use crate::duration::seconds;
 use crate::shell;
 use std::fmt::Write as _;
 
-/// Announcement before the study runs.
+/// The forecast that is printed before the runs.
 pub fn forecast(trade: &Trade) -> String {
     let (first, one_at_a_time) = (trade.first(), trade.one_at_a_time());
     let seeds = trade.seeds.len();
@@ -73,7 +73,7 @@ pub fn text(trade: &Trade, answer: &Findings) -> String {
     out
 }
 
-/// What a trade did not run, and why.
+/// The runs that a trade left out, and why.
 pub fn incomplete(trade: &Trade, interrupted: bool) -> String {
     let left_out = trade.left_out.iter();
     let names: Vec<String> = left_out.map(|s| s.name(&trade.parameters)).collect();

@@ -29,7 +29,7 @@ fn fields(text: &str) -> BTreeSet<String> {
     keys.map(|key| text[key].to_owned()).collect()
 }
 
-/// The case without what a study does not compare: its name and words, its seed and its files.
+/// The case without its name, description, seed and output files, which a trade does not compare.
 fn compared(case: &Case) -> Case {
     let mut case = case.clone();
     (case.name, case.doc, case.seed) = (String::new(), String::new(), 0);
@@ -89,7 +89,7 @@ fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError
         if a == b {
             continue;
         }
-        // A field that a text leaves out is empty, in the way of its type.
+        // An omitted field has the empty value of its type.
         let empty = |text: &&str| {
             let mut source = Source::from_text(&loaded.path, loaded.source.text());
             let set = source.set::<Case>(&format!("{name}={text}"));

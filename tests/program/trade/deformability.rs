@@ -1,4 +1,4 @@
-//! The knob `rung` and `--variant`: forms of one case that differ in what deforms.
+//! The setting `deformability` and `--variant`: forms of one case that differ in what deforms.
 
 use super::{Folder, call, number, settings, study};
 use serde_json::Value;
@@ -65,14 +65,25 @@ fn contacts(said: &str) -> Vec<&str> {
 }
 
 #[test]
-fn each_rung_is_the_case_with_more_that_deforms() {
-    let folder = Folder::new("rung");
+fn each_form_is_the_case_with_more_that_deforms() {
+    let folder = Folder::new("deformability");
     let (case, out) = (folder.file("shear.ron", SHEAR), folder.out());
     let found = study(&[
-        &case, "--knob", "rung", "--seeds", "2", "--budget", "5m", "--out", &out,
+        &case,
+        "--setting",
+        "deformability",
+        "--seeds",
+        "2",
+        "--budget",
+        "5m",
+        "--out",
+        &out,
     ]);
-    let own = named(&found, "the case's own (rung compliant)");
-    let (grains, rigid) = (named(&found, "rung grains"), named(&found, "rung rigid"));
+    let own = named(&found, "the case's own (deformability compliant)");
+    let (grains, rigid) = (
+        named(&found, "deformability grains"),
+        named(&found, "deformability rigid"),
+    );
     // The grains that deform are the reference, since the others leave out what they have.
     assert_eq!(grains["reference"], true);
     for form in [&own, &grains, &rigid] {
@@ -115,11 +126,11 @@ fn each_rung_is_the_case_with_more_that_deforms() {
     assert!(
         found["notes"]
             .to_string()
-            .contains("rung half-spaces is not offered")
+            .contains("deformability half-spaces is not offered")
     );
     let table = std::fs::read_to_string(format!("{out}/trade.csv")).unwrap();
     assert!(
-        table.contains("rung grains") && table.contains(",rung,"),
+        table.contains("deformability grains") && table.contains(",deformability,"),
         "{table}"
     );
 }
@@ -212,8 +223,8 @@ fn every_rung_leads_to_the_others() {
             &case,
             "--set",
             "time.end=0.04",
-            "--knob",
-            "rung",
+            "--setting",
+            "deformability",
             "--seeds",
             "1",
             "--output",
@@ -221,21 +232,21 @@ fn every_rung_leads_to_the_others() {
             "--out",
             &out,
         ]);
-        named(&found, &format!("the case's own (rung {own})"));
-        for rung in others {
-            let level = named(&found, &format!("rung {rung}"));
+        named(&found, &format!("the case's own (deformability {own})"));
+        for form in others {
+            let level = named(&found, &format!("deformability {form}"));
             assert!(level["failed"].is_null(), "{level}");
             let said = check(&case, &level);
-            let law = if *rung == "compliant" {
+            let law = if *form == "compliant" {
                 "hertz-mindlin"
             } else {
                 "coulomb"
             };
-            assert_eq!(contacts(&said), [law, law], "{rung}: {said}");
+            assert_eq!(contacts(&said), [law, law], "{form}: {said}");
             let sets = level["sets"].to_string();
             let removed = (name == "soft", "elastic_grains=[]");
             assert_eq!(sets.contains(removed.1), removed.0, "{sets}");
-            let planes = name == "plane" && *rung != "grains";
+            let planes = name == "plane" && *form != "grains";
             assert_eq!(sets.contains("half_spaces=[]"), planes, "{sets}");
         }
     }
@@ -243,7 +254,7 @@ fn every_rung_leads_to_the_others() {
 
 #[test]
 fn what_has_one_form_only_is_refused_with_the_reasons() {
-    let folder = Folder::new("one-rung");
+    let folder = Folder::new("one-form");
     let out = folder.out();
     let heap = folder.file("heap.ron", super::HEAP);
     let shear = folder.file("shear.ron", SHEAR);
@@ -252,15 +263,21 @@ fn what_has_one_form_only_is_refused_with_the_reasons() {
     let heap_variant = format!("heap={heap}");
     for (arguments, said) in [
         (
-            &[&heap[..], "--knob", "rung"][..],
+            &[&heap[..], "--setting", "deformability"][..],
             "`glass` has no `poisson`",
         ),
         (
-            &[&heap, "--knob", "rung"],
+            &[&heap, "--setting", "deformability"],
             "needs `young` of the material `glass`",
         ),
         (
-            &[&shear, "--knob", "rung", "--knob", "tolerance"],
+            &[
+                &shear,
+                "--setting",
+                "deformability",
+                "--setting",
+                "tolerance",
+            ],
             "cannot be varied together",
         ),
         (&[&shear, "--variant", "few"], "expected NAME=FILE"),
@@ -324,7 +341,7 @@ fn another_file_is_a_form_of_the_case() {
     named(&found, "the case's own (variant usual)");
     let level = named(&found, "variant few");
     assert_eq!(level["reference"], true);
-    // The same numbers as a run of the file itself.
+    // Its numbers are those of a run of the file itself.
     let alone = folder.0.join("alone");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     command
