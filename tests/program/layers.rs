@@ -53,7 +53,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 9] = [
     ),
     (
         "observe",
-        &["core", "scene"],
+        &["core", "math", "scene"],
         &["rust-hdf5", "clap", "ab_glyph", "tiny-skia"],
     ),
     (

@@ -30,6 +30,8 @@ pub const FORCE: Unit = Unit::by_depth("N", "N/m");
 pub const ENERGY: Unit = Unit::by_depth("J", "J/m");
 /// Power, heat flow.
 pub const POWER: Unit = Unit::by_depth("W", "W/m");
+/// Stiffnesses.
+pub const STIFFNESS: Unit = Unit::by_depth("N/m", "N/m per m");
 /// Masses.
 pub const MASS: Unit = Unit::by_depth("kg", "kg/m");
 /// Mass a time.

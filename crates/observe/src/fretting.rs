@@ -3,8 +3,8 @@
 use super::friction::Cycle;
 use super::quantity::part;
 use super::quantity::unit::{ENERGY, VOLUME, WEAR_PER_ENERGY, WORD};
+use fretwork_math::statistics::interval;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
 /// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
@@ -138,8 +138,8 @@ fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let without: Vec<f64> = points.iter().map(|p| (y - p.1) / (x - p.0)).collect();
     let mean = without.iter().sum::<f64>() / n;
     let square: f64 = without.iter().map(|w| (w - mean).powi(2)).sum();
-    let t = StudentsT::new(0.0, 1.0, n - 1.0).ok().filter(|_| n > 1.5);
-    let half_width = t.map(|t| t.inverse_cdf(0.975) * ((n - 1.0) / n * square).sqrt());
+    let t = interval::quantile(points.len());
+    let half_width = t.map(|t| t * ((n - 1.0) / n * square).sqrt());
     Some(Slope { value, half_width })
 }
 

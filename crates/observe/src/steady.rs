@@ -5,8 +5,9 @@
 //! trend is tested with the Mann-Kendall test (M. G. Kendall, Rank Correlation Methods, 1975).
 
 use super::quantity::unit::{MASS_FLOW, ONE, WORD};
+use fretwork_math::statistics::interval;
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Number of blocks in a window.
 pub const BLOCKS: usize = 10;
@@ -83,9 +84,7 @@ fn summary(blocks: &[f64]) -> Option<Flow> {
     let mean = blocks.iter().sum::<f64>() / count;
     let deviations: Vec<f64> = blocks.iter().map(|b| b - mean).collect();
     let square: f64 = deviations.iter().map(|d| d * d).sum();
-    let t = StudentsT::new(0.0, 1.0, count - 1.0)
-        .ok()?
-        .inverse_cdf(0.975);
+    let t = interval::quantile(n)?;
     let neighbours: f64 = deviations.windows(2).map(|w| w[0] * w[1]).sum();
     let trend = trend(blocks)?;
     Some(Flow {

@@ -8,11 +8,12 @@ use crate::laws::bench::spring::SpringAnswer;
 use crate::laws::{Interface, LawError};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::case::Case;
+use fretwork_core::unit::STIFFNESS;
 
 /// Overlap over the radius of a grain from which grains are too soft: contacts no longer act one by
 /// one.
 const SOFT: f64 = 0.05;
-/// Overlap over the radius at which stiffnesses are told where no pressure is known.
+/// Overlap over the radius at which stiffnesses are given where no pressure is known.
 const SHOWN: f64 = 0.01;
 
 /// Shares of the pairs of bodies, by mass, on which the stiffness is compared with the step: the
@@ -82,7 +83,7 @@ fn text(
     sites: &BondSites,
     load: &Load,
 ) -> Result<String, LawError> {
-    let per = if dimension == 2 { "N/m per m" } else { "N/m" };
+    let unit = STIFFNESS.symbol(dimension);
     let known = load.pressure.filter(|p| p.0 > 0.0);
     let Some(Pressed {
         radius,
@@ -119,7 +120,7 @@ fn text(
         },
     );
     Ok(format!(
-        "{:.2e} {per} along the normal, {:.2e} along tangents, {under}; k h^2/m {middle:.1e} on the median pair of bodies, up to {largest:.1e}",
+        "{:.2e} {unit} along the normal, {:.2e} along tangents, {under}; k h^2/m {middle:.1e} on the median pair of bodies, up to {largest:.1e}",
         spring.stiffness, spring.tangential
     ))
 }

@@ -14,12 +14,6 @@ const SHOWS: [&str; 6] = [
     "python/fretwork",
 ];
 
-/// Sources that name quantities, and why.
-const MAY: [(&str, &str); 1] = [(
-    "crates/experiments/src/contact_patch/runs.rs",
-    "friction and wear of runs are what its closed forms go on with",
-)];
-
 fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -73,7 +67,7 @@ fn what_shows_results_names_no_quantity() {
         let text = std::fs::read_to_string(&path).unwrap();
         let named = literals(&text).into_iter().filter(|l| names.contains(*l));
         let named: Vec<&str> = named.collect();
-        if !named.is_empty() && MAY.iter().all(|m| m.0 != short) {
+        if !named.is_empty() {
             found.push(format!("{short}: {}", named.join(", ")));
         }
     }

@@ -21,7 +21,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// That of a question, if it gives one.
+    /// The coefficient that a question gives, or that of its runs; `None` without either.
     pub(super) fn of(question: &Question) -> Result<Option<Self>, String> {
         match (&question.friction, question.runs.as_slice()) {
             (None, []) => Ok(None),
@@ -70,6 +70,7 @@ fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::{Value, json};
 
     #[test]
     fn runs_give_their_mean_with_scatter_and_numerical_error() {
@@ -78,13 +79,26 @@ mod tests {
         for (k, (value, step)) in [(0.30, 0.01), (0.34, 0.02)].into_iter().enumerate() {
             let run = folder.join(k.to_string());
             std::fs::create_dir_all(&run).unwrap();
-            let text = format!(
-                r#"{{"friction_coefficient": {value}, "stopped": null, "interrupted": false,
-                "wear": {{"bodies": [{{"body": "rail", "specific_rate": {value}e-13}}, {{"body": "wheel", "specific_rate": null}}]}},
-                "uncertainty": {{"friction_coefficient": {{"scatter": 0.1, "step": {step}, "tolerance": 0.005, "coupling": null}},
-                "wear": {{"value": 2.0, "step": 0.2, "tolerance": null, "coupling": null}}}}}}"#
-            );
-            std::fs::write(run.join("summary.json"), text).unwrap();
+            let entry = |path: &str, unit: &str, role: &str, topic: &str, estimate: Value| {
+                json!({"path": path, "unit": unit, "doc": "", "role": role, "topic": topic,
+                    "label": "", "estimate": estimate})
+            };
+            let mu = json!({"value": value, "scatter": 0.1, "step": step, "tolerance": 0.005});
+            let worn = json!({"value": 2.0, "step": 0.2});
+            let rate = format!("{value}e-13").parse::<f64>().unwrap();
+            let summary = json!({
+                "friction_coefficient": value, "stopped": null, "interrupted": false,
+                "wear": {"volume": 2.0, "bodies": [
+                    {"body": "rail", "specific_rate": rate}, {"body": "wheel", "specific_rate": null},
+                ]},
+                "quantities": [
+                    entry("friction_coefficient", "1", "headline", "friction", mu),
+                    entry("wear.volume", "m^3/m", "secondary", "wear", worn),
+                    entry("wear.bodies.0.specific_rate", "m^3/(N m)", "secondary", "wear", Value::Null),
+                    entry("wear.bodies.1.specific_rate", "m^3/(N m)", "secondary", "wear", Value::Null),
+                ],
+            });
+            std::fs::write(run.join("summary.json"), summary.to_string()).unwrap();
             folders.push(run);
         }
         let got = of_runs(&folders).unwrap();

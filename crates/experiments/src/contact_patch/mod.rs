@@ -100,13 +100,13 @@ pub struct Strength {
     pub hardness: Option<f64>,
 }
 
-/// The patch as either theory has it.
+/// The patch by the theory that applies to it.
 enum Theory {
     Line(LinePatch),
     Point(PointPatch),
 }
 
-/// What all parts of the answer go by.
+/// Inputs of all parts of the answer.
 struct Contact {
     bodies: [Body; 2],
     /// Load (N; N/m).

@@ -1,4 +1,4 @@
-//! What is asked: numbers as an engineer writes them, and materials by name.
+//! The question: numbers with units, and materials by name.
 
 use super::range::Range;
 use fretwork_elastic::patch::Solid;
@@ -7,7 +7,7 @@ use fretwork_scene::quantity::{hardness_in_pascal, quantity};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// What is asked. Texts are numbers with units, `75 kN`; without a unit they are in SI units.
+/// The question. Texts are numbers with units, `75 kN`; without a unit they are in SI units.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Question {
@@ -49,7 +49,7 @@ pub struct Question {
 /// One of the two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
-    /// Its material, or what it is called without one.
+    /// Its material, or a name for it without one.
     pub name: String,
     /// Curvature along the motion and across it (1/m).
     pub curvature: [f64; 2],
@@ -165,7 +165,7 @@ impl Question {
     }
 }
 
-/// The hardness (Pa) as one writes it: `260 HBW` or `2.5 GPa`.
+/// The hardness (Pa) of a text such as `260 HBW` or `2.5 GPa`.
 fn hardness(text: &str) -> Result<f64, String> {
     let (value, unit) = match text.trim().split_once(' ') {
         Some((value, unit)) => (value.parse().ok(), unit),
@@ -182,7 +182,7 @@ fn hardness(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The entry of a body in a list of one, which is of both, or of two.
+/// The entry of a body in a list; a single entry is for both bodies.
 fn of_side<'a>(what: &str, list: &'a [String], side: usize) -> Result<Option<&'a str>, String> {
     match list {
         [] => Ok(None),

@@ -1,9 +1,10 @@
-//! What the summaries of runs of a window say: friction, and the wear of its first bodies.
+//! Results of runs of a window, from their summaries: friction, and the wear of its first bodies.
 
 use super::range::Range;
 use crate::runs::stored::numerical_error;
 use fretwork_math::statistics::interval::Mean;
-use fretwork_observe::quantity::Catalogue;
+use fretwork_observe::quantity::unit::{VOLUME, WEAR_RATE};
+use fretwork_observe::quantity::{Catalogue, Entry, Role, Topic, find};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -45,29 +46,42 @@ fn of(folder: &Path) -> Result<WindowRun, String> {
             folder.display()
         ));
     }
-    let value = summary["friction_coefficient"].as_f64().ok_or_else(|| {
+    WindowRun::of(&summary).ok_or_else(|| {
         format!(
             "friction of a run: {} has no friction coefficient; its case needs `friction`",
             folder.display()
         )
-    })?;
-    let catalogue = Catalogue::of(&summary);
-    let uncertainty = &summary["uncertainty"];
-    let worn = uncertainty["wear"]["value"].as_f64().filter(|v| *v > 0.0);
-    let bodies = summary["wear"]["bodies"].as_array();
-    let rate = |body: &Value| {
-        let rate = body["specific_rate"].as_f64()?;
-        Some((body["body"].as_str()?.to_owned(), rate))
-    };
-    Ok(WindowRun {
-        friction: value.abs(),
-        scatter: uncertainty["friction_coefficient"]["scatter"].as_f64(),
-        numerical: numerical_error(&catalogue, "friction_coefficient"),
-        wear: bodies.into_iter().flatten().filter_map(rate).collect(),
-        wear_error: numerical_error(&catalogue, "wear.volume_first_bodies")
-            .zip(worn)
-            .map(|(e, v)| e / v),
     })
+}
+
+impl WindowRun {
+    /// Takes the main result of friction, the specific wear rates in the list of bodies, and the
+    /// error of the worn volume. None without friction.
+    fn of(summary: &Value) -> Option<Self> {
+        let catalogue = Catalogue::of(summary);
+        let shown = catalogue.shown(summary, Role::Secondary);
+        let headline = |e: &Entry| e.role == Role::Headline && e.topic == Topic::Friction;
+        let (friction, value) = shown.iter().find(|(entry, _)| headline(entry))?;
+        let wear = || shown.iter().filter(|(entry, _)| entry.topic == Topic::Wear);
+        let rate = |(entry, value): &(&Entry, &Value)| {
+            let (body, _) = entry
+                .path
+                .rsplit_once('.')
+                .filter(|_| entry.is_in(WEAR_RATE))?;
+            let name = find(summary, &format!("{body}.body"))?.as_str()?;
+            Some((name.to_owned(), value.as_f64()?))
+        };
+        let volume = wear().find(|(entry, _)| entry.is_in(VOLUME) && entry.estimate.is_some());
+        let worn = volume.and_then(|(entry, _)| entry.estimate.as_ref()?.value);
+        let error = volume.and_then(|(entry, _)| numerical_error(&catalogue, &entry.path));
+        Some(Self {
+            friction: value.as_f64()?.abs(),
+            scatter: friction.estimate.as_ref().and_then(|e| e.scatter),
+            numerical: numerical_error(&catalogue, &friction.path),
+            wear: wear().filter_map(rate).collect(),
+            wear_error: error.zip(worn.filter(|v| *v > 0.0)).map(|(e, v)| e / v),
+        })
+    }
 }
 
 /// The largest of a number that all runs have.

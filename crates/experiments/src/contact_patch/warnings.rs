@@ -1,4 +1,4 @@
-//! Where Hertz' theory does not hold, and what an answer leaves open.
+//! Limits of Hertz' theory, and what an answer leaves open.
 
 use super::{Answer, Contact, Question};
 

@@ -20,7 +20,7 @@ pub struct Wear {
     pub window: Vec<WindowWear>,
 }
 
-/// Wear of a first body of a window, carried over to the patch.
+/// Wear of the patch by the specific wear rate of a first body of a window.
 #[derive(Clone, Debug, Serialize)]
 pub struct WindowWear {
     /// Its name in the case.

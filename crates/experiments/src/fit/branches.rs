@@ -45,7 +45,7 @@ pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
 mod tests {
     use super::*;
 
-    /// A loop told by points that leave out its turns stands at the same places as one told by
+    /// A loop sampled without its turning points stands at the same places as one sampled by
     /// many.
     #[test]
     fn branches_stand_one_behind_the_other() {

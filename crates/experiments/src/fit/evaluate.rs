@@ -6,8 +6,8 @@ use super::model::Model;
 use super::spec::{FitFile, TestSpec};
 use crate::changes::Changes;
 use crate::factor::Factor;
+use crate::runs::available::{AvailableQuantities, columns};
 use crate::runs::launcher::{Launcher, Patience, Run};
-use crate::runs::offer::{Offer, columns};
 use crate::runs::pool::each;
 use crate::runs::quantity::Quantity;
 use crate::runs::stored::{Status, summary};
@@ -106,8 +106,9 @@ impl Tests {
                     ..
                 } => {
                     let quantity = Quantity::parse(output).map_err(|why| at(".output", why))?;
-                    let offer = Offer::of(&loaded.case, &scene);
-                    offer.check(&quantity).map_err(|why| at(".output", why))?;
+                    AvailableQuantities::of(&loaded.case, &scene)
+                        .check(&quantity)
+                        .map_err(|why| at(".output", why))?;
                     let single = Measurement {
                         name: name.to_owned(),
                         x: vec![0.0],

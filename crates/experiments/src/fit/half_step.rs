@@ -1,4 +1,4 @@
-//! What the step of the runs does to a fit: the runs at the estimate again, with half the step.
+//! Effect of the time step on a fit: the runs at the estimate are repeated with half the step.
 //!
 //! If simulated values change by d, the estimate changes to first order by -H^-1 J^T W d (see
 //! [`identify`](fretwork_math::fit::identify)). The sum of squares does not show such an error: the

@@ -3,7 +3,7 @@
 //! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a
 //! run, [`branches`] lays loops out, [`evaluate`] runs points of the parameters over their seeds,
 //! [`search`] looks for the best one, [`outcome`] says how well the measurements determine it, and
-//! [`half_step`] what the step does to it. [`page`] and [`files`] tell it.
+//! [`half_step`] how the time step changes it. [`page`] and [`files`] report it.
 
 mod branches;
 pub mod evaluate;

@@ -58,7 +58,7 @@ impl Model {
         })
     }
 
-    /// The same for a measured curve that reaches so far from 0.
+    /// This model for a measured curve whose coordinates reach up to `reach` from 0.
     pub fn reaching(self, reach: f64) -> Self {
         Self { reach, ..self }
     }
@@ -94,7 +94,7 @@ impl Model {
         if self.along == AlongSpec::Branches {
             (xs, branches) = laid_out(&xs, self.reach);
         }
-        // Not across a turn, where a loop is steepest.
+        // No smoothing across a turning point, where a loop is steepest.
         let mut rest = ys.as_slice();
         let mut ys = Vec::with_capacity(xs.len());
         for branch in branches.chunk_by(|a, b| a == b) {
@@ -102,7 +102,7 @@ impl Model {
             ys.extend(smoothed(own, self.smooth));
             rest = after;
         }
-        // Only what goes on: small steps back are noise of the motion.
+        // Keeps only points that advance: small steps back are noise of the motion.
         let mut curve = (Vec::new(), Vec::new());
         for (x, y) in xs.into_iter().zip(ys) {
             if curve.0.last().is_none_or(|last| x > *last) {
@@ -148,7 +148,7 @@ impl Model {
             RowsSpec::Between(from, to) => rows.retain(|r| (from..=to).contains(&at(r, time))),
             RowsSpec::LastCycle => {
                 let last = rows.iter().map(|r| at(r, cycle)).fold(0.0, f64::max);
-                // The last one may have been cut short.
+                // The last cycle may be incomplete.
                 let count = |c: f64| rows.iter().filter(|r| at(r, cycle) == c).count();
                 let whole = if count(last) * 20 >= count(last - 1.0) * 19 {
                     last
@@ -217,7 +217,8 @@ mod tests {
             key == "x" && message.contains("`dlta`") && message.contains("delta, Q"),
             "{message}"
         );
-        // A loop of constant friction stays one when it is smoothed: its turn is not.
+        // A loop of constant friction keeps its shape when it is smoothed: the turning points are
+        // left out.
         std::fs::write(&path, "step,time [s],delta [m],Q [N]\n1,0.1,0.0,2\n2,0.2,1.0,2\n3,0.3,2.0,2\n4,0.4,1.0,-2\n5,0.5,0.0,-2\n").unwrap();
         let loops = ModelSpec {
             smooth: 3,

@@ -31,14 +31,14 @@ pub struct Outcome {
     /// Whether the runs at the estimate fit as well as the best point, and the runs around it are
     /// as wide as the intervals.
     pub settled: bool,
-    /// What half the step does to the estimates, if the fit asks.
+    /// Effect of half the step on the estimates, if the fit asks for it.
     pub half_step: Option<HalfStep>,
 }
 
-/// What half the step of the runs does to the estimates.
+/// Effect of half the step of the runs on the estimates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HalfStep {
-    /// The estimates move.
+    /// How far the estimates move.
     Moves {
         /// Parameters with half the step; `None` for one at an end of its range, and for one that
         /// is not determined.

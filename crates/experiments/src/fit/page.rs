@@ -12,7 +12,7 @@ use fretwork_view::{Axis, Block, Chart, DrawError, Series, Sheet, Style, draw_pa
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Correlation from which two parameters are sentences to be hard to tell apart.
+/// Correlation from which the report calls two parameters hard to distinguish.
 const HIGH: f64 = 0.9;
 
 /// What a fit consists of.
@@ -69,7 +69,7 @@ fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
     }
     for direction in known.directions.iter().filter(|d| !d.determined) {
         out.push(format!(
-            "NOT DETERMINED: the measurements do not tell {} (all at once, in shares of their ranges); measure something else too, or fix one of them",
+            "NOT DETERMINED: the measurements do not determine {} (all at once, in shares of their ranges); measure something else too, or fix one of them",
             direction.words(&names)
         ));
     }
@@ -86,7 +86,7 @@ fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
         for j in i + 1..names.len() {
             if let Some(r) = known.correlation[i][j].filter(|r| r.abs() > HIGH) {
                 let way = if r > 0.0 { "the same" } else { "opposite" };
-                out.push(format!("{} and {} are hard to tell apart: their errors go {way} ways (correlation {r:.2})", names[i], names[j]));
+                out.push(format!("{} and {} are hard to distinguish: their errors go {way} ways (correlation {r:.2})", names[i], names[j]));
             }
         }
     }

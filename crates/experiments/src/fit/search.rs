@@ -1,5 +1,5 @@
 //! The search: points of a Latin hypercube over the whole region, then CMA-ES from the best of
-//! them, with as many seeds as tell the points apart; at the end runs around the best point, from
+//! them, with as many seeds as distinguish the points; at the end runs around the best point, from
 //! which its intervals follow.
 //!
 //! All choices follow from the seed of the search, and runs are kept by what determines them: the
@@ -22,7 +22,7 @@ const TRIES: usize = 20;
 /// one standard deviation of a parameter.
 const FLAT: f64 = 0.02;
 
-/// And where it moves parameters by less than this share of their ranges.
+/// The search ends where it moves parameters by less than this share of their ranges.
 const CLOSE: f64 = 1e-3;
 
 /// Points of a local design for each coefficient of a quadratic in the parameters.
@@ -96,7 +96,7 @@ pub struct Search<'a> {
     pub jobs: usize,
     /// Whether it is to stop.
     pub stop: &'a AtomicBool,
-    /// Is told what goes on.
+    /// Called with the progress of the search.
     pub watch: &'a (dyn Fn(&Progress) + Sync),
 }
 
@@ -145,7 +145,7 @@ impl Search<'_> {
                 why.map_or("nothing", String::as_str)
             )));
         };
-        // As far apart as the points of the hypercube are.
+        // The distance between neighbouring points of the hypercube.
         let step = (0.5 * (points as f64).powf(-1.0 / count as f64)).clamp(0.05, 0.3);
         let failed = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
         let population = self.spec.population.map(|n| n as usize);
@@ -195,7 +195,8 @@ impl Search<'_> {
                 break;
             }
             if self.tests.random && seeds.exhausted() {
-                found.ended = format!("points can no longer be told apart with {most} seeds each");
+                found.ended =
+                    format!("points can no longer be distinguished with {most} seeds each");
                 break;
             }
         }
@@ -319,7 +320,7 @@ impl Search<'_> {
         let mut failed = 0;
         for (values, samples) in values.into_iter().zip(all) {
             let samples: Option<Vec<Sample>> = samples.into_iter().collect();
-            // What an interruption left out is no evaluation.
+            // A point without all of its seeds, after an interruption, is not an evaluation.
             let Some(samples) = samples else { continue };
             let chi_squared = self.chi_squared(&samples);
             failed += usize::from(chi_squared.is_none());

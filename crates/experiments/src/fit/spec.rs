@@ -4,12 +4,12 @@ use crate::changes::Changes;
 use crate::factor::{Factor, Values};
 use crate::runs::stored::Limits;
 use crate::spec::{CaseKeys, RangeScale, Spec, SpecFile, check_runs, one, one_percent};
+use fretwork_scene::invisible_characters;
 use fretwork_scene::source::{InputError, Source};
-use fretwork_scene::unseen_fault;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// A fit as its file says it.
+/// The contents of the file of a fit.
 ///
 /// ```ron
 /// (
@@ -32,13 +32,13 @@ pub struct FitSpec {
     pub title: Option<String>,
     /// Measurements, each with the case that stands for it.
     pub tests: Vec<TestSpec>,
-    /// What is sought.
+    /// Parameters that are fitted.
     pub parameters: Vec<ParameterSpec>,
     /// Pairs of names: the first parameter is at most the second.
     #[serde(default)]
     pub order: Vec<(String, String)>,
     /// Seeds of each point: with how many the search begins, and how many it may take where points
-    /// cannot be told apart.
+    /// cannot be distinguished.
     #[serde(default = "seeds")]
     pub seeds: (u16, u16),
     /// Whether the measured specimens scatter as runs do from seed to seed: their scatter then
@@ -81,7 +81,7 @@ pub enum TestSpec {
         set: Vec<String>,
         /// The measured curve.
         measured: MeasuredSpec,
-        /// The same curve from columns of `statistics.csv`.
+        /// The computed curve, from columns of `statistics.csv`.
         model: ModelSpec,
     },
     /// A measured number.
@@ -138,7 +138,7 @@ pub struct MeasuredSpec {
 pub enum SigmaSpec {
     /// A column of the file.
     Column(String),
-    /// The same for all.
+    /// One standard deviation for all values.
     Value(f64),
     /// A share of the largest magnitude of the values.
     OfLargest(f64),
@@ -188,7 +188,7 @@ pub enum AlongSpec {
     Branches,
 }
 
-/// What is sought.
+/// A parameter that is fitted.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterSpec {
@@ -296,8 +296,8 @@ impl Spec for FitSpec {
         }
         for (k, parameter) in self.parameters.iter().enumerate() {
             let path = format!("parameters.{k}.name");
-            if let Some(fault) = unseen_fault(&parameter.name) {
-                return fail(&path, &fault);
+            if let Some(reason) = invisible_characters(&parameter.name) {
+                return fail(&path, &reason);
             }
             if self.parameters[..k]
                 .iter()
@@ -319,8 +319,8 @@ impl Spec for FitSpec {
             }
         }
         for (k, test) in self.tests.iter().enumerate() {
-            if let Some(fault) = unseen_fault(test.common().0) {
-                return fail(&format!("tests.{k}.name"), &fault);
+            if let Some(reason) = invisible_characters(test.common().0) {
+                return fail(&format!("tests.{k}.name"), &reason);
             }
             if self.tests[..k]
                 .iter()

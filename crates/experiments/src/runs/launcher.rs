@@ -12,7 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What the case would write besides numbers, and an experiment does not need.
+/// Changes that switch off output of the case which an experiment does not need.
 const NUMBERS_ONLY: [&str; 4] = [
     "output.frames=0",
     "output.views=0",
@@ -107,7 +107,7 @@ impl Launcher {
         })
     }
 
-    /// Tells runs apart by their steps where the seed changes nothing, the first of which is this.
+    /// Distinguishes runs by their steps where the seed changes nothing; `first` is the first seed.
     pub fn perturb_unless(&mut self, random: bool, first: u64) {
         self.perturbation = (!random).then_some(Perturbation { first });
     }
@@ -169,7 +169,7 @@ impl Launcher {
             }
             let slow = patience.limit.is_some_and(|l| started.elapsed() > l);
             if slow || patience.is_over() {
-                // It may have ended by itself meanwhile.
+                // The process may have ended by itself meanwhile.
                 let _ = child.kill();
                 let _ = child.wait();
                 if !slow || patience.stop.load(Ordering::Relaxed) {
@@ -266,7 +266,7 @@ fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
     }
 }
 
-/// Removes what an earlier run left that did not end.
+/// Removes files of an earlier run that did not end.
 fn clear(place: &Path) -> std::io::Result<()> {
     for file in std::fs::read_dir(place)? {
         let path = file?.path();
@@ -279,7 +279,7 @@ fn clear(place: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Removes states and pictures, which of every run would fill the disk.
+/// Removes states and pictures, which would fill the disk if every run kept them.
 fn remove_states(place: &Path) {
     for file in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let path = file.path();

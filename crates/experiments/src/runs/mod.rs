@@ -3,12 +3,12 @@
 //!
 //! [`launcher`] starts them, [`stored`] says how they ended, [`key`] names them, [`trial`] times a
 //! few steps of one, [`pool`] makes several at once; [`quantity`] reads the numbers that they
-//! leave, [`offer`] says which a case has. [`randomness`] says whether the seed of a case matters,
-//! [`perturbation`] tells runs apart where it does not.
+//! leave, [`available`] says which a case has. [`randomness`] says whether the seed of a case
+//! matters, [`perturbation`] distinguishes runs where it does not.
 
+pub mod available;
 pub mod key;
 pub mod launcher;
-pub mod offer;
 pub mod perturbation;
 pub mod pool;
 pub mod quantity;

@@ -1,5 +1,5 @@
-//! Runs of a case without random numbers told apart by a change of the step far below its error, in
-//! place of seeds.
+//! Runs of a case without random numbers, distinguished by a change of the step far below its
+//! error, in place of seeds.
 
 /// Relative increase of the step for the second run; twice this for the third, and so on.
 pub const RELATIVE_PERTURBATION: f64 = 1e-10;

@@ -4,7 +4,7 @@ use crate::Error;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Does the same work on this thread and on `jobs` - 1 others, until all of them return.
+/// Calls `work` on this thread and on `jobs` - 1 others, and waits until all return.
 pub fn workers(jobs: usize, work: &(dyn Fn() + Sync)) {
     std::thread::scope(|scope| {
         for _ in 1..jobs {
@@ -78,7 +78,7 @@ mod tests {
         };
         let message = each(&items, 4, &stop, &fails).unwrap_err().to_string();
         assert_eq!(message, "seven");
-        // What stands in the queue when the stop comes is left.
+        // Items in the queue are left when `stop` is set.
         let stops = |x: &u64| {
             stop.store(*x == 3, Ordering::Relaxed);
             Ok(())

@@ -99,7 +99,7 @@ impl Quantity {
         }
     }
 
-    /// Whether it is a result that one of these measures gives at the end of a run.
+    /// Whether it is a result of one of these measures, known at the end of a run.
     pub(super) fn measured(&self, measures: &[&str]) -> bool {
         let Place::Summary(path) = &self.place else {
             return false;
@@ -114,7 +114,7 @@ impl Quantity {
         group == "measures" && measures.iter().any(begins)
     }
 
-    /// What to say of a name that is that of a group.
+    /// Error message for the name of a group.
     pub(super) fn is_group(&self) -> String {
         format!(
             "it is not a number but a group; name one of its entries, as {}.NAME",
@@ -122,7 +122,7 @@ impl Quantity {
         )
     }
 
-    /// What to say of an output that a case does not have, with the nearest existing one.
+    /// Error message for an output that a case does not have, with the nearest existing one.
     pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
         let close = nearest(wanted, names.iter().map(String::as_str))
             .or_else(|| {
@@ -190,8 +190,8 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
     format!("there are {}{more}", names.join(", "))
 }
 
-/// Paths of the numbers of a summary that can be compared; all numbers of a run that says of none
-/// what it is.
+/// Paths of the numbers of a summary that can be compared; all numbers where the summary has no
+/// catalogue.
 fn names_of(summary: &Value) -> Vec<String> {
     let mut names = Catalogue::of(summary).comparable();
     if names.is_empty() {

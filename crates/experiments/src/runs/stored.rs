@@ -123,7 +123,7 @@ impl StoredRun {
         }
     }
 
-    /// The same of a run that was stopped after so many seconds.
+    /// Marks the run as stopped after this many seconds.
     pub fn stopped(self, seconds: f64) -> Self {
         Self {
             slow: Some(seconds),

@@ -4,8 +4,8 @@ use super::quantity::{Quantity, column_unit};
 use fretwork_observe::quantity::Catalogue;
 use std::path::Path;
 
-/// SI unit of a quantity, by what a run that has it says of itself, `1` for pure numbers; empty
-/// where the run does not say it.
+/// SI unit of a quantity by the files of a run, `1` for pure numbers; empty where the run does not
+/// have it.
 pub fn unit_of(quantity: &Quantity, catalogue: &Catalogue, folder: &Path) -> String {
     let unit = match quantity.column_name() {
         Some(column) => column_unit(&folder.join("statistics.csv"), column),

@@ -95,7 +95,8 @@ pub fn points(plan: &Plan) -> String {
     plan.points().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The same as JSON; times are in seconds on one worker, null where they are not known.
+/// What `study check` prints, as JSON; times are in seconds on one worker, null where they are not
+/// known.
 pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points: bool) -> String {
     let factors: Vec<Value> = plan.factors.iter().enumerate().map(|(k, factor)| {
         json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": plan.labels(k)})

@@ -19,8 +19,8 @@ pub fn missing(plan: &Plan) -> Vec<Point> {
     open.collect()
 }
 
-/// Makes runs, several at a time; returns how many ended, each of which `watch` is told of. It ends
-/// early, without an error, when `stop` is set.
+/// Makes runs, several at a time; returns how many ended, each of which `watch` is called with. It
+/// ends early, without an error, when `stop` is set.
 ///
 /// # Errors
 /// A run cannot be started.

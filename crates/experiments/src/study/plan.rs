@@ -4,8 +4,8 @@ use super::design::{Setting, settings};
 use super::spec::{DesignSpec, StudyFile};
 use crate::changes::Changes;
 use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
+use crate::runs::available::{AvailableQuantities, measure_names};
 use crate::runs::launcher::{Launcher, Run};
-use crate::runs::offer::{Offer, measure_names};
 use crate::runs::quantity::Quantity;
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
@@ -51,6 +51,8 @@ pub struct Plan {
     pub random: bool,
     /// What is compared.
     pub outputs: Vec<Quantity>,
+    /// SI units of the outputs by the case, `1` for pure numbers; empty where only runs know them.
+    pub output_units: Vec<String>,
     /// Texts of the summary that are mapped.
     pub regimes: Vec<String>,
     /// Design of the study.
@@ -71,6 +73,8 @@ struct Known {
     fingerprint: String,
     random: bool,
     outputs: Vec<String>,
+    /// SI units of the outputs.
+    units: Vec<String>,
 }
 
 /// The file of what is known.
@@ -135,8 +139,9 @@ impl Plan {
                 let (scene, random) = build(&base, place.program)?;
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
-                let outputs = outputs(read, &base, &scene)?;
+                let (outputs, units) = outputs(read, &base, &scene)?;
                 Known {
+                    units,
                     fingerprint,
                     random,
                     outputs: outputs.iter().map(|o| o.name.clone()).collect(),
@@ -162,6 +167,7 @@ impl Plan {
                 .collect(),
             random: known.random,
             outputs: outputs.collect::<Result<_, _>>().map_err(Error::Usage)?,
+            output_units: known.units.clone(),
             measures: measures.into_iter().map(str::to_owned).collect(),
             launcher,
             base,
@@ -332,34 +338,36 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
     }
 }
 
-/// The outputs that are asked for, or those that the case has.
-fn outputs(read: &StudyFile, base: &Loaded, scene: &Built) -> Result<Vec<Quantity>, Error> {
-    let offer = Offer::of(&base.case, scene);
+/// The outputs that are asked for, or those that the case has, with their units.
+fn outputs(
+    read: &StudyFile,
+    base: &Loaded,
+    scene: &Built,
+) -> Result<(Vec<Quantity>, Vec<String>), Error> {
+    let available = AvailableQuantities::of(&base.case, scene);
     let asked = &read.spec.outputs;
+    let mut all: Vec<Quantity> = Vec::new();
     if asked.is_empty() {
-        let usual: Result<Vec<Quantity>, String> = offer
-            .usual()
-            .iter()
-            .map(|name| Quantity::parse(name))
-            .collect();
-        let usual = usual.map_err(Error::Usage)?;
-        if usual.is_empty() {
+        let usual = available.usual();
+        let parsed: Result<Vec<Quantity>, String> =
+            usual.iter().map(|name| Quantity::parse(name)).collect();
+        all = parsed.map_err(Error::Usage)?;
+        if all.is_empty() {
             let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
             return Err(read.source.error_at("outputs", text).into());
         }
-        return Ok(usual);
     }
-    let mut all: Vec<Quantity> = Vec::new();
     for (k, name) in asked.iter().enumerate() {
         let refused = |why: String| read.source.error_at(&format!("outputs.{k}"), why);
         let quantity = Quantity::parse(name).map_err(refused)?;
-        offer.check(&quantity).map_err(refused)?;
+        available.check(&quantity).map_err(refused)?;
         if all.contains(&quantity) {
             return Err(refused("it is given twice".to_owned()).into());
         }
         all.push(quantity);
     }
-    Ok(all)
+    let units = all.iter().map(|output| available.unit(output)).collect();
+    Ok((all, units))
 }
 
 /// Builds the first setting, and reads, and builds if they are few, the case with each level alone,

@@ -70,11 +70,11 @@ impl Rows {
             let levels = points.iter().map(|p| &plan.settings[p.setting - 1][k]);
             columns.push(factor_column(plan, k, levels));
         }
-        for output in &plan.outputs {
-            // Of a run that says it: one that failed may not.
+        for (output, declared) in plan.outputs.iter().zip(&plan.output_units) {
+            // Some units are known at the end of a run only, and a run that failed has none.
             let units = rows.iter().map(|r| unit_of(output, &r.catalogue, &r.place));
             let unit = units.into_iter().find(|u| !u.is_empty());
-            let unit = unit.unwrap_or_default();
+            let unit = unit.unwrap_or_else(|| declared.clone());
             let value = |r: &RunRow| r.run.as_ref().and(output.read(&r.summary, &r.place));
             columns.push(Column::real(&output.name, &unit, rows.iter().map(value)));
             let errors = rows

@@ -45,7 +45,7 @@ pub struct StudySpec {
     /// and wear by default, as far as the case has them.
     #[serde(default)]
     pub outputs: Vec<String>,
-    /// Texts of `summary.json` by which runs are told apart on a map, such as `fretting.regime` or
+    /// Texts of `summary.json` by which runs are classified on a map, such as `fretting.regime` or
     /// `findings.layer_regime`; of a sentence what stands before its first colon, comma or
     /// semicolon.
     #[serde(default)]

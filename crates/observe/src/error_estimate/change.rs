@@ -6,8 +6,8 @@
 //! of Statistics 9, 1981).
 
 use crate::quantity::unit::ONE;
+use fretwork_math::statistics::interval;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Fewest stretches of which an interval is formed.
 pub const FEWEST: usize = 3;
@@ -52,11 +52,11 @@ impl Change {
         };
         let mean = without.iter().sum::<f64>() / n as f64;
         let square: f64 = without.iter().map(|x| (x - mean).powi(2)).sum();
-        let t = StudentsT::new(0.0, 1.0, (n - 1) as f64).ok()?;
+        let t = interval::quantile(n)?;
         let error = ((n - 1) as f64 / n as f64 * square).sqrt();
         Some(Self {
             change: extrapolation * change,
-            half_width: extrapolation * t.inverse_cdf(0.975) * error,
+            half_width: extrapolation * t * error,
         })
     }
 

@@ -1,7 +1,7 @@
 //! The catalogue of a run: what each path of its `summary.json` is. Written under the key
 //! `quantities`, and read by everything that shows runs later.
 
-use super::{Estimate, Findings, Role, Topic};
+use super::{Estimate, Findings, Role, Topic, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -25,6 +25,16 @@ pub struct Entry {
     /// Half-widths by cause, and the value that they are of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<Estimate>,
+}
+
+impl Entry {
+    /// Whether it is in this unit, in space or per metre of depth.
+    pub fn is_in(&self, unit: Unit) -> bool {
+        let symbols = [2, 3].map(|dimension| unit.symbol(dimension));
+        self.unit
+            .as_deref()
+            .is_some_and(|own| symbols.contains(&own))
+    }
 }
 
 /// What the paths of a summary are.

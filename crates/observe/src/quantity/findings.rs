@@ -37,6 +37,13 @@ fn plain(doc: &str) -> String {
     }
 }
 
+/// The keys of a path without places in lists.
+fn keys(path: &str) -> Vec<String> {
+    let keys = path.split('.');
+    let keys = keys.filter(|k| *k != "*" && k.parse::<usize>().is_err());
+    keys.map(str::to_owned).collect()
+}
+
 /// A field of a result that is not there yet.
 #[derive(Clone, Debug)]
 pub struct Expected {
@@ -258,17 +265,25 @@ impl Findings {
     /// Whether a result that is not there yet will have a field of this path; none where nothing is
     /// known of its group.
     pub fn expects(&self, path: &str) -> Option<bool> {
-        let keys = |path: &str| {
-            let keys = path
-                .split('.')
-                .filter(|k| *k != "*" && k.parse::<usize>().is_err());
-            keys.map(str::to_owned).collect::<Vec<_>>()
-        };
         let wanted = keys(path);
         let known: Vec<Vec<String>> = self.to_come.iter().map(|e| keys(&e.path)).collect();
         let mut group = known.iter().filter(|k| k.first() == wanted.first());
         group.next()?;
         Some(known.contains(&wanted))
+    }
+
+    /// SI unit of a number by its path, `1` for pure numbers, also of one that is not there yet or
+    /// in a longer list; none where nothing is known of it.
+    pub fn unit_of(&self, path: &str) -> Option<&'static str> {
+        let wanted = keys(path);
+        let own = self.list.iter().find(|q| q.name() == path);
+        let alike = || self.list.iter().find(|q| keys(&q.name()) == wanted);
+        let unit = own.or_else(alike).map(|q| q.unit);
+        let later = || self.to_come.iter().find(|e| keys(&e.path) == wanted);
+        let unit = unit
+            .or_else(|| later().map(|e| e.unit))?
+            .symbol(self.dimension);
+        (!unit.is_empty()).then_some(unit)
     }
 
     /// Adds a warning.

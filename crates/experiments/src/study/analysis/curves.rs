@@ -86,7 +86,7 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
             false,
         ),
         DesignSpec::Grid => {
-            // One other factor tells lines apart, best one without numbers; over the rest is
+            // One other factor distinguishes the lines, best one without numbers; over the rest is
             // averaged.
             let few = |f: &&usize| data.labels(**f).len() <= LINES;
             let words = varied
@@ -161,7 +161,7 @@ fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> 
     }
 }
 
-/// What tells a line apart, `pressure 300.0 Pa`.
+/// Name of a line by its factor, `pressure 300.0 Pa`.
 fn line_label(plan: &Plan, factor: usize, label: &str) -> String {
     let unit = plan.unit_of(factor);
     let words = format!("{} {label} {unit}", plan.factors[factor].name);

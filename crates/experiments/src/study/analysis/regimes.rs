@@ -6,7 +6,7 @@ use crate::study::rows::Rows;
 /// The regimes of all settings, by one text of the summary.
 #[derive(Clone, Debug)]
 pub struct Regimes {
-    /// What tells them apart.
+    /// What distinguishes them.
     pub name: String,
     /// For each setting, the regimes of its runs that are done with their number, the most frequent
     /// first.

@@ -157,7 +157,7 @@ pub(super) fn pairs_table(of: &Alternatives, unit: &str) -> Block {
             (None, ..) => "one run each: not known".to_owned(),
             (_, true, _) => "they differ".to_owned(),
             (_, false, Some(n)) => format!(
-                "not known to differ; {n} {} would tell a difference of this size",
+                "not known to differ; {n} {} would show a difference of this size",
                 of.paired
             ),
             (_, false, None) => "not known to differ".to_owned(),

@@ -3,6 +3,7 @@
 use super::quantity::{Quantity, listed};
 use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
 use fretwork_observe::standard;
+use fretwork_observe::statistics::Column;
 use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 use fretwork_scene::measures::MeasureSpec;
@@ -10,16 +11,16 @@ use serde_json::Value;
 
 /// The outputs of a case.
 #[derive(Clone, Debug)]
-pub struct Offer {
+pub struct AvailableQuantities {
     /// What its runs report, as of the start.
     found: Findings,
     /// Columns of the statistics.
-    columns: Vec<String>,
+    columns: Vec<Column>,
     /// Names of its measures.
     measures: Vec<String>,
 }
 
-impl Offer {
+impl AvailableQuantities {
     /// The outputs of a case and its scene.
     pub fn of(case: &Case, built: &Built) -> Self {
         Self {
@@ -59,6 +60,18 @@ impl Offer {
         why
     }
 
+    /// SI unit of an output, `1` for pure numbers; empty where it is known of a run only.
+    pub fn unit(&self, output: &Quantity) -> String {
+        let unit = match output.column_name() {
+            Some(name) => {
+                let column = self.columns.iter().find(|c| c.name == name);
+                column.map(|c| c.unit().symbol(self.found.dimension()))
+            }
+            None => self.found.unit_of(&output.name),
+        };
+        unit.unwrap_or_default().to_owned()
+    }
+
     /// The names of the outputs in the summary.
     fn names(&self) -> Vec<String> {
         let mut names = Catalogue::new(&self.found).comparable();
@@ -73,10 +86,11 @@ impl Offer {
     /// A sentence that says what the case lacks, with the nearest name and the existing ones.
     pub fn check(&self, output: &Quantity) -> Result<(), String> {
         if let Some(column) = output.column_name() {
-            return if self.columns.iter().any(|c| c == column) {
+            let names: Vec<String> = self.columns.iter().map(|c| c.name.clone()).collect();
+            return if names.iter().any(|c| c == column) {
                 Ok(())
             } else {
-                Err(output.unknown(&self.columns, "statistics.", column))
+                Err(output.unknown(&names, "statistics.", column))
             };
         }
         let name = output.name.as_str();
@@ -130,8 +144,7 @@ pub fn measure_names(case: &Case) -> Vec<&str> {
     case.measures.iter().map(MeasureSpec::name).collect()
 }
 
-/// Names of the columns of the statistics of a case.
-pub fn columns(case: &Case, built: &Built) -> Vec<String> {
-    let observers = standard::observers(case, built.simulation.view(), 0.0);
-    observers.columns().into_iter().map(|c| c.name).collect()
+/// Columns of the statistics of a case.
+pub fn columns(case: &Case, built: &Built) -> Vec<Column> {
+    standard::observers(case, built.simulation.view(), 0.0).columns()
 }
