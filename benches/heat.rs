@@ -116,7 +116,7 @@ fn compare(
 ) {
     let mut ratios: [Vec<f64>; 5] = Default::default();
     let mut plain = Vec::new();
-    let mut told = String::new();
+    let mut method = String::new();
     for _ in 0..launches {
         let launch = |sets: &Vec<String>| Stepping::launch(case, first, common.iter().chain(sets));
         let mut processes: Vec<Stepping> = variants.iter().map(launch).collect();
@@ -133,7 +133,7 @@ fn compare(
                     let (time, said) = processes[k].turn();
                     times[k] = time;
                     if k == 0 {
-                        told = said;
+                        method = said;
                     }
                 }
                 times
@@ -146,7 +146,7 @@ fn compare(
     }
     let share = |k: usize| 100.0 * (median(ratios[k].iter().copied()) - 1.0);
     println!(
-        "| {scene} | {told} | {:.2} ms | {:+.1} % | {:+.1} % | {:+.1} % | {:+.1} % |",
+        "| {scene} | {method} | {:.2} ms | {:+.1} % | {:+.1} % | {:+.1} % | {:+.1} % |",
         median(plain.into_iter()),
         share(1),
         share(2),
@@ -162,7 +162,7 @@ fn compare(
     eprintln!("launches with heat: {}", all(3));
 }
 
-/// A process that steps one variant when it is told to.
+/// A process that steps one variant on request.
 struct Stepping {
     process: Child,
     answers: BufReader<ChildStdout>,

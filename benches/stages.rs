@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Times are wall-clock times but for `cpu ms`, processor time of all threads, which other work on
-//! the machine affects less. `sweeps` tells whether two revisions do the same.
+//! the machine affects less. `sweeps` shows whether two revisions do the same.
 //! `benches/before_after.sh` compares two revisions by this bench.
 
 use cpu_time::ProcessTime;
@@ -145,7 +145,7 @@ fn time<S: Space>(
     wanted: Option<&str>,
     threads: usize,
 ) {
-    // As a run does.
+    // A run sets this too.
     s.options.solver.parallel = threads > 1;
     processes::install(case, &mut s);
     for stage in stages {

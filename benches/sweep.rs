@@ -378,7 +378,7 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
             *x += random(-0.05, 0.05);
         }
     }
-    // As `scene::build`: cells of two diameters, the last axis first.
+    // The order of `scene::build`: cells of two diameters, the last axis first.
     let cell = |x: &[f64; D], width: f64| -> [i64; D] {
         std::array::from_fn(|k| (x[D - 1 - k] / width).floor() as i64)
     };

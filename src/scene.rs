@@ -16,7 +16,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
 }
 
-/// The same from a text, see [`fretwork_scene::load_text`].
+/// Reads a case from a text, see [`fretwork_scene::load_text`].
 ///
 /// # Errors
 /// At name, line and column.
@@ -29,7 +29,7 @@ pub fn load_text(
     Ok(fretwork_scene::load_text(name, text, folder, sets)?.reading_records(state::read))
 }
 
-/// The same from what gives bytes, see [`fretwork_scene::load_reader`].
+/// Reads a case from a stream of bytes, see [`fretwork_scene::load_reader`].
 ///
 /// # Errors
 /// As [`load_text`], and what cannot be read.

@@ -422,7 +422,7 @@ def main():
         try:
             growth(found, least)
         except (ZeroDivisionError, OverflowError):
-            print(f"D >= {least} d: too few runs to tell how d* grows")
+            print(f"D >= {least} d: too few runs to show how d* grows")
 
 
 if __name__ == "__main__":

@@ -211,7 +211,7 @@ fn parsed(json: &str) -> PyResult<Value> {
 /// Reads a case from JSON. A number stands for a constant function of time, as in case files. `at`
 /// is the path that was set, for messages where the reader gives none.
 fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
-    // As many as there are functions of time, each found by an attempt.
+    // A bound on the number of functions of time, each of which takes one attempt.
     const MAX_CONSTANTS: usize = 10_000;
     for _ in 0..MAX_CONSTANTS {
         let error = match serde_path_to_error::deserialize::<_, CaseSpec>(&value) {

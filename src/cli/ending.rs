@@ -153,8 +153,8 @@ mod posix {
         // The calling thread's thread-local variables are already destroyed; another thread does
         // the saving.
         let (done, saved) = std::sync::mpsc::sync_channel(1);
-        let told = who.clone();
-        let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&told)));
+        let thread = who.clone();
+        let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&thread)));
         let saved = rescue.map_or(Saved::Some, |_| {
             saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
         });

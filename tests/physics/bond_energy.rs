@@ -99,7 +99,7 @@ fn overshoot(d: f64, broken: f64, used: Used) -> f64 {
     overshoot_from(0.0, d, broken, used)
 }
 
-/// The same of a bond that begins, undamaged, at an opening over u_0.
+/// [`overshoot`] of a bond that begins, undamaged, at the opening `start` times u_0.
 fn overshoot_from(start: f64, d: f64, broken: f64, used: Used) -> f64 {
     let (mut beta, mut u, mut sum) = (1.0f64, start, 0.0);
     while beta > 0.0 {

@@ -434,8 +434,8 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
     assert!(taken > 100, "{taken}");
 }
 
-/// As low an edge of bodies that stand still is one of the case: it stops a box, and the solution
-/// is not blamed.
+/// An equally low edge between bodies at rest belongs to the case: it stops a box, and is not
+/// counted as an error of the solution.
 #[test]
 fn an_edge_of_the_case_is_none_of_the_solution() {
     let floor = [

@@ -397,8 +397,8 @@ fn fallen<S: Space>(s: Simulation<S>) -> f64 {
     fallen_but(s, &[])
 }
 
-/// The same of those that are not among these. If they fall it is told, before they are a tenth of
-/// a millimetre down.
+/// How far the bodies that are not among `but` fall. If they fall, the run reports it before they
+/// are down by a tenth of a millimetre.
 fn fallen_but<S: Space>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     let driven: Vec<usize> = (s.state.bodies.driven.iter())
         .map(|d| d.body as usize)
@@ -430,7 +430,7 @@ fn debris_falls(dimension: usize, count: i32, solver: &str, varies: f64) -> f64 
     }
 }
 
-/// The same of disks, with a disk that bounces on a floor beside them and one that rolls on it.
+/// How far pinched disks fall while a disk bounces on a floor beside them and another rolls on it.
 fn debris_falls_beside(count: i32) -> f64 {
     let mut pinched = debris(2, count, 0.1);
     pinched.bodies += r#"(name: "floor", material: "grain", position: [2.0, 0.0], shapes: [Polygon(points: [(-1.0, -0.1), (1.0, -0.1), (1.0, 0.0), (-1.0, 0.0)])]),"#;

@@ -206,7 +206,7 @@ fn an_affine_field_is_couette_without_granular_temperature() {
     }
 }
 
-/// The same with the first body above the second: depths run down from it.
+/// With the first body above the second, depths of the layer are measured downwards from it.
 #[test]
 fn a_layer_may_be_looked_at_from_above() {
     let text = between::<Dim2>(2.0, &lattice(), 10).replace(

@@ -187,7 +187,7 @@ fn friction_and_wear_have_intervals() {
     let harder = json(&[&WHEEL[..], &rolls, &hard].concat());
     let of = |v: &Value| number(v, "/wear/archard/0/volume/value");
     near(of(&harder), 0.5 * of(&got), 1e-12);
-    // As text, with depths an engineer reads.
+    // The text has depths that an engineer can judge.
     let text = said(&[&WHEEL[..], &rolls, &["--wear", "1e-4..1e-3"]].concat());
     for words in [
         "Hertz pressure",

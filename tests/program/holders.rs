@@ -104,7 +104,7 @@ const COARSE: [&str; 8] = [
     "friction.start=5e-3",
 ];
 
-/// The same of a part of a body of finite elements, in rounds that repeat.
+/// Phases that repeat in rounds drive a part of a body of finite elements.
 #[test]
 fn phases_drive_a_part_of_a_body_of_elements() {
     let phases = r#"phases=[

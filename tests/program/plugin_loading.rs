@@ -267,7 +267,7 @@ fn the_search_goes_by_kind_and_name() {
     std::fs::copy(&library, first.join(&file)).unwrap();
     let other = folder.law("slow-rot", "table.version = \"second\";");
     std::fs::copy(&other, second.join(&file)).unwrap();
-    // The same library under the name of another kind.
+    // One library under the names of two kinds.
     std::fs::copy(
         &library,
         first.join(search::file_name(Kind::WEAR, "slow-rot")),

@@ -1,4 +1,4 @@
-//! The same input gives the same bits: every shipped case, twice and on two threads and three, and
+//! Equal input gives equal bits: every shipped case, twice and on two threads and three, and
 //! all shapes in motion. Contacts in another order are another path of the solver: in a hyperstatic
 //! set of contacts it ends in other forces, whose sums are compared instead.
 

@@ -145,7 +145,7 @@ fn round_trip<S: Space>(name: &str, grains: &str) {
     let folder = Folder::new(name);
     let first = case(S::D, "stone", grains, "");
     folder.record(&first);
-    // The same run in this process.
+    // The first run is repeated in this process.
     let built = folder.build::<S>(&first);
     let mut first = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let steps = |s: &mut fretwork::step::Simulation<S>, n: u32| {

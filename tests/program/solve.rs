@@ -405,8 +405,8 @@ const LOCAL: [&str; 4] = [
     "fc3d_OneObject-i1028-138",
 ];
 
-/// The same motion in other units has the same figure: to the bit where they differ by a power of
-/// two.
+/// Changing the units of a motion does not change the figure: not by a bit where they differ by a
+/// power of two.
 #[test]
 fn the_scale_free_error_knows_no_units() {
     for name in LOCAL {

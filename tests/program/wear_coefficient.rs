@@ -66,7 +66,7 @@ fn twice_the_hardness_wears_half_the_volume() {
     let (once, twice) = (at([SOFT, HARD]), at([Some((520.0, "HBW")), HARD]));
     assert!(once > 0.0);
     assert!((twice / once - 0.5).abs() < 1e-12, "{twice} {once}");
-    // The same as k = K/H by hand: the softer material counts, wherever it stands, and whether or
+    // It equals k = K/H by hand: the softer material counts, wherever it stands, and whether or
     // not the other has a hardness.
     let k = 3e-4 / (260.0 * 9.80665e6);
     let by_hand = worn(slides(&format!(r#"{{"k": {k:e}}}"#), "archard", [None, None]).unwrap());

@@ -269,14 +269,14 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
     Ok(results)
 }
 
-/// Same friction and velocity of the wall.
+/// Whether two settings agree in friction and velocity of the wall.
 fn same_flow(a: &Setting, b: &Setting) -> bool {
     ["mu", "velocity"]
         .iter()
         .all(|name| a.factor(name) == b.factor(name))
 }
 
-/// Same start of the means and restitution.
+/// Whether two settings agree in the start of the means and in restitution.
 fn same_conditions(a: &Setting, b: &Setting) -> bool {
     ["start", "restitution"]
         .iter()

@@ -1,12 +1,12 @@
-//! What an experiment changes in a case: values that are the same in all runs, and such that follow
-//! from its factors, `key.path=${2e-5 * strength}`.
+//! What an experiment changes in a case: values that all runs share, and values computed from its
+//! factors, `key.path=${2e-5 * strength}`.
 
 use crate::expression::{Expression, number};
 
 /// A change of the case with expressions in `${...}`.
 #[derive(Clone, Debug)]
 struct Derived {
-    /// As it is written.
+    /// The text of the change, with its expressions.
     text: String,
     /// Texts between the expressions, one more than there are of them.
     texts: Vec<String>,

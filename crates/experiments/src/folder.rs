@@ -5,7 +5,7 @@ use crate::Error;
 use fretwork_store::folder_lock::{FolderLock, LockError};
 use std::path::Path;
 
-/// What a command calls itself and its files.
+/// A command that owns folders, and the names of its files.
 #[derive(Clone, Copy, Debug)]
 pub struct Owner {
     /// The command, `fretwork trade`.

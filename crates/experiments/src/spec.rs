@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The file of a study or a fit, with its text for the places of errors.
 #[derive(Debug)]
 pub struct SpecFile<T> {
-    /// What it says.
+    /// Its contents.
     pub spec: T,
     /// Its text.
     pub source: Source,
@@ -18,7 +18,7 @@ pub struct SpecFile<T> {
     pub path: PathBuf,
 }
 
-/// What a file may say beyond its form.
+/// Checks of a file beyond its syntax.
 pub trait Spec: DeserializeOwned {
     /// Checks what can be checked without a case.
     ///

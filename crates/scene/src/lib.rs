@@ -48,5 +48,5 @@ pub use builder::CaseBuilder;
 pub use case::Case;
 pub use fretwork_core::geometry::space::{Dim2, Dim3};
 pub use fretwork_sample::profile;
-pub use names::unseen_fault;
+pub use names::invisible_characters;
 pub use source::InputError;

@@ -29,7 +29,7 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let phases = case.phases.iter().enumerate();
     let phases = phases.map(|(k, p)| (format!("phases.{k}.name"), &p.name));
     for (path, name) in interfaces.chain(phases) {
-        if let Some(fault) = unseen_fault(name) {
+        if let Some(fault) = invisible_characters(name) {
             return Err(ValidationError::new(path, fault));
         }
     }
@@ -38,7 +38,7 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
 
 /// Why a text cannot be a name that is shown: it has characters that are not seen, or that turn or
 /// end lines.
-pub fn unseen_fault(name: &str) -> Option<String> {
+pub fn invisible_characters(name: &str) -> Option<String> {
     let unseen = name.chars().find(|c| is_unseen(*c))?;
     let code = u32::from(unseen);
     Some(format!(
@@ -60,7 +60,7 @@ fn is_unseen(c: char) -> bool {
 
 /// Why a text cannot be the name of a body or a material: a part of the names of columns and files.
 fn fault(name: &str) -> Option<String> {
-    if let Some(fault) = unseen_fault(name) {
+    if let Some(fault) = invisible_characters(name) {
         return Some(fault);
     }
     let parts = "it is a part of the names of columns and files";
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn names_that_are_shown_are_seen_as_they_are() {
         for good in ["", "a b", "=1+1", "roue élastique", "轮 (left)"] {
-            assert_eq!(unseen_fault(good), None, "{good}");
+            assert_eq!(invisible_characters(good), None, "{good}");
         }
         let unseen = [
             '\n',
@@ -180,7 +180,7 @@ mod tests {
             '\u{e0041}',
         ];
         for c in unseen {
-            let said = unseen_fault(&format!("a{c}b")).unwrap_or_else(|| panic!("{c:?}"));
+            let said = invisible_characters(&format!("a{c}b")).unwrap_or_else(|| panic!("{c:?}"));
             assert!(said.contains(&format!("U+{:04X}", u32::from(c))), "{said}");
         }
     }

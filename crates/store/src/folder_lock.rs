@@ -99,7 +99,7 @@ impl FolderLock {
         let now = match std::fs::metadata(path) {
             Ok(data) => place(&data),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
-            // What cannot be looked at is told where it is written.
+            // A folder that cannot be read is reported when it is written to.
             Err(_) => return Ok(()),
         };
         if now == Some(*at) {

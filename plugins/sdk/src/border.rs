@@ -15,7 +15,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub const MOST_VARIABLES: usize = 16;
 
 /// Writes an error message and the index of the contact that caused it into the host's buffer.
-fn tell(message: *mut FwMessage, contact: i64, text: &str) {
+fn write_message(message: *mut FwMessage, contact: i64, text: &str) {
     if message.is_null() {
         return;
     }
@@ -44,7 +44,7 @@ fn guarded(message: *mut FwMessage, body: impl FnOnce(&Cell<i64>) -> i32) -> i32
             .map(|s| (*s).to_owned())
             .or_else(|| cause.downcast_ref::<String>().cloned())
             .unwrap_or_default();
-        tell(message, contact.get(), &format!("the law panicked: {said}"));
+        write_message(message, contact.get(), &format!("the law panicked: {said}"));
         STATUS_PANIC
     })
 }
@@ -178,7 +178,7 @@ unsafe fn parameters<'a, L: Law>(values: *const f64) -> Option<&'a [f64]> {
 fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32 {
     // SAFETY: only called with a contact of the batch.
     let site = unsafe { site(b, k) };
-    tell(
+    write_message(
         message,
         k as i64,
         &format!("the law gave a value of `{what}` that is not finite, at {site:?}"),
@@ -198,16 +198,16 @@ fn over<L: Law, const COMMIT: bool>(
     guarded(message, |contact| {
         // SAFETY: the host passes a valid batch.
         let Some(batch) = (unsafe { known(raw) }) else {
-            tell(message, -1, "the batch is null or shorter than version 1.0");
+            write_message(message, -1, "the batch is null or shorter than version 1.0");
             return STATUS_ERROR;
         };
         // SAFETY: the batch has the parameters of this plugin's schema.
         let Some(values) = (unsafe { parameters::<L>(batch.parameters) }) else {
-            tell(message, -1, "the batch has no parameters");
+            write_message(message, -1, "the batch has no parameters");
             return STATUS_ERROR;
         };
         if L::FLAGS & FLAG_TEMPERATURE != 0 && batch.n > 0 && batch.temperature.is_null() {
-            tell(
+            write_message(
                 message,
                 -1,
                 "this law reads temperatures, which this program does not give: compute heat in the case, with a program of version \
@@ -282,13 +282,13 @@ pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMe
     guarded(message, |_| {
         // SAFETY: one value per parameter of the schema.
         let Some(values) = (unsafe { parameters::<L>(values) }) else {
-            tell(message, -1, "no parameters were given");
+            write_message(message, -1, "no parameters were given");
             return STATUS_ERROR;
         };
         match L::read(values).validate() {
             Ok(()) => STATUS_OK,
             Err(reason) => {
-                tell(message, -1, &reason);
+                write_message(message, -1, &reason);
                 STATUS_BAD_PARAMETER
             }
         }
@@ -335,7 +335,7 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     // SAFETY: the host passes a valid batch.
     let old = unsafe { known(batch) }.is_some_and(|b| b.n > 0 && b.out_contact_force_n.is_null());
     if L::FLAGS & FLAG_COMPLIANT != 0 && old {
-        tell(
+        write_message(
             message,
             -1,
             "this law is a spring, which needs a program of version 1.1 of the plugin interface or later",

@@ -35,7 +35,7 @@ pub struct Site {
     /// Force of the tangential spring along t1 and t2 (N; N/m in 2D), with `FLAG_COMPLIANT`;
     /// positive where the candidate was displaced along them.
     pub spring_t: [f64; 2],
-    /// The same at the start of the step, in commit (N; N/m in 2D).
+    /// `spring_t` at the start of the step, in commit (N; N/m in 2D).
     pub spring_before_t: [f64; 2],
     /// Temperature of the contact (K) at the start of the step, where the case computes heat; 0
     /// elsewhere.
@@ -128,7 +128,8 @@ impl Site {
         }
     }
 
-    /// The same of the electric current, by the resistivity of the pair; 0 where no current flows.
+    /// Electric conductance of a spot of this half-width (m), by the resistivity of the pair; 0
+    /// where no current flows.
     pub fn electric_constriction(&self, half_width: f64) -> f64 {
         match self.resistivity > 0.0 {
             true => self.constriction(1.0 / self.resistivity, half_width),

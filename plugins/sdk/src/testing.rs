@@ -158,7 +158,7 @@ pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pu
     })
 }
 
-/// As [`pull`], for a cohesion that breaks by itself, along a unit vector (n, t1, t2).
+/// A [`pull`] test of a cohesion that breaks by itself, along a unit vector (n, t1, t2).
 pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, steps: u32) -> Pull {
     open(reach, steps, |u, d| {
         let site = Site {

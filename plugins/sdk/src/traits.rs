@@ -41,13 +41,13 @@ impl Variable {
         }
     }
 
-    /// The same variable with another value on a new contact.
+    /// Sets the value of the variable on a new contact.
     #[must_use]
     pub const fn starting_at(self, initial: f64) -> Self {
         Self { initial, ..self }
     }
 
-    /// The same variable, written to the results.
+    /// Writes the variable to the results.
     #[must_use]
     pub const fn written(self) -> Self {
         Self {

@@ -193,12 +193,12 @@ fn under_a_lid<S: Space>() {
         near(expected, holder(&s, 0, "bottom", up).force, 1e-6);
         force.to_bits()
     });
-    // The same bits again, and with two threads.
+    // Bits repeat, also with two threads.
     assert!(forces.iter().all(|f| *f == forces[0]));
 }
 
-/// As the load vanishes all strains agree: the difference falls with the load, for the stubby
-/// cantilever in shear and compression.
+/// All measures of strain agree as the load vanishes: the difference falls with the load, for the
+/// stubby cantilever in shear and compression.
 #[test]
 fn small_loads_are_linear() {
     let moved = |strain: Strain, load: f64| {

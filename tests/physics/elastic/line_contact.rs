@@ -86,8 +86,8 @@ fn joined(lines: &[Vec<f64>], from: &str) -> Grid {
     Grid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
 }
 
-/// The same, of bodies of cells between coordinates that the last argument makes, away from the
-/// side of that name.
+/// [`pressed`] with cells between coordinates that the last argument makes, counted from the side
+/// of that name.
 fn pressed_as(
     counter: Counter,
     n: usize,

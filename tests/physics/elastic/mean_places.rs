@@ -121,7 +121,7 @@ fn coarse_points_wear_a_fine_surface_evenly() {
     }
 }
 
-/// The same in space.
+/// In space too, coarse points remove material evenly from a fine surface.
 #[test]
 fn coarse_points_wear_a_fine_surface_evenly_in_space() {
     let run = |size: f64| {

@@ -31,8 +31,8 @@ fn pressed<S: Space>(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64
     })
 }
 
-/// The same of meshes of the given width, from zero to `HEIGHT`, that touch with the side of that
-/// name.
+/// [`pressed`] with meshes of the given width, from zero to `HEIGHT`, that touch with the side of
+/// that name.
 fn pressed_on<S: Space>(
     low: &[f64],
     high: &[f64],
@@ -131,7 +131,7 @@ fn a_uniform_pressure_goes_through_meshes_that_do_not_match() {
     goes_through::<Dim2>(&meshes, Strain::Small);
 }
 
-/// The same in space, where triangles cross in any way.
+/// In space the triangles of the two surfaces cross in any way.
 #[test]
 fn a_uniform_pressure_goes_through_in_space() {
     let meshes = [

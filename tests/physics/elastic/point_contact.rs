@@ -16,7 +16,7 @@ fn pressed(n: usize) -> (f64, f64) {
     (load, half_width)
 }
 
-/// The same and the number of unknowns, on cells that the last argument makes.
+/// Load, half-width and number of unknowns, on cells that the last argument makes.
 fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize) {
     let (far, size) = (16.0 * A, A / n as f64);
     let mut s = scene::<Dim3>(&Sketch {

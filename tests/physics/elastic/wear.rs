@@ -122,7 +122,7 @@ fn archards_volume_is_gone_from_a_half_space() {
     a_cycle(case("fretting_wear_elastic", &[&load]), 5e-5);
 }
 
-/// The same of a flat of finite elements, that touches as a surface.
+/// A flat of finite elements, which touches as a surface, wears by the volume of Archard's law.
 #[test]
 fn archards_volume_is_gone_from_a_body_of_finite_elements() {
     let flat = "elastic=[(

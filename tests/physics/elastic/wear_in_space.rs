@@ -111,7 +111,7 @@ fn archards_volume_is_gone_from_a_half_space() {
     ));
 }
 
-/// The same of a half-space above, that wears upwards, by the work of friction.
+/// A half-space above wears upwards, by the work of friction.
 #[test]
 fn the_volume_of_the_dissipated_energy_is_gone_from_a_half_space_above() {
     let sets = [

@@ -8,7 +8,7 @@ mod passing;
 #[path = "../../../validation/programs/extremes/rows/mod.rs"]
 mod rows;
 
-use bench::{Cause, HELD, Verdict, told};
+use bench::{Cause, HELD, Verdict, reported};
 
 #[test]
 fn each_extreme_ends_as_it_declares() {
@@ -34,7 +34,7 @@ fn end_as_declared<'a>(groups: impl Iterator<Item = &'a bench::Group>) -> u32 {
                 let name = format!("{}, {dimension}D, {}: {}", group.name, row.value, row.found);
                 match row.verdict {
                     Verdict::Held(words) => println!("met: {name}; {words}"),
-                    Verdict::Told(words) => println!("reported: {name}; {words}"),
+                    Verdict::Reported(words) => println!("reported: {name}; {words}"),
                     Verdict::Broken(words) => panic!("{name} ({}); {words}", group.criterion),
                 }
             }
@@ -45,27 +45,30 @@ fn end_as_declared<'a>(groups: impl Iterator<Item = &'a bench::Group>) -> u32 {
 
 #[test]
 fn another_cause_than_the_declared_one_is_broken() {
-    let broken = |expected, met, sound, told: &[(Cause, &str)]| {
-        let told: Vec<(Cause, String)> = told.iter().map(|(c, w)| (*c, (*w).to_owned())).collect();
-        let verdict = Verdict::new(expected, met, sound, &told);
+    let broken = |expected, met, sound, reported: &[(Cause, &str)]| {
+        let reported: Vec<(Cause, String)> = reported
+            .iter()
+            .map(|(c, w)| (*c, (*w).to_owned()))
+            .collect();
+        let verdict = Verdict::new(expected, met, sound, &reported);
         matches!(verdict, Verdict::Broken(_))
     };
     let late = "late; take a smaller time.step";
     let late = (Cause::Late, late);
     assert!(!broken(HELD, true, true, &[]));
-    assert!(!broken(told(&[Cause::Late]), false, true, &[late]));
+    assert!(!broken(reported(&[Cause::Late]), false, true, &[late]));
     // Missed and silent; reported where it should be met; met where a limit was declared; another
     // cause; one more.
     assert!(broken(HELD, false, true, &[]));
-    assert!(broken(told(&[Cause::Late]), false, true, &[]));
+    assert!(broken(reported(&[Cause::Late]), false, true, &[]));
     assert!(broken(HELD, false, true, &[late]));
     assert!(broken(HELD, true, true, &[late]));
-    assert!(broken(told(&[Cause::Late]), true, true, &[late]));
-    assert!(broken(told(&[Cause::Passed]), false, true, &[late]));
-    assert!(broken(told(&[Cause::Late]), false, true, &[late, late]));
+    assert!(broken(reported(&[Cause::Late]), true, true, &[late]));
+    assert!(broken(reported(&[Cause::Passed]), false, true, &[late]));
+    assert!(broken(reported(&[Cause::Late]), false, true, &[late, late]));
     // Without a proposal; not finite.
     assert!(broken(
-        told(&[Cause::Late]),
+        reported(&[Cause::Late]),
         false,
         true,
         &[(Cause::Late, "late")]

@@ -160,7 +160,7 @@ impl<const D: usize> Made<D> {
         BlockMatrix::from_csr(&self.csr())
     }
 
-    /// As a file has it; for Coulomb's law.
+    /// The problem in the form of an FCLIB file, of contacts with Coulomb's law.
     pub fn problem(&self) -> LocalProblem {
         LocalProblem {
             dimension: D,

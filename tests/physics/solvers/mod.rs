@@ -277,7 +277,7 @@ fn the_other_laws() {
     other_laws::<3>(10);
 }
 
-/// The same problem twice gives the same bits.
+/// Solving a problem twice gives the same bits.
 fn same_bits<const D: usize>(seed: u64) {
     for made in packings::<D>(&[(2, 4)], seed) {
         for method in Method::ALL.iter().copied() {

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub enum Touching {
     /// A ball about each mass.
     Ends,
-    /// The same; and the balls may touch each other.
+    /// A ball about each mass; the balls may touch each other.
     EndsEachOther,
     /// A ball half-way between the masses.
     Middle,

@@ -91,7 +91,7 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
         let last: Vec<&str> = statistics.lines().last().unwrap().split(',').collect();
         assert!((last[at].parse::<f64>().unwrap() / volume - 1.0).abs() < 1e-10);
         assert!(out.0.join("scar_rail.png").exists());
-        // As the profile of the next run, to the last bit.
+        // The next run reads it as a profile, to the last bit.
         let file = out.0.join("scar_rail.csv");
         let shape = format!(
             "bodies.rail.shapes=[Profile(file: \"{}\", side: {})]",

@@ -167,7 +167,7 @@ fn stl(announced: u32, held: usize) -> Vec<u8> {
     out
 }
 
-/// The same in text.
+/// An STL file in text.
 fn text(faces: usize, end: &str) -> String {
     let facet = |a: &str, b: &str, c: &str| {
         format!(

@@ -269,7 +269,7 @@ fn a_body_whose_name_is_a_path() {
     assert!(trial.call(&["run", "case.ron"]).status.success());
 }
 
-/// The same sentence from `run`, before anything is written, and from `check`.
+/// `run`, before anything is written, and `check` refuse the case with one sentence.
 fn taken(case: &str, words: &[&str]) {
     refused(case, words);
     let trial = Trial::new();
@@ -316,7 +316,7 @@ fn two_measures_with_one_file() {
         &two(layer, &profile("‸\"gap_energy\"")),
         &["is named `gap_energy.csv`"],
     );
-    // The same file on systems that do not tell capitals from small letters.
+    // Both names are one file on systems that ignore case.
     taken(
         &two(&profile("\"Top\""), &profile("‸\"top\"")),
         &["is named `top.csv`"],

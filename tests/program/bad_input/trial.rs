@@ -260,7 +260,7 @@ impl Trial {
         self.compile_bad_law(name, flags, "GOOD");
     }
 
-    /// The same with a fault, a word that the text asks for: it `LOOPS` for ever in prepare, say,
+    /// Compiles a law with a defect, named by a word of its text: `LOOPS` for ever in prepare, say,
     /// or `SPILLS` behind a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         self.compile(name, flags, fault, &[]);
@@ -366,7 +366,7 @@ pub fn refused(marked: &str, words: &[&str]) {
     refused_with(marked, &[], words);
 }
 
-/// The same with further arguments.
+/// [`refused`] with further arguments.
 #[track_caller]
 pub fn refused_with(marked: &str, more: &[&str], words: &[&str]) {
     let trial = Trial::new();

@@ -67,7 +67,7 @@ fn shipped_laws_have_no_static_memory() {
     assert!(files > 50, "{files}");
 }
 
-/// Also with the parameters that shipped cases give it: no shipped case warns of its own laws.
+/// Laws are certified with the parameters of shipped cases too: none warns of its own laws.
 #[test]
 fn laws_of_shipped_cases_are_certified() {
     let path = search_path();

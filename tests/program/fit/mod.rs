@@ -45,7 +45,7 @@ impl Folder {
         self.fit_against("slider_vx - 0.01", parameters, more, set)
     }
 
-    /// The same with this expression for the velocity.
+    /// Fits with this expression for the velocity.
     fn fit_against(&self, velocity: &str, parameters: &str, more: &str, set: &str) -> Output {
         let text = format!(
             r#"(tests: [Curve(name: "friction", case: "slider.ron", set: [{set}],

@@ -20,15 +20,15 @@ fn kills_at_random_moments_lose_nothing() {
     kill_at_random("kills", 20, None);
 }
 
-/// The same of a file that grows in place, as large ones do: from the first flush on, or after
-/// some.
+/// Kills lose nothing of a file that grows in place, as large ones do: from the first flush on, or
+/// after some.
 #[test]
 fn kills_at_random_moments_lose_nothing_of_a_file_that_grows_in_place() {
     kill_at_random("kills-in-place", 21, Some("0"));
     kill_at_random("kills-on-the-way", 22, Some("2500000"));
 }
 
-/// The same of fields inside deformable bodies, which are most of such a file.
+/// Kills lose no fields inside deformable bodies, which are most of such a file.
 #[test]
 fn kills_at_random_moments_lose_no_fields_of_deformable_bodies() {
     let sets = [

@@ -13,7 +13,7 @@ use bench::Verdict;
 
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
-    let (mut held, mut told, mut broken) = (0, 0, 0);
+    let (mut held, mut reported, mut broken) = (0, 0, 0);
     for group in rows::ALL {
         let named =
             |w: &String| group.name.starts_with(w.as_str()) || (w == "quick" && group.quick);
@@ -31,8 +31,8 @@ fn main() {
                         let but = if words.is_empty() { "" } else { "; reported: " };
                         format!("met{but}{words}")
                     }
-                    Verdict::Told(words) => {
-                        told += 1;
+                    Verdict::Reported(words) => {
+                        reported += 1;
                         format!("reported: {words}")
                     }
                     Verdict::Broken(words) => {
@@ -47,7 +47,7 @@ fn main() {
             }
         }
     }
-    println!("\n{held} rows are met, {told} are reported.");
+    println!("\n{held} rows are met, {reported} are reported.");
     if broken > 0 {
         eprintln!("{broken} rows are broken");
         std::process::exit(1);

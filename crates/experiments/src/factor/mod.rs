@@ -14,16 +14,16 @@ pub const AS_IN_THE_CASE: &str = "as in the case";
 /// A value that a factor takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// As it stands in tables.
+    /// Its text in tables.
     pub label: String,
-    /// As a number, if it is one.
+    /// Its number, if it is one.
     pub number: Option<f64>,
     /// `key.path=value` for the case.
     pub sets: Vec<String>,
 }
 
 impl Level {
-    /// The value of keys that a text says.
+    /// A value of some keys, from its text.
     pub fn of(keys: &[String], text: &str) -> Self {
         Self {
             label: text.trim_matches('"').to_owned(),
@@ -41,7 +41,7 @@ impl Level {
         }
     }
 
-    /// Whether it is that of the case as it is, and the case does not tell it.
+    /// Whether it is the unchanged value of a case that does not state it.
     pub fn is_unknown(&self) -> bool {
         self.label == AS_IN_THE_CASE && self.number.is_none() && self.sets.is_empty()
     }

@@ -1,14 +1,14 @@
-//! Factors as the file of a study says them.
+//! Factors in the file of a study.
 
 use super::{Factor, Level, Values};
 use crate::spec::{CaseKeys, RangeScale};
 use fretwork_math::design::scale::Scale;
 use fretwork_scene::source::Source;
-use fretwork_scene::{InputError, unseen_fault};
+use fretwork_scene::{InputError, invisible_characters};
 use ron::value::RawValue;
 use serde::Deserialize;
 
-/// A factor as the file says it.
+/// A factor in the file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum FactorSpec {
@@ -95,8 +95,8 @@ impl FactorSpec {
             )
         })?;
         let options = matches!(self, Self::Options { .. });
-        if let Some(fault) = unseen_fault(name).filter(|_| !options) {
-            return Err(source.error_at(path, fault));
+        if let Some(reason) = invisible_characters(name).filter(|_| !options) {
+            return Err(source.error_at(path, reason));
         }
         let values = self.values(&keys);
         Ok(Factor {
@@ -165,7 +165,7 @@ impl FactorSpec {
     }
 }
 
-/// Numbers of the first two that are the same.
+/// Positions of the first two that are equal.
 fn repeated<T>(list: &[T], same: impl Fn(&T, &T) -> bool) -> Option<(usize, usize)> {
     let first = |k: usize| (0..k).find(|&i| same(&list[i], &list[k]));
     (1..list.len()).find_map(|k| Some((first(k)?, k)))

@@ -93,7 +93,8 @@ impl Tests {
                     ..
                 } => {
                     let columns = columns(&loaded.case, &scene);
-                    let made = Model::new(model, &columns)
+                    let names: Vec<String> = columns.into_iter().map(|c| c.name).collect();
+                    let made = Model::new(model, &names)
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
                     let (curve, reach) =
                         measured::curve(name, from, &read.beside(&from.file), model.along)?;

@@ -8,7 +8,7 @@ use std::path::Path;
 /// How numbers that are not whole are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
-    /// As short as they read back: `0.001`.
+    /// With the fewest digits that read back to the same number: `0.001`.
     Plain,
     /// With exponents: `1e-3`.
     Exponents,

@@ -23,8 +23,7 @@ pub fn saltelli(bases: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>
     Ok(saltelli_from(&sobol(bases, 2 * factors, seed)?))
 }
 
-/// The same rows from base points of another kind: each has the coordinates of A, then as many of
-/// B.
+/// Saltelli's rows from given base points, each of which has the coordinates of A, then those of B.
 pub fn saltelli_from(bases: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = Vec::new();
     for both in bases {

@@ -5,14 +5,14 @@ use super::DesignError;
 /// Values of a factor, spread over the unit interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// The same difference for the same step.
+    /// Equal steps change the value by equal differences.
     Linear {
         /// Value at 0.
         from: f64,
         /// Value at 1.
         to: f64,
     },
-    /// The same ratio for the same step; both ends positive.
+    /// Equal steps change the value by equal ratios; both ends are positive.
     Logarithmic {
         /// Value at 0.
         from: f64,
@@ -35,7 +35,7 @@ impl Scale {
     ///
     /// A sentence that says which end is wrong.
     pub fn check(&self) -> Result<(), DesignError> {
-        let fault = match *self {
+        let reason = match *self {
             Self::Linear { from, to } | Self::Logarithmic { from, to }
                 if !(from.is_finite() && to.is_finite() && from < to) =>
             {
@@ -49,7 +49,7 @@ impl Scale {
             }
             _ => return Ok(()),
         };
-        Err(DesignError::Scale(fault))
+        Err(DesignError::Scale(reason))
     }
 
     /// The value at the place `unit` in [0, 1]; places outside have the value of the nearer end.
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_say_what_to_change() {
+    fn errors_say_what_to_change() {
         let zero = Scale::Logarithmic { from: 0.0, to: 1.0 };
         let error = zero.check().unwrap_err().to_string();
         assert!(error.contains("positive"), "{error}");

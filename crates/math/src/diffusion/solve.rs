@@ -44,11 +44,12 @@ impl System {
         Ok(self.matrix.restore(&x))
     }
 
-    /// As [`Self::solve`], from a guess, and only until the second list is small: the residual of
-    /// each unknown over its own diagonal, which is positive but in padding rows. That is what the
-    /// unknown changes by if it takes up alone what is left: the first list with the second added
-    /// obeys each equation to rounding, with flows between unknowns as of the first. Where it does
-    /// not become small it is zero, and the first list is the solution to rounding.
+    /// Solves iteratively from a guess. The first list is the approximate solution; the second is
+    /// the residual of each unknown over its own diagonal (positive except in padding rows), that
+    /// is, the change of the unknown that alone would satisfy its equation. The sum of both lists
+    /// therefore satisfies each equation to rounding, with the flows between unknowns given by the
+    /// first list. Iterations end when the second list is small; if they do not converge, the
+    /// matrix is factorised, and the second list is zero.
     ///
     /// # Errors
     /// The matrix cannot be factorised.

@@ -43,9 +43,9 @@ pub fn step(
     step_with_columns(nodes, (graph, &[]), sources, h, theta)
 }
 
-/// As [`step`], with flow between the half-spaces of neighbouring pieces of surfaces: after all
-/// else for theta = 1, half of it before and half of it after for a theta below, so that the order
-/// in step stays.
+/// A [`step`] with flow between the half-spaces of neighbouring pieces of surfaces. The flow comes
+/// after all else for theta = 1; for a smaller theta half of it comes before and half after, which
+/// keeps the order of the scheme.
 ///
 /// # Errors
 /// As [`step`], and columns that do not fit their nodes.
@@ -139,7 +139,7 @@ fn solve(
             _ => {}
         }
     }
-    // As in the step before, until a better answer.
+    // The first guess is the rate of the step before.
     let guess: Vec<f64> = list.iter().map(|&k| w * nodes[k].rate).collect();
     let inner = if all_unknown { &graph.edges } else { &inner };
     let [mut change, left] = System::new(&own, inner, &right).complete(&guess)?;

@@ -70,17 +70,20 @@ impl Bounds {
         let count = parameters.len();
         let mut ranges = Vec::with_capacity(count);
         for parameter in &parameters {
-            let fault = |reason: String| BoundsError::Range {
+            let range_error = |reason: String| BoundsError::Range {
                 name: parameter.name.clone(),
                 reason,
             };
-            parameter.scale.check().map_err(|e| fault(e.to_string()))?;
+            parameter
+                .scale
+                .check()
+                .map_err(|e| range_error(e.to_string()))?;
             match parameter.scale {
                 Scale::Linear { from, to } | Scale::Logarithmic { from, to } => {
                     ranges.push((from, to));
                 }
                 Scale::Integer { .. } => {
-                    return Err(fault("a fit varies no whole numbers: make a study of its values, or fit the other parameters for each".into()));
+                    return Err(range_error("a fit varies no whole numbers: make a study of its values, or fit the other parameters for each".into()));
                 }
             }
         }
@@ -136,7 +139,7 @@ impl Bounds {
     /// order, then each goes to the nearest value that its range and the order leave. Values in the
     /// region stay as they are.
     pub fn repair(&self, values: &mut [f64]) {
-        // As many rounds as there are pairs sort any chain of them.
+        // A chain of ordered pairs is sorted after at most one round a pair.
         for _ in 0..self.orders.len() {
             for &(a, b) in &self.orders {
                 if values[a] > values[b] {
@@ -267,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_say_what_to_change() {
+    fn errors_say_what_to_change() {
         let both = || vec![linear("a", 2.0, 3.0), linear("b", 0.0, 1.0)];
         let text = |orders: &[(usize, usize)]| Bounds::new(both(), orders).unwrap_err().to_string();
         assert!(

@@ -114,8 +114,8 @@ impl Target {
         Ok(Self { tests })
     }
 
-    /// The same with weights so that each test counts as much as a single value, however many it
-    /// has.
+    /// Weights the residuals so that each test counts as much as a single value, whatever its
+    /// number of values.
     pub fn balanced(mut self) -> Self {
         for test in &mut self.tests {
             test.weight = 1.0 / test.y.len() as f64;
@@ -326,17 +326,19 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_the_test_and_say_what_to_change() {
-        let fault = |t: Measurement| Target::new(vec![t]).unwrap_err().to_string();
-        assert!(fault(test("a", &[0.0], &[1.0, 2.0], 1.0)).contains("measurement a: 1 abscissae"));
-        assert!(fault(test("a", &[0.0], &[1.0], 0.0)).contains("must be positive"));
+    fn errors_name_the_test_and_say_what_to_change() {
+        let error_of = |t: Measurement| Target::new(vec![t]).unwrap_err().to_string();
+        assert!(
+            error_of(test("a", &[0.0], &[1.0, 2.0], 1.0)).contains("measurement a: 1 abscissae")
+        );
+        assert!(error_of(test("a", &[0.0], &[1.0], 0.0)).contains("must be positive"));
         let target = Target::new(vec![test("a", &[0.0, 3.0], &[1.0, 2.0], 1.0)]).unwrap();
-        let fault =
+        let error_of =
             |x: &[f64], y: &[f64]| target.simulated(&[Curve { x, y }]).unwrap_err().to_string();
-        assert!(fault(&[0.0, 2.0], &[0.0, 1.0]).contains("run it farther"));
-        assert!(fault(&[0.0, 2.0, 1.0], &[0.0; 3]).contains("must increase"));
-        assert!(fault(&[0.0, 3.0], &[0.0, f64::NAN]).contains("point 1"));
-        assert!(fault(&[], &[]).contains("empty"));
+        assert!(error_of(&[0.0, 2.0], &[0.0, 1.0]).contains("run it farther"));
+        assert!(error_of(&[0.0, 2.0, 1.0], &[0.0; 3]).contains("must increase"));
+        assert!(error_of(&[0.0, 3.0], &[0.0, f64::NAN]).contains("point 1"));
+        assert!(error_of(&[], &[]).contains("empty"));
         assert!(target.simulated(&[]).is_err() && target.chi_squared(&[1.0]).is_err());
     }
 

@@ -79,7 +79,7 @@ impl SeedsPerPoint {
     }
 
     /// Whether the points of the last generations differ by no more than their noise, with the
-    /// largest number of seeds: the search has reached what these seeds can tell.
+    /// largest number of seeds: the search has reached what these seeds can resolve.
     pub fn exhausted(&self) -> bool {
         self.uncertain >= EXHAUSTED
     }

@@ -69,7 +69,7 @@ pub enum SensitivityError {
     },
     /// Factors that vary together.
     #[error(
-        "the factors of these points cannot be told apart: one does not vary, or some vary together"
+        "the factors of these points cannot be distinguished: one does not vary, or some vary together"
     )]
     Dependent,
 }

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_say_which_run() {
+    fn errors_say_which_run() {
         let rows = vec![vec![1.0], vec![1.0, 2.0]];
         let error = Points::gather(&rows, &[None, None]).unwrap_err();
         assert!(error.to_string().contains("run 1 has 2 factors"), "{error}");

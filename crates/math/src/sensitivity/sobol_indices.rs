@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn faults() {
+    fn wrong_input_is_refused() {
         assert!(matches!(
             sobol_indices(&[Some(1.0); 11], 3, 0),
             Err(SensitivityError::Length { inputs: 15, .. })

@@ -90,7 +90,7 @@ impl Mean {
         self.half_width.is_none_or(|h| self.mean.abs() <= h)
     }
 
-    /// The same in other units.
+    /// The mean, scatter and half-width in other units, multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         let size = factor.abs();
         Self {

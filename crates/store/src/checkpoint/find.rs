@@ -49,7 +49,7 @@ fn ended(folder: &Path, identity: &str) -> Option<String> {
     ours.then(|| summary["stopped"].as_str().map(str::to_owned))?
 }
 
-/// What tells a file from one that was written since: its length, and when it was written.
+/// What distinguishes a file from one written since: its length and time of writing.
 fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
     let data = std::fs::metadata(path).ok()?;
     Some((data.len(), data.modified().ok()?))

@@ -96,17 +96,19 @@ impl PreviousResults {
     /// The store cannot be written, or the rows are missing or differ.
     pub(super) fn copy(&self, rows: &[(u64, u32)], to: &mut Store) -> Result<(), ResultsError> {
         let grown: Vec<Grown> = to.grown().to_vec();
-        let fault = |reason: String| ResultsError::unreadable(&self.path, reason);
+        let unreadable = |reason: String| ResultsError::unreadable(&self.path, reason);
         if rows.len() != grown.len() {
-            return Err(fault("it has other columns than its case gives".to_owned()));
+            return Err(unreadable(
+                "it has other columns than its case gives".to_owned(),
+            ));
         }
         for (place, (grown, (rows, sum))) in grown.iter().zip(rows).enumerate() {
             let name = grown.name();
-            let shape = self.shape(name).map_err(fault)?;
+            let shape = self.shape(name).map_err(unreadable)?;
             let width = shape.get(1).copied().unwrap_or(1);
             let rows = usize::try_from(*rows).unwrap_or(usize::MAX);
             if shape[0] < rows || width as u64 != grown.width {
-                return Err(fault(format!(
+                return Err(unreadable(format!(
                     "`{name}` has {} rows of {width}, and the checkpoint is after {rows} of {}",
                     shape[0], grown.width
                 )));
@@ -120,12 +122,12 @@ impl PreviousResults {
                     let values = self.slice::<f64>(name, first, count, shape.get(1));
                     values.map(|v| v.iter().flat_map(|x| x.to_le_bytes()).collect())
                 };
-                let bytes: Vec<u8> = bytes.map_err(fault)?;
+                let bytes: Vec<u8> = bytes.map_err(unreadable)?;
                 to.append_bytes(place, &bytes)?;
             }
             // Data beyond the end of a truncated file reads as zeros.
             if to.grown()[place].sum != *sum {
-                return Err(fault(format!(
+                return Err(unreadable(format!(
                     "the rows of `{name}` are not those that were written: the file was cut short or changed"
                 )));
             }

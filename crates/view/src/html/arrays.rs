@@ -14,7 +14,7 @@ use std::io::Write as _;
 pub(crate) enum Kind {
     /// Between the smallest and the largest, in 254 intervals.
     U8,
-    /// The same, in 65,534 intervals.
+    /// Between the smallest and the largest, in 65,534 intervals.
     U16,
     /// Integers below 2^32.
     U32,

@@ -188,7 +188,7 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// Double precision where rows are closer than single precision tells apart, as times of long runs.
+/// Double precision where rows are closer than single precision resolves, as times of long runs.
 fn kind(values: &[f64]) -> Kind {
     let merges = |pair: &[f64]| pair[0] != pair[1] && pair[0] as f32 == pair[1] as f32;
     match values.windows(2).any(merges) {

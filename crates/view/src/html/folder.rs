@@ -93,7 +93,7 @@ impl RunFolder {
         if three { 3 } else { 2 }
     }
 
-    /// Name of the folder, to tell runs apart.
+    /// Name of the folder, which distinguishes runs.
     pub fn name(&self) -> String {
         let full = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());
         let name = full.file_name().unwrap_or(full.as_os_str());

@@ -367,7 +367,7 @@ fn write_png(
     writer.finish()
 }
 
-/// The innermost cause: what wraps it tells the user nothing.
+/// The innermost cause, since the errors around it add nothing for a user.
 fn reason(error: &dyn std::error::Error) -> String {
     let mut cause = error;
     while let Some(inner) = cause.source() {

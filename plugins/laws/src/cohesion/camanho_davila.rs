@@ -51,7 +51,7 @@ impl Law for CamanhoDavila {
                 ));
             }
             if held < 1e-12 * energy {
-                return Err("k is so high that 1 - D cannot be told from 0: lower k, or raise the strengths".into());
+                return Err("k is so high that 1 - D cannot be distinguished from 0: lower k, or raise the strengths".into());
             }
         }
         Ok(())

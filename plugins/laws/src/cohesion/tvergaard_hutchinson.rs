@@ -38,7 +38,7 @@ impl Law for TvergaardHutchinson {
         // relative to 1.
         require(
             squared >= 1e-12 * self.k * self.energy,
-            "k is so high that 1 - D cannot be told from 0: lower k, or raise the strength",
+            "k is so high that 1 - D cannot be distinguished from 0: lower k, or raise the strength",
         )
     }
 }

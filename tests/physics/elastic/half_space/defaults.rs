@@ -68,7 +68,7 @@ fn single_cells_have_the_pressure_of_hertz() {
     }
 }
 
-/// The same at the end of two cycles of gross slip.
+/// Default cells are fine enough at the end of two cycles of gross slip.
 #[test]
 fn cells_have_it_after_cycles_too() {
     for more in ["", "solver: (method: Newton),"] {

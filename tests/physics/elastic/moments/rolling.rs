@@ -154,7 +154,7 @@ fn spinning_friction_takes_angular_momentum() {
     }
 }
 
-/// The same bits on any number of threads, and from a state saved on the way.
+/// Bits do not depend on the number of threads, nor on a restart from a state saved on the way.
 #[test]
 fn rolling_gives_the_same_bits() {
     let start = || {

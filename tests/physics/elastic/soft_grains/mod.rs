@@ -122,7 +122,7 @@ impl Soft {
         self.build_with(NU)
     }
 
-    /// The same of materials of a Poisson's ratio.
+    /// Builds it with materials of this Poisson's ratio.
     fn build_with<S: Space>(&self, nu: f64) -> Simulation<S> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);

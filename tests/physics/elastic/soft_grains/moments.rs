@@ -199,7 +199,7 @@ fn methods_agree_on_moments() {
     }
 }
 
-/// The same cube on a block of finite elements that deforms too, in small and in large strain:
+/// A spinning cube on a block of finite elements that deforms too, in small and in large strain:
 /// normals are upright but for what falls with the modulus.
 #[test]
 fn spinning_friction_acts_between_two_that_deform() {

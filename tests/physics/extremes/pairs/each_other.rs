@@ -9,7 +9,7 @@ use super::*;
 fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
     let mut rng = Pcg64::seed_from_u64(20);
     let mut silent = Vec::new();
-    let (mut hit, mut told, mut told_seen) = (0, 0, 0);
+    let (mut hit, mut reported, mut reported_seen) = (0, 0, 0);
     for (one, thrown) in grains {
         for (other, target) in grains {
             for (k, speed) in SPEEDS.into_iter().enumerate() {
@@ -64,9 +64,11 @@ fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
                     let seen = throw.is_seen(from, 2.0 * R, 0.5);
                     let balls = [one, other].iter().all(|n| ["disk", "sphere"].contains(n));
                     match (seen, balls) {
-                        (true, true) => silent.push(format!("{what}; told, although it is seen")),
-                        (true, false) => told_seen += 1,
-                        _ => told += 1,
+                        (true, true) => {
+                            silent.push(format!("{what}; reported, although it is seen"))
+                        }
+                        (true, false) => reported_seen += 1,
+                        _ => reported += 1,
                     }
                 } else if slower != 0.0 && faster != throw.step / STEP {
                     hit += 1;
@@ -76,17 +78,17 @@ fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
             }
         }
     }
-    let total = hit + told + told_seen;
+    let total = hit + reported + reported_seen;
     println!(
-        "{}D: {hit} hit, {told} told, {told_seen} although seen",
+        "{}D: {hit} hit, {reported} reported, {reported_seen} although seen",
         S::D
     );
-    // As of walls: what is not seen is a quarter of the throws at most.
-    assert!(4 * told < total, "{told} of {total} told");
+    // At most a quarter of the throws is reported, which is also the bound for walls.
+    assert!(4 * reported < total, "{reported} of {total} reported");
     // Both turn, by more than a radian in most throws.
     assert!(
-        10 * told_seen < 3 * total,
-        "{told_seen} of {total} told, although seen"
+        10 * reported_seen < 3 * total,
+        "{reported_seen} of {total} reported, although seen"
     );
     assert!(
         silent.is_empty(),

@@ -161,7 +161,7 @@ fn grains_stay_in_front_of_every_wall_in_space() {
     let _ = std::fs::remove_dir_all(folder);
 }
 
-/// As [`flat_soft_walls`].
+/// Walls in space that deform or wear; [`flat_soft_walls`] has those in the plane.
 pub(super) fn solid_soft_walls() -> Vec<Wall> {
     let mut rng = Pcg64::seed_from_u64(10);
     let heights: Vec<String> = (0..41 * 41)

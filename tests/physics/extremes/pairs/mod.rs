@@ -21,15 +21,15 @@ const R: f64 = 0.01;
 const STEP: f64 = 1e-3;
 /// Displacements in a step, in radii.
 const SPEEDS: [f64; 9] = [0.3, 0.7, 1.1, 1.5, 2.3, 5.0, 10.7, 31.0, 100.0];
-/// The same where something deforms or wears.
+/// Displacements in a step, in radii, where something deforms or wears.
 const SOFT_SPEEDS: [f64; 5] = [0.1, 0.4, 1.4, 3.0, 10.0];
 /// Steps after the one of the meeting.
 const AFTER: usize = 3;
 /// How far a centre may be behind the nearest vertex of a surface that is not flat (radii).
 const BEHIND: f64 = 0.2;
-/// One of how many throws may be told although all of it is seen: what is hit at a corner turns by
-/// about its displacement over its radius, and its corners move on arcs of which a step knows the
-/// tangents.
+/// One of how many throws may be reported although all of it is seen: what is hit at a corner turns
+/// by about its displacement over its radius, and its corners move on arcs of which a step knows
+/// the tangents.
 const SEEN_TOLD: usize = 8;
 /// Share of the energy that a throw may gain by the error of the solver.
 const GAIN: f64 = 1e-6;
@@ -42,10 +42,11 @@ type Grain = fn(at: &str, motion: &str, turned: f64) -> String;
 enum Made {
     /// A first body of shapes.
     Rigid,
-    /// The same, whose surface recedes by up to this depth (m) before it is hit and while it is.
+    /// A first body of shapes whose surface recedes by up to this depth (m) before and during the
+    /// hit.
     Worn(f64),
-    /// The same, which wears by the law of the interface: in a hit by about this share of the
-    /// grain.
+    /// A first body of shapes that wears by the law of the interface: in a hit by about this share
+    /// of the grain.
     Wearing(f64),
     /// A body of finite elements, held at its bottom, of this Young's modulus (Pa).
     Elements(f64),
@@ -145,10 +146,10 @@ impl Wall {
     }
 }
 
-/// How a throw ends: held, or told, of one that is all seen or not.
+/// How a throw ends: held, or reported, of one that is all seen or not.
 enum End {
     Held,
-    Told,
+    Reported,
     ToldSeen,
 }
 
@@ -297,9 +298,9 @@ impl Throw {
             // One that deforms has corners too.
             let ball = soft.is_none() && ["disk", "sphere"].contains(&name);
             match seen && ball {
-                true => Err(format!("{}; told, although it is seen", what())),
+                true => Err(format!("{}; reported, although it is seen", what())),
                 false if seen => Ok(End::ToldSeen),
-                false => Ok(End::Told),
+                false => Ok(End::Reported),
             }
         } else if lowest <= 0.0 {
             Err(format!("{}; gets to {:.2} radii", what(), lowest / R))
@@ -312,7 +313,7 @@ impl Throw {
 }
 
 /// Throws each grain at each wall, `times` times at each speed. What meets before the first
-/// detection may be told, and what turns a corner into the wall; all others are held.
+/// detection may be reported, and what turns a corner into the wall; all others are held.
 fn throw_all<S: Space>(
     grains: &[(&str, Grain)],
     soft: Option<f64>,
@@ -334,17 +335,17 @@ fn throw_all<S: Space>(
                     }
                 }
             }
-            let [held, told, seen] = ends;
+            let [held, reported, seen] = ends;
             println!(
-                "{name} on {}: {held} held, {told} told, {seen} although seen",
+                "{name} on {}: {held} held, {reported} reported, {seen} although seen",
                 wall.name
             );
             (0..3).for_each(|k| all[k] += ends[k]);
         }
     }
-    let [held, told, seen] = all;
-    let total = held + told + seen;
-    println!("all: {held} held, {told} told, {seen} although seen");
+    let [held, reported, seen] = all;
+    let total = held + reported + seen;
+    println!("all: {held} held, {reported} reported, {seen} although seen");
     assert!(
         silent.is_empty(),
         "{} not held:\n{}",
@@ -353,10 +354,10 @@ fn throw_all<S: Space>(
     );
     // Places to start from are spread over two steps: a quarter of them at most is nearer than half
     // of a step.
-    assert!(4 * told < total, "{told} of {total} told");
+    assert!(4 * reported < total, "{reported} of {total} reported");
     assert!(
         SEEN_TOLD * seen < total,
-        "{seen} of {total} told, although seen"
+        "{seen} of {total} reported, although seen"
     );
 }
 

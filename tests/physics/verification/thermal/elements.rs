@@ -144,8 +144,8 @@ fn elements(table: &mut Table) {
     }
 }
 
-/// The same between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy comes
-/// from the heat.
+/// Heated elements between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy
+/// comes from the heat.
 fn held_elements(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     for (strain, tolerance) in [

@@ -6,4 +6,4 @@ mod verdict;
 
 pub use run::{carried, go, overlap, watch};
 pub use sketch::{G, Sketch, ball, floor, grains, place, plane, up, volume};
-pub use verdict::{Cause, Expected, Group, HELD, Row, Verdict, held_though, refused, told};
+pub use verdict::{Cause, Expected, Group, HELD, Row, Verdict, held_though, refused, reported};

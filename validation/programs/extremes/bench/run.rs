@@ -52,10 +52,10 @@ pub fn watch<S: Space>(
 
 impl Ran {
     /// All warnings, in the words of the program.
-    fn told<S: Space>(&self, s: &Simulation<S>) -> Vec<(Cause, String)> {
-        let mut told = Vec::new();
+    fn reported<S: Space>(&self, s: &Simulation<S>) -> Vec<(Cause, String)> {
+        let mut reported = Vec::new();
         let stopped = self.stopped.iter().cloned();
-        told.extend(stopped.map(|words| (Cause::Stopped, words)));
+        reported.extend(stopped.map(|words| (Cause::Stopped, words)));
         let step_size = &s.state.network.step_size;
         // One message covers all of them.
         let warning = step_size.warning().unwrap_or_default();
@@ -65,10 +65,10 @@ impl Ran {
             (step_size.passed, Cause::Passed),
         ];
         let causes = causes.into_iter().filter(|(times, _)| *times > 0);
-        told.extend(causes.map(|(_, cause)| (cause, warning.clone())));
+        reported.extend(causes.map(|(_, cause)| (cause, warning.clone())));
         let missed = self.missed.warning(s, self.steps);
-        told.extend(missed.map(|words| (Cause::Unconverged, words)));
-        told
+        reported.extend(missed.map(|words| (Cause::Unconverged, words)));
+        reported
     }
 
     /// Table row of a scene that ran.
@@ -85,7 +85,7 @@ impl Ran {
         Row {
             value,
             found,
-            verdict: Verdict::new(expected, met, sound, &self.told(s)),
+            verdict: Verdict::new(expected, met, sound, &self.reported(s)),
         }
     }
 }

@@ -35,23 +35,29 @@ pub struct Expected {
     /// Whether its criterion is met.
     pub met: bool,
     /// All reported causes, in this order.
-    pub told: &'static [Cause],
+    pub reported: &'static [Cause],
 }
 
 /// The criterion is met without warnings.
 pub const HELD: Expected = Expected {
     met: true,
-    told: &[],
+    reported: &[],
 };
 
 /// The criterion is missed, and these causes are reported.
-pub const fn told(told: &'static [Cause]) -> Expected {
-    Expected { met: false, told }
+pub const fn reported(reported: &'static [Cause]) -> Expected {
+    Expected {
+        met: false,
+        reported,
+    }
 }
 
 /// The criterion is met, but these causes are reported.
-pub const fn held_though(told: &'static [Cause]) -> Expected {
-    Expected { met: true, told }
+pub const fn held_though(reported: &'static [Cause]) -> Expected {
+    Expected {
+        met: true,
+        reported,
+    }
 }
 
 /// Result of a scene.
@@ -59,7 +65,7 @@ pub enum Verdict {
     /// The criterion is met, as expected; with the warnings.
     Held(String),
     /// The criterion is missed and the program reported the cause, as expected.
-    Told(String),
+    Reported(String),
     /// Anything else.
     Broken(String),
 }
@@ -67,12 +73,12 @@ pub enum Verdict {
 impl Verdict {
     /// Compares the result with the expectation. Non-finite numbers, or a ledger that does not
     /// close, always count as broken.
-    pub fn new(expected: Expected, met: bool, sound: bool, told: &[(Cause, String)]) -> Self {
-        let mut words: Vec<&str> = told.iter().map(|(_, words)| words.as_str()).collect();
+    pub fn new(expected: Expected, met: bool, sound: bool, reported: &[(Cause, String)]) -> Self {
+        let mut words: Vec<&str> = reported.iter().map(|(_, words)| words.as_str()).collect();
         // One message may report two causes.
         words.dedup();
         let words = words.join("; ");
-        let causes = told.iter().map(|(cause, _)| cause);
+        let causes = reported.iter().map(|(cause, _)| cause);
         if !sound {
             Self::Broken(format!(
                 "not all is finite, or the ledger does not close; {words}"
@@ -82,14 +88,14 @@ impl Verdict {
             Self::Broken(format!(
                 "the criterion is {what}, against what is expected; {words}"
             ))
-        } else if !causes.eq(expected.told) {
-            Self::Broken(format!("expected reports {:?}; {words}", expected.told))
-        } else if let Some((cause, _)) = told.iter().find(|(c, w)| !w.contains(c.proposal())) {
+        } else if !causes.eq(expected.reported) {
+            Self::Broken(format!("expected reports {:?}; {words}", expected.reported))
+        } else if let Some((cause, _)) = reported.iter().find(|(c, w)| !w.contains(c.proposal())) {
             Self::Broken(format!("{cause:?} proposes nothing; {words}"))
         } else if met {
             Self::Held(words)
         } else {
-            Self::Told(words)
+            Self::Reported(words)
         }
     }
 }
@@ -123,7 +129,7 @@ pub struct Group {
 pub fn refused(value: String, expected: Expected, words: &str) -> Row {
     let first = words.lines().next().unwrap_or_default();
     let sentence = first.split_once("error: ").map_or(first, |(_, s)| s);
-    let cause = match expected.told {
+    let cause = match expected.reported {
         [cause @ Cause::Refused(words)] if sentence.contains(words) => *cause,
         _ => Cause::Refused(""),
     };

@@ -2,7 +2,7 @@
 
 use super::super::bench::Cause::Refused;
 use super::super::bench::{
-    Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told,
+    Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, reported,
 };
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
@@ -52,7 +52,7 @@ fn coincident<S: Space>() -> Vec<Row> {
             "from the start",
             0.0,
             0.0,
-            told(&[Refused("move them apart or make them smaller")]),
+            reported(&[Refused("move them apart or make them smaller")]),
         ),
         ("by motion, within a step", 3.0, 0.0, HELD),
         ("the same, with projection", 3.0, 1e-4, HELD),

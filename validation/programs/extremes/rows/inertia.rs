@@ -3,7 +3,7 @@
 use super::super::bench::Cause::Unconverged;
 use super::super::bench::{
     Expected, G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, overlap, place,
-    refused, told, volume,
+    refused, reported, volume,
 };
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
@@ -97,7 +97,7 @@ fn heavy<S: Space>(words: &str, ratio: f64, radii: [f64; 2], densities: [f64; 2]
         return vec![row(words, 1e-10, HELD)];
     }
     vec![
-        row(words, 1e-10, told(&[Unconverged])),
+        row(words, 1e-10, reported(&[Unconverged])),
         row(&format!("{words}, tolerance 1e-6"), 1e-6, HELD),
     ]
 }

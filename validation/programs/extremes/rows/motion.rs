@@ -1,7 +1,7 @@
 //! Speeds up to 100 km/s.
 
 use super::super::bench::Cause::Passed;
-use super::super::bench::{Expected, Group, HELD, Row, Sketch, go, place, refused, told};
+use super::super::bench::{Expected, Group, HELD, Row, Sketch, go, place, refused, reported};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
@@ -71,8 +71,8 @@ fn speeds<S: Space>() -> Vec<Row> {
         (1e2, 0.2, HELD),
         (1e3, NEAR, HELD),
         // Beyond the post within the half step before the first detection.
-        (1e4, NEAR, told(&[Passed])),
-        (1e5, NEAR, told(&[Passed])),
+        (1e4, NEAR, reported(&[Passed])),
+        (1e5, NEAR, reported(&[Passed])),
     ]
     .map(thrown)
     .into()

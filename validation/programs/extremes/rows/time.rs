@@ -3,7 +3,7 @@
 use super::super::bench::Cause::{Refused, Unconverged};
 use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place,
-    refused, told, up, watch,
+    refused, reported, up, watch,
 };
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
@@ -62,7 +62,11 @@ fn short_steps_in_space() -> Vec<Row> {
 /// overlap remains.
 fn long_steps_in_space() -> Vec<Row> {
     let coarse = held_though(&[Unconverged]);
-    let long = [(1e-2, coarse), (0.1, coarse), (1.0, told(&[Unconverged]))];
+    let long = [
+        (1e-2, coarse),
+        (0.1, coarse),
+        (1.0, reported(&[Unconverged])),
+    ];
     falling::<Dim3>(&long, 200)
 }
 
@@ -160,7 +164,7 @@ fn jumps<S: Space>() -> Vec<Row> {
             0.0,
             "Velocity(Table([(0.0, 0.0), (0.05, 0.0), (0.05, 10.0), (1.0, 10.0)]))",
             steady,
-            told(&[Refused(
+            reported(&[Refused(
                 "the times of a table must rise; for a jump give two times that are close",
             )]),
         ),

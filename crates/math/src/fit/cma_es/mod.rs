@@ -102,7 +102,7 @@ impl Cma {
     ) -> Result<Self, CmaError> {
         let n = mean.len();
         let population = population.unwrap_or_else(|| Strategy::population(n.max(1)));
-        let fault = if n == 0 {
+        let reason = if n == 0 {
             Some("a search needs at least one parameter".to_owned())
         } else if !mean.iter().all(|m| m.is_finite()) {
             Some(format!("the start {mean:?} must have finite numbers"))
@@ -117,8 +117,8 @@ impl Cma {
         } else {
             None
         };
-        if let Some(fault) = fault {
-            return Err(CmaError::Start(fault));
+        if let Some(reason) = reason {
+            return Err(CmaError::Start(reason));
         }
         Ok(Self {
             population,
@@ -138,13 +138,13 @@ impl Cma {
         })
     }
 
-    /// The same search that ends at other limits.
+    /// Sets the limits at which the search ends.
     pub fn with_limits(mut self, limits: Limits) -> Self {
         self.limits = limits;
         self
     }
 
-    /// The same search whose step stays below `largest` (for unit coordinates 1, since a wider
+    /// Bounds the step of the search by `largest` (for unit coordinates 1, since a wider
     /// distribution covers the region several times).
     pub fn with_largest_step(mut self, largest: f64) -> Self {
         self.largest_step = Some(largest);

@@ -108,7 +108,7 @@ fn other_ends() {
     assert_eq!(end(|x| Some(-x[0]), limits), Stop::Diverges);
 }
 
-/// The same seed and values give the same search, bit by bit; another seed another one.
+/// Searches with equal seeds and values agree bit by bit; another seed gives another search.
 #[test]
 fn the_same_seed_gives_the_same_search() {
     let run = |seed: u64| {

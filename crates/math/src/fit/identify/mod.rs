@@ -21,9 +21,9 @@
 //! Nonlinear Regression, 1989, chapter 5.
 //!
 //! **Directions** are eigenvectors of H in unit coordinates. One whose interval is wider than the
-//! region, or whose eigenvalue cannot be told from noise, is a combination of parameters that the
-//! data do not determine; every parameter in it has the whole range as its interval. Orders between
-//! parameters are not taken into account.
+//! region, or whose eigenvalue cannot be distinguished from noise, is a combination of parameters
+//! that the data do not determine; every parameter in it has the whole range as its interval.
+//! Orders between parameters are not taken into account.
 //!
 //! **A parameter at the end of its range** with the squares still falling outwards has a one-sided
 //! interval, from the end; the others are then estimated with it fixed.

@@ -82,7 +82,7 @@ pub struct Identification {
     pub directions: Vec<Direction>,
     /// Weighted sum of squares at the estimate.
     pub chi_squared: f64,
-    /// The same over what the errors explain: about 1 if the model describes the data. `None`
+    /// `chi_squared` over what the errors explain: about 1 if the model describes the data. `None`
     /// without degrees of freedom.
     pub reduced: Option<f64>,
     /// Probability of such a ratio by chance; `None` without degrees of freedom, or if no standard

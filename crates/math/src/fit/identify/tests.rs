@@ -428,14 +428,14 @@ fn wrong_use_is_refused() {
     let runs = planted.runs(1, &mut rng);
     let measured = planted.measured(&mut rng);
     let data = |sigma| data(&measured, sigma);
-    let fault = |runs: &[Run], minimum: &[f64], sigma| {
+    let error_of = |runs: &[Run], minimum: &[f64], sigma| {
         identify(&planted.bounds, runs, minimum, &data(sigma))
             .unwrap_err()
             .to_string()
     };
-    assert!(fault(&runs[..5], &[0.5; 2], None).contains("at least 6 runs"));
-    assert!(fault(&runs, &[0.5; 3], None).contains("coordinates of the minimum: 3"));
-    assert!(fault(&runs, &[0.5; 2], Some(&[0.0; 30])).contains("positive"));
+    assert!(error_of(&runs[..5], &[0.5; 2], None).contains("at least 6 runs"));
+    assert!(error_of(&runs, &[0.5; 3], None).contains("coordinates of the minimum: 3"));
+    assert!(error_of(&runs, &[0.5; 2], Some(&[0.0; 30])).contains("positive"));
     let same = vec![runs[0].clone(); 40];
-    assert!(fault(&same, &[0.5; 2], None).contains("vary only some"));
+    assert!(error_of(&same, &[0.5; 2], None).contains("vary only some"));
 }

@@ -91,7 +91,7 @@ mod tests {
     fn detail_goes_down_until_enough_states_fit() {
         let mut detail = Detail::default();
         assert_eq!(detail.coarser(10, 21, 1, 10), None);
-        // As many as there are is enough.
+        // A limit equal to the number of states needs no coarser detail.
         assert_eq!(detail.coarser(3, 3, 1, 3), None);
         let mut steps = 0;
         while let Some(next) = detail.coarser(1, 21, 1000, 1000) {

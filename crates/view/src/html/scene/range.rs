@@ -35,7 +35,7 @@ impl FieldInfo {
 pub(super) struct Range {
     /// Smallest and largest value.
     pub all: [f64; 2],
-    /// The same without the lowest and the highest hundredth of the values of each state.
+    /// Smallest and largest value without the lowest and the highest hundredth of each state.
     pub most: [f64; 2],
 }
 

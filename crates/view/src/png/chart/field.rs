@@ -24,7 +24,7 @@ impl Layout<'_> {
             let points: Vec<[f32; 2]> = cell.iter().map(|p| place(*p)).collect();
             let colour = colour(field, k, top);
             page.polygon(&points, colour);
-            // As wide as a pixel, so that no seam shows between neighbours.
+            // An outline one pixel wide, so that no seam shows between neighbours.
             page.stroke(&points, true, 1.0, colour, None);
         }
         let mut drawn: Vec<[f32; 2]> = Vec::new();

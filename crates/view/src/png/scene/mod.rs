@@ -202,7 +202,7 @@ impl Frame {
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
             if body.element {
-                // As wide as a pixel, so that no seam shows between neighbours.
+                // An outline one pixel wide, so that no seam shows between neighbours.
                 field.polygon(&polygon, fill);
                 field.stroke(&polygon, true, 1.0, fill, None);
                 continue;

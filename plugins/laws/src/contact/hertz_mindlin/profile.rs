@@ -238,7 +238,7 @@ impl Profile {
         (force, squares)
     }
 
-    /// The same from a corner to the one before it.
+    /// What the part between a corner and the one before it adds to [`Self::sums`].
     fn part(&self, k: usize) -> (Pair, f64) {
         // Of three points by Gauss: exact, since u is of second order in sqrt(s).
         const AT: f64 = 0.774_596_669_241_483_4;
