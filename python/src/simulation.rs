@@ -255,11 +255,14 @@ impl Simulation {
 
     /// Names, units and lines of explanation of the columns of the statistics.
     fn statistics_columns(&self) -> PyResult<Vec<(String, &'static str, &'static str)>> {
-        let columns = self.lock()?.own()?.observers.columns();
-        Ok(columns
-            .into_iter()
-            .map(|c| (c.name, c.unit, c.doc))
-            .collect())
+        let mut held = self.lock()?;
+        let own = held.own()?;
+        let dimension = own.simulation.dimension();
+        let columns = own.observers.columns().into_iter();
+        let line = |c: fretwork::record::statistics::Column| {
+            (c.name, c.unit.heading(dimension), c.doc)
+        };
+        Ok(columns.map(line).collect())
     }
 
     /// Their values now.

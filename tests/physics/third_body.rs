@@ -97,7 +97,7 @@ fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S
     std::fs::create_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
     let names: Vec<String> = columns.iter().map(|c| c.name.clone()).collect();
     let row = names.into_iter().zip(values).collect();
-    let table = Table::create(&out.join("t.csv"), columns).unwrap_or_else(|e| panic!("{e}"));
+    let table = Table::create(&out.join("t.csv"), columns, S::D).unwrap_or_else(|e| panic!("{e}"));
     let end = RunEnd {
         simulation: &s,
         table: &table,

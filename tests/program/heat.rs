@@ -124,7 +124,7 @@ fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
         let report = s.step().unwrap();
         observers.after_step(&s, &report);
     }
-    let table = Table::new(observers.columns());
+    let table = Table::new(observers.columns(), 2);
     let end = RunEnd {
         simulation: &s,
         table: &table,

@@ -61,6 +61,16 @@ pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
 /// Moments of inertia.
 pub const INERTIA: Unit = Unit::by_depth("kg m^2", "kg m");
 
+impl From<&'static str> for Unit {
+    /// A unit that is the same in every dimension; an empty text is that of pure numbers.
+    fn from(symbol: &'static str) -> Self {
+        match symbol {
+            "" => ONE,
+            _ => Self::of(symbol),
+        }
+    }
+}
+
 impl Unit {
     /// A unit that is the same in every dimension; `1` for pure numbers.
     pub const fn of(symbol: &'static str) -> Self {

@@ -240,11 +240,10 @@ impl<S: Space> ObserverIn<S> for Deformable {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let newton = FORCE.symbol(S::D);
         let of = |name: &String| {
             [
                 Column::new(name.clone(), "m", "displacement of the held part"),
-                Column::new(force(name), newton, "force of its holder on the part"),
+                Column::new(force(name), FORCE, "force of its holder on the part"),
             ]
         };
         self.holders.iter().flat_map(of).collect()

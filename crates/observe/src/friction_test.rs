@@ -7,7 +7,7 @@ use super::friction::{Cycles, Sample, State};
 use super::friction_report;
 use super::layer::Layer;
 use super::output::Output;
-use super::quantity::unit::{FORCE, LOAD_PATH};
+use super::quantity::unit::{FORCE, LOAD_PATH, METRE, ONE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::run_state::damage_ratio;
 use super::statistics::Column;
@@ -122,13 +122,12 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let newton = FORCE.symbol(S::D);
-        let c = |name, unit, doc| Column::new(name, unit, doc);
+        let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         vec![
-            c("delta", "m", "displacement of the body under test"),
-            c("Q", newton, "tangential force that moves it"),
-            c("P", newton, "normal force"),
-            c("mu", "", "|Q|/P"),
+            c("delta", METRE, "displacement of the body under test"),
+            c("Q", FORCE, "tangential force that moves it"),
+            c("P", FORCE, "normal force"),
+            c("mu", ONE, "|Q|/P"),
         ]
     }
 

@@ -8,7 +8,7 @@ use super::chart::{Axis, Series};
 use super::figures::history;
 use super::output::Output;
 use super::picture::{Picture, Shows};
-use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE};
+use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
 use crate::typed::{ObserverIn, RunEndIn};
@@ -141,8 +141,6 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let units = [ENERGY, POWER, RESISTANCE, CURRENT];
-        let [joule, watt, ohm, ampere] = units.map(|unit| unit.symbol(S::D));
         let mut all = vec![
             Column::new(
                 "temperature_max",
@@ -155,7 +153,7 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
                 "mean temperature of the grains, by their heat capacities",
             ),
         ];
-        let of_bodies = |quantity: &str, unit, doc| -> Vec<Column> {
+        let of_bodies = |quantity: &str, unit: Unit, doc| -> Vec<Column> {
             let names = self.names.iter();
             names
                 .map(|name| Column::new(format!("{name}_{quantity}"), unit, doc))
@@ -163,24 +161,24 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         };
         all.extend(of_bodies(
             "temperature",
-            "K",
+            KELVIN,
             "mean temperature of the surface of a first body, of finite elements that of its volume; not a number of an insulated one",
         ));
         all.extend(of_bodies(
             "heat_flow",
-            watt,
+            POWER,
             "heat flow into a first body through its contacts, mean since the row before",
         ));
-        all.extend(ledger_columns(joule));
+        all.extend(ledger_columns());
         if self.circuit {
             all.extend([
                 Column::new(
                     "resistance",
-                    ohm,
+                    RESISTANCE,
                     "electrical resistance between the bodies of the circuit; infinite where no contact joins them, not a number before the heat starts",
                 ),
                 Column::new("voltage", "V", "voltage between the bodies of the circuit"),
-                Column::new("current", ampere, "current of the circuit"),
+                Column::new("current", CURRENT, "current of the circuit"),
             ]);
         }
         all
@@ -355,10 +353,11 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
     }
 }
 
-/// Columns of the account of heat, in this unit.
-fn ledger_columns(joule: &'static str) -> Vec<Column> {
+/// Columns of the account of heat.
+fn ledger_columns() -> Vec<Column> {
     let entries = HeatLedger::default().entries();
-    let column =
-        |(name, doc, _): (&str, &'static str, f64)| Column::new(format!("heat_{name}"), joule, doc);
+    let column = |(name, doc, _): (&str, &'static str, f64)| {
+        Column::new(format!("heat_{name}"), ENERGY, doc)
+    };
     entries.into_iter().map(column).collect()
 }

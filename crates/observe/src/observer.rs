@@ -196,6 +196,8 @@ pub type ObserverState = (String, Vec<u8>);
 #[derive(Debug, Default)]
 pub struct Observers {
     list: Vec<Box<dyn Observer>>,
+    /// Number of columns of each, known from the first row on.
+    widths: Vec<usize>,
 }
 
 impl Observers {
@@ -244,8 +246,25 @@ impl Observers {
     }
 
     /// Values of [`Observers::columns`].
+    ///
+    /// # Panics
+    /// An observer gives another number of values than it has columns.
     pub fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
-        self.list.iter_mut().flat_map(|o| o.sample(run)).collect()
+        if self.widths.len() != self.list.len() {
+            self.widths = self.list.iter().map(|o| o.columns().len()).collect();
+        }
+        let mut row = Vec::with_capacity(self.widths.iter().sum());
+        for (observer, width) in self.list.iter_mut().zip(&self.widths) {
+            let values = observer.sample(run);
+            assert_eq!(
+                values.len(),
+                *width,
+                "the observer `{}` gives another number of values than it has columns",
+                observer.name()
+            );
+            row.extend(values);
+        }
+        row
     }
 
     /// See [`Observer::grain_columns`].

@@ -102,11 +102,10 @@ impl<S: Space> ObserverIn<S> for Scars {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let volume = VOLUME.symbol(S::D);
         let two = |name: &String| {
             let (worn, depth) = (format!("{name}_worn"), format!("{name}_depth"));
             [
-                Column::new(worn, volume, "volume worn off the body"),
+                Column::new(worn, VOLUME, "volume worn off the body"),
                 Column::new(depth, "m", "largest depth of its scar"),
             ]
         };

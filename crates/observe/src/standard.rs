@@ -43,7 +43,7 @@ pub fn declared(case: &Case, run: &dyn RunView) -> Findings {
     let observers = observers(case, run, 0.0);
     let end = RunEnd {
         simulation: run,
-        table: &Table::new(observers.columns()),
+        table: &Table::new(observers.columns(), run.dimension()),
         title: "",
         uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,

@@ -1,7 +1,6 @@
 //! Table of statistics: one row every few steps, in `statistics.csv` and `results.h5`.
 
 use super::quantity::Unit;
-use super::quantity::unit::ONE;
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -11,29 +10,20 @@ use std::path::{Path, PathBuf};
 pub struct Column {
     /// Name.
     pub name: String,
-    /// SI unit, empty for a pure number.
-    pub unit: &'static str,
+    /// SI unit.
+    pub unit: Unit,
     /// Description in one line.
     pub doc: &'static str,
 }
 
 impl Column {
-    /// Makes a column.
-    pub fn new(name: impl Into<String>, unit: &'static str, doc: &'static str) -> Self {
+    /// A column in a unit: one that depends on the dimension, or a symbol such as `m/s`, empty for
+    /// a pure number.
+    pub fn new(name: impl Into<String>, unit: impl Into<Unit>, doc: &'static str) -> Self {
         Self {
             name: name.into(),
-            unit,
+            unit: unit.into(),
             doc,
-        }
-    }
-}
-
-impl Column {
-    /// Its unit as that of a quantity.
-    pub fn unit(&self) -> Unit {
-        match self.unit {
-            "" => ONE,
-            symbol => Unit::of(symbol),
         }
     }
 }
@@ -44,6 +34,8 @@ impl Column {
 pub struct Table {
     /// Columns.
     pub columns: Vec<Column>,
+    /// Dimension of the run, which decides the units.
+    dimension: usize,
     /// Values, row by row, after [`Self::recall`].
     pub rows: Vec<f64>,
     /// The file and its writer; `None` before it is opened.
@@ -51,23 +43,29 @@ pub struct Table {
 }
 
 impl Table {
-    /// Opens the file and writes its header: `name [unit]`.
+    /// A table of a run in a dimension, with its file and header: `name [unit]`.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn create(path: &Path, columns: Vec<Column>) -> Result<Self, csv::Error> {
-        let mut table = Self::new(columns);
+    pub fn create(path: &Path, columns: Vec<Column>, dimension: usize) -> Result<Self, csv::Error> {
+        let mut table = Self::new(columns, dimension);
         table.open(path)?;
         Ok(table)
     }
 
-    /// An empty table without a file.
-    pub fn new(columns: Vec<Column>) -> Self {
+    /// An empty table of a run in a dimension, without a file.
+    pub fn new(columns: Vec<Column>, dimension: usize) -> Self {
         Self {
             columns,
+            dimension,
             rows: Vec::new(),
             file: None,
         }
+    }
+
+    /// Unit of a column for headings and axes; empty for a pure number.
+    pub fn heading(&self, column: &Column) -> &'static str {
+        column.unit.heading(self.dimension)
     }
 
     /// Opens the file and writes its header: `name [unit]`.
@@ -76,7 +74,7 @@ impl Table {
     /// The file cannot be written.
     pub fn open(&mut self, path: &Path) -> Result<(), csv::Error> {
         let mut writer = csv::Writer::from_writer(BufWriter::new(File::create(path)?));
-        writer.write_record(self.columns.iter().map(|c| match c.unit {
+        writer.write_record(self.columns.iter().map(|c| match self.heading(c) {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         }))?;
@@ -188,7 +186,7 @@ mod tests {
     fn rows_come_back_with_their_bits_and_a_cut_one_does_not() {
         let path = std::env::temp_dir().join(format!("fretwork-table-{}.csv", std::process::id()));
         let columns = ["a", "b"].map(|name| Column::new(name, "m", "")).to_vec();
-        let mut table = Table::create(&path, columns).unwrap();
+        let mut table = Table::create(&path, columns, 3).unwrap();
         let rows = [
             [0.1 + 0.2, -0.0],
             [f64::MIN_POSITIVE / 3.0, f64::MAX],

@@ -256,10 +256,9 @@ impl<S: Space> ObserverIn<S> for Wear {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let volume = VOLUME.symbol(S::D);
         vec![
-            Column::new("worn_first", volume, "volume worn off first bodies"),
-            Column::new("worn_third", volume, "volume worn between grains"),
+            Column::new("worn_first", VOLUME, "volume worn off first bodies"),
+            Column::new("worn_third", VOLUME, "volume worn between grains"),
         ]
     }
 

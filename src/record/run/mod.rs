@@ -315,7 +315,7 @@ impl<'a> Recorder<'a> {
             camera: Camera::new((&simulation).into(), &case.output),
             drawing: Drawing::default(),
             out: options.out.clone(),
-            table: Table::new(columns),
+            table: Table::new(columns, simulation.dimension()),
             results,
             observers,
             problems: (0, 0),

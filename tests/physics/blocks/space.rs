@@ -239,7 +239,7 @@ fn blocks_are_measured() {
     let mut profile = measures::<Dim3>(&[profile], 1.0, false);
     step(&mut s);
     profile.sample(&s);
-    let table = Table::create(&folder.join("t.csv"), Vec::new()).unwrap();
+    let table = Table::create(&folder.join("t.csv"), Vec::new(), 3).unwrap();
     let end = RunEnd {
         simulation: &s,
         table: &table,

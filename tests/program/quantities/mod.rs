@@ -9,7 +9,7 @@ use fretwork::record::observer::{Event, EventTable};
 use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
 use fretwork::record::statistics::Column;
-use fretwork::record::{Observer, Run, RunEnd, RunOptions, RunView, Summary};
+use fretwork::record::{Observer, Observers, Run, RunEnd, RunOptions, RunView, Summary};
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork::step::StepReport;
@@ -191,6 +191,29 @@ fn events_without_a_table_are_refused() {
     let run = Run::new(&loaded, built, &options).observe(Stray);
     let error = run.execute(&mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(error.to_string().contains("the table `strays`"), "{error}");
+}
+
+/// Values are matched to columns by their order, so that their number is checked at every row.
+#[test]
+#[should_panic(expected = "the observer `short` gives another number of values")]
+fn an_observer_gives_a_value_for_each_of_its_columns() {
+    #[derive(Debug)]
+    struct Short;
+    impl Observer for Short {
+        fn name(&self) -> String {
+            "short".to_owned()
+        }
+        fn columns(&self) -> Vec<Column> {
+            ["a", "b"].map(|name| Column::new(name, "m", "")).into()
+        }
+        fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
+            vec![1.0]
+        }
+    }
+    let (_, built) = cradle();
+    let mut observers = Observers::default();
+    observers.push(Box::new(Short));
+    observers.sample(&built.simulation);
 }
 
 /// Every number of a run has a unit and an explanation, also those in lists.

@@ -76,7 +76,11 @@ fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
         threads: 1,
     };
     run(loaded, built, &options, &mut |_| {}).unwrap();
-    let expected = known(columns.iter().map(|c| (c.name.as_str(), c.unit, c.doc)));
+    let expected = known(
+        columns
+            .iter()
+            .map(|c| (c.name.as_str(), c.unit.heading(S::D), c.doc)),
+    );
     assert_eq!(expected.len(), columns.len(), "two columns of one name");
     let file = H5File::open(out.join("results.h5")).unwrap();
     assert_eq!(written(&file, &["statistics"]), expected);
@@ -84,7 +88,7 @@ fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
     let heads = table.lines().next().unwrap().split(',');
     let named: Vec<String> = columns
         .iter()
-        .map(|c| match c.unit {
+        .map(|c| match c.unit.heading(S::D) {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         })

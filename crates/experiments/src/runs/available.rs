@@ -65,7 +65,7 @@ impl AvailableQuantities {
         let unit = match output.column_name() {
             Some(name) => {
                 let column = self.columns.iter().find(|c| c.name == name);
-                column.map(|c| c.unit().symbol(self.found.dimension()))
+                column.map(|c| c.unit.symbol(self.found.dimension()))
             }
             None => self.found.unit_of(&output.name),
         };

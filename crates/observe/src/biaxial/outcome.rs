@@ -263,7 +263,7 @@ mod tests {
             .chain(&others)
             .chain(&["coordination_carried"]);
         let names: Vec<Column> = names.map(|n| Column::new(*n, "", "")).collect();
-        let mut table = Table::new(names);
+        let mut table = Table::new(names, 2);
         for k in 0..1200 {
             let p = if k % 2 == 0 { 1.0 } else { 9.0 };
             let (time, rest) = (f64::from(k), [p, 0.0, 0.8, 3.0, 3.0]);

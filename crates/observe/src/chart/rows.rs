@@ -83,7 +83,7 @@ impl Columns for TableColumns<'_> {
         let values = known
             .entry(name.to_owned())
             .or_insert_with(|| self.table.column(name).into());
-        Some((column.unit, values.clone()))
+        Some((self.table.heading(column), values.clone()))
     }
 }
 
@@ -256,7 +256,7 @@ mod tests {
         let columns = names
             .iter()
             .map(|(name, unit)| Column::new(*name, unit, ""));
-        let mut table = Table::new(columns.collect());
+        let mut table = Table::new(columns.collect(), 3);
         table.rows = rows;
         table
     }

@@ -11,7 +11,7 @@ use super::observer::{Event, EventTable};
 use super::output::Output;
 use super::picture::{Paint, Picture, Shows};
 use super::quantity::Findings;
-use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW};
+use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW, METRE, ONE, SECOND, Unit};
 use super::series::Series;
 use super::statistics::Column;
 use super::steady;
@@ -55,36 +55,39 @@ impl<S: Space> ObserverIn<S> for BrokenBonds {
     }
 
     fn event_tables(&self) -> Vec<EventTable> {
-        let c = Column::new;
-        let joule = ENERGY.symbol(S::D);
+        let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         let mut columns = vec![
-            c("id", "", "number of the break, from 1"),
-            c("time", "s", "end of the step in which it broke"),
-            c("body_1", "", "identity of the candidate"),
-            c("body_2", "", "identity of the antagonist"),
-            c("interface", "", "index of the interface"),
+            c("id", ONE, "number of the break, from 1"),
+            c("time", SECOND, "end of the step in which it broke"),
+            c("body_1", ONE, "identity of the candidate"),
+            c("body_2", ONE, "identity of the antagonist"),
+            c("interface", ONE, "index of the interface"),
         ];
         columns.extend(place());
         columns.extend([
             c(
                 "mode_mix",
-                "",
+                ONE,
                 "fraction of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
             ),
-            c("opening_normal", "m", "elongation at the end"),
-            c("opening_tangential", "m", "norm of the tangential opening"),
-            c("area", AREA.symbol(S::D), "area of the bond"),
-            c("work", joule, "work done on the bond since it formed"),
-            c("fracture", joule, "energy released by damage"),
-            c("viscous", joule, "dissipated by its damping"),
+            c("opening_normal", METRE, "elongation at the end"),
+            c(
+                "opening_tangential",
+                METRE,
+                "norm of the tangential opening",
+            ),
+            c("area", AREA, "area of the bond"),
+            c("work", ENERGY, "work done on the bond since it formed"),
+            c("fracture", ENERGY, "energy released by damage"),
+            c("viscous", ENERGY, "dissipated by its damping"),
             c(
                 "friction",
-                joule,
+                ENERGY,
                 "dissipated by friction at the contact while it was intact",
             ),
             c(
                 "cause",
-                "",
+                ONE,
                 "0 damage, 1 its bodies moved out of range or one was removed",
             ),
         ]);
@@ -273,33 +276,29 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
     }
 
     fn event_tables(&self) -> Vec<EventTable> {
-        let c = Column::new;
+        let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         let mut columns = vec![
-            c("id", "", "number of the piece, from 1"),
-            c("time", "s", "time at which the account found it loose"),
-            c("size", "", "grains in it"),
-            c("mass", MASS.symbol(S::D), "its mass"),
+            c("id", ONE, "number of the piece, from 1"),
+            c("time", SECOND, "time at which the account found it loose"),
+            c("size", ONE, "grains in it"),
+            c("mass", MASS, "its mass"),
         ];
         columns.extend(place());
         columns.extend([
-            c("first_body", "", "identity of the first body that lost it"),
+            c("first_body", ONE, "identity of the first body that lost it"),
             c(
                 "mode_mix",
-                "",
+                ONE,
                 "fraction of sliding in the work on the bonds that freed it",
             ),
-            c(
-                "energy",
-                ENERGY.symbol(S::D),
-                "energy released by damage of these bonds",
-            ),
-            c("bonds", "", "number of these bonds"),
+            c("energy", ENERGY, "energy released by damage of these bonds"),
+            c("bonds", ONE, "number of these bonds"),
         ]);
         let doc = "identities of the grains of all pieces, one piece after another";
         vec![EventTable {
             name: "debris",
             columns,
-            list: Some(c("grains", "", doc)),
+            list: Some(c("grains", ONE, doc)),
         }]
     }
 
@@ -317,28 +316,27 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let kg = MASS.symbol(S::D);
-        let c = Column::new;
+        let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         vec![
-            c("tied_grains", "", "grains tied to first bodies"),
-            c("M_grains", "", "grains in the contact"),
+            c("tied_grains", ONE, "grains tied to first bodies"),
+            c("M_grains", ONE, "grains in the contact"),
             c(
                 "source_grains",
-                "",
+                ONE,
                 "grains that came loose, since the start",
             ),
-            c("attached_grains", "", "grains that bonds tied again"),
-            c("ejected_grains", "", "grains that left the contact"),
-            c("recirculated_grains", "", "grains that came back"),
-            c("lost_grains", "", "grains that wore: out for good"),
-            c("M", kg, "mass in the contact"),
-            c("source", kg, "mass that came loose, since the start"),
-            c("attached", kg, "mass that bonds tied again"),
-            c("ejected", kg, "mass that left the contact"),
-            c("recirculated", kg, "mass that came back"),
-            c("lost", kg, "mass that wore: out for good"),
-            c("ledger_grains", "", "grains that do not add up; 0"),
-            c("ledger_mass", kg, "mass that does not add up; rounding"),
+            c("attached_grains", ONE, "grains that bonds tied again"),
+            c("ejected_grains", ONE, "grains that left the contact"),
+            c("recirculated_grains", ONE, "grains that came back"),
+            c("lost_grains", ONE, "grains that wore: out for good"),
+            c("M", MASS, "mass in the contact"),
+            c("source", MASS, "mass that came loose, since the start"),
+            c("attached", MASS, "mass that bonds tied again"),
+            c("ejected", MASS, "mass that left the contact"),
+            c("recirculated", MASS, "mass that came back"),
+            c("lost", MASS, "mass that wore: out for good"),
+            c("ledger_grains", ONE, "grains that do not add up; 0"),
+            c("ledger_mass", MASS, "mass that does not add up; rounding"),
         ]
     }
 

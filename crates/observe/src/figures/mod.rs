@@ -287,7 +287,7 @@ mod tests {
     use crate::statistics::{Column, Table};
 
     fn table(names: &[&str], rows: Vec<f64>) -> Table {
-        let mut table = Table::new(names.iter().map(|n| Column::new(*n, "", "")).collect());
+        let mut table = Table::new(names.iter().map(|n| Column::new(*n, "", "")).collect(), 3);
         table.rows = rows;
         table
     }

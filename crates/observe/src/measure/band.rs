@@ -121,7 +121,7 @@ impl<S: Space> ObserverIn<S> for Band<S> {
         for column in ObserverIn::<S>::columns(self) {
             let last = end.table.column(&column.name).last().copied();
             if let Some(value) = last.filter(|v| v.is_finite()) {
-                found.measure(&column.name, value, column.unit(), column.doc);
+                found.measure(&column.name, value, column.unit, column.doc);
             }
         }
     }

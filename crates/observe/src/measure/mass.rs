@@ -27,10 +27,9 @@ impl<S: Space> ObserverIn<S> for Mass {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let unit = MASS.symbol(S::D);
         vec![Column::new(
             self.name.clone(),
-            unit,
+            MASS,
             "mass of the grains above a level",
         )]
     }

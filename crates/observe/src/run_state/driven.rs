@@ -2,7 +2,7 @@
 
 use crate::figures;
 use crate::output::Output;
-use crate::quantity::unit::FORCE;
+use crate::quantity::unit::{FORCE, METRE, SPEED};
 use crate::statistics::Column;
 use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
@@ -41,13 +41,12 @@ impl<S: Space> ObserverIn<S> for DrivenBodies {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let newton = FORCE.symbol(S::D);
         let mut out = Vec::new();
         for (_, name) in &self.shown {
             for (what, unit, doc) in [
-                ("", "m", "position of the body"),
-                ("v", "m/s", "velocity of the body"),
-                ("f", newton, "contact force on the body"),
+                ("", METRE, "position of the body"),
+                ("v", SPEED, "velocity of the body"),
+                ("f", FORCE, "contact force on the body"),
             ] {
                 let axes = ["x", "y", "z"].into_iter().take(S::D);
                 out.extend(axes.map(|a| Column::new(format!("{name}_{what}{a}"), unit, doc)));

@@ -14,7 +14,7 @@ pub use phases::Phases;
 
 use super::figures;
 use super::output::Output;
-use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, WORD};
+use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, Unit, WORD};
 use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
@@ -308,30 +308,29 @@ impl<S: Space> ObserverIn<S> for RunState {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let joule = ENERGY.symbol(S::D);
-        let c = |name, unit, doc| Column::new(name, unit, doc);
+        let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         let mut out = vec![
-            c("step", "", "number of the step"),
-            c("time", "s", "time at its end"),
-            c("cycle", "", "cycle of the friction test"),
-            c("contacts", "", "contacts within the alert distance"),
-            c("active", "", "contacts that carry an impulse"),
-            c("iterations", "", "sweeps of the solver"),
-            c("error", "", "error of the solution"),
-            c("converged", "", "1 if the tolerance was reached"),
+            c("step", ONE, "number of the step"),
+            c("time", SECOND, "time at its end"),
+            c("cycle", ONE, "cycle of the friction test"),
+            c("contacts", ONE, "contacts within the alert distance"),
+            c("active", ONE, "contacts that carry an impulse"),
+            c("iterations", ONE, "sweeps of the solver"),
+            c("error", ONE, "error of the solution"),
+            c("converged", ONE, "1 if the tolerance was reached"),
             c(
                 "overlap",
-                "",
+                ONE,
                 "deepest overlap of rigid contacts, over the radius of the smaller grain",
             ),
-            c("bonds_intact", "", "bonds that hold"),
-            c("bonds_broken", "", "bonds that broke"),
-            c("damage_ratio", "", "broken bonds over bonds made"),
-            c("mean_damage", "", "mean damage over bonds made"),
+            c("bonds_intact", ONE, "bonds that hold"),
+            c("bonds_broken", ONE, "bonds that broke"),
+            c("damage_ratio", ONE, "broken bonds over bonds made"),
+            c("mean_damage", ONE, "mean damage over bonds made"),
         ];
         let entries = Energy::default().entries().into_iter();
-        out.extend(entries.map(|(name, doc, _)| c(name, joule, doc)));
-        let units = [MOMENTUM, ANGULAR_MOMENTUM].map(|unit| unit.symbol(S::D));
+        out.extend(entries.map(|(name, doc, _)| c(name, ENERGY, doc)));
+        let units = [MOMENTUM, ANGULAR_MOMENTUM];
         let entries = Momentum::default().entries().into_iter().zip(units);
         out.extend(entries.map(|((name, doc, _), unit)| c(name, unit, doc)));
         out

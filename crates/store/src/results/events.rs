@@ -18,7 +18,11 @@ pub(super) struct Events {
 
 impl Events {
     /// Declares the columns of all tables; no group is created without tables.
-    pub fn declare(store: &mut Store, tables: &[EventTable]) -> Result<Vec<Self>, ResultsError> {
+    pub fn declare(
+        store: &mut Store,
+        tables: &[EventTable],
+        dimension: usize,
+    ) -> Result<Vec<Self>, ResultsError> {
         if !tables.is_empty() {
             store.group("/events")?;
         }
@@ -28,7 +32,12 @@ impl Events {
             let mut grown = Vec::new();
             for c in table.columns.iter().chain(&table.list) {
                 let path = format!("{group}/{}", c.name);
-                grown.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
+                grown.push(store.growing::<f64>(
+                    &path,
+                    1,
+                    (c.unit.heading(dimension), c.doc),
+                    MANY,
+                )?);
             }
             let list = table.list.as_ref().and_then(|_| grown.pop());
             Ok(Self {

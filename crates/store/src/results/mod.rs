@@ -126,9 +126,14 @@ impl Results {
         let mut statistics = Vec::new();
         for c in &header.statistics {
             let path = format!("/statistics/{}", c.name);
-            statistics.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
+            statistics.push(store.growing::<f64>(
+                &path,
+                1,
+                (c.unit.heading(header.dimension), c.doc),
+                MANY,
+            )?);
         }
-        let events = Events::declare(&mut store, &header.events)?;
+        let events = Events::declare(&mut store, &header.events, header.dimension)?;
         let views = declare_views(&mut store, header)?;
         let meshes = declare_meshes(&mut store, &header.meshes)?;
         store.link("/VTKHDF", "/views/grains")?;
@@ -418,6 +423,7 @@ fn declare_views(store: &mut Store, header: &Header) -> Result<Vec<View>, Result
             data: &header.fields[k],
             numbers: &header.numbers[k],
             vectors: &header.vectors[k],
+            dimension: header.dimension,
         };
         let path = format!("/views/{name}");
         views.push(View::declare(store, &path, cells, columns)?);

@@ -56,6 +56,8 @@ pub struct Columns<'a> {
     pub numbers: &'a [Column],
     /// Of vectors.
     pub vectors: &'a [Column],
+    /// Dimension of the run.
+    pub dimension: usize,
 }
 
 /// A view in the file.
@@ -129,7 +131,7 @@ impl View {
         .map(|(fields, width, whole)| {
             let mut declare = |field: &Column| {
                 let name = format!("{path}/{place}/{}", field.name);
-                let doc = (field.unit, field.doc);
+                let doc = (field.unit.heading(columns.dimension), field.doc);
                 let values = match whole {
                     true => store.growing::<i64>(&name, width, doc, MANY)?,
                     false => store.growing::<f64>(&name, width, doc, MANY)?,

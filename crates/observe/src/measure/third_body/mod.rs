@@ -330,7 +330,7 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
             let values = since(end.table, &column.name, self.spec.start);
             if let Some(value) = mean(&values) {
                 let doc = format!("{}; mean over the run", column.doc);
-                found.measure(&self.column(part), value, column.unit(), doc);
+                found.measure(&self.column(part), value, column.unit, doc);
             }
         }
         let mut add = |part: &str, value: f64, unit: Unit, doc: String| {
