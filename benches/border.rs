@@ -11,7 +11,7 @@ use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork_abi::FwBatch;
 use fretwork_law::{DamageLaw, Intact, Site};
-use fretwork_laws::damage::mac::Mac;
+use fretwork_laws::damage::mac::MacDamage;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
@@ -35,7 +35,7 @@ fn main() {
         .find(Kind::DAMAGE, "mac")
         .unwrap_or_else(|e| panic!("{e}"));
     let parameters = [0.1, 0.0, 1e-3, 1e30];
-    let law = Mac {
+    let law = MacDamage {
         w: parameters[0],
         b: parameters[1],
         beta_broken: parameters[2],

@@ -22,9 +22,9 @@ use std::time::Duration;
 #[derive(Subcommand, Debug)]
 pub enum StudyCommand {
     /// Print what a study consists of and what it will take, without running it
-    Check(CheckArgs),
+    Check(StudyCheckArgs),
     /// Make the runs of a study that are missing on this machine, and its table
-    Run(RunArgs),
+    Run(StudyRunArgs),
     /// Make one run of a study, or a few: the unit of work of other engines
     Point(PointArgs),
     /// Write the runs of a study for Slurm, HyperQueue, Snakemake, or as a list of commands
@@ -49,7 +49,7 @@ struct StudyArgs {
 }
 
 #[derive(Args, Debug)]
-pub struct CheckArgs {
+pub struct StudyCheckArgs {
     #[command(flatten)]
     of: StudyArgs,
     /// Print each run with its changes of the case
@@ -64,7 +64,7 @@ pub struct CheckArgs {
 }
 
 #[derive(Args, Debug)]
-pub struct RunArgs {
+pub struct StudyRunArgs {
     #[command(flatten)]
     of: StudyArgs,
     /// Parallel runs
@@ -197,7 +197,7 @@ pub fn study(command: &StudyCommand) -> Result<(), Failure> {
     }
 }
 
-fn check(args: &CheckArgs) -> Result<(), Failure> {
+fn check(args: &StudyCheckArgs) -> Result<(), Failure> {
     let plan = args.of.plan()?;
     if args.points && !args.json {
         return answer(&answers::points(&plan));
@@ -223,7 +223,7 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
     }
 }
 
-fn run(args: &RunArgs) -> Result<(), Failure> {
+fn run(args: &StudyRunArgs) -> Result<(), Failure> {
     let (plan, _lock) = args.of.plan_alone()?;
     let open = missing(&plan);
     let jobs = usize::from(args.jobs);

@@ -211,6 +211,11 @@ impl Observers {
         self.list.extend(others.list);
     }
 
+    /// All, in the order of their columns.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Observer> {
+        self.list.iter().map(|o| &**o)
+    }
+
     /// See [`Observer::begin`].
     pub fn begin(&mut self, run: &mut dyn RunControl) {
         if self.list.iter().any(|o| o.needs_dissipation()) {

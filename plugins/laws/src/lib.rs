@@ -98,12 +98,12 @@ macro_rules! laws {
                 camanho_davila::CamanhoDavila, capillary_bridge::CapillaryBridge,
                 constant_attraction::ConstantAttraction, dmt::Dmt, elastic_bond::ElasticBond,
                 elastic_foundation::ElasticFoundation, jkr::Jkr, linear_adhesion::LinearAdhesion,
-                mac::Mac, parallel_bond::ParallelBond, tvergaard_hutchinson::TvergaardHutchinson,
+                mac::MacCohesion, parallel_bond::ParallelBond, tvergaard_hutchinson::TvergaardHutchinson,
                 van_der_waals::VanDerWaals, xu_needleman::XuNeedleman;
             damage:
                 czm_fatigue::CzmFatigue, czm_linear::CzmLinear,
                 exponential_softening::ExponentialSoftening, khoramishad::Khoramishad,
-                linear_softening::LinearSoftening, mac::Mac,
+                linear_softening::LinearSoftening, mac::MacDamage,
                 mohr_coulomb_brittle::MohrCoulombBrittle, nguyen::Nguyen, roe_siegmund::RoeSiegmund,
                 thermal_softening::ThermalSoftening, trapezoidal::Trapezoidal;
             wear:

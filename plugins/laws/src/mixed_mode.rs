@@ -7,7 +7,7 @@ use crate::cohesion::{
     xu_needleman::XuNeedleman,
 };
 use crate::damage::{
-    exponential_softening::ExponentialSoftening, linear_softening::LinearSoftening, mac::Mac,
+    exponential_softening::ExponentialSoftening, linear_softening::LinearSoftening, mac::MacDamage,
     trapezoidal::Trapezoidal,
 };
 use fretwork_law::{CohesionLaw, DamageLaw, Intact, Parameters, Site};
@@ -153,7 +153,7 @@ fn mixed_mode_of_damage_laws_is_that_of_their_references() {
         }
         // psi = w/2 at the onset with m = 2; what is stored where it is cut is released too.
         let (w, cut) = (0.1, 1e-3);
-        let mac = of_damage::<Mac>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
+        let mac = of_damage::<MacDamage>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
         near("mac", mac.work, w * (1.0 - 0.5 * cut), 2e-3);
     }
 }

@@ -84,25 +84,21 @@ impl Features {
                     }
                 }
             }
-            let half_spaces = case.half_spaces.iter();
-            for (name, axes) in half_spaces.map(|b| (&b.name, &b.dofs)) {
-                let axes = [("x", &axes.x), ("y", &axes.y), ("z", &axes.z)];
-                for (k, (axis, dof)) in axes.into_iter().enumerate() {
-                    let mut drives = drives_of_holder(case, name, k, dof);
+            let half_spaces = case.half_spaces.iter().map(|b| {
+                let d = &b.dofs;
+                (b.name.clone(), b.name.clone(), [&d.x, &d.y, &d.z])
+            });
+            let supports = case.elastic.iter().flat_map(|b| {
+                b.supports.iter().map(|s| {
+                    let holder = holder_name(&b.name, &s.part);
+                    (holder, format!("{} {}", b.name, s.part), [&s.x, &s.y, &s.z])
+                })
+            });
+            for (holder, shown, dofs) in half_spaces.chain(supports) {
+                for (k, dof) in dofs.into_iter().enumerate() {
+                    let mut drives = drives_of_holder(case, &holder, k, dof);
                     if drives.any(|d| d.drives().any(which)) {
-                        found.push(format!("{name} {axis}"));
-                    }
-                }
-            }
-            for body in &case.elastic {
-                for support in &body.supports {
-                    let axes = [("x", &support.x), ("y", &support.y), ("z", &support.z)];
-                    let holder = holder_name(&body.name, &support.part);
-                    for (k, (axis, dof)) in axes.into_iter().enumerate() {
-                        let mut drives = drives_of_holder(case, &holder, k, dof);
-                        if drives.any(|d| d.drives().any(which)) {
-                            found.push(format!("{} {} {axis}", body.name, support.part));
-                        }
+                        found.push(format!("{shown} {}", ["x", "y", "z"][k]));
                     }
                 }
             }
@@ -137,13 +133,11 @@ impl Features {
         let demands = Demands::of(s);
         let names = |which: fn(&LawRequirements) -> Requirement| {
             let each = demands.each().filter_map(|(name, demand)| {
-                let asked = demand.map_or(Requirement::Unseen, which);
-                let sure = if asked == Requirement::Unseen {
-                    "?"
-                } else {
-                    ""
-                };
-                (asked != Requirement::Never).then(|| format!("{name}{sure}"))
+                match demand.map_or(Requirement::Unseen, which) {
+                    Requirement::Never => None,
+                    Requirement::Unseen => Some(format!("{name}?")),
+                    _ => Some(name.to_owned()),
+                }
             });
             let each: Vec<String> = each.collect();
             (!each.is_empty()).then(|| format!("in {}", each.join(", ")))
@@ -155,7 +149,6 @@ impl Features {
             let each: Vec<String> = each.map(|(l, t)| format!("in {}, {t}", l.name)).collect();
             (!each.is_empty()).then(|| each.join("; "))
         };
-        let named = |slot: &dyn Fn(&Interface) -> Option<String>| laws(slot);
         let bonding = |law: &Interface| law.bonding_time().is_some() || law.healing.is_some();
         self.say(
             "bonds",
@@ -169,14 +162,14 @@ impl Features {
         );
         self.say(
             "attraction without bonds",
-            named(&|law| {
+            laws(&|law| {
                 let cohesion = law.cohesion().filter(|_| !law.opens());
                 cohesion.map(|l| l.plugin.name.clone())
             }),
         );
         self.say(
             "damage",
-            named(&|law| {
+            laws(&|law| {
                 let cohesion = law.cohesion().filter(|_| law.damages());
                 let by = law.damage().or(cohesion);
                 by.map(|l| l.plugin.name.clone())
@@ -195,7 +188,7 @@ impl Features {
         );
         self.say(
             "wear",
-            named(&|law| law.wear().map(|l| l.plugin.name.clone())),
+            laws(&|law| law.wear().map(|l| l.plugin.name.clone())),
         );
         self.say(
             "history variables",

@@ -13,7 +13,7 @@ use fretwork::record::{Observer, Observers, Run, RunEnd, RunOptions, RunView, Su
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork::step::StepReport;
-use fretwork_experiments::runs::quantity::Quantity;
+use fretwork_experiments::runs::output::OutputName;
 use fretwork_experiments::runs::unit::unit_of;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -154,12 +154,12 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
         ("summit.climbs.0.work", 2.5, "J"),
         ("statistics.summit:max", highest, "m"),
     ] {
-        let output = Quantity::parse(name).unwrap();
+        let output = OutputName::parse(name).unwrap();
         output.check(&json, &folder.0, &[]).unwrap();
         assert_eq!(output.read(&json, &folder.0), Some(value));
         assert_eq!(unit_of(&output, &catalogue, &folder.0), unit);
     }
-    let wrong = Quantity::parse("summit.higest").unwrap();
+    let wrong = OutputName::parse("summit.higest").unwrap();
     let said = wrong.check(&json, &folder.0, &[]).unwrap_err();
     assert!(said.contains("did you mean `summit.highest`?"), "{said}");
 }

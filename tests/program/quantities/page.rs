@@ -19,6 +19,15 @@ const CASES: [&str; 8] = [
     "surface_temperatures",
 ];
 
+/// Cases that with those before have all columns of the statistics, with their `--set` arguments.
+const FOR_COLUMNS: [(&str, &[&str]); 5] = [
+    ("fretting_resistance", &[]),
+    ("rotating_drum_2d", &[]),
+    ("fault_propagation", &[]),
+    ("plane_shear", &[]),
+    ("wheel_rail_fretting", &["accuracy=0.05"]),
+];
+
 /// Path, units in space and in the plane, explanation, and whether it is of the course of the run.
 pub type Declared = (String, [String; 2], String, bool);
 
@@ -48,14 +57,19 @@ fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
     all.extend(now.chain(later).filter(|d| !chosen(&d.0)));
 }
 
+fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
+    let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    let loaded = load(path.as_ref(), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build(&search_path());
+    (loaded, built.unwrap_or_else(|e| panic!("{e}")))
+}
+
 /// All numbers that the shipped observers declare, by their paths.
 pub fn declared() -> Vec<Declared> {
     let mut all = Vec::new();
     for case in CASES {
-        let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-        let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build(&search_path());
-        let built = built.unwrap_or_else(|e| panic!("{e}"));
+        let (loaded, built) = built(case, &[]);
         add(&loaded, &built, &mut all);
     }
     let mut first: BTreeMap<String, Declared> = BTreeMap::new();
@@ -65,13 +79,77 @@ pub fn declared() -> Vec<Declared> {
     first.into_values().collect()
 }
 
+/// Rows of a table of the statistics: name, unit and explanation of each column.
+type Columns = Vec<[String; 3]>;
+
+/// The columns of the statistics, by their observers. `NAME` stands for a measure, `BODY` for a
+/// first body and `PART` for a part of it by which it is held.
+fn columns() -> BTreeMap<String, Columns> {
+    let mut all: BTreeMap<String, Columns> = BTreeMap::new();
+    let cases = CASES.map(|case| (case, &[][..]));
+    for (case, sets) in cases.into_iter().chain(FOR_COLUMNS) {
+        let (Loaded { case, .. }, built) = built(case, sets);
+        let measures: Vec<&str> = case.measures.iter().map(|m| m.name()).collect();
+        let bodies = case.bodies.iter().map(|b| b.name.as_str());
+        let bodies = bodies.chain(case.elastic.iter().map(|b| b.name.as_str()));
+        let bodies = bodies.chain(case.half_spaces.iter().map(|b| b.name.as_str()));
+        let bodies: Vec<&str> = bodies.collect();
+        let after = |text: &str, names: &[&str]| {
+            let rest = names.iter().filter_map(|name| text.strip_prefix(name));
+            let mut rest = rest.filter(|rest| rest.is_empty() || rest.starts_with('_'));
+            rest.next().map(str::to_owned)
+        };
+        for observer in standard::observers(&case, built.simulation.view(), 1.0).iter() {
+            let own = observer.name();
+            let measure = measures.iter().find_map(|name| own.strip_suffix(name));
+            let kind = measure.map_or(own.as_str(), str::trim_end);
+            let named = |name: &str| match (after(name, &measures), after(name, &bodies)) {
+                (Some(rest), _) if measure.is_some() => format!("NAME{rest}"),
+                (_, Some(rest)) if kind == "deformable bodies" => {
+                    let (_, axis) = rest.rsplit_once('_').unwrap_or_default();
+                    format!("BODY_PART_{axis}")
+                }
+                (_, Some(rest)) => format!("BODY{rest}"),
+                _ => name.to_owned(),
+            };
+            let list = all.entry(kind.to_owned()).or_default();
+            for column in observer.columns() {
+                let name = named(&column.name);
+                if list.iter().all(|row| row[0] != name) {
+                    let doc = column.doc.replace('|', "\\|");
+                    list.push([
+                        name,
+                        units(column.unit.heading(3), column.unit.heading(2)),
+                        doc,
+                    ]);
+                }
+            }
+        }
+    }
+    all.retain(|_, list| !list.is_empty());
+    all
+}
+
+/// A unit in space and in the plane.
+fn units(space: &str, plane: &str) -> String {
+    match space == plane {
+        true => space.to_owned(),
+        false => format!("{space}; {plane}"),
+    }
+}
+
+fn table_of_columns(columns: &Columns) -> String {
+    let mut out = String::from("| column | unit | meaning |\n|---|---|---|\n");
+    for [name, unit, doc] in columns {
+        out += &format!("| `{name}` | {unit} | {doc} |\n");
+    }
+    out
+}
+
 fn table(of_run: bool) -> String {
     let mut out = String::from("| path | unit | meaning |\n|---|---|---|\n");
     for (path, [space, plane], doc, _) in declared().into_iter().filter(|d| d.3 == of_run) {
-        let unit = match space == plane {
-            true => space,
-            false => format!("{space}; {plane}"),
-        };
+        let unit = units(&space, &plane);
         let doc = doc.replace('|', "\\|");
         out += &format!("| `{path}` | {unit} | {doc} |\n");
     }
@@ -83,14 +161,19 @@ fn the_page_lists_every_quantity_with_its_unit() {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(&path).unwrap();
     let mut made = page.clone();
-    for (name, of_run) in [("results", false), ("run", true)] {
-        let (begin, end) = (
-            format!("<!-- {name} -->\n"),
-            format!("<!-- end of {name} -->"),
-        );
-        let from = made.find(&begin).expect("the page has the mark") + begin.len();
-        let to = made.find(&end).expect("the page has the mark");
-        made.replace_range(from..to, &table(of_run));
+    let quantities = [("results", false), ("run", true)];
+    let quantities = quantities.map(|(name, of_run)| (name.to_owned(), table(of_run)));
+    let columns = columns().into_iter();
+    let columns = columns.map(|(of, list)| (format!("columns: {of}"), table_of_columns(&list)));
+    for (name, table) in quantities.into_iter().chain(columns) {
+        let begin = format!("<!-- {name} -->\n");
+        let end = format!("<!-- end of {name} -->");
+        let place = |mark: &str| {
+            let place = made.find(mark);
+            place.unwrap_or_else(|| panic!("docs/outputs.md has no mark {mark}"))
+        };
+        let (from, to) = (place(&begin) + begin.len(), place(&end));
+        made.replace_range(from..to, &table);
     }
     if std::env::var_os("FRETWORK_WRITE_PAGES").is_some() {
         std::fs::write(&path, &made).unwrap();

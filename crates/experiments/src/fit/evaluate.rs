@@ -8,8 +8,8 @@ use crate::changes::Changes;
 use crate::factor::Factor;
 use crate::runs::available::{AvailableQuantities, columns};
 use crate::runs::launcher::{Launcher, Patience, Run};
+use crate::runs::output::OutputName;
 use crate::runs::pool::each;
-use crate::runs::quantity::Quantity;
 use crate::runs::stored::{Status, summary};
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
@@ -34,7 +34,7 @@ struct Test {
 #[derive(Debug)]
 enum Simulated {
     Curve(Box<Model>),
-    Value(Quantity),
+    Value(OutputName),
 }
 
 /// A point of the parameters with one seed of all tests: simulated values at all measured places,
@@ -106,7 +106,7 @@ impl Tests {
                     sigma,
                     ..
                 } => {
-                    let quantity = Quantity::parse(output).map_err(|why| at(".output", why))?;
+                    let quantity = OutputName::parse(output).map_err(|why| at(".output", why))?;
                     AvailableQuantities::of(&loaded.case, &scene)
                         .check(&quantity)
                         .map_err(|why| at(".output", why))?;

@@ -6,7 +6,7 @@ use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
 use super::spec::{FitFile, TestSpec};
 use crate::page::{section, table};
-use fretwork_math::fit::identify::{End, Estimate};
+use fretwork_math::fit::identify::{End, ParameterEstimate};
 use fretwork_observe::quantity::number;
 use fretwork_view::{Axis, Block, Chart, DrawError, Series, Sheet, Style, draw_panels};
 use std::fmt::Write as _;
@@ -118,7 +118,7 @@ fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
 }
 
 /// A value with its interval.
-fn value_text(e: &Estimate, unit: &str) -> String {
+fn value_text(e: &ParameterEstimate, unit: &str) -> String {
     let unit = if unit.is_empty() {
         String::new()
     } else {
@@ -200,13 +200,13 @@ fn axes(read: &FitFile, test: usize) -> (String, String) {
 
 /// Measured and fitted points of a test: places, measured, standard deviations, fitted, scatter of
 /// one run.
-type Points = Vec<(f64, f64, f64, f64, f64)>;
+type TestPoints = Vec<(f64, f64, f64, f64, f64)>;
 
-fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
+fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<TestPoints> {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let mut place = 0;
     let of = |test: &fretwork_math::fit::residuals::Measurement| {
-        let mut points: Points = Vec::new();
+        let mut points: TestPoints = Vec::new();
         for j in 0..test.x.len() {
             let fitted = mean.get(place).copied().unwrap_or(f64::NAN);
             let scatter = deviation
@@ -353,7 +353,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
 /// Measured and fitted curves of each test, with two standard deviations.
 fn charts(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Chart> {
     let all = points(tests, found, outcome).into_iter().enumerate();
-    let chart = |(t, points): (usize, Points)| {
+    let chart = |(t, points): (usize, TestPoints)| {
         let (x, y) = axes(read, t);
         let name = tests.target.tests()[t].name.clone();
         type Bar = (f64, f64, f64, f64, f64);

@@ -1,6 +1,6 @@
 //! Outputs that a case has, determined before anything runs.
 
-use super::quantity::{Quantity, listed};
+use super::output::{OutputName, listed};
 use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
 use fretwork_observe::standard;
 use fretwork_observe::statistics::Column;
@@ -61,7 +61,7 @@ impl AvailableQuantities {
     }
 
     /// SI unit of an output, `1` for pure numbers; empty where it is known of a run only.
-    pub fn unit(&self, output: &Quantity) -> String {
+    pub fn unit(&self, output: &OutputName) -> String {
         let unit = match output.column_name() {
             Some(name) => {
                 let column = self.columns.iter().find(|c| c.name == name);
@@ -84,7 +84,7 @@ impl AvailableQuantities {
     ///
     /// # Errors
     /// A sentence that says what the case lacks, with the nearest name and the existing ones.
-    pub fn check(&self, output: &Quantity) -> Result<(), String> {
+    pub fn check(&self, output: &OutputName) -> Result<(), String> {
         if let Some(column) = output.column_name() {
             let names: Vec<String> = self.columns.iter().map(|c| c.name.clone()).collect();
             return if names.iter().any(|c| c == column) {

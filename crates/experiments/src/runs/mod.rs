@@ -2,16 +2,16 @@
 //! none is made twice.
 //!
 //! [`launcher`] starts them, [`stored`] says how they ended, [`key`] names them, [`trial`] times a
-//! few steps of one, [`pool`] makes several at once; [`quantity`] reads the numbers that they
+//! few steps of one, [`pool`] makes several at once; [`output`] reads the numbers that they
 //! leave, [`available`] says which a case has. [`randomness`] says whether the seed of a case
 //! matters, [`perturbation`] distinguishes runs where it does not.
 
 pub mod available;
 pub mod key;
 pub mod launcher;
+pub mod output;
 pub mod perturbation;
 pub mod pool;
-pub mod quantity;
 pub mod randomness;
 pub mod stored;
 pub mod trial;

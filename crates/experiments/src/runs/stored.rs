@@ -1,7 +1,7 @@
 //! How a run ended: what is stored of it, and what it is worth by given limits.
 
 use super::launcher::Run;
-use super::quantity::column;
+use super::output::column;
 use fretwork_observe::quantity::Catalogue;
 use fretwork_observe::summary::Course;
 use serde::{Deserialize, Serialize};

@@ -1,12 +1,12 @@
 //! Units of the numbers that a run leaves.
 
-use super::quantity::{Quantity, column_unit};
+use super::output::{OutputName, column_unit};
 use fretwork_observe::quantity::Catalogue;
 use std::path::Path;
 
 /// SI unit of a quantity by the files of a run, `1` for pure numbers; empty where the run does not
 /// have it.
-pub fn unit_of(quantity: &Quantity, catalogue: &Catalogue, folder: &Path) -> String {
+pub fn unit_of(quantity: &OutputName, catalogue: &Catalogue, folder: &Path) -> String {
     let unit = match quantity.column_name() {
         Some(column) => column_unit(&folder.join("statistics.csv"), column),
         None => catalogue
@@ -35,7 +35,7 @@ mod tests {
         let catalogue = Catalogue::of(&summary);
         let of = |name| {
             unit_of(
-                &Quantity::parse(name).unwrap(),
+                &OutputName::parse(name).unwrap(),
                 &catalogue,
                 Path::new("/nowhere"),
             )

@@ -6,7 +6,7 @@ use crate::changes::Changes;
 use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
 use crate::runs::available::{AvailableQuantities, measure_names};
 use crate::runs::launcher::{Launcher, Run};
-use crate::runs::quantity::Quantity;
+use crate::runs::output::OutputName;
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
@@ -50,7 +50,7 @@ pub struct Plan {
     /// Whether the seed changes the scene.
     pub random: bool,
     /// What is compared.
-    pub outputs: Vec<Quantity>,
+    pub outputs: Vec<OutputName>,
     /// SI units of the outputs by the case, `1` for pure numbers; empty where only runs know them.
     pub output_units: Vec<String>,
     /// Texts of the summary that are mapped.
@@ -150,7 +150,7 @@ impl Plan {
         };
         let first = base.case.seed;
         launcher.perturb_unless(known.random, first);
-        let outputs = known.outputs.iter().map(|name| Quantity::parse(name));
+        let outputs = known.outputs.iter().map(|name| OutputName::parse(name));
         let measures = measure_names(&base.case);
         Ok(Self {
             title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),
@@ -343,14 +343,14 @@ fn outputs(
     read: &StudyFile,
     base: &Loaded,
     scene: &Built,
-) -> Result<(Vec<Quantity>, Vec<String>), Error> {
+) -> Result<(Vec<OutputName>, Vec<String>), Error> {
     let available = AvailableQuantities::of(&base.case, scene);
     let asked = &read.spec.outputs;
-    let mut all: Vec<Quantity> = Vec::new();
+    let mut all: Vec<OutputName> = Vec::new();
     if asked.is_empty() {
         let usual = available.usual();
-        let parsed: Result<Vec<Quantity>, String> =
-            usual.iter().map(|name| Quantity::parse(name)).collect();
+        let parsed: Result<Vec<OutputName>, String> =
+            usual.iter().map(|name| OutputName::parse(name)).collect();
         all = parsed.map_err(Error::Usage)?;
         if all.is_empty() {
             let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
@@ -359,7 +359,7 @@ fn outputs(
     }
     for (k, name) in asked.iter().enumerate() {
         let refused = |why: String| read.source.error_at(&format!("outputs.{k}"), why);
-        let quantity = Quantity::parse(name).map_err(refused)?;
+        let quantity = OutputName::parse(name).map_err(refused)?;
         available.check(&quantity).map_err(refused)?;
         if all.contains(&quantity) {
             return Err(refused("it is given twice".to_owned()).into());

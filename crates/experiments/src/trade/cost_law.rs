@@ -5,7 +5,7 @@ use super::plan::Trade;
 use super::varied::{Sense, Varied};
 use crate::Error;
 use crate::runs::launcher::Patience;
-use crate::runs::quantity::column;
+use crate::runs::output::column;
 use crate::runs::stored::{Finished, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;

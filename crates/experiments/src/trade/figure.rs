@@ -45,7 +45,7 @@ pub fn draw(trade: &Trade, found: &Comparison, path: &Path) -> Result<bool, Draw
 }
 
 /// Settings that ran, with their errors of the output of a panel.
-type Points<'a> = Vec<(&'a Row, &'a OutputError)>;
+type SettingErrors<'a> = Vec<(&'a Row, &'a OutputError)>;
 
 /// What a panel shows: the errors of one output.
 struct Panel<'a> {
@@ -53,9 +53,9 @@ struct Panel<'a> {
     output: &'a Output,
     reference: Combination,
     /// All settings with a finite error.
-    good: Points<'a>,
+    good: SettingErrors<'a>,
     /// Those whose error is one from the reference or from the exact value.
-    others: Points<'a>,
+    others: SettingErrors<'a>,
     /// Factor of errors, 100 for those in per cent.
     factor: f64,
     /// Errors below it are drawn at it, since the axis is logarithmic.
@@ -77,9 +77,9 @@ fn panel(trade: &Trade, found: &Comparison, o: usize) -> Chart {
     let reference = Combination::reference(&trade.parameters);
     let ran = found.rows.iter().filter(|r| r.failed.is_none());
     let errors = ran.filter_map(|r| Some((r, r.errors[o].as_ref()?)));
-    let good: Points<'_> = errors.filter(|(_, e)| e.at_most.is_finite()).collect();
+    let good: SettingErrors<'_> = errors.filter(|(_, e)| e.at_most.is_finite()).collect();
     let compared = |p: &&(&Row, &OutputError)| p.0.setting != reference || output.exact.is_some();
-    let others: Points<'_> = good.iter().filter(compared).copied().collect();
+    let others: SettingErrors<'_> = good.iter().filter(compared).copied().collect();
     let sizes = others
         .iter()
         .flat_map(|(_, e)| [e.error.mean.abs(), e.at_most])
@@ -128,7 +128,7 @@ impl Panel<'_> {
 
     /// Errors with their intervals, a series for each setting or for each group of them.
     fn settings(&self, each: bool) -> Vec<Series> {
-        let mut groups: Vec<(String, Points<'_>)> = Vec::new();
+        let mut groups: Vec<(String, SettingErrors<'_>)> = Vec::new();
         for &(row, e) in &self.others {
             let name = if each {
                 named(&self.trade.parameters, &row.setting)

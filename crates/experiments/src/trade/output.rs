@@ -1,7 +1,7 @@
 //! Outputs that a study compares, each with the error wanted.
 
 use crate::Error;
-use crate::runs::quantity::Quantity;
+use crate::runs::output::OutputName;
 use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
 
 /// The wanted error.
@@ -17,7 +17,7 @@ pub enum Wanted {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// The number.
-    pub quantity: Quantity,
+    pub quantity: OutputName,
     /// The error wanted.
     pub wanted: Wanted,
     /// Exact value, for example from a closed form; if absent, errors are measured against the
@@ -54,7 +54,7 @@ impl Output {
                 "an error as large as the output itself is meaningless; ask for less than 100 %",
             ));
         }
-        let quantity = Quantity::parse(name).map_err(|why| wrong(&why))?;
+        let quantity = OutputName::parse(name).map_err(|why| wrong(&why))?;
         // The exact value of a residual is zero; its value is the error itself.
         let (exact, relative) = match residual(&quantity.name) {
             Some(false) if share => {

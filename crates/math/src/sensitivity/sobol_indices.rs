@@ -96,12 +96,12 @@ pub fn sobol_indices(
         });
     }
     let all: Vec<usize> = (0..groups.len()).collect();
-    let whole = Estimate::of(&groups, &all);
+    let whole = Indices::of(&groups, &all);
     if whole.variance <= 0.0 {
         return Err(SensitivityError::Constant);
     }
     let intervals = percentile_intervals(groups.len(), RESAMPLES, seed, CONFIDENCE, |items| {
-        Estimate::of(&groups, items).indices
+        Indices::of(&groups, items).indices
     });
     let index = |i: usize| Index {
         value: whole.indices[i],
@@ -118,14 +118,14 @@ pub fn sobol_indices(
 }
 
 /// Estimates from some of the base points.
-struct Estimate {
+struct Indices {
     mean: f64,
     variance: f64,
     /// First-order indices of all factors, then total ones.
     indices: Vec<f64>,
 }
 
-impl Estimate {
+impl Indices {
     fn of(groups: &[Vec<f64>], items: &[usize]) -> Self {
         let width = groups[0].len();
         let (factors, last) = (width - 2, width - 1);

@@ -177,7 +177,11 @@ impl Biaxial {
             c("p_walls", "Pa", "mean of the two"),
             c("p_contacts", "Pa", "mean Love-Weber stress of the contacts"),
             c("q_over_p", "", "(axial - lateral)/(axial + lateral)"),
-            c("sin_phi", "", "the same from principal Love-Weber stresses"),
+            c(
+                "sin_phi",
+                "",
+                "(major - minor)/(major + minor) of the principal Love-Weber stresses",
+            ),
             c("axial_strain", "", "shortening since the start of the test"),
             c(
                 "volumetric_strain",
@@ -190,7 +194,11 @@ impl Biaxial {
                 "volume of grains over that between the walls",
             ),
             c("coordination", "", "contacts that carry force, per grain"),
-            c("coordination_carried", "", "the same without rattlers"),
+            c(
+                "coordination_carried",
+                "",
+                "contacts that carry force, per grain, without rattlers",
+            ),
             c("rattlers", "", "fraction of grains that carry no force"),
         ]
     }

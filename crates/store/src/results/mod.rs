@@ -45,7 +45,7 @@ use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use store::Store;
-use view::{Columns, View};
+use view::{View, ViewColumns};
 
 /// Contents that are known before the first step.
 #[derive(Clone, Debug, Default)]
@@ -419,7 +419,7 @@ fn declare_views(store: &mut Store, header: &Header) -> Result<Vec<View>, Result
     ];
     let mut views = Vec::new();
     for (k, (name, cells)) in kinds.into_iter().enumerate() {
-        let columns = Columns {
+        let columns = ViewColumns {
             data: &header.fields[k],
             numbers: &header.numbers[k],
             vectors: &header.vectors[k],

@@ -135,7 +135,7 @@ impl Shaped {
         if !reader.has("shapes/bodies/id") {
             return Ok(None);
         }
-        let columns = Columns(reader);
+        let columns = ShapeColumns(reader);
         Ok(Some(Self {
             bodies: columns.bodies()?,
             balls: columns.balls()?,
@@ -145,9 +145,9 @@ impl Shaped {
 }
 
 /// Reads the columns of the shapes. Empty datasets are not written.
-struct Columns<'a>(&'a Reader);
+struct ShapeColumns<'a>(&'a Reader);
 
-impl Columns<'_> {
+impl ShapeColumns<'_> {
     fn numbers(&self, name: &str, width: usize) -> Result<Vec<f64>, String> {
         match self.0.has(name) {
             true => self.0.numbers(name, (0, self.0.rows(name)?), width),

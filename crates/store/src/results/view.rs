@@ -49,7 +49,7 @@ pub struct Part {
 
 /// The fields of a view, in the order of the columns of its [`Part`]s.
 #[derive(Clone, Copy, Debug)]
-pub struct Columns<'a> {
+pub struct ViewColumns<'a> {
     /// Of numbers.
     pub data: &'a [Column],
     /// Of integers.
@@ -90,7 +90,7 @@ impl View {
         store: &mut Store,
         path: &str,
         cells: Cells,
-        columns: Columns<'_>,
+        columns: ViewColumns<'_>,
     ) -> Result<Self, ResultsError> {
         store.group(path)?;
         store.integer_attribute(path, "Version", &[2, 0])?;

@@ -18,7 +18,7 @@ pub(crate) struct ResultRow {
 }
 
 /// A group of results with its heading.
-pub(crate) type Group = (&'static str, Vec<ResultRow>);
+pub(crate) type ResultGroup = (&'static str, Vec<ResultRow>);
 
 /// A number with its unit, a prefix that suits it, and four digits.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
@@ -53,7 +53,7 @@ fn trimmed(digits: &str) -> &str {
 }
 
 /// The main results of a run, by topic and in the order in which it lists them.
-pub(crate) fn groups(run: &RunFolder) -> Vec<Group> {
+pub(crate) fn groups(run: &RunFolder) -> Vec<ResultGroup> {
     let catalogue = Catalogue::of(&run.summary);
     let mut groups: Vec<(Topic, Vec<ResultRow>)> = Vec::new();
     for (entry, value) in catalogue.shown(&run.summary, Role::Secondary) {

@@ -7,7 +7,7 @@ parameters! {
     /// `beta_broken` the bond counts as broken (0 disables this). The energy stored at that moment,
     /// at most beta_broken w/2, must be added to the fracture energy by the host, and the bond has
     /// then dissipated w (1 - beta_broken/2).
-    pub struct Mac {
+    pub struct MacDamage {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
         b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
         beta_broken: "" = 1e-3, 0.0, 1.0, "intensity of adhesion below which the bond is broken";
@@ -18,7 +18,7 @@ parameters! {
 /// Value of `opening_broken` with which a bond never breaks by its opening (m).
 const NEVER: f64 = 1e30;
 
-impl Law for Mac {
+impl Law for MacDamage {
     const NAME: &'static str = "mac";
     const DOC: &'static str = "rate law b dD/dt = <Y - w>, with fracture energy w and viscosity b";
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
@@ -31,7 +31,7 @@ impl Law for Mac {
     }
 }
 
-impl Mac {
+impl MacDamage {
     /// D at the end of a step of h seconds, implicit for m >= 1: b (D - D_i)/h = Y(D) - w.
     fn damage(&self, d: f64, h: f64, intact: &Intact) -> f64 {
         if d >= 1.0 || intact.release_rate(d) <= self.w {
@@ -64,7 +64,7 @@ impl Mac {
     }
 }
 
-impl DamageLaw for Mac {
+impl DamageLaw for MacDamage {
     fn grow(&self, site: &Site, intact: &Intact, _state: &mut [f64]) -> f64 {
         // `max` and `min` rather than `clamp`, so that a NaN damage reaches the host, which reports
         // it.
@@ -81,7 +81,7 @@ mod tests {
     use fretwork_law::testing::{Bond, opened};
 
     /// A bond in steps of `h` (s).
-    fn bond(law: &Mac, damage: f64, h: f64) -> Bond<'_, Mac> {
+    fn bond(law: &MacDamage, damage: f64, h: f64) -> Bond<'_, MacDamage> {
         let mut bond = Bond::new(law, damage);
         bond.site.h = h;
         bond
@@ -97,7 +97,7 @@ mod tests {
     }
 
     /// Opens a MAC bond (C = 1e12 Pa/m) at a speed to an opening; returns (peak, area to the end).
-    fn pull(law: &Mac, speed: f64, h: f64, reach: f64) -> (f64, f64) {
+    fn pull(law: &MacDamage, speed: f64, h: f64, reach: f64) -> (f64, f64) {
         let (mut peak, mut area, mut last, mut u) = (0.0f64, 0.0, 0.0, 0.0);
         let mut bond = bond(law, 0.0, h);
         while u < reach {
@@ -112,12 +112,12 @@ mod tests {
     }
 
     /// A law that is never cut, with w of 0.1 J/m^2.
-    fn uncut(b: f64) -> Mac {
-        Mac {
+    fn uncut(b: f64) -> MacDamage {
+        MacDamage {
             w: 0.1,
             b,
             beta_broken: 0.0,
-            ..Mac::default()
+            ..MacDamage::default()
         }
     }
 
@@ -144,16 +144,16 @@ mod tests {
 
     #[test]
     fn damage_never_falls_and_waits_for_the_threshold() {
-        let law = Mac::default();
+        let law = MacDamage::default();
         let at = |damage| bond(&law, damage, 1e-6).lead(&stores(0.01, 2.0));
         assert_eq!((at(0.0), at(0.4), at(1.0)), (0.0, 0.4, 1.0));
     }
 
     #[test]
     fn it_breaks_beyond_an_opening() {
-        let law = Mac {
+        let law = MacDamage {
             opening_broken: 2e-5,
-            ..Mac::default()
+            ..MacDamage::default()
         };
         let at = |opening| {
             let mut bond = bond(&law, 0.0, 1e-6);
@@ -162,12 +162,12 @@ mod tests {
         };
         assert_eq!((at(2e-5), at(2.001e-5), at(-1.0)), (0.0, 1.0, 0.0));
         assert!(law.fracture_energy(0.0).is_none());
-        assert!(Mac::default().fracture_energy(0.0).is_some());
+        assert!(MacDamage::default().fracture_energy(0.0).is_some());
     }
 
     #[test]
     fn a_brittle_bond_snaps_at_w() {
-        let law = Mac::default();
+        let law = MacDamage::default();
         let at = |energy| bond(&law, 0.0, 1e-6).lead(&stores(energy, 1.0));
         assert_eq!((at(0.0999), at(0.1001)), (0.0, 1.0));
     }
@@ -175,15 +175,15 @@ mod tests {
     #[test]
     fn other_exponents_solve_the_implicit_equation() {
         // Over one step of 1 us from D = 0.2, under psi_0 = 0.3 J/m^2.
-        let step = |law: &Mac, m: f64| bond(law, 0.2, 1e-6).lead(&stores(0.3, m));
+        let step = |law: &MacDamage, m: f64| bond(law, 0.2, 1e-6).lead(&stores(0.3, m));
         for (m, b) in [(1.5, 1e-6), (3.0, 1e-6), (3.0, 0.0), (2.5, 1e-7)] {
             let d = step(&uncut(b), m);
             let y = m * (1.0 - d).powf(m - 1.0) * 0.3;
             assert!((b * (d - 0.2) / 1e-6 - (y - 0.1)).abs() < 1e-12, "{m} {b}");
         }
-        let law = Mac {
+        let law = MacDamage {
             b: 1e-6,
-            ..Mac::default()
+            ..MacDamage::default()
         };
         assert!((step(&law, 2.0) - step(&law, 2.0 + 1e-9)).abs() < 1e-8);
         // m = 1: D = D_i + h (psi_0 - w)/b.
@@ -193,7 +193,7 @@ mod tests {
     /// The cut at `beta_broken` reduces the energy by no more than beta_broken w/2.
     #[test]
     fn the_cut_is_where_the_doc_says() {
-        let law = Mac::default();
+        let law = MacDamage::default();
         let at = |beta: f64| bond(&law, 0.0, 1e-6).lead(&stores(0.5 * law.w / beta, 2.0));
         assert!(at(0.999e-3) == 1.0 && at(1.001e-3) < 1.0);
     }

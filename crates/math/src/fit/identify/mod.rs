@@ -32,7 +32,7 @@ mod information;
 pub mod report;
 mod surrogate;
 
-pub use report::{Direction, End, Estimate, Identification};
+pub use report::{Direction, End, Identification, ParameterEstimate};
 
 use super::bounds::Bounds;
 use information::Model;

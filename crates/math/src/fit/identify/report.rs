@@ -24,7 +24,7 @@ pub enum End {
 
 /// What is known of one parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
+pub struct ParameterEstimate {
     /// Its name.
     pub name: String,
     /// Its estimate.
@@ -74,7 +74,7 @@ impl Direction {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// One per parameter.
-    pub estimates: Vec<Estimate>,
+    pub estimates: Vec<ParameterEstimate>,
     /// Correlation of the estimates, a row per parameter; `None` where one is at an end or not
     /// determined.
     pub correlation: Vec<Vec<Option<f64>>>,
@@ -208,7 +208,13 @@ fn is_undetermined(information: &Information, i: usize) -> bool {
     information.axes.iter().any(involved)
 }
 
-fn estimate(bounds: &Bounds, i: usize, point: f64, held: i8, spread: Option<Spread>) -> Estimate {
+fn estimate(
+    bounds: &Bounds,
+    i: usize,
+    point: f64,
+    held: i8,
+    spread: Option<Spread>,
+) -> ParameterEstimate {
     let parameter = &bounds.parameters()[i];
     let ends = |miss: f64| -> (f64, f64) {
         // A chance to miss of the interval, at one end or shared by two.
@@ -230,7 +236,7 @@ fn estimate(bounds: &Bounds, i: usize, point: f64, held: i8, spread: Option<Spre
     };
     let miss = 1.0 - CONFIDENCE;
     let alone = ends(miss);
-    Estimate {
+    ParameterEstimate {
         name: parameter.name.clone(),
         value: parameter.scale.at(point),
         determined: spread.is_some(),

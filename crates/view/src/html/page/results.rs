@@ -2,7 +2,7 @@
 
 use super::escape;
 use crate::html::folder::RunFolder;
-use crate::html::results::{self, Group, ResultRow};
+use crate::html::results::{self, ResultGroup, ResultRow};
 use crate::html::statistics::{Column, Statistics};
 use fretwork_observe::quantity::Catalogue;
 use fretwork_store::summary::FROM_THE_CLOCK;
@@ -49,7 +49,7 @@ fn last_row(series: &Statistics) -> String {
     lead.to_owned() + &table(&("Last recorded row", rows))
 }
 
-fn table((title, rows): &Group) -> String {
+fn table((title, rows): &ResultGroup) -> String {
     let body: String = rows
         .iter()
         .map(|r| {

@@ -73,7 +73,7 @@ impl Place {
 }
 
 /// Visible faces of one smooth part of an object.
-struct Group {
+struct SmoothPart {
     faces: Vec<Vec<Corner>>,
     lights: Vec<f64>,
 }
@@ -81,7 +81,7 @@ struct Group {
 /// Visible parts of an object: groups of faces towards the viewer, faces away from it, and edges.
 #[derive(Default)]
 struct Seen {
-    groups: Vec<Group>,
+    groups: Vec<SmoothPart>,
     away: Vec<Vec<Corner>>,
     edges: Vec<[Corner; 2]>,
 }
@@ -215,7 +215,7 @@ impl SolidScene {
                 continue;
             }
             let at = *place.entry(parts[k]).or_insert_with(|| {
-                seen.groups.push(Group {
+                seen.groups.push(SmoothPart {
                     faces: Vec::new(),
                     lights: Vec::new(),
                 });
@@ -248,7 +248,7 @@ impl SolidScene {
     }
 }
 
-fn solid(raster: &mut Raster, group: &Group, base: Rgb) {
+fn solid(raster: &mut Raster, group: &SmoothPart, base: Rgb) {
     for (face, light) in group.faces.iter().zip(&group.lights) {
         let by = 0.7 + 0.36 * light;
         let colour = base.map(|c| (f64::from(c) * by).min(255.0) as u8);

@@ -29,14 +29,14 @@ enum Take {
 
 /// A number that a run leaves, by its name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct OutputName {
     /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with
     /// `:mean` of the last half of the rows, `:max`, `:min` or `:last`.
     pub name: String,
     place: Place,
 }
 
-impl Quantity {
+impl OutputName {
     /// Parses a name.
     ///
     /// # Errors
@@ -260,12 +260,12 @@ mod tests {
         )
         .unwrap();
         let none = Path::new("/nowhere");
-        let read = |name: &str| Quantity::parse(name).unwrap().read(&summary, none);
+        let read = |name: &str| OutputName::parse(name).unwrap().read(&summary, none);
         assert_eq!(read("wear.Qs"), Some(2.0));
         assert_eq!(read("cycles.0.work"), Some(4.0));
         assert_eq!(read("wear.Qe"), None);
         let check = |name: &str| {
-            let output = Quantity::parse(name).unwrap();
+            let output = OutputName::parse(name).unwrap();
             output.check(&summary, none, &["bulk"])
         };
         // A measure that begins later is not in the summary of a short run.
