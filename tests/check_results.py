@@ -94,7 +94,7 @@ def check_contacts(data, dimension):
 
 
 def check_motion(data, dimension):
-    """Vectors of grains are their components, and identities are told."""
+    """Vectors of grains are their components, and identities are written."""
     for vector, part in (("velocity", "velocity"), ("angular_velocity", "spin"))[:dimension - 1]:
         parts = np.array([data[f"{part}_{a}"][:] for a in "xyz"]).T
         if not np.array_equal(data[vector][:], parts):

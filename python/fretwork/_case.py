@@ -148,8 +148,8 @@ class Case:
 
     def keys(self, path: str = "") -> list[str]:
         """Names at a key path: fields, whether the case gives them or not; of a map or list its entries."""
-        told = self._data.names(path)
-        return told[1] if told is not None and told[0] != "kinds" else []
+        result = self._data.names(path)
+        return result[1] if result is not None and result[0] != "kinds" else []
 
     def kinds(self, path: str) -> list[str]:
         """What a value that is one of several kinds may be.
@@ -157,8 +157,8 @@ class Case:
         >>> Case.load("cases/plane_shear.ron").kinds("coupling")
         ['Explicit', 'Midpoint', 'Implicit']
         """
-        told = self._data.names(path)
-        return told[1] if told is not None and told[0] == "kinds" else []
+        result = self._data.names(path)
+        return result[1] if result is not None and result[0] == "kinds" else []
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.keys()]
@@ -188,8 +188,8 @@ class Case:
 
     def to_dict(self) -> dict[str, Any]:
         """The fields of the case: ``Case(**case.to_dict()) == case``."""
-        told: dict[str, Any] = loads(self._data.value_of_all())
-        return told
+        result: dict[str, Any] = loads(self._data.value_of_all())
+        return result
 
     def save(self, path: AnyPath) -> None:
         """Writes :attr:`text` into a file."""
@@ -212,7 +212,7 @@ class Case:
         plugin_path: Sequence[AnyPath] = (),
         trust_plugins: bool = False,
     ) -> Check:
-        """Builds the scene and tells what it uses and will cost, as ``fretwork check``. With ``timing`` steps are timed for half
+        """Builds the scene and reports what it uses and will cost, as ``fretwork check``. With ``timing`` steps are timed for half
         a second."""
         folders = [os.fspath(p) for p in plugin_path]
         title, lines = self._data.check(folders, trust_plugins, timing)

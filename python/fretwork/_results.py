@@ -56,17 +56,17 @@ class Results:
         """The summary of the run (``summary.json``). A run that goes on, or was killed, has none yet."""
         path = self.folder / "summary.json"
         try:
-            told: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            result: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         except FileNotFoundError:
             text = f"{path}: it is written at the end of a run; resume the run (resume=True), or look at statistics"
             raise InputError(text, str(path)) from None
-        return told
+        return result
 
     @property
     def warnings(self) -> list[str]:
         """Warnings of the run, worst first."""
-        told: list[str] = self.summary["warnings"]
-        return told
+        result: list[str] = self.summary["warnings"]
+        return result
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
@@ -120,8 +120,8 @@ class Results:
         table.attrs["units"] = units
         with self.open() as file:
             columns = file["statistics"]
-            told = {n: _attributes(columns[n])["long_name"] for n in names if n in columns}
-        table.attrs["long_name"] = told
+            result = {n: _attributes(columns[n])["long_name"] for n in names if n in columns}
+        table.attrs["long_name"] = result
         return table
 
     @property
@@ -148,8 +148,8 @@ class Results:
             if "id" in fields and shape[0]:
                 _, ids, said = fields.pop("id")
                 coordinates["id"] = ("grain", ids[0].astype(np.int64), said)
-            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
-            return told
+            result: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return result
 
     @property
     def contacts(self) -> xr.Dataset:
@@ -174,8 +174,8 @@ class Results:
                 "axis": list(AXES),
                 "end": ["candidate", "antagonist"],
             }
-            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
-            return told
+            result: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return result
 
     @property
     def bodies(self) -> xr.Dataset:
@@ -204,8 +204,8 @@ class Results:
                 "body": names,
                 "axis": axes,
             }
-            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
-            return told
+            result: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return result
 
     @staticmethod
     def _said(file: h5py.File) -> dict[str, Any]:
@@ -226,8 +226,8 @@ class Results:
     def times(self) -> list[float]:
         """The recorded times (s) of grains, contacts and meshes."""
         with self.open() as file:
-            told: list[float] = file["views/grains/Steps/Values"][:].tolist()
-            return told
+            result: list[float] = file["views/grains/Steps/Values"][:].tolist()
+            return result
 
     def mesh(self, state: int = -1, view: str = "grains") -> pv.DataSet:
         """A recorded state as a mesh of pyvista, with its fields. ``state`` counts the recorded :attr:`times`, negative from the
@@ -272,8 +272,8 @@ class Results:
                     begin = int(steps[f"{place}Offsets/{name}"][state])
                     data[name] = values[begin : begin + rows]
             mesh.field_data["time"] = [float(steps["Values"][state])]
-            told: pv.DataSet = mesh
-            return told
+            result: pv.DataSet = mesh
+            return result
 
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r})"

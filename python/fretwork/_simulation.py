@@ -112,9 +112,9 @@ class Parts(_Columns):
         self._data = data
 
     def fields(self) -> dict[str, Field]:
-        told = {"position": Field("m", "centres")}
-        told.update({n: Field(unit, doc) for n, unit, doc, _ in self._data.fields(self._of)})
-        return told
+        result = {"position": Field("m", "centres")}
+        result.update({n: Field(unit, doc) for n, unit, doc, _ in self._data.fields(self._of)})
+        return result
 
     def _column(self, name: str) -> Any:
         memory = self._data.grain_points() if name == "position" else self._data.grain_field(name)
@@ -179,8 +179,8 @@ class FirstBody:
     def _on(self, which: int) -> Numbers:
         import numpy as np
 
-        told = self._data.contact_force_on(self.name)
-        return np.array([] if told is None else told[which])
+        result = self._data.contact_force_on(self.name)
+        return np.array([] if result is None else result[which])
 
     def __repr__(self) -> str:
         return f"FirstBody({self.name!r})"
@@ -212,8 +212,8 @@ class Simulation:
     @property
     def last_step(self) -> StepReport:
         """What the solver reached in the last step."""
-        told = self._data.last_step()
-        return StepReport(0, 0.0, True) if told is None else StepReport(*told)
+        result = self._data.last_step()
+        return StepReport(0, 0.0, True) if result is None else StepReport(*result)
 
     @property
     def dimension(self) -> int:
@@ -269,8 +269,8 @@ class Simulation:
     @property
     def energy(self) -> dict[str, float]:
         """The energy ledger (J; J/m in 2D)."""
-        told: dict[str, float] = loads(self._data.energies())
-        return told
+        result: dict[str, float] = loads(self._data.energies())
+        return result
 
     @property
     def statistics(self) -> dict[str, float]:

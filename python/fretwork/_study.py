@@ -21,7 +21,7 @@ WHOLE = ("point", "setting", "seed", "steps")
 def read_study(folder: Union[str, PathLike[str]], *, settings: bool = False) -> pd.DataFrame:
     """The table of a study, a row for each run; with ``settings`` a row for each setting, with means over its seeds.
 
-    ``folder`` is what ``fretwork study run`` wrote, ``results/study/<study>`` if it was not told otherwise. ``attrs["units"]`` is a
+    ``folder`` is what ``fretwork study run`` wrote, ``results/study/<study>`` by default. ``attrs["units"]`` is a
     dictionary of the units (SI) by column, ``"1"`` for pure numbers and texts. Unknown values are missing (NaN or None): of a run that was not made, or that has none.
     Means should be over the runs whose ``status`` is ``done``, as they are in the table of settings.
 

@@ -106,11 +106,11 @@ impl Array {
     /// Read-only, in the order of C.
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let told = PyDict::new(py);
-        told.set_item("version", 3)?;
-        told.set_item("typestr", self.kind)?;
-        told.set_item("shape", PyTuple::new(py, &self.shape)?)?;
-        told.set_item("data", (self.at, true))?;
-        Ok(told)
+        let result = PyDict::new(py);
+        result.set_item("version", 3)?;
+        result.set_item("typestr", self.kind)?;
+        result.set_item("shape", PyTuple::new(py, &self.shape)?)?;
+        result.set_item("data", (self.at, true))?;
+        Ok(result)
     }
 }

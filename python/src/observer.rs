@@ -142,8 +142,8 @@ impl Observer for PythonObserver {
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         let carried = Python::attach(|py| {
-            let told = self.object.bind(py).call_method0("save")?;
-            told.extract::<Vec<u8>>()
+            let result = self.object.bind(py).call_method0("save")?;
+            result.extract::<Vec<u8>>()
         });
         // Without it there is no checkpoint; the one before stays.
         let carried = carried.map_err(|error| {

@@ -55,7 +55,7 @@ enum End {
     Failed(RunError, Option<String>),
 }
 
-/// What Python's thread and that of the run tell each other.
+/// Messages between Python's thread and that of the run.
 #[derive(Default)]
 struct Shared {
     latest: Mutex<Option<Progress>>,

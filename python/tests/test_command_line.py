@@ -17,8 +17,8 @@ def call(*words, **more):
 
 def test_the_console_script_is_the_command_line():
     script = os.path.join(os.path.dirname(sys.executable), "fretwork")
-    told = subprocess.run([script, "--version"], capture_output=True, text=True, check=True).stdout
-    assert told == call("--version").stdout == f"fretwork {fretwork.__version__}\n"
+    result = subprocess.run([script, "--version"], capture_output=True, text=True, check=True).stdout
+    assert result == call("--version").stdout == f"fretwork {fretwork.__version__}\n"
 
 
 def test_exit_codes_and_streams(here):
@@ -30,9 +30,9 @@ def test_exit_codes_and_streams(here):
 
 
 def test_check_says_the_same_as_in_python(here):
-    told = call("check", "cases/plane_shear.ron", "--no-timing").stdout
+    result = call("check", "cases/plane_shear.ron", "--no-timing").stdout
     case = fretwork.Case.load("cases/plane_shear.ron")
-    assert told.rstrip("\n") == str(case.check(timing=False))
+    assert result.rstrip("\n") == str(case.check(timing=False))
 
 
 def test_ctrl_c_ends_the_command_line_with_its_own_words(here):

@@ -40,8 +40,8 @@ def test_what_is_no_run_is_refused(here):
 
 def test_a_report_that_cannot_be_written_leaves_the_run_as_it_is(shear, here):
     (here / "results/blocked/report.html/in_the_way").mkdir(parents=True)
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as result:
         warnings.simplefilter("always")
         results = shear.run("results/blocked", progress=False)
     assert results.summary["steps"] > 0
-    assert any("there is no report" in str(w.message) for w in told)
+    assert any("there is no report" in str(w.message) for w in result)

@@ -40,8 +40,8 @@ def test_a_run_has_the_bits_of_the_command_line(shear, here):
             check=True,
             capture_output=True,
         )
-        told = (here / "results/program/statistics.csv").read_bytes()
-        assert told == (here / "results/python/statistics.csv").read_bytes()
+        result = (here / "results/program/statistics.csv").read_bytes()
+        assert result == (here / "results/python/statistics.csv").read_bytes()
     bytes_of = [(here / "results" / n / "statistics.csv").read_bytes() for n in ("python", "threads", "command")]
     assert bytes_of[0] == bytes_of[1] == bytes_of[2]
     other = json.loads((here / "results/command/summary.json").read_text())
@@ -61,11 +61,11 @@ def test_a_run_of_a_case_of_python(slider, here):
 
 def test_progress_is_told(slider, here):
     slider["time.end"] = 0.5
-    told = []
-    slider.run(progress=told.append)
-    assert told[-1].step == told[-1].steps == 5000
-    assert [p.step for p in told] == sorted({p.step for p in told})
-    assert "contacts" in told[-1].text()
+    result = []
+    slider.run(progress=result.append)
+    assert result[-1].step == result[-1].steps == 5000
+    assert [p.step for p in result] == sorted({p.step for p in result})
+    assert "contacts" in result[-1].text()
 
 
 def test_an_exception_of_progress_ends_the_run(shear, here):

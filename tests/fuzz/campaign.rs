@@ -50,7 +50,7 @@ fn alone() -> MutexGuard<'static, ()> {
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A thread that reads the files it is told.
+/// A thread that reads the files that it is given.
 fn worker(read: Read) -> (Sender<PathBuf>, Receiver<Answer>) {
     let (to, files) = channel::<PathBuf>();
     let (answers, from) = channel();

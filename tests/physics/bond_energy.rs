@@ -338,7 +338,7 @@ fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Optio
 #[test]
 fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
     let (stress, stiffness, steps) = (1e6f64, 1e10, 2000);
-    let check = |bond: &BondEnergies, told: &Option<String>, energy: f64| {
+    let check = |bond: &BondEnergies, reported: &Option<String>, energy: f64| {
         assert!(bond.broken == 1 && bond.comparable, "{bond:?}");
         // Broken in the step after the critical angle, of which there are a thousand and more.
         let ratio = bond.released / energy;
@@ -348,7 +348,7 @@ fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
         );
         let ratio = bond.released_over_declared.unwrap();
         assert!((ratio - 1.0).abs() < 4e-3, "{ratio}: {bond:?}");
-        assert_eq!(*told, None);
+        assert_eq!(*reported, None);
     };
     // The bond's radius R follows from its area; it breaks at the angle stress/(stiffness R).
     let area = |s: usize| {
@@ -362,10 +362,10 @@ fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
     let energy_opened = 0.5 * stress * stress / stiffness;
     let r = 0.05;
     let critical = stress / (stiffness * r);
-    let (bond, told) = turned::<Dim2>("rz: ANGLE", 1.5 * critical, steps);
-    check(&bond, &told, energy_opened * area(2) / 3.0);
-    let (bond, told) = turned::<Dim3>("rz: ANGLE", 1.5 * critical, steps);
-    check(&bond, &told, energy_opened * area(3) / 4.0);
-    let (bond, told) = turned::<Dim3>("rx: ANGLE", 1.5 * critical, steps);
-    check(&bond, &told, energy_opened * area(3) / 2.0);
+    let (bond, reported) = turned::<Dim2>("rz: ANGLE", 1.5 * critical, steps);
+    check(&bond, &reported, energy_opened * area(2) / 3.0);
+    let (bond, reported) = turned::<Dim3>("rz: ANGLE", 1.5 * critical, steps);
+    check(&bond, &reported, energy_opened * area(3) / 4.0);
+    let (bond, reported) = turned::<Dim3>("rx: ANGLE", 1.5 * critical, steps);
+    check(&bond, &reported, energy_opened * area(3) / 2.0);
 }

@@ -151,7 +151,7 @@ fn every_method<S: Space>(blocks: bool) {
         agree::<S>(stiff, blocks, &methods);
     }
     // Gradients and the symmetric sweeps hold a bond and its contact as two unknowns, which only
-    // those tell apart well that factorise.
+    // methods that factorise separate well.
     let factorise = [Method::Newton, Method::Interior];
     agree::<S>(100.0, blocks, &factorise);
 }

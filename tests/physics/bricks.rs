@@ -16,7 +16,7 @@ const BRICKS: [([f64; 2], f64, f64, f64); 3] = [
 ];
 
 /// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed
-/// (m/s); `last` tells whether the box is the last grain or the first.
+/// (m/s); `last` says whether the box is the last grain or the first.
 fn on_bricks<S: Space>(
     [width, height]: [f64; 2],
     side: f64,
@@ -150,10 +150,10 @@ fn free_bricks_are_one_floor() {
 }
 
 /// Where the alert distance is small for the bricks they sink by more than counts as flush, and the
-/// box may be stopped by the next one: that is told.
+/// box may be stopped by the next one: that is reported.
 #[test]
 fn an_edge_of_the_solution_is_told() {
-    let mut told = 0;
+    let mut reported = 0;
     for (alert, speed) in [1e-3, 1e-4]
         .into_iter()
         .flat_map(|alert| [0.2, 0.5, 0.7, 1.305].map(|speed| (alert, speed)))
@@ -175,7 +175,7 @@ fn an_edge_of_the_solution_is_told() {
             };
             for (changed, edges) in [slide::<Dim2>(&heavy), slide::<Dim3>(&heavy)] {
                 assert!(changed < 2e-2 || edges > 0);
-                told += usize::from(edges > 0);
+                reported += usize::from(edges > 0);
             }
             let (_, edges) = slide::<Dim2>(&Slide {
                 solver: "tolerance: 1e-7",
@@ -190,6 +190,6 @@ fn an_edge_of_the_solution_is_told() {
         });
         assert_eq!(edges, 0);
     }
-    println!("{told} of 32 told");
-    assert!(told > 12);
+    println!("{reported} of 32 reported");
+    assert!(reported > 12);
 }

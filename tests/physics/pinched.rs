@@ -270,7 +270,7 @@ fn several_solutions_are_reported() {
 
 /// Seventeen pinched capsules that have nothing to do with each other hang, and one does beside
 /// balls at rest on a floor, whose contacts are more than the search takes in one set; the number
-/// of solutions is told in the first step, and no set is too large.
+/// of solutions is reported in the first step, and no set is too large.
 #[test]
 fn what_is_pinched_hangs_whatever_else_there_is() {
     let mu = 1.05 * least_friction();
@@ -298,8 +298,11 @@ fn what_is_pinched_hangs_whatever_else_there_is() {
             "{name}: {v:e} m/s, {d:e} m"
         );
         let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-6", 1e-3);
-        let told: Vec<bool> = (0..10).map(|_| s.step().unwrap().solver.several).collect();
-        assert!(told[0] && !told[1..].contains(&true), "{name}: {told:?}");
+        let reported: Vec<bool> = (0..10).map(|_| s.step().unwrap().solver.several).collect();
+        assert!(
+            reported[0] && !reported[1..].contains(&true),
+            "{name}: {reported:?}"
+        );
         let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-6", 1e-3);
         assert!(
             (0..10).all(|_| !s.step().unwrap().solver.not_searched),
@@ -348,14 +351,14 @@ fn blocks_that_slide_have_one_solution() {
     }
 }
 
-/// Where a set is too large to search, a loaded contact of it that begins to slide is told:
+/// Where a set is too large to search, a loaded contact of it that begins to slide is reported:
 /// capsules that two pads hold between plates without gravity, and drop with it. Not while they
 /// hold, nor of fewer, nor of those that the pads hold themselves, whose sets are searched.
 #[test]
 fn sets_too_large_to_search_are_told() {
     let level = capsule([0.0, 1.0, 0.0]);
     let thin = level.replace("radius: 0.004", "radius: 0.003");
-    for (count, plates, told) in [
+    for (count, plates, reported) in [
         (80, true, true),
         (80, false, false),
         (20, false, false),
@@ -385,7 +388,7 @@ fn sets_too_large_to_search_are_told() {
         // Plates move a little until they fit what they hold.
         assert!(held || plates, "{count} that hold");
         s.state.gravity = gravity;
-        assert_eq!(not_searched(&mut s), told, "{count} that fall");
+        assert_eq!(not_searched(&mut s), reported, "{count} that fall");
     }
 }
 
@@ -404,16 +407,16 @@ fn fallen_but<S: Space>(mut s: Simulation<S>, but: &[usize]) -> f64 {
         .map(|d| d.body as usize)
         .collect();
     let start = s.state.bodies.position.clone();
-    let (mut told, mut fallen) = (false, 0.0);
+    let (mut reported, mut fallen) = (false, 0.0);
     for step in 1..=500 {
         let solver = s.step().unwrap_or_else(|e| panic!("{e}")).solver;
-        told |= solver.several || solver.pinched;
+        reported |= solver.several || solver.pinched;
         let grains = (0..start.len()).filter(|b| !driven.contains(b) && !but.contains(b));
         let down = grains.map(|b| start[b][S::D - 1] - s.state.bodies.position[b][S::D - 1]);
         fallen = down.fold(0.0, f64::max);
         assert!(
-            told || fallen < 1e-4,
-            "{fallen:e} m after {step} steps, and nothing is told"
+            reported || fallen < 1e-4,
+            "{fallen:e} m after {step} steps, and nothing is reported"
         );
     }
     fallen
@@ -502,7 +505,7 @@ fn what_many_contacts_pinch_hangs() {
 }
 
 /// Under a force that varies by a tenth, or beside what moves, the errors of a step move
-/// hyperstatic impulses until some slide at the default tolerance, which is told; Newton's method
+/// hyperstatic impulses until some slide at the default tolerance, which is reported; Newton's method
 /// at 1e-6 leaves them.
 #[test]
 fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {

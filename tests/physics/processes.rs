@@ -106,11 +106,11 @@ fn what_is_due_between_steps_is_not_lost() {
 /// that does not is not.
 #[test]
 fn an_impulse_that_sends_a_grain_through_another_is_reported() {
-    for (speed, told) in [(0.5, false), (160.0, true)] {
+    for (speed, reported) in [(0.5, false), (160.0, true)] {
         let mut s = two_grains();
         s.add_process(Throw(speed));
         s.step().unwrap();
         let passed = s.state.network.step_size.passed;
-        assert_eq!(passed > 0, told, "{speed} m/s: {passed}");
+        assert_eq!(passed > 0, reported, "{speed} m/s: {passed}");
     }
 }

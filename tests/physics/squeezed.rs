@@ -55,16 +55,16 @@ fn grains(dimension: usize) -> Vec<String> {
 
 /// What a run of some steps says of its imposed motions, the largest force on the lid (N), and how
 /// many of the steps converged.
-fn told<S: Space>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
-    let (mut told, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
+fn reported<S: Space>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
+    let (mut reported, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        told.add(s, &report);
+        reported.add(s, &report);
         converged += usize::from(report.solver.converged);
         let received = s.state.received.iter().map(|r| r.0[S::D - 1].abs());
         force = received.fold(force, f64::max);
     }
-    (told, force / s.options.scheme.h, converged)
+    (reported, force / s.options.scheme.h, converged)
 }
 
 fn cannot_be_obeyed<S: Space>() {
@@ -72,17 +72,17 @@ fn cannot_be_obeyed<S: Space>() {
         for method in ["Auto", "Anderson", "Newton", "Interior", "Nlgs"] {
             let solver = format!("method: {method}, max_iterations: 2000");
             let mut s: Simulation<S> = pressed(DRIVEN, &list, &solver, RIGID);
-            let (told, force, converged) = told(&mut s, 3);
-            let name = format!("{}D, {method}, {list}: {told:?}, {force:e} N", S::D);
+            let (reported, force, converged) = reported(&mut s, 3);
+            let name = format!("{}D, {method}, {list}: {reported:?}, {force:e} N", S::D);
             assert_eq!(converged, 0, "{name}");
             // The interior point may end without any impulses, which says nothing but that the
             // steps did not converge.
             if method == "Interior" && force == 0.0 {
                 continue;
             }
-            assert!(told.squeezed_steps == 3, "{name}");
-            assert_eq!(told.squeezing, ["body `lid`", "body `floor`"], "{name}");
-            let text = told.warning().unwrap();
+            assert!(reported.squeezed_steps == 3, "{name}");
+            assert_eq!(reported.squeezing, ["body `lid`", "body `floor`"], "{name}");
+            let text = reported.warning().unwrap();
             assert!(
                 text.contains("`lid` and body `floor` squeezed") && text.contains("by Force"),
                 "{text}"
@@ -112,8 +112,8 @@ fn can_be_obeyed<S: Space>() {
     for (lid, law) in [("Force(-10.0)", RIGID), (DRIVEN, SPRINGS)] {
         for list in grains(S::D) {
             let mut s: Simulation<S> = pressed(lid, &list, "", law);
-            let (told, ..) = told(&mut s, 20);
-            assert!(told.is_empty(), "{lid}, {list}: {told:?}");
+            let (reported, ..) = reported(&mut s, 20);
+            assert!(reported.is_empty(), "{lid}, {list}: {reported:?}");
         }
     }
 }
@@ -144,18 +144,24 @@ fn driven_bodies_that_overlap_are_named() {
         scene::text::<Dim3>(&text)
     };
     let down = "z: Velocity(-0.1)";
-    let (told_of, ..) = told(&mut scene(down, RIGID), 10);
+    let (reported_of, ..) = reported(&mut scene(down, RIGID), 10);
     // 1e-3 m after ten steps.
-    assert!((told_of.overlap / 1e-3 - 1.0).abs() < 0.01, "{told_of:?}");
-    let text = told_of.warning().unwrap();
+    assert!(
+        (reported_of.overlap / 1e-3 - 1.0).abs() < 0.01,
+        "{reported_of:?}"
+    );
+    let text = reported_of.warning().unwrap();
     assert!(
         text.contains("`lower`") && text.contains("`upper`") && text.contains("both imposed"),
         "{text}"
     );
     // However little: 1e-5 of their size. The overlap counts as one of rigid bodies.
     let mut slow = scene("z: Velocity(-2e-5)", RIGID);
-    let (told_of, ..) = told(&mut slow, 10);
-    assert!((told_of.overlap / 2e-7 - 1.0).abs() < 0.01, "{told_of:?}");
+    let (reported_of, ..) = reported(&mut slow, 10);
+    assert!(
+        (reported_of.overlap / 2e-7 - 1.0).abs() < 0.01,
+        "{reported_of:?}"
+    );
     let report = slow.step().unwrap();
     assert!(report.overlap > 1e-6, "{}", report.overlap);
     for (motion, law) in [
@@ -163,7 +169,7 @@ fn driven_bodies_that_overlap_are_named() {
         ("z: Velocity(0.1)", RIGID),
         ("x: Velocity(0.1)", RIGID),
     ] {
-        let (told_of, ..) = told(&mut scene(motion, law), 10);
-        assert!(told_of.is_empty(), "{motion}, {law}: {told_of:?}");
+        let (reported_of, ..) = reported(&mut scene(motion, law), 10);
+        assert!(reported_of.is_empty(), "{motion}, {law}: {reported_of:?}");
     }
 }

@@ -108,7 +108,7 @@ fn with_careful_law(name: &str) -> (Folder, PathBuf) {
     (folder, case)
 }
 
-pub fn told(output: &Output) -> String {
+pub fn reported(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 
@@ -120,9 +120,9 @@ const LIMIT: &str = "interfaces.0.parameters.contact.limit=2.5e-4";
 fn a_law_that_asks_for_smaller_steps_gets_them() {
     let (folder, case) = with_careful_law("law");
     let asked = folder.run(&case, "asked", &[LIMIT, "accuracy=0.9"]);
-    assert!(asked.status.success(), "{}", told(&asked));
+    assert!(asked.status.success(), "{}", reported(&asked));
     let fine = folder.run(&case, "fine", &["time.step=2e-4", "output.every=4"]);
-    assert!(fine.status.success(), "{}", told(&fine));
+    assert!(fine.status.success(), "{}", reported(&fine));
     for (asked, fine) in folder
         .statistics("asked")
         .iter()
@@ -145,7 +145,7 @@ fn a_run_that_may_not_choose_its_step_ends_where_a_law_asks_for_it() {
     let (folder, case) = with_careful_law("refused");
     let fixed = folder.run(&case, "fixed", &[LIMIT]);
     assert_eq!(fixed.status.code(), Some(1));
-    let text = told(&fixed);
+    let text = reported(&fixed);
     assert!(
         text.contains("careful")
             && text.contains("asks for a smaller time step")
@@ -155,7 +155,7 @@ fn a_run_that_may_not_choose_its_step_ends_where_a_law_asks_for_it() {
     let bound = "accuracy=(share: 0.9, finest_step: 4e-4)";
     let bounded = folder.run(&case, "bounded", &[LIMIT, bound]);
     assert_eq!(bounded.status.code(), Some(1));
-    assert!(told(&bounded).contains("asks for a smaller time step"));
+    assert!(reported(&bounded).contains("asks for a smaller time step"));
 }
 
 /// A bond that breaks in any part of a step is an event of the results.
@@ -177,7 +177,7 @@ fn bonds_that_break_in_a_part_of_a_step_are_recorded() {
         ];
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
         let done = folder.run(&case, name, &sets);
-        assert!(done.status.success(), "{}", told(&done));
+        assert!(done.status.success(), "{}", reported(&done));
         assert_eq!(folder.summary(name)["broken"], 1);
         let results = hdf5::H5File::open(folder.0.join(name).join("results.h5")).unwrap();
         let times: Vec<f64> = results
@@ -207,7 +207,7 @@ fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference
     ];
     let friction = |out: &str, sets: &[&str]| {
         let done = folder.run(&case, out, &[&common[..], sets].concat());
-        assert!(done.status.success(), "{}", told(&done));
+        assert!(done.status.success(), "{}", reported(&done));
         let summary = folder.summary(out);
         (summary["friction_coefficient"].as_f64().unwrap(), summary)
     };

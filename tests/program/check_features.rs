@@ -264,7 +264,7 @@ fn strength_is_told_over_the_pressure_of_the_scene() {
     assert!(weak.contains("WEAK"), "{weak}");
 }
 
-/// The run time is that of a few steps; a step that fails is told and is no crash; `--no-timing`
+/// The run time is that of a few steps; a step that fails is reported and is no crash; `--no-timing`
 /// leaves it out.
 #[test]
 fn the_run_time_is_estimated() {
@@ -341,14 +341,14 @@ fn grains_of_different_size_are_weighed_in_pairs() {
 #[test]
 fn the_memory_and_cost_of_deformable_bodies_are_told() {
     let (_, _, text) = check("cylinder_on_flat_fretting", &[]);
-    for told in [
+    for reported in [
         "flat: 9657 points, 19008 elements",
         "19096 unknowns; memory: matrix 3.3 MB, factor 8.0 MB, compliance of the surface 3.5 kB a point",
         "factorised once, 44 million operations",
         "MB of deformable bodies",
         "run time             about",
     ] {
-        assert!(text.contains(told), "no `{told}` in {text}");
+        assert!(text.contains(reported), "no `{reported}` in {text}");
     }
     let (_, _, text) = check("sphere_on_flat_fretting", &[]);
     assert!(

@@ -111,14 +111,14 @@ fn pages_know_how_many_laws_there_are() {
         let line = |l: &str| l.split_whitespace().take(2).eq([kind.word(), name]);
         assert!(listed.lines().any(line), "{kind} {name}");
     }
-    let mut told = 0;
+    let mut reported = 0;
     for page in pages() {
         for (number, words) in numbers_of_laws(&read(&page)) {
             assert_eq!(number, own, "{}: {words}", page.display());
-            told += 1;
+            reported += 1;
         }
     }
-    assert!(told >= 2, "{told}");
+    assert!(reported >= 2, "{reported}");
 }
 
 /// Numbers in digits before `laws`, `shipped laws` or `shipped ones`, with these words.

@@ -1,6 +1,6 @@
 //! Steps that grow where nothing moves, and shrink before something does.
 
-use crate::accuracy::{Folder, told};
+use crate::accuracy::{Folder, reported};
 use std::collections::BTreeMap;
 
 const G: f64 = 9.81;
@@ -52,7 +52,7 @@ fn rows(folder: &Folder, case: &str, out: &str, sets: &[&str]) -> Rows {
     let path = folder.0.join("case.ron");
     std::fs::write(&path, case).unwrap();
     let done = folder.run(&path, out, sets);
-    assert!(done.status.success(), "{}", told(&done));
+    assert!(done.status.success(), "{}", reported(&done));
     let mut file = csv::Reader::from_path(folder.0.join(out).join("statistics.csv")).unwrap();
     let names: Vec<String> = file
         .headers()
@@ -241,7 +241,7 @@ fn steps_that_grow_have_the_same_bits_on_any_number_of_threads() {
             )
             .output()
             .unwrap();
-        assert!(done.status.success(), "{}", told(&done));
+        assert!(done.status.success(), "{}", reported(&done));
         assert!(
             folder.summary(threads)["accuracy"]["grown"]
                 .as_f64()
@@ -271,7 +271,7 @@ fn bounds_that_cannot_be_are_refused() {
     ] {
         let refused = folder.run(&path, "refused", &[set]);
         assert_eq!(refused.status.code(), Some(2));
-        let text = told(&refused);
+        let text = reported(&refused);
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
     }
 }

@@ -51,7 +51,7 @@ fn example_of_half_spaces_runs_and_meets_what_its_page_says() {
     assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
     // It says how many elements slip, and that the heat is a few per cent low.
     let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
-    let told = summary["resolution"][0]["heat_error"].as_f64().unwrap();
-    assert!(told > 0.02 && told < 0.08, "{told}");
+    let reported = summary["resolution"][0]["heat_error"].as_f64().unwrap();
+    assert!(reported > 0.02 && reported < 0.08, "{reported}");
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -60,16 +60,18 @@ fn a_transport_law_without_heat_is_told_once() {
     assert!(of(&with, "NO HEAT").is_empty(), "{:?}", with.run.warnings);
     let without = ["time.end=1e-4", "heat=None"];
     let summary = ran(built("two_half_spaces", &without));
-    let told = of(&summary, "NO HEAT");
-    assert_eq!(told.len(), 1);
-    assert!(told[0].contains("transport law of `contact`") && told[0].contains("`heat: ()`"));
+    let reported = of(&summary, "NO HEAT");
+    assert_eq!(reported.len(), 1);
+    assert!(
+        reported[0].contains("transport law of `contact`") && reported[0].contains("`heat: ()`")
+    );
     assert!(summary.run.trustworthy, "{:?}", summary.run.reasons);
 }
 
 #[test]
 fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
     let reach = (50.0f64 / (450.0 * 7850.0) * 1e-2).sqrt();
-    for (depth, told) in [(None, false), (Some(4.1), false), (Some(3.0), true)] {
+    for (depth, reported) in [(None, false), (Some(4.1), false), (Some(3.0), true)] {
         let depth = depth.map(|d: f64| d * reach);
         let set = format!("heat.bodies.rail.store.depth={depth:?}");
         let summary = ran(built("half_space", &[&set]));
@@ -79,7 +81,7 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
         // To the next point of the grid.
         assert!((given..1.3 * given).contains(&found.depth), "{found:?}");
         let notes = of(&summary, "SHALLOW HALF-SPACES");
-        assert_eq!(notes.len(), usize::from(told), "{notes:?}");
+        assert_eq!(notes.len(), usize::from(reported), "{notes:?}");
         assert!(notes.iter().all(|n| n.contains("`rail`")));
     }
 }
@@ -97,9 +99,9 @@ fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
     let spaces = &summary.found.get::<HeatChecks>().unwrap().half_spaces;
     let shares: Vec<f64> = spaces.iter().map(|h| h.outside).collect();
     assert!((shares[0] - 0.5).abs() < 1e-9 && shares[1] == 0.0);
-    let told = of(&summary, "HEAT OUT OF RANGE");
-    assert_eq!(told.len(), 1);
-    assert!(told[0].contains("50 % for `floor`") && told[0].contains("`over`"));
+    let reported = of(&summary, "HEAT OUT OF RANGE");
+    assert_eq!(reported.len(), 1);
+    assert!(reported[0].contains("50 % for `floor`") && reported[0].contains("`over`"));
 }
 
 /// Of the friction at the two corners of a block that conducts nothing, that of the rear one is
@@ -167,22 +169,24 @@ fn laws_that_count_time_of_the_mechanics_are_told_where_heat_has_a_clock() {
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{said}");
-        let told = text.lines().filter(|l| l.contains("MECHANICAL TIME"));
-        told.map(str::to_owned).collect::<Vec<_>>()
+        let reported = text.lines().filter(|l| l.contains("MECHANICAL TIME"));
+        reported.map(str::to_owned).collect::<Vec<_>>()
     };
     let laws = [
         "interfaces.0.transport=oxide-film",
         "interfaces.0.wear=Some(\"oxidation\")",
     ];
     assert!(check(&[]).is_empty());
-    let told = check(&laws);
-    assert_eq!(told.len(), 2, "{told:?}");
+    let reported = check(&laws);
+    assert_eq!(reported.len(), 2, "{reported:?}");
     assert!(
-        told.iter()
+        reported
+            .iter()
             .any(|t| t.contains("transport law `oxide-film` of `steel`"))
     );
     assert!(
-        told.iter()
+        reported
+            .iter()
             .any(|t| t.contains("wear law `oxidation` of `steel`"))
     );
     assert!(check(&[&laws[..], &["heat.clock=1.0"]].concat()).is_empty());

@@ -21,7 +21,7 @@ fn call(word: &str, case: &Path, sets: &[&str], out: Option<&Path>) -> Output {
     command.output().unwrap()
 }
 
-/// The table of a run, without the column that tells the phase.
+/// The table of a run, without the column of the phase.
 fn table(case: &str, sets: &[&str], name: &str) -> Vec<(String, Vec<f64>)> {
     table_of(&shipped(case), sets, name)
 }

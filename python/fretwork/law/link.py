@@ -54,7 +54,7 @@ def library(table: str, loops: bytes) -> bytes:
         (folder / "loops.o").write_bytes(loops)
         flags = ["-O2", "-std=c11", "-shared", "-fPIC", "-fvisibility=hidden", "-s"]
         flags += ["-Wl,-undefined,error"] if sys.platform == "darwin" else ["-Wl,--no-undefined"]
-        # zig compiles for the processor it runs on unless told otherwise.
+        # zig compiles for the processor it runs on by default.
         flags += ["-mcpu=baseline"] if "ziglang" in command else []
         line = [*command, *flags, "-o", "law.so", "table.c", "loops.o", "-lm"]
         try:

@@ -33,7 +33,7 @@ static double *column(const fw_batch *b, size_t offset) {
 }
 #define COLUMN(name) column(b, offsetof(fw_batch, name))
 
-static int32_t tell(fw_message *m, int64_t contact, int32_t status, const char *format, ...) {
+static int32_t write_message(fw_message *m, int64_t contact, int32_t status, const char *format, ...) {
     va_list list;
     if (m == 0) return status;
     m->contact = contact;
@@ -54,7 +54,7 @@ static int32_t refuse(const fw_batch *b, fw_message *m, size_t k, const char *na
     char values[1024] = "";
     size_t used = 0;
     if (asks_for_smaller_step(x)) {
-        return tell(m, (int64_t)k, FW_REDUCE_STEP, "the law cannot follow a step of %g s; take a smaller one", b->h);
+        return write_message(m, (int64_t)k, FW_REDUCE_STEP, "the law cannot follow a step of %g s; take a smaller one", b->h);
     }
     for (size_t v = 0; v < N_PARAMETERS; v++) {
         used += (size_t)snprintf(values + used, sizeof values - used, ", %s = %.17g", parameters[v].name, b->parameters[v]);
@@ -65,7 +65,7 @@ static int32_t refuse(const fw_batch *b, fw_message *m, size_t k, const char *na
         used += (size_t)snprintf(values + used, sizeof values - used, ", %s = %.17g", inputs->name, from ? from[k] : 0.0);
         if (used >= sizeof values) used = sizeof values - 1;
     }
-    return tell(m, (int64_t)k, FW_ERROR, "the law gave a value of `%s` that is not finite, at h = %.17g%s", name, b->h, values);
+    return write_message(m, (int64_t)k, FW_ERROR, "the law gave a value of `%s` that is not finite, at h = %.17g%s", name, b->h, values);
 }
 
 /* Finds the value that is not finite. */
@@ -80,15 +80,15 @@ static int32_t search(const fw_batch *b, fw_message *m, const struct column *out
             if (!isfinite(x)) return refuse(b, m, k, variables[v].name, x, inputs);
         }
     }
-    return tell(m, -1, FW_ERROR, "the law gave a value that is not finite");
+    return write_message(m, -1, FW_ERROR, "the law gave a value that is not finite");
 }
 
 static int32_t incomplete(const fw_batch *b, fw_message *m, const struct column *inputs, const struct column *outputs) {
     for (const struct column *c = inputs; c->name; c++)
-        if (!column(b, c->offset)) return tell(m, -1, FW_ERROR, "the law needs the column `%s`, which this program does not give", c->name);
+        if (!column(b, c->offset)) return write_message(m, -1, FW_ERROR, "the law needs the column `%s`, which this program does not give", c->name);
     for (const struct column *c = outputs; c->name; c++)
-        if (!column(b, c->offset)) return tell(m, -1, FW_ERROR, "the law gives the column `out_%s`, which this program does not take", c->name);
-    return tell(m, -1, FW_ERROR, "the batch has no parameters or internal variables");
+        if (!column(b, c->offset)) return write_message(m, -1, FW_ERROR, "the law gives the column `out_%s`, which this program does not take", c->name);
+    return write_message(m, -1, FW_ERROR, "the batch has no parameters or internal variables");
 }
 """
 
@@ -173,7 +173,7 @@ def _call(law: Law, slot: str, loops: list[Loop]) -> str:
         "    int64_t wrong = 0;",
         "    void *exception = 0;",
         "    int32_t status;",
-        '    if (b == 0 || b->size < offsetof(fw_batch, gap)) return tell(m, -1, FW_ERROR, "the batch is null or shorter than version 1.0");',
+        '    if (b == 0 || b->size < offsetof(fw_batch, gap)) return write_message(m, -1, FW_ERROR, "the batch is null or shorter than version 1.0");',
         "    if (b->n == 0) return FW_OK;",
     ]
     needs = ["b->parameters"] if law.parameters else []
@@ -199,7 +199,7 @@ def _call(law: Law, slot: str, loops: list[Loop]) -> str:
     lines += [
         "    else",
         f"        return incomplete(b, m, inputs_{slot}, outputs_{slot});",
-        '    if (status != 0) return tell(m, -1, FW_ERROR, "the law asks for a value beyond the end of an array");',
+        '    if (status != 0) return write_message(m, -1, FW_ERROR, "the law asks for a value beyond the end of an array");',
         f"    return wrong ? search(b, m, outputs_{slot}, inputs_{slot}, {int(full.moves)}) : FW_OK;",
         "}",
     ]
@@ -214,7 +214,7 @@ def _validate(law: Law, conditions: list[tuple[str, str]]) -> str:
     for message, symbol in conditions:
         lines += [
             f"    holds = 0;\n    if (fretwork_{symbol}(&holds, &exception, 1, values) != 0 || !holds)",
-            f'        return tell(m, -1, FW_BAD_PARAMETER, "%s", {_text(message)});',
+            f'        return write_message(m, -1, FW_BAD_PARAMETER, "%s", {_text(message)});',
         ]
     return "\n".join([*lines, "    return FW_OK;", "}"])
 

@@ -300,8 +300,11 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
 }
 
 fn passed<S: Space>(s: &Simulation<S>) {
-    let told = s.state.network.step_size.warning().unwrap_or_default();
-    assert!(told.contains("penetrated or passed through"), "{told}");
+    let reported = s.state.network.step_size.warning().unwrap_or_default();
+    assert!(
+        reported.contains("penetrated or passed through"),
+        "{reported}"
+    );
 }
 
 /// What bodies go through before the first detection, and by a jump of an imposed velocity, is

@@ -501,11 +501,11 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
         (1000.0, "ALIASED DRIVE", "ALIASES"),
     ] {
         let (summary, _) = ran(frequency);
-        let told = summary.run.warnings.iter().find(|w| w.starts_with(heading));
-        let told = told.expect("a warning");
+        let reported = summary.run.warnings.iter().find(|w| w.starts_with(heading));
+        let reported = reported.expect("a warning");
         assert!(
-            told.contains("`pin` along x") && told.contains(words),
-            "{told}"
+            reported.contains("`pin` along x") && reported.contains(words),
+            "{reported}"
         );
         assert!(summary.text(false).contains(heading));
         // A coarse path is a note; another frequency than the one asked for is a reason.

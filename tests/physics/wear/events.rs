@@ -5,9 +5,9 @@ use fretwork::contact::ContactDissipation;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
 /// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books,
-/// and what breaks tell of themselves adds up to the fracture energy, with what intact bonds lost
+/// and what breaks report of themselves adds up to the fracture energy, with what intact bonds lost
 /// on the way.
-fn told<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
+fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let mut s = scene::case::<S>(case, sets);
     s.state.network.dissipation = Some(Vec::new());
     let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);
@@ -64,18 +64,18 @@ fn told<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let booked = s.state.energy.fracture;
     assert!(
         (fracture + intact - booked).abs() < 1e-9 * booked,
-        "{fracture} + {intact} told, {booked} booked"
+        "{fracture} + {intact} reported, {booked} booked"
     );
     breaks
 }
 
 #[test]
 fn breaks_of_a_torn_plate_tell_all_its_fracture_energy() {
-    assert!(told::<Dim2>("verification/voronoi_plate", &[], 800) > 10);
-    assert!(told::<Dim3>("verification/voronoi_plate_3d", &["time.step=2e-6"], 150) > 10);
+    assert!(reported::<Dim2>("verification/voronoi_plate", &[], 800) > 10);
+    assert!(reported::<Dim3>("verification/voronoi_plate_3d", &["time.step=2e-6"], 150) > 10);
 }
 
 #[test]
 fn breaks_under_fretting_tell_all_its_fracture_energy() {
-    assert!(told::<Dim2>("wheel_rail_rigid", &["time.step=1e-4"], 540) > 10);
+    assert!(reported::<Dim2>("wheel_rail_rigid", &["time.step=1e-4"], 540) > 10);
 }

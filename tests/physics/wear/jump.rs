@@ -218,6 +218,6 @@ fn drives_of_holders_that_do_not_repeat_are_refused() {
     let jump = "jump=(after: 3, at_most: 50)";
     let load =
         "half_spaces.cylinder.dofs.y=Force(Ramp(from: 0.0, to: -178.9e3, start: 0.0, end: 50.0))";
-    let told = refused("fretting_wear_elastic", &[jump, load]);
-    assert!(told.contains("its ramp lasts until"), "{told}");
+    let reported = refused("fretting_wear_elastic", &[jump, load]);
+    assert!(reported.contains("its ramp lasts until"), "{reported}");
 }

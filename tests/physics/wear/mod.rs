@@ -1,4 +1,4 @@
-//! The tribological circuit: what breaks is told with where its energy went.
+//! The tribological circuit: what breaks is reported with where its energy went.
 
 mod circuit;
 mod events;

@@ -134,7 +134,7 @@ fn projection_of_overlaps() {
     );
 }
 
-/// Grains are told by their places: a user gave them no names.
+/// Grains are named by their places, since users give them no names.
 #[test]
 fn grains_that_overlap() {
     let from = PLANE.find("List(").unwrap();

@@ -1,5 +1,5 @@
 //! `fretwork fit` through the program: planted parameters found again within their intervals,
-//! directions that the measurements do not tell, ends of ranges, failed runs, resuming, and wrong
+//! directions that the measurements do not determine, ends of ranges, failed runs, resuming, and wrong
 //! input.
 
 use crate::temp::TempFolder;
@@ -214,18 +214,24 @@ fn a_step_that_moves_a_parameter_is_told() {
         let page = std::fs::read_to_string(folder.0.join("out/fit.html")).unwrap();
         let mu = parameter(&found, "mu_0").clone();
         let half_width = 0.5 * (number(&mu, "high") - number(&mu, "low"));
-        let told = page.contains("STEP NOT SMALL");
+        let reported = page.contains("STEP NOT SMALL");
         let flagged = found["step_not_small"].as_array().unwrap().len() == 1;
-        assert_eq!(flagged, told);
+        assert_eq!(flagged, reported);
         let half = number(&mu["half_step"], "value");
-        (number(&mu, "value"), half, half_width, told)
+        (number(&mu, "value"), half, half_width, reported)
     };
-    let (value, half, width, told) = fit("slider_vx - 10 * time_step", coarse);
-    assert!(told && (value - 0.5).abs() > width, "{value} +- {width}");
+    let (value, half, width, reported) = fit("slider_vx - 10 * time_step", coarse);
+    assert!(
+        reported && (value - 0.5).abs() > width,
+        "{value} +- {width}"
+    );
     assert!((2.0 * half - value - 0.5).abs() < width, "{value} {half}");
     // Without the shift nothing is left of it.
-    let (value, half, width, told) = fit("slider_vx", coarse);
-    assert!(!told && (value - 0.5).abs() < width, "{value} +- {width}");
+    let (value, half, width, reported) = fit("slider_vx", coarse);
+    assert!(
+        !reported && (value - 0.5).abs() < width,
+        "{value} +- {width}"
+    );
     assert!((half - value).abs() < 0.1 * width, "{value} {half}");
 }
 

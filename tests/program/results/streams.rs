@@ -29,8 +29,8 @@ fn broken_pipe(arguments: &str) -> Option<i32> {
 }
 
 fn code(output: &Output) -> i32 {
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(!told.contains("panicked"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(!reported.contains("panicked"), "{reported}");
     output.status.code().expect("ended by a signal")
 }
 
@@ -77,8 +77,8 @@ fn standard_output_that_is_full_fails_answers_and_no_run() {
         let fails = if expected == 0 && !run { 1 } else { expected };
         assert_eq!(code(&output), fails, "{arguments} >/dev/full");
         if expected == 0 && !run {
-            let told = String::from_utf8_lossy(&output.stderr);
-            assert!(told.contains("cannot write the answer"), "{told}");
+            let reported = String::from_utf8_lossy(&output.stderr);
+            assert!(reported.contains("cannot write the answer"), "{reported}");
         }
         assert_eq!(code(&shell(&arguments, ">&-")), expected, "{arguments} >&-");
     }
@@ -90,8 +90,8 @@ fn standard_output_that_is_full_fails_answers_and_no_run() {
     ] {
         let output = shell(&arguments, ">/dev/full");
         assert_eq!(code(&output), 1, "{arguments}");
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(told.contains("cannot write the answer"), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(reported.contains("cannot write the answer"), "{reported}");
     }
     // What was recorded is there.
     assert!(out.join("summary.json").exists());
@@ -150,8 +150,8 @@ fn threads_that_cannot_be_started_are_told() {
         .output()
         .unwrap();
     assert_eq!(code(&output), 1);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("cannot start 1024 threads"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(reported.contains("cannot start 1024 threads"), "{reported}");
     std::fs::remove_dir_all(out).ok();
 }
 
@@ -178,13 +178,13 @@ fn memory_that_runs_out_is_told() {
             .args(["-c", &format!("ulimit -v {limit}; exec {program} {run}")])
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{reported}");
         assert!(
-            told.contains("error: memory ran out: the system refused "),
-            "{told}"
+            reported.contains("error: memory ran out: the system refused "),
+            "{reported}"
         );
-        assert_eq!(told.lines().count(), 1, "{told}");
+        assert_eq!(reported.lines().count(), 1, "{reported}");
     }
     std::fs::remove_dir_all(out).ok();
 }

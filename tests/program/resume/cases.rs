@@ -13,8 +13,8 @@ fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
         job.killed_after(&stopped.0, *states);
         let copy = stopped.copied(&format!("{name}-{states}-1"));
         for (threads, folder) in [("1", &copy), ("2", &stopped)] {
-            let told = job.done(&folder.0, &["--resume", "--threads", threads]);
-            assert!(told.contains("resuming the run"), "{told}");
+            let reported = job.done(&folder.0, &["--resume", "--threads", threads]);
+            assert!(reported.contains("resuming the run"), "{reported}");
             same(&whole.0, &folder.0);
             let again = job.done(&folder.0, &["--resume"]);
             assert!(again.contains("is finished"), "{again}");

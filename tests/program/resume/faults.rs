@@ -35,9 +35,9 @@ fn frames(bytes: &[u8]) -> Vec<usize> {
 
 fn refused(out: &Path, job: Job<'_>, code: i32, words: &[&str]) {
     let before = draft(out);
-    let told = said(&job.run(out, &["--resume"]), code);
+    let reported = said(&job.run(out, &["--resume"]), code);
     for word in words {
-        assert!(told.contains(word), "`{word}` is not in: {told}");
+        assert!(reported.contains(word), "`{word}` is not in: {reported}");
     }
     let left = draft(out);
     assert!(left.is_none() || left == before, "a draft was left");
@@ -46,13 +46,13 @@ fn refused(out: &Path, job: Job<'_>, code: i32, words: &[&str]) {
 #[test]
 fn a_finished_run_has_nothing_to_do_and_an_empty_folder_begins() {
     let (one, other) = (Folder::new("fresh"), Folder::new("plain"));
-    let told = job().done(&one.0, &["--resume"]);
-    assert!(told.contains("nothing to resume"), "{told}");
+    let reported = job().done(&one.0, &["--resume"]);
+    assert!(reported.contains("nothing to resume"), "{reported}");
     job().done(&other.0, &[]);
     same(&one.0, &other.0);
     let before = std::fs::read(one.0.join("results.h5")).unwrap();
-    let told = job().done(&one.0, &["--resume"]);
-    assert!(told.contains("is finished"), "{told}");
+    let reported = job().done(&one.0, &["--resume"]);
+    assert!(reported.contains("is finished"), "{reported}");
     assert!(std::fs::read(one.0.join("results.h5")).unwrap() == before);
     let json = job().done(&one.0, &["--resume", "--json"]);
     let value: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -142,14 +142,17 @@ fn a_file_that_changed_behind_the_case_is_refused() {
     let profile = cases.0.join("fretting_scar_flat.csv");
     let text = std::fs::read_to_string(&profile).unwrap();
     std::fs::write(&profile, text.replacen("-4.00,0", "-4.00,0.001", 1)).unwrap();
-    let told = said(&run(&["--resume"]), 2);
-    assert!(told.contains("builds another scene"), "{told}");
+    let reported = said(&run(&["--resume"]), 2);
+    assert!(reported.contains("builds another scene"), "{reported}");
     std::fs::write(&profile, text).unwrap();
     let steel = materials.join("rail_steel_r260.ron");
     let old = std::fs::read_to_string(&steel).unwrap();
     std::fs::write(&steel, format!("{old}\n// changed\n")).unwrap();
-    let told = said(&run(&["--resume"]), 2);
-    assert!(told.contains("material file `rail_steel_r260`"), "{told}");
+    let reported = said(&run(&["--resume"]), 2);
+    assert!(
+        reported.contains("material file `rail_steel_r260`"),
+        "{reported}"
+    );
     std::fs::write(&steel, old).unwrap();
     // Comments of the case do not count.
     let text = std::fs::read_to_string(&case).unwrap();
@@ -229,10 +232,10 @@ fn a_file_that_is_cut_anywhere_gives_no_other_numbers() {
 
 #[test]
 fn a_folder_that_cannot_be_written_is_told() {
-    let told = said(&job().run(Path::new("/proc/fretwork"), &["--resume"]), 1);
+    let reported = said(&job().run(Path::new("/proc/fretwork"), &["--resume"]), 1);
     assert!(
-        told.contains("cannot write") && told.contains("--out"),
-        "{told}"
+        reported.contains("cannot write") && reported.contains("--out"),
+        "{reported}"
     );
     // What cannot be made beside the results leaves them as they are.
     let out = Folder::new("readonly");
@@ -241,8 +244,8 @@ fn a_folder_that_cannot_be_written_is_told() {
     // What the killed run was writing may still be there.
     std::fs::remove_file(out.0.join("results.h5.part")).ok();
     std::fs::create_dir(out.0.join("results.h5.part")).unwrap();
-    let told = said(&job().run(&out.0, &["--resume"]), 1);
-    assert!(told.contains("cannot write"), "{told}");
+    let reported = said(&job().run(&out.0, &["--resume"]), 1);
+    assert!(reported.contains("cannot write"), "{reported}");
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
 }
 
@@ -269,13 +272,13 @@ fn a_full_disk_is_told_and_the_run_goes_on_when_there_is_room() {
             .args(args)
             .output()
             .unwrap();
-        let told = said(&output, 1);
+        let reported = said(&output, 1);
         assert!(
-            told.contains("cannot write") && told.contains("ulimit -f"),
-            "{told}"
+            reported.contains("cannot write") && reported.contains("ulimit -f"),
+            "{reported}"
         );
-        let told = job().done(&out.0, &["--resume"]);
-        went_on += u32::from(told.contains("resuming the run"));
+        let reported = job().done(&out.0, &["--resume"]);
+        went_on += u32::from(reported.contains("resuming the run"));
         same(&whole.0, &out.0);
     }
     assert!(went_on > 0, "no limit let a checkpoint be written");

@@ -27,8 +27,8 @@ fn checkpoints_and_figures_may_be_others_when_a_run_goes_on() {
     ];
     let (out, whole) = (Folder::new("free"), Folder::new("free-whole"));
     job(&SETS).killed_after(&out.0, 2);
-    let told = job(&OTHER).done(&out.0, &["--resume"]);
-    assert!(told.contains("resuming the run"), "{told}");
+    let reported = job(&OTHER).done(&out.0, &["--resume"]);
+    assert!(reported.contains("resuming the run"), "{reported}");
     job(&OTHER).done(&whole.0, &[]);
     assert!(out.0.join("energy.png").exists());
     same(&whole.0, &out.0);
@@ -102,17 +102,17 @@ fn a_summary_of_another_run_ends_none() {
         std::fs::remove_dir_all(&out.0).ok();
         job(&SETS).killed_after(&out.0, 2);
         std::fs::copy(from.0.join("summary.json"), out.0.join("summary.json")).unwrap();
-        let told = job(&SETS).done(&out.0, &["--resume"]);
-        assert!(told.contains("resuming the run"), "{told}");
+        let reported = job(&SETS).done(&out.0, &["--resume"]);
+        assert!(reported.contains("resuming the run"), "{reported}");
         same(&whole.0, &out.0);
     }
     // At its end, but beside the summary of another case.
     std::fs::copy(other.0.join("summary.json"), out.0.join("summary.json")).unwrap();
-    let told = job(&SETS).done(&out.0, &["--resume"]);
-    assert!(told.contains("resuming the run"), "{told}");
+    let reported = job(&SETS).done(&out.0, &["--resume"]);
+    assert!(reported.contains("resuming the run"), "{reported}");
     same(&whole.0, &out.0);
-    let told = job(&SETS).done(&out.0, &["--resume"]);
-    assert!(told.contains("is finished"), "{told}");
+    let reported = job(&SETS).done(&out.0, &["--resume"]);
+    assert!(reported.contains("is finished"), "{reported}");
 }
 
 /// What hangs on the whole length of a run is its spacing of states and pictures: without them it
@@ -145,14 +145,14 @@ fn a_run_goes_on_beyond_its_end() {
         } else {
             job(&SHORT).done(&out.0, &[]);
         }
-        let told = job(&LONG).done(&out.0, &["--resume"]);
-        assert!(told.contains("resuming the run"), "{told}");
+        let reported = job(&LONG).done(&out.0, &["--resume"]);
+        assert!(reported.contains("resuming the run"), "{reported}");
         same(&long.0, &out.0);
         // Back to an earlier end there is no way.
-        let told = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);
+        let reported = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);
         assert!(
-            told.contains("`time.end` was 0.06 in the original run"),
-            "{told}"
+            reported.contains("`time.end` was 0.06 in the original run"),
+            "{reported}"
         );
     }
 }
@@ -173,10 +173,10 @@ fn a_short_run_is_not_replaced_by_a_longer_one() {
     let (out, before) = (Folder::new("short"), Folder::new("short-before"));
     job(&SHORT).done(&out.0, &[]);
     job(&SHORT).done(&before.0, &[]);
-    let told = said(&job(&LONG).run(&out.0, &["--resume"]), 1);
+    let reported = said(&job(&LONG).run(&out.0, &["--resume"]), 1);
     assert!(
-        told.contains("no state of `output.checkpoint` was due"),
-        "{told}"
+        reported.contains("no state of `output.checkpoint` was due"),
+        "{reported}"
     );
     same(&before.0, &out.0);
 }
@@ -231,13 +231,13 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     job(&SETS).killed_after(&out.0, 2);
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
     let drafted = draft(&out.0);
-    let told = said(&job(&LATER).run(&out.0, &["--resume"]), 2);
+    let reported = said(&job(&LATER).run(&out.0, &["--resume"]), 2);
     for word in [
         "beyond its `time.end`",
         "second half of the whole run",
         "without --resume",
     ] {
-        assert!(told.contains(word), "{told}");
+        assert!(reported.contains(word), "{reported}");
     }
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
     let left = draft(&out.0);
@@ -278,10 +278,10 @@ fn a_finished_run_without_its_report_gets_it() {
     job(&SETS).done(&out.0, &["--no-report"]);
     assert!(!out.0.join("report.html").exists());
     std::fs::write(out.0.join("report.html.part"), "half a page").unwrap();
-    let told = job(&SETS).done(&out.0, &["--resume"]);
+    let reported = job(&SETS).done(&out.0, &["--resume"]);
     assert!(
-        told.contains("nothing to do") && told.contains("report in"),
-        "{told}"
+        reported.contains("nothing to do") && reported.contains("report in"),
+        "{reported}"
     );
     same(&whole.0, &out.0);
 }

@@ -39,7 +39,7 @@ fn size(out: &Path, name: &str) -> u64 {
 
 /// Blocks of a shell's limit on the size of files (bytes).
 fn block() -> u64 {
-    let told = Command::new("sh")
+    let reported = Command::new("sh")
         .args([
             "-c",
             "ulimit -f 8 && head -c 100000 /dev/zero | cat > \"$0\"; exec true",
@@ -49,7 +49,7 @@ fn block() -> u64 {
     let path = std::env::temp_dir().join(format!("fretwork-block-{}", std::process::id()));
     let block = std::fs::metadata(&path).unwrap().len() / 8;
     std::fs::remove_file(&path).unwrap();
-    assert!(told.is_ok() && [512, 1024].contains(&block), "{block}");
+    assert!(reported.is_ok() && [512, 1024].contains(&block), "{block}");
     block
 }
 
@@ -66,15 +66,15 @@ fn a_table_that_may_not_grow_leaves_a_state() {
     // Room for most of the rows.
     let limit = (table * 3 / 4).max(results) / block();
     assert!(limit * block() < table, "{table} {results}");
-    let told = limited(&format!("-f {limit}"), &JOB, &out.0, &["--no-report"]);
-    let told = said(&told, 1);
+    let reported = limited(&format!("-f {limit}"), &JOB, &out.0, &["--no-report"]);
+    let reported = said(&reported, 1);
     assert!(
-        told.contains("statistics.csv") && told.contains("ulimit -f"),
-        "{told}"
+        reported.contains("statistics.csv") && reported.contains("ulimit -f"),
+        "{reported}"
     );
     assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
-    let told = JOB.done(&out.0, &["--resume", "--no-report"]);
-    assert!(told.contains("resuming the run"), "{told}");
+    let reported = JOB.done(&out.0, &["--resume", "--no-report"]);
+    assert!(reported.contains("resuming the run"), "{reported}");
     same(&whole.0, &out.0);
 }
 
@@ -87,12 +87,12 @@ fn a_limit_on_time_ends_a_run_with_a_sentence() {
         sets: &long,
     };
     let out = Folder::new("limit-time");
-    let told = said(&limited("-t 4", &job, &out.0, &["--no-report"]), 1);
+    let reported = said(&limited("-t 4", &job, &out.0, &["--no-report"]), 1);
     assert!(
-        told.contains(
+        reported.contains(
             "interrupted by SIGXCPU (the limit on the time of the processor, ulimit -t) after step"
         ),
-        "{told}"
+        "{reported}"
     );
     assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
 }

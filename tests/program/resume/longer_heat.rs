@@ -42,7 +42,7 @@ fn a_half_space_keeps_the_depth_that_its_run_began_with() {
     let first = summary(&begun.0);
     assert!(!shallow(&first), "{}", first["warnings"]);
     // The depth is 4.9 diffusion lengths, and then 3.
-    for (end, told) in [("1.5e-2", false), ("4e-2", true)] {
+    for (end, reported) in [("1.5e-2", false), ("4e-2", true)] {
         let out = begun.copied(&format!("heat-{end}"));
         let end_set = format!("time.end={end}");
         let later = [&sets[..], &[end_set.as_str()]].concat();
@@ -55,7 +55,7 @@ fn a_half_space_keeps_the_depth_that_its_run_began_with() {
         let time: f64 = end.parse().unwrap();
         assert!((now["time"].as_f64().unwrap() / time - 1.0).abs() < 1e-9);
         assert_eq!(depth(&now), depth(&first));
-        assert_eq!(shallow(&now), told, "{}", now["warnings"]);
+        assert_eq!(shallow(&now), reported, "{}", now["warnings"]);
         let [found, exact] = rise(&out.0, time);
         assert!((found / exact - 1.0).abs() < 2e-2, "{found} {exact}");
     }
@@ -65,8 +65,8 @@ fn a_half_space_keeps_the_depth_that_its_run_began_with() {
         case: CASE,
         sets: &other,
     };
-    let told = said(&job.run(&begun.0, &["--resume"]), 2);
-    assert!(told.contains("heat.bodies.rail.store"), "{told}");
+    let reported = said(&job.run(&begun.0, &["--resume"]), 2);
+    assert!(reported.contains("heat.bodies.rail.store"), "{reported}");
 }
 
 #[test]

@@ -26,8 +26,8 @@ fn report(out: &Path) -> std::process::Output {
 }
 
 fn refused(output: &std::process::Output, words: &str) {
-    let told = said(output, 2);
-    assert!(told.contains(words), "{told}");
+    let reported = said(output, 2);
+    assert!(reported.contains(words), "{reported}");
 }
 
 /// Whether a run owns the folder.
@@ -120,12 +120,12 @@ impl Held {
     fn loses_its_folder(self, out: &Path) {
         self.signal(libc::SIGCONT);
         let output = self.0.wait_with_output().unwrap();
-        let told = said(&output, 1);
+        let reported = said(&output, 1);
         let words = format!("the folder {}", out.display());
         assert!(
-            told.contains(&words)
-                && told.contains("removed or replaced while the run wrote into it"),
-            "{told}"
+            reported.contains(&words)
+                && reported.contains("removed or replaced while the run wrote into it"),
+            "{reported}"
         );
     }
 }
@@ -173,10 +173,13 @@ fn a_finished_run_is_not_owned_by_who_looks_at_it() {
     };
     // The administrator may write anywhere: the lock shows whether somebody tried.
     mode(0o555);
-    let told = JOB.run(&out.0, &["--resume"]);
+    let reported = JOB.run(&out.0, &["--resume"]);
     mode(0o755);
-    let told = said(&told, 0);
-    assert!(told.contains("is finished: nothing to do"), "{told}");
+    let reported = said(&reported, 0);
+    assert!(
+        reported.contains("is finished: nothing to do"),
+        "{reported}"
+    );
     assert!(!lock.exists());
 }
 
@@ -207,10 +210,10 @@ fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
             case: JOB.case,
             sets: &LATER,
         };
-        let told = said(&later.run(&out.0, &["--resume"]), 1);
+        let reported = said(&later.run(&out.0, &["--resume"]), 1);
         assert!(
-            told.contains("damaged") && told.contains("nothing was changed"),
-            "{told}"
+            reported.contains("damaged") && reported.contains("nothing was changed"),
+            "{reported}"
         );
         assert!(std::fs::read(&path).unwrap() == bytes);
         assert!(out.0.join("summary.json").exists());

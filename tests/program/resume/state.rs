@@ -179,7 +179,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
 }
 
 /// Phases that set friction and the tolerance of the solver for a block on a plane, pulled by a
-/// slanting gravity: the state tells what is in force, and gives it to a scene that was built
+/// slanting gravity: the state holds what is in force, and gives it to a scene that was built
 /// again; it is no state of a scene without the phases.
 #[test]
 fn what_phases_have_set_goes_on() {

@@ -15,77 +15,77 @@ fn wrong_studies_are_refused_with_what_to_change() {
         assert!(!folder.0.join("out").exists());
         said
     };
-    let told = |text: &str, parts: &[&str]| {
+    let reported = |text: &str, parts: &[&str]| {
         for part in parts {
             assert!(text.contains(part), "no {part} in {text}");
         }
     };
-    told(
+    reported(
         &said(&mu("0.1"), "seds: 3"),
         &["study.ron:1:", "seds", "seeds"],
     );
-    told(&said(&mu("0.1, 0.1"), ""), &["0.1 is given twice"]);
+    reported(&said(&mu("0.1, 0.1"), ""), &["0.1 is given twice"]);
     for (name, code) in [
         ("a\\nb", "U+000A"),
         ("a\\u{202e}b", "U+202E"),
         ("a\\tb", "U+0009"),
     ] {
         let named = mu("0.1").replace("\"friction\"", &format!("\"{name}\""));
-        told(
+        reported(
             &said(&named, ""),
             &["study.ron:1:", "a name has no control", code],
         );
     }
-    told(
+    reported(
         &said(&mu("0.1, 1e-1"), ""),
         &["study.ron:1:", "0.1 and 1e-1 are the same value"],
     );
-    told(
+    reported(
         &said(
             r#"Values(name: "step", key: "time.step", unit: "ms", values: [1e-4])"#,
             "",
         ),
         &["in `s`, not in `ms`"],
     );
-    told(
+    reported(
         &said(&mu("0.1").replace("contact.mu", "contact.my"), ""),
         &["my", "mu"],
     );
-    told(
+    reported(
         &said(&mu("0.1, -1.0"), ""),
         &["-1", "with `friction` = -1.0 of study.ron"],
     );
-    told(
+    reported(
         &said(&range, ""),
         &["`friction` has no levels", "levels: 5"],
     );
-    told(
+    reported(
         &said(&range.replace("0.5", "0.05"), "design: Sobol(points: 4)"),
         &["study.ron:1:", "smaller first"],
     );
-    told(
+    reported(
         &said(&mu("0.1"), "set: [\"solver.tolerance=${1e-3 * frction}\"]"),
         &["`frction`", "there are friction"],
     );
-    told(
+    reported(
         &said(&format!("{}, {}", mu("0.1"), mu("0.2")), ""),
         &["two factors are named `friction`"],
     );
-    told(&said("", ""), &["varies one factor or more"]);
-    told(
+    reported(&said("", ""), &["varies one factor or more"]);
+    reported(
         &said(r#"Values(key: "seed", values: [1, 2])"#, ""),
         &["give `seeds`"],
     );
-    told(
+    reported(
         &said(&mu("0.1").replace("friction", "status"), ""),
         &["a column `status` already"],
     );
-    told(
+    reported(
         &said(r#"Values(name: "x", values: [1.0, 2.0])"#, ""),
         &["`x` changes nothing"],
     );
     folder.put("points.csv", "fric\n0.2\n");
-    told(
+    reported(
         &said(&mu("0.1"), "design: Table(file: \"points.csv\")"),
         &["there is no column `friction`", "there are fric"],
     );
@@ -99,7 +99,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
         folder.put("points.csv", &format!("friction\n1\n{value}\n"));
         let range =
             format!(r#"Range(name: "friction", key: "{MU}", low: 1, high: 2, scale: {scale})"#);
-        told(
+        reported(
             &said(&range, "design: Table(file: \"points.csv\")"),
             &["point 2: `friction`", why],
         );
@@ -107,7 +107,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
     folder.put("study.ron", r#"(case: "heap.ron", factors: [], outputs: ["friction_coefficient"], design: Table(file: "points.csv"))"#);
     folder.put("points.csv", "time.end\n0.03\n");
     let output = folder.call(&["run", "study.ron", "--out", "out"]);
-    told(
+    reported(
         &String::from_utf8_lossy(&output.stderr),
         &["the case has no friction test"],
     );
@@ -116,7 +116,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
     std::fs::create_dir_all(folder.0.join("mine")).unwrap();
     folder.put("mine/thesis.txt", "mine");
     let output = folder.call(&["run", "study.ron", "--out", "mine"]);
-    told(
+    reported(
         &String::from_utf8_lossy(&output.stderr),
         &["holds no study of fretwork study"],
     );

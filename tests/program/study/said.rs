@@ -171,7 +171,7 @@ fn levels_beside_a_default_are_numbers() {
     assert!(page.contains("The other factors as in the case"));
 }
 
-/// A misspelled regime is told with the texts that there are; a right one is not.
+/// A misspelled regime is reported with the texts that there are; a right one is not.
 #[test]
 fn a_regime_that_no_run_has_is_told() {
     let folder = Folder::new("regime");

@@ -135,7 +135,7 @@ fn each_form_is_the_case_with_more_that_deforms() {
     );
 }
 
-/// A load under which disks pass through each other: the report tells which rows are of runs that
+/// A load under which disks pass through each other: the report says which rows are of runs that
 /// warn about themselves.
 #[test]
 fn rows_of_runs_that_are_not_trustworthy_are_marked() {

@@ -97,7 +97,7 @@ pub fn frontier_is_what_nothing_dominates(study: &Value, output: &str) {
     let all = settings(study);
     let point = |s: &Value| {
         let error = s.pointer(&format!("/outputs/{output}/at_most_with_reference"));
-        // Where nothing tells the reference's own error, it is right by definition.
+        // Where the reference's own error is unknown, it is right by definition.
         let unknown = if s["reference"] == true {
             0.0
         } else {

@@ -98,7 +98,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
     }
 }
 
-/// What a case does not have is told before anything runs, with what it has: nothing is left on
+/// What a case does not have is reported before anything runs, with what it has: nothing is left on
 /// disk.
 #[test]
 fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {

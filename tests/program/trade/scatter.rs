@@ -1,4 +1,4 @@
-//! Errors told from scatter: of seeds, and of collisions that are chaotic without one.
+//! Errors distinguished from scatter: of seeds, and of collisions that are chaotic without one.
 
 use super::{Folder, HEAP, frontier_is_what_nothing_dominates, number, settings, study};
 use serde_json::Value;
@@ -106,8 +106,8 @@ fn errors_are_told_from_scatter() {
         close("/error/mean", mean);
         close("/error/half_width", half);
         close("/at_most", mean.abs() + half);
-        let told = s.pointer("/outputs/energy.friction/distinguishable_from_zero");
-        assert_eq!(told.and_then(Value::as_bool), Some(mean.abs() > half));
+        let reported = s.pointer("/outputs/energy.friction/distinguishable_from_zero");
+        assert_eq!(reported.and_then(Value::as_bool), Some(mean.abs() > half));
         hidden += usize::from(mean.abs() <= half);
     }
     frontier_is_what_nothing_dominates(&found, "energy.friction");

@@ -108,7 +108,7 @@ fn the_heat_of_rolling_is_short_by_what_is_said() {
             "{n} over a, s {s}: heat {ratio:.4} of Q xi V; {}",
             seen.line()
         );
-        let told = 1.0 - seen.heat_error;
-        assert!((ratio - told).abs() < 0.08, "{ratio} {told}");
+        let reported = 1.0 - seen.heat_error;
+        assert!((ratio - reported).abs() < 0.08, "{ratio} {reported}");
     }
 }

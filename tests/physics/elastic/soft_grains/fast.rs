@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn tells(of: &StepSizeDiagnostics) -> bool {
+fn reports(of: &StepSizeDiagnostics) -> bool {
     of.late + of.passed + of.unwatched_steps + of.held_back > 0
 }
 
@@ -56,12 +56,12 @@ fn fast_grains_do_not_pass_silently() {
                 }
                 let v = fastest(&s);
                 let met = (v / start - 1.0).abs() > 1e-3;
-                let told = tells(&s.state.network.step_size);
+                let reported = reports(&s.state.network.step_size);
                 println!(
-                    "{speed} diameters a step at a {what}: v {}, {met}, told {told}, failed {failed}",
+                    "{speed} diameters a step at a {what}: v {}, {met}, reported {reported}, failed {failed}",
                     v / start
                 );
-                assert!(met || told || failed, "{what} {speed}");
+                assert!(met || reported || failed, "{what} {speed}");
             }
         }
     }
