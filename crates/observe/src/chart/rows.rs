@@ -255,7 +255,7 @@ mod tests {
     fn table(names: &[(&str, &'static str)], rows: Vec<f64>) -> Table {
         let columns = names
             .iter()
-            .map(|(name, unit)| Column::new(*name, unit, ""));
+            .map(|(name, unit)| Column::new(*name, *unit, ""));
         let mut table = Table::new(columns.collect(), 3);
         table.rows = rows;
         table
