@@ -17,7 +17,7 @@ pub enum LockError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The folder is not that any more which was owned.
+    /// The folder is no longer the one that was owned.
     #[error(
         "the folder {}, or {mark} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
          or resume it where the folder is now, and leave the folder of a run in its place until its end",
@@ -87,8 +87,8 @@ impl FolderLock {
         })
     }
 
-    /// Whether the folder is still the one that was owned: asked before something is written there
-    /// by its name.
+    /// Checks that the folder is still the one that was owned, before something is written there by
+    /// its name.
     ///
     /// # Errors
     /// It, or the file by which it is owned, was removed, moved or replaced.
@@ -112,7 +112,7 @@ impl FolderLock {
         })
     }
 
-    /// Reads a folder along with other readers: nobody owns it meanwhile.
+    /// Locks a folder for reading, along with other readers, so that nobody can own it meanwhile.
     ///
     /// # Errors
     /// Somebody owns it.
@@ -150,7 +150,7 @@ mod tests {
         std::fs::create_dir_all(&folder).unwrap();
         let read = || FolderLock::read(&folder, "a.lock");
         let own = || FolderLock::own(&folder, "a.lock");
-        // Nobody was ever here.
+        // No run ever wrote into the folder.
         drop(read().unwrap());
         let owner = own().unwrap();
         for refused in [own(), read()] {
@@ -182,7 +182,7 @@ mod tests {
         owner.kept().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
         lost(&owner);
-        // Another takes its name.
+        // Another folder takes its name.
         let second = own();
         lost(&owner);
         second.kept().unwrap();

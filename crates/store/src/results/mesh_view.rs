@@ -24,7 +24,8 @@ pub struct Mesh {
     pub corners: usize,
     /// Fields, in the order of their values.
     pub fields: Vec<Field>,
-    /// By point and by cell the identity of the body, where the mesh is of many; empty otherwise.
+    /// Identity of the body of each point and of each cell in a mesh of several bodies; empty
+    /// otherwise.
     pub bodies: [Vec<i64>; 2],
 }
 

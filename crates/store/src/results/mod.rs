@@ -155,7 +155,7 @@ impl Results {
         })
     }
 
-    /// Has it look, before it writes, whether its folder is still the one that is owned by this.
+    /// Has every write check first that the folder is still the one that this lock owns.
     pub fn owned_by(&mut self, lock: FolderLock) {
         if let Some(store) = &mut self.store {
             store.owned_by(lock);

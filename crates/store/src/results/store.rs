@@ -28,7 +28,7 @@ const MAX_BUFFERED: usize = 8 << 20;
 /// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
-    /// Their folder is not the run's any more.
+    /// Their folder no longer belongs to the run.
     #[error(transparent)]
     Lock(#[from] LockError),
     /// They cannot be written.
@@ -87,7 +87,7 @@ pub struct Store {
     buffered: usize,
     /// Size from which the file grows in place, in bytes.
     large: u64,
-    /// By which its folder is owned.
+    /// The lock by which its folder is owned.
     lock: Option<FolderLock>,
 }
 
@@ -124,7 +124,7 @@ impl Store {
         })
     }
 
-    /// Has it look, before it writes, whether its folder is still the one that is owned by this.
+    /// Has every write check first that the folder is still the one that this lock owns.
     pub fn owned_by(&mut self, lock: FolderLock) {
         self.lock = Some(lock);
     }

@@ -22,7 +22,7 @@ pub(crate) struct RunFolder {
     pub version: String,
     /// What is missing, in sentences.
     pub gaps: Vec<String>,
-    /// No run writes in it as long as it is read.
+    /// Keeps runs from writing into the folder while it is read.
     _lock: FolderLock,
 }
 

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 /// Name of the report in the folder of a run.
 pub const FILE: &str = "report.html";
 
-/// Bytes of a page, unless asked otherwise.
+/// Default size of a page in bytes.
 pub const DEFAULT_BYTES: usize = 5_000_000;
 
 /// How a report is made.
@@ -90,7 +90,7 @@ pub fn report(folder: &Path, options: &Options<'_>) -> Result<(PathBuf, usize), 
     Ok((path, html.len()))
 }
 
-/// Writes a page that is whole whenever it is there.
+/// Writes a page under another name and renames it, so that it is never incomplete.
 fn write(path: &Path, html: &str) -> Result<(), ReportError> {
     let unwritable = |e: std::io::Error| ReportError::Unwritable {
         path: path.to_owned(),
@@ -99,7 +99,7 @@ fn write(path: &Path, html: &str) -> Result<(), ReportError> {
     let part = path.with_extension("html.part");
     let written = std::fs::write(&part, html).and_then(|()| std::fs::rename(&part, path));
     written.map_err(|e| {
-        // A page that is not whole is of no use.
+        // An incomplete page is of no use.
         let _ = std::fs::remove_file(&part);
         unwritable(e)
     })

@@ -133,7 +133,7 @@ fn json_in_html(value: &Value) -> String {
         .replace("\u{2029}", "\\u2029")
 }
 
-/// A SHA-256 or an identity, shortened for the eye, whole for the one who copies it.
+/// A SHA-256 or an identity, which is shown shortened and copied whole.
 pub(crate) fn hash(text: &str) -> String {
     format!(
         "<code class=\"hash\" title=\"{0}\">{0}</code>",
@@ -150,8 +150,8 @@ pub(crate) fn footer(command: &str) -> String {
     )
 }
 
-/// A table in a frame that scrolls sideways: its attributes, a label for who cannot see it, heads
-/// of the columns, and rows as HTML.
+/// A table in a frame that scrolls sideways: its attributes, a label for screen readers,
+/// heads of the columns, and rows as HTML.
 pub(crate) fn table<H: AsRef<str>>(of: &str, label: &str, heads: &[H], rows: &str) -> String {
     let head = |h: &H| format!("<th scope=\"col\">{}</th>", escape(h.as_ref()));
     let heads: String = heads.iter().map(head).collect();
@@ -202,7 +202,7 @@ mod tests {
             let hash = STANDARD.encode(Sha256::digest(text.as_bytes()));
             assert!(html.contains(&format!("'sha256-{hash}'")));
         }
-        // No script of ours holds what ends its element.
+        // No script contains the end tag of its element.
         assert!(!script.contains("</script") && !style.contains("</style"));
     }
 }

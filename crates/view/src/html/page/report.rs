@@ -133,7 +133,7 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
     out + "</nav>\n<main>\n" + &verdict::html(run, gaps)
 }
 
-/// What stands after the figures.
+/// The parts after the figures.
 fn rest(run: &RunFolder, files: &Files, options: &Options<'_>) -> String {
     let loaded = law_data::loaded(run);
     let interfaces = law_data::interfaces(run, files, options.law);

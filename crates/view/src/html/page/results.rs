@@ -18,7 +18,7 @@ pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
     }
     let groups = results::groups(run);
     if groups.is_empty() {
-        // Of a version that did not say what its quantities are.
+        // The summary is of a version that wrote no catalogue.
         return everything(&run.summary, &Catalogue::default());
     }
     let mut out = String::from(
@@ -141,7 +141,7 @@ fn flatten(value: &Value, path: String, out: &mut Vec<(String, String)>) {
         }
     };
     match value {
-        // Where a library was found says nothing to others.
+        // The path of a library means nothing on another machine.
         Value::Object(map) => map
             .iter()
             .filter(|(key, _)| *key != "path")

@@ -4,7 +4,7 @@ use super::escape;
 use crate::html::folder::RunFolder;
 use serde_json::Value;
 
-/// What the run says of itself.
+/// The verdict of a run on itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// All checks passed, nothing to note.

@@ -22,7 +22,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Adds the arrays of a state; `skip` tells by identity and first point what other parts of the
+    /// Adds the arrays of a state; `skip` says by identity and first point what other parts of the
     /// page show.
     pub fn read(
         &mut self,

@@ -13,7 +13,7 @@ pub(crate) struct Detail {
     /// 0 all; 1 fields in 254 intervals; 2 without the less usual fields of contacts; 3 without
     /// contacts.
     level: u8,
-    /// One of so many grains is shown.
+    /// One grain in this many is shown.
     pub every: usize,
 }
 

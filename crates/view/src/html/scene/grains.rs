@@ -24,7 +24,7 @@ const OF_GEOMETRY: [&str; 7] = [
     "gone",
 ];
 
-/// FieldInfo that the page derives from the components of the velocity.
+/// Fields that the page derives from the components of the velocity.
 const SPEED: &str = "speed";
 
 /// The grains of a run.

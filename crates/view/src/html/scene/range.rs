@@ -44,7 +44,7 @@ pub(super) struct Range {
 pub(super) struct Ranges(HashMap<(String, String), Range>);
 
 impl Ranges {
-    /// Takes in the values of a field in a state.
+    /// Extends the range by the values of a field in a state.
     pub fn note(&mut self, group: &str, name: &str, values: &[f64]) {
         let mut values: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         if values.is_empty() {
