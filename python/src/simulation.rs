@@ -259,9 +259,8 @@ impl Simulation {
         let own = held.own()?;
         let dimension = own.simulation.dimension();
         let columns = own.observers.columns().into_iter();
-        let line = |c: fretwork::record::statistics::Column| {
-            (c.name, c.unit.heading(dimension), c.doc)
-        };
+        let line =
+            |c: fretwork::record::statistics::Column| (c.name, c.unit.heading(dimension), c.doc);
         Ok(columns.map(line).collect())
     }
 
@@ -269,7 +268,8 @@ impl Simulation {
     fn statistics(&self) -> PyResult<Vec<f64>> {
         let mut held = self.lock()?;
         let stepper = held.own()?;
-        Ok(stepper.observers.sample(stepper.simulation.view()))
+        let row = stepper.observers.sample(stepper.simulation.view());
+        row.map_err(|e| errors::misused(&e.to_string()))
     }
 
     /// Number of all bodies, and of those before the first that is no grain.

@@ -91,7 +91,7 @@ fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S
     observers.begin(&mut s);
     change(&mut s);
     s.state.time += 1.0;
-    let values = observers.sample(&s);
+    let values = observers.sample(&s).unwrap();
     let columns = observers.columns();
     let out = own("");
     std::fs::create_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));

@@ -189,6 +189,20 @@ pub trait Observer: Debug + Send {
     }
 }
 
+/// An observer gave another number of values than it has columns.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the observer `{observer}` gave {values} values for its {columns} columns of the statistics; it must give one value a column"
+)]
+pub struct RowError {
+    /// Name of the observer.
+    pub observer: String,
+    /// Number of values.
+    pub values: usize,
+    /// Number of columns.
+    pub columns: usize,
+}
+
 /// The state of one observer: its name and its bytes.
 pub type ObserverState = (String, Vec<u8>);
 
@@ -252,24 +266,25 @@ impl Observers {
 
     /// Values of [`Observers::columns`].
     ///
-    /// # Panics
+    /// # Errors
     /// An observer gives another number of values than it has columns.
-    pub fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+    pub fn sample(&mut self, run: &dyn RunView) -> Result<Vec<f64>, RowError> {
         if self.widths.len() != self.list.len() {
             self.widths = self.list.iter().map(|o| o.columns().len()).collect();
         }
         let mut row = Vec::with_capacity(self.widths.iter().sum());
         for (observer, width) in self.list.iter_mut().zip(&self.widths) {
             let values = observer.sample(run);
-            assert_eq!(
-                values.len(),
-                *width,
-                "the observer `{}` gives another number of values than it has columns",
-                observer.name()
-            );
+            if values.len() != *width {
+                return Err(RowError {
+                    observer: observer.name(),
+                    values: values.len(),
+                    columns: *width,
+                });
+            }
             row.extend(values);
         }
-        row
+        Ok(row)
     }
 
     /// See [`Observer::grain_columns`].

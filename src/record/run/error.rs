@@ -7,6 +7,7 @@ use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
 use crate::view::DrawError;
 use fretwork_observe::accuracy::PartError;
+use fretwork_observe::observer::RowError;
 use fretwork_store::folder_lock::LockError;
 use fretwork_store::write_advice;
 use std::path::{Path, PathBuf};
@@ -54,15 +55,8 @@ pub enum RunError {
         name: String,
     },
     /// An observer gave another number of values than it has columns.
-    #[error(
-        "the observers gave {values} values for {columns} columns of the statistics; each must give one value a column"
-    )]
-    Row {
-        /// Number of values.
-        values: usize,
-        /// Number of columns.
-        columns: usize,
-    },
+    #[error(transparent)]
+    Row(#[from] RowError),
     /// A law did not come back in time from a call, and the watch over laws has written what there
     /// was. The handler that was given to [`crate::laws::watch::watch`] decides what becomes of the
     /// program.

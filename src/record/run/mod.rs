@@ -460,13 +460,7 @@ impl<'a> Recorder<'a> {
         let row = self.timed(
             |t| &mut t.observers,
             |run| run.observers.sample(run.simulation.view()),
-        );
-        if row.len() != self.table.columns.len() {
-            return Err(RunError::Row {
-                values: row.len(),
-                columns: self.table.columns.len(),
-            });
-        }
+        )?;
         self.timed(
             |t| &mut t.files,
             |run| {
