@@ -72,7 +72,7 @@ impl Recorder<'_> {
         found.add("solver.fclib_skipped", skipped, ONE, doc);
     }
 
-    /// What observers see of the run now that it has ended.
+    /// The ended run, for observers.
     fn end(&self, wall: Duration) -> RunEnd<'_> {
         RunEnd {
             simulation: self.simulation.view(),
@@ -92,7 +92,7 @@ impl Recorder<'_> {
         self.table.recall().map_err(|e| unreadable(&path, &e))
     }
 
-    /// Writes all other files, each whatever became of the one before it.
+    /// Writes all other files, also after one of them failed.
     fn files(&mut self, wall: Duration) -> Result<(), RunError> {
         let written = self.timed(
             |t| &mut t.files,
@@ -174,7 +174,7 @@ pub fn write_outputs(folder: &Path, outputs: &[Output], table: &Table) -> Result
     })
 }
 
-/// Writes a file that is whole whenever it is there.
+/// Writes a file under another name and renames it, so that it is never incomplete.
 pub(super) fn write_atomic(path: &Path, text: &str) -> Result<(), RunError> {
     let part = path.with_extension("part");
     std::fs::write(&part, text).map_err(|e| unwritable(&part, &e))?;

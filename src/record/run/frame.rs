@@ -13,7 +13,7 @@ use std::path::PathBuf;
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 impl Recorder<'_> {
-    /// Has the pictures of a step drawn, beside the steps that follow.
+    /// Starts to draw the pictures of a step, while the following steps are computed.
     pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());

@@ -78,7 +78,7 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
-/// What is done with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the
+/// Called with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the
 /// step, with a checkpoint from which it may be resumed and all files written.
 pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 
@@ -132,23 +132,23 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Has it end without figures where the flag is set by then: for who stops a run and waits for
-    /// its end. They are drawn when the run is resumed and ends.
+    /// Leaves out the figures if the flag is set when the run ends, so that a stopped run ends
+    /// sooner. They are drawn when the run is resumed and ends.
     #[must_use]
     pub fn hurry(mut self, flag: &'a AtomicBool) -> Self {
         self.hurry = Some(flag);
         self
     }
 
-    /// Has one more observer look at it: its columns stand after all others.
+    /// Adds an observer, whose columns stand after all others.
     #[must_use]
     pub fn observe(mut self, observer: impl Observer + 'static) -> Self {
         self.observers.push(Box::new(observer));
         self
     }
 
-    /// Has it go on from where a run of the same case, with the same observers and processes, was
-    /// [`stopped`]: the bits are those of a run that was not.
+    /// Resumes a run of the case, with equal observers and processes, from where it was
+    /// [`stopped`]; the results have the bits of an uninterrupted run.
     #[must_use]
     pub fn resume(mut self, stop: ResumePoint) -> Self {
         self.stop = Some(stop);
@@ -158,8 +158,8 @@ impl<'a> Run<'a> {
     /// Runs to the end, or until `progress`, which is called after every step, asks for one.
     ///
     /// # Errors
-    /// A failed step, an unwritable file, or a state that the case cannot take up; the summary is
-    /// written even then, but where nothing had begun.
+    /// A failed step, an unwritable file, or a state that does not fit the case; the summary
+    /// is written even then, unless nothing had begun.
     pub fn execute(self, progress: &mut OnProgress<'_>) -> Result<Summary, RunError> {
         let mut recorder = Recorder::new(self)?;
         let outcome = recorder.run_steps(progress).map(|stopped| {
@@ -218,7 +218,7 @@ pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
 }
 
-/// A run as it goes.
+/// A run in progress.
 struct Recorder<'a> {
     loaded: &'a Loaded,
     out: PathBuf,

@@ -1,5 +1,5 @@
-//! That no two things of a run have the same name: columns of the statistics, and files of its
-//! folder.
+//! Checks that the columns of the statistics, and the files in the folder of a run, have different
+//! names.
 
 use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};

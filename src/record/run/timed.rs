@@ -6,7 +6,7 @@ use fretwork_observe::summary::TimeSpent;
 use std::time::Instant;
 
 impl Recorder<'_> {
-    /// Does something, and adds the time that it takes to a part of the time spent.
+    /// Calls `action`, and adds its duration to a part of the time spent.
     pub(super) fn timed<T>(
         &mut self,
         part: fn(&mut TimeSpent) -> &mut f64,
