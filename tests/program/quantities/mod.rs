@@ -212,7 +212,7 @@ fn an_observer_gives_a_value_for_each_of_its_columns() {
     let (_, built) = cradle();
     let mut observers = Observers::default();
     observers.push(Box::new(Short));
-    let error = observers.sample(&built.simulation).unwrap_err();
+    let error = observers.sample(built.simulation.view()).unwrap_err();
     assert_eq!(
         (error.observer.as_str(), error.values, error.columns),
         ("short", 1, 2)

@@ -71,6 +71,7 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
 /// The columns of `statistics.csv`, of `/statistics` and of the observers are the same.
 fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
     let columns = statistics_columns(&loaded.case, built.simulation.view());
+    let dimension = built.simulation.dimension();
     let options = RunOptions {
         out: out.to_owned(),
         threads: 1,
@@ -79,7 +80,7 @@ fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
     let expected = known(
         columns
             .iter()
-            .map(|c| (c.name.as_str(), c.unit.heading(S::D), c.doc)),
+            .map(|c| (c.name.as_str(), c.unit.heading(dimension), c.doc)),
     );
     assert_eq!(expected.len(), columns.len(), "two columns of one name");
     let file = H5File::open(out.join("results.h5")).unwrap();
@@ -88,7 +89,7 @@ fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
     let heads = table.lines().next().unwrap().split(',');
     let named: Vec<String> = columns
         .iter()
-        .map(|c| match c.unit.heading(S::D) {
+        .map(|c| match c.unit.heading(dimension) {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         })
