@@ -54,6 +54,7 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+pub mod assembly;
 pub mod bodies;
 pub mod certify;
 pub mod code;

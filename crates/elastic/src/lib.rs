@@ -1,6 +1,7 @@
 //! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large
 //! rotation, and in large strain, and elastic half-spaces; and contact patches in closed form.
 
+pub mod any;
 pub mod body;
 pub mod corotational;
 pub mod element;
@@ -27,6 +28,7 @@ pub mod support;
 pub mod surface;
 mod touching_surface;
 
+pub use any::{AnyBodySpec, AnyHalfSpaceSpec, AnyMesh};
 pub use body::ElasticBody;
 pub use error::BodyError;
 pub use grain::{ElasticGrain, ElasticGrainSpec, GrainShape};

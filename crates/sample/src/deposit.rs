@@ -7,7 +7,7 @@
 
 use super::sizes::Sizes;
 use fretwork_core::geometry::periodic::Periodic;
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashMap;
@@ -38,6 +38,41 @@ pub struct Deposit<V> {
     pub grains: Vec<(V, f64)>,
     /// Fraction of the box that all requested grains would fill.
     pub filling: f64,
+}
+
+/// Places grains in a box between two corners (m), in so many dimensions; see [`deposit`]. In the
+/// plane the third component counts for nothing.
+pub fn deposit_between(
+    dimension: usize,
+    count: usize,
+    sizes: &Sizes,
+    corners: [[f64; 3]; 2],
+    periodic: &Periodic,
+    seed: u64,
+) -> Deposit<[f64; 3]> {
+    match dimension {
+        2 => padded::<Dim2>(count, sizes, corners, periodic, seed),
+        _ => padded::<Dim3>(count, sizes, corners, periodic, seed),
+    }
+}
+
+fn padded<S: Space>(
+    count: usize,
+    sizes: &Sizes,
+    [low, high]: [[f64; 3]; 2],
+    periodic: &Periodic,
+    seed: u64,
+) -> Deposit<[f64; 3]> {
+    let corners = Corners {
+        low: S::Vector::from_slice(&low),
+        high: S::Vector::from_slice(&high),
+    };
+    let made = deposit::<S>(count, sizes, &corners, periodic, seed);
+    let grains = made.grains.into_iter();
+    Deposit {
+        grains: grains.map(|(at, radius)| (at.padded(), radius)).collect(),
+        filling: made.filling,
+    }
 }
 
 /// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it;
@@ -180,7 +215,6 @@ impl<V: VectorLike> SizeLevels<V> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_core::geometry::space::{Dim2, Dim3};
 
     fn smallest_gap<S: Space>(grains: &[(S::Vector, f64)], periodic: &Periodic) -> f64 {
         let mut least = f64::INFINITY;

@@ -1,8 +1,10 @@
 //! Shapes of either dimension, for what makes them from descriptions.
 
 use super::convex::ConvexPart;
+use super::drum::Drum;
 use super::shape::Surface;
-use super::space::{Dim2, Dim3, Space};
+use super::space::{Dim2, Dim3, Space, VectorLike};
+use nalgebra::{Vector2, Vector3};
 use std::any::Any;
 
 /// A surface of the plane or of space.
@@ -15,6 +17,14 @@ pub enum AnySurface {
 }
 
 impl AnySurface {
+    /// The inside of a drum of a radius (m); `axis` is 0, 1 or 2 in 3D and ignored in 2D.
+    pub fn drum(dimension: usize, radius: f64, axis: usize) -> Self {
+        match dimension {
+            2 => Self::Plane(Box::new(Drum::new(radius, axis))),
+            _ => Self::Space(Box::new(Drum::new(radius, axis))),
+        }
+    }
+
     /// The surface in dimension `S`; `None` if it has the other.
     pub fn into_dimension<S: Space>(self) -> Option<Box<dyn Surface<S>>> {
         match self {
@@ -34,6 +44,32 @@ pub enum AnyPart {
 }
 
 impl AnyPart {
+    /// Centre of mass (m).
+    pub fn centre(&self) -> [f64; 3] {
+        match self {
+            Self::Plane(part) => part.centre.padded(),
+            Self::Space(part) => part.centre.padded(),
+        }
+    }
+
+    /// Volume including the rounding (m^3; in 2D area times unit depth).
+    pub fn volume(&self) -> f64 {
+        match self {
+            Self::Plane(part) => part.volume,
+            Self::Space(part) => part.volume,
+        }
+    }
+
+    /// The part moved by a vector (m).
+    #[must_use]
+    pub fn moved(mut self, by: [f64; 3]) -> Self {
+        match &mut self {
+            Self::Plane(part) => part.centre += <Vector2<f64> as VectorLike>::from_slice(&by),
+            Self::Space(part) => part.centre += <Vector3<f64> as VectorLike>::from_slice(&by),
+        }
+        self
+    }
+
     /// The part in dimension `S`; `None` if it has the other.
     pub fn into_dimension<S: Space>(self) -> Option<ConvexPart<S>> {
         match self {
@@ -44,7 +80,7 @@ impl AnyPart {
 }
 
 /// The value under another name of its type; `None` if that is another type.
-fn same<T: 'static, U: 'static>(value: T) -> Option<U> {
+pub(crate) fn same<T: 'static, U: 'static>(value: T) -> Option<U> {
     let mut value = Some(value);
     let value: &mut dyn Any = &mut value;
     value.downcast_mut::<Option<U>>()?.take()

@@ -13,6 +13,7 @@ use crate::process::heat::HeatFlow;
 use crate::process::jump::{JumpSpec, Jumps};
 use crate::step::Simulation;
 use crate::step::control::{GravityDrive, Phase};
+use crate::wear::Scar;
 
 /// A point of a body that deforms, behind a surface of another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,9 @@ pub trait RunSetup: RunControl {
     fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
     /// Measures the loaded areas of all pressures.
     fn measure_areas(&mut self);
+    /// Has a surface recede by wear that is worn through at a depth (m), every so many steps, in
+    /// the place of its body; whether it can.
+    fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool;
     /// Removes a driven body, by its place among them, at a time (s).
     fn add_gate(&mut self, place: usize, time: f64);
     /// Adds a phase after those that are there.
@@ -79,6 +83,16 @@ impl<S: Space> RunSetup for Simulation<S> {
     }
     fn measure_areas(&mut self) {
         self.measure_areas();
+    }
+    fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool {
+        let carried = &self.shapes.surfaces[surface];
+        let origin = self.state.bodies.position[carried.body as usize] + carried.offset;
+        let scar = Scar::new(name, surface, carried, thickness, every);
+        let wears = scar.is_some();
+        if let Some(scar) = scar {
+            self.follow_wear(scar.shifted(origin));
+        }
+        wears
     }
     fn add_gate(&mut self, place: usize, time: f64) {
         self.state.control.gates.push((place, time));

@@ -3,30 +3,29 @@
 
 use super::grains::Seed;
 use super::{Builder, Origin};
-use crate::recorded::{Motion, ShapedBody, ShapedGrain, ShapedPiece, StateError};
+use crate::recorded::{Motion, ShapedBody, ShapedGrain, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
-use fretwork_core::geometry::convex::{Boundary, ConvexCollider, Core};
-use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use fretwork_core::assembly::{Filling, RecordedPiece, Start, turned};
+use nalgebra::Vector3;
 
 /// Grains other than single balls, from one entry of `grains`.
 pub(super) struct Others {
     /// Index of the entry in the list.
     k: usize,
     /// Material index, and its density (kg/m^3).
-    of: (u16, f64),
+    of: Filling,
     /// The grains.
     grains: Vec<ShapedGrain>,
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Reads the grains of a state of another run: the balls, and the grains of other shapes.
     pub(super) fn grains_of_run(
         &mut self,
         k: usize,
         spec: &StateSpec,
-    ) -> Result<(Vec<Seed<S>>, Others), InputError> {
+    ) -> Result<(Vec<Seed>, Others), InputError> {
         let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
         let mut path = self.folder.join(&spec.results);
         if path.is_dir() {
@@ -41,7 +40,7 @@ impl<S: Space> Builder<'_, S> {
                 "this program reads no results of other runs; hand the case a reader of them";
             return Err(self.fail(format!("grains.{k}.results"), message.to_owned()));
         };
-        let read = reader(&path, frame, S::D).map_err(|e| {
+        let read = reader(&path, frame, self.dimension()).map_err(|e| {
             let place = match e {
                 StateError::NoFrame { .. } => "frame",
                 StateError::Unreadable { .. } => "results",
@@ -73,28 +72,32 @@ impl<S: Space> Builder<'_, S> {
         let mut seeds = Vec::with_capacity(balls);
         for grain in &read.grains {
             let motion = &grain.motion;
-            let at = S::Vector::from_slice(&motion.at);
             seeds.push(Seed {
-                rotation: self.rotation(k, motion)?,
-                velocity: S::Vector::from_slice(&motion.velocity),
-                spin: S::Spin::from_slice(&motion.spin),
-                ..Seed::still(at, grain.radius, of, Origin::Grain(k, None))
+                radius: grain.radius,
+                of,
+                start: self.start(k, motion)?,
+                origin: Origin::Grain(k, None),
             });
         }
         let grains = read.shaped;
         Ok((seeds, Others { k, of, grains }))
     }
 
-    fn rotation(&self, k: usize, motion: &Motion) -> Result<S::Rotation, InputError> {
-        let Some(numbers) = &motion.rotation else {
-            // The orientation of a ball has no effect.
-            return Ok(S::identity());
-        };
-        S::rotation_from(numbers).ok_or_else(|| {
+    /// Where a recorded grain is and how it moves.
+    fn start(&self, k: usize, motion: &Motion) -> Result<Start, InputError> {
+        // The orientation of a ball has no effect.
+        let known = |numbers: &[f64; 4]| turned(self.dimension(), numbers, [0.0; 3]).is_some();
+        if let Some(numbers) = motion.rotation.as_ref().filter(|r| !known(r)) {
             let message = format!(
                 "the orientation {numbers:?} of a grain is not a rotation: the file is damaged"
             );
-            self.fail(format!("grains.{k}.results"), message)
+            return Err(self.fail(format!("grains.{k}.results"), message));
+        }
+        Ok(Start {
+            position: motion.at,
+            rotation: motion.rotation,
+            velocity: motion.velocity,
+            spin: self.about_axes(motion.spin),
         })
     }
 
@@ -102,9 +105,9 @@ impl<S: Space> Builder<'_, S> {
     pub(super) fn shaped_grains(&mut self, others: Others) -> Result<(), InputError> {
         let (k, of) = (others.k, others.of);
         for grain in others.grains {
-            let rotation = self.rotation(k, &grain.motion)?;
+            let start = self.start(k, &grain.motion)?;
             let id = grain.body.id;
-            self.shaped_grain(grain, rotation, of).map_err(|what| {
+            self.shaped_grain(grain, start, of).map_err(|what| {
                 let message = format!(
                     "the shape of grain {id} cannot be used: {what}; the file is damaged, run its case again"
                 );
@@ -118,107 +121,54 @@ impl<S: Space> Builder<'_, S> {
     fn shaped_grain(
         &mut self,
         grain: ShapedGrain,
-        rotation: S::Rotation,
-        (material, density): (u16, f64),
+        mut start: Start,
+        (material, density): Filling,
     ) -> Result<(), String> {
-        let motion = &grain.motion;
         let first = match (grain.balls.first(), grain.pieces.first()) {
             (Some(ball), _) => ball.offset,
             (None, Some(piece)) => piece.offset,
             (None, None) => [0.0; 3],
         };
-        let first = S::Vector::from_slice(&first);
-        let at = S::Vector::from_slice(&motion.at) - S::rotate(&rotation, &first);
-        let body = self.weighing(&grain.body, at, density)?;
+        let arm = match &start.rotation {
+            Some(rotation) => turned(self.dimension(), rotation, first).unwrap_or(first),
+            None => first,
+        };
+        start.position = (Vector3::from(start.position) - Vector3::from(arm)).into();
+        let body = self.weighing(&grain.body, &start, density)?;
         if let Some(deformed) = grain.deformed {
             self.deformed.insert(body, (grain.body.id, deformed));
         }
-        let b = body as usize;
-        self.bodies.rotation[b] = rotation;
-        self.bodies.velocity[b] = S::Vector::from_slice(&motion.velocity);
-        self.bodies.spin[b] = S::Spin::from_slice(&motion.spin);
         for ball in grain.balls {
-            let offset = S::Vector::from_slice(&ball.offset);
-            if !(ball.radius.is_finite() && ball.radius > 0.0 && offset.is_finite()) {
-                return Err(format!("a ball of it has the radius {}", ball.radius));
-            }
-            self.shapes.balls.push(Ball {
-                body,
-                radius: ball.radius,
-                offset,
-                material,
-                area: S::Vector::zero(),
-            });
+            self.assembly
+                .carry_ball(body, ball.offset, ball.radius, material)?;
         }
         for piece in grain.pieces {
-            self.shapes.pieces.push(recorded(piece, body, material)?);
+            let piece = RecordedPiece {
+                rounding: piece.rounding,
+                size: piece.size,
+                offset: piece.offset,
+                corners: piece.corners,
+                faces: piece.faces,
+            };
+            self.assembly.carry_piece(body, piece, material)?;
         }
         Ok(())
     }
 
     /// Adds a body with its recorded mass and inertia, scaled if the density differs.
-    fn weighing(&mut self, of: &ShapedBody, at: S::Vector, density: f64) -> Result<u32, String> {
-        let n = S::Spin::N;
-        let entry = |i: usize, j: usize| of.inertia[3 * i + j];
+    fn weighing(&mut self, of: &ShapedBody, start: &Start, density: f64) -> Result<u32, String> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let numbers = [of.mass, of.density, of.length];
-        let diagonal = (0..n).map(|i| entry(i, i));
+        let axes = if self.dimension() == 2 { 1 } else { 3 };
+        let diagonal = (0..axes).map(|i| of.inertia[4 * i]);
         if !numbers.into_iter().chain(diagonal).all(positive)
             || !of.inertia.iter().all(|x| x.is_finite())
-            || !at.is_finite()
         {
             return Err("its position, mass or inertia is not a valid number".to_owned());
         }
         // Exactly one if the material is the same.
         let ratio = density / of.density;
-        let (mass, length) = (of.mass * ratio, of.length);
-        let mut axes = [S::Spin::zero(); 3];
-        for (i, axis) in axes.iter_mut().enumerate().take(n) {
-            axis[i] = 1.0;
-        }
-        let alike =
-            (0..n).all(|i| (0..n).all(|j| entry(i, j) == if i == j { entry(0, 0) } else { 0.0 }));
-        Ok(if alike {
-            self.bodies.add(at, mass, entry(0, 0) * ratio, length)
-        } else {
-            let mut inertia = S::Tensor::uniform(0.0);
-            for i in 0..n {
-                for j in 0..n {
-                    inertia = inertia + S::Tensor::dyad(&axes[i], &axes[j]).scaled(entry(i, j));
-                }
-            }
-            self.bodies
-                .add_shaped(at, mass, &inertia.scaled(ratio), length)
-        })
+        self.assembly
+            .add_weighed(of.mass * ratio, &of.inertia, ratio, of.length, start)
     }
-}
-
-/// Rebuilds a convex part of a body from the record.
-fn recorded<S: Space>(
-    piece: ShapedPiece,
-    body: u32,
-    material: u16,
-) -> Result<ConvexCollider<S>, String> {
-    let corners = piece.corners.iter();
-    let corners: Vec<S::Vector> = corners.map(|c| S::Vector::from_slice(c)).collect();
-    let farthest = corners.iter().map(VectorLike::norm).fold(0.0, f64::max);
-    let core = S::Core::bounded_by(Boundary {
-        corners,
-        faces: piece.faces,
-    })?;
-    let offset = S::Vector::from_slice(&piece.offset);
-    let size = piece.size;
-    let known = piece.rounding.is_finite() && piece.rounding >= 0.0 && offset.is_finite();
-    if !(known && size.is_finite() && size > 0.0 && farthest.is_finite()) {
-        return Err("a piece of it has no size".to_owned());
-    }
-    Ok(ConvexCollider {
-        body,
-        core,
-        offset,
-        rounding: piece.rounding,
-        bound: farthest + piece.rounding,
-        size,
-        material,
-    })
 }

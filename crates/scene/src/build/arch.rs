@@ -1,19 +1,19 @@
 //! Voussoirs (blocks) of an arch.
 
 use super::Builder;
-use super::polygons::Block;
 use crate::case::{Edges, GrainSpec};
 use crate::source::InputError;
-use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use fretwork_core::assembly::{Block, Start};
+use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 10_000;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for
     /// other kinds of grains.
-    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block<S>>, InputError> {
+    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block>, InputError> {
         let GrainSpec::Arch {
             blocks,
             radius,
@@ -57,25 +57,23 @@ impl<S: Space> Builder<'_, S> {
                 corner(inner, to),
             ];
             let part = self.polygon(here, &corners, 0.0)?;
+            let block = Block::of(part);
             let (at, volume, inertia) = match edges {
-                Edges::Straight => (part.centre, part.volume, part.inertia),
+                Edges::Straight => (Vector3::from(block.start.position), block.volume, None),
                 Edges::Curved => {
-                    let (at, volume, inertia) = ring_piece(inner, outer, from, to);
-                    (
-                        S::Vector::from_slice(&at),
-                        volume,
-                        S::Tensor::uniform(inertia),
-                    )
+                    let ([x, y], volume, inertia) = ring_piece(inner, outer, from, to);
+                    (Vector3::new(x, y, 0.0), volume, Some(inertia))
                 }
             };
             out.push(Block {
-                at: centre + at,
                 volume,
                 inertia,
-                offset: part.centre - at,
-                part,
-                velocity: S::Vector::zero(),
-                spin: S::Spin::zero(),
+                offset: (Vector3::from(block.start.position) - at).into(),
+                start: Start {
+                    position: (centre + at).into(),
+                    ..Start::default()
+                },
+                part: block.part,
             });
         }
         Ok(out)

@@ -1,16 +1,15 @@
 //! Samples of blocks that fit together: Voronoi cells, and walls in running bond.
 
 use super::Builder;
-use super::polygons::Block;
 use crate::sample::deposit::Corners;
 use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{InputError, ValidationError};
-use fretwork_core::geometry::convex::ConvexPart;
+use fretwork_core::assembly::Block;
+use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 100_000;
@@ -20,26 +19,31 @@ const MAX_ROUNDS: usize = 1_000;
 /// counts as one iteration.
 const MAX_WORK: [f64; 2] = [1e6, 5e4];
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Makes the Voronoi cells of a box.
     pub(super) fn voronoi(
         &mut self,
         k: usize,
         spec: &VoronoiSpec,
-    ) -> Result<Vec<Block<S>>, InputError> {
+    ) -> Result<Vec<Block>, InputError> {
         let here = format!("grains.{k}");
         let low = self.corner(&format!("{here}.low"), &spec.low)?;
         let high = self.corner(&format!("{here}.high"), &spec.high)?;
-        if (0..S::D).any(|k| high[k] <= low[k]) {
+        if (0..self.dimension()).any(|k| high[k] <= low[k]) {
             let message = format!(
                 "each number must be greater than that of `low`: the region has no {}",
-                if S::D == 2 { "area" } else { "volume" }
+                if self.dimension() == 2 {
+                    "area"
+                } else {
+                    "volume"
+                }
             );
             return Err(self.fail(format!("{here}.high"), message));
         }
-        let corners = Corners { low, high };
+        let corners = [low, high];
         let size = self.length(&format!("{here}.size"), spec.size)?;
-        let cells = corners.volume() / size.powi(S::D as i32);
+        let volume: f64 = (0..self.dimension()).map(|k| high[k] - low[k]).product();
+        let cells = volume / size.powi(self.dimension() as i32);
         if cells > MAX_BLOCKS as f64 {
             let message = format!("the region would hold {cells:.3e} cells of this size");
             let fault = ValidationError::new(format!("{here}.size"), message);
@@ -50,20 +54,20 @@ impl<S: Space> Builder<'_, S> {
             let message = format!("at most {MAX_ROUNDS} rounds, got {}", spec.rounds);
             return Err(self.fail(format!("{here}.rounds"), message));
         }
-        let most = MAX_WORK[S::D - 2];
+        let most = MAX_WORK[self.dimension() - 2];
         if cells * (spec.rounds + 1) as f64 > most {
             let message = format!(
                 "{} rounds over {cells:.3e} cells take too long: cells times (rounds + 1) may be {most:e} at \
                  most in {} dimensions",
                 spec.rounds,
-                S::D
+                self.dimension()
             );
             return Err(self.fail(format!("{here}.rounds"), message));
         }
         self.not_negative(&format!("{here}.gap"), spec.gap)?;
         self.not_negative(&format!("{here}.rounding"), spec.rounding)?;
-        for (axis, name) in ["x", "y", "z"].iter().enumerate().take(S::D) {
-            if let Some(period) = self.shapes.periodic.period[axis]
+        for (axis, name) in ["x", "y", "z"].iter().enumerate().take(self.dimension()) {
+            if let Some(period) = self.assembly.periodic().period[axis]
                 && high[axis] - low[axis] > period * (1.0 + 1e-9)
             {
                 let message =
@@ -72,10 +76,10 @@ impl<S: Space> Builder<'_, S> {
             }
         }
         let seed = self.case.seed.wrapping_add(k as u64);
-        let (out, note) = if S::D == 2 {
-            self.cells_in_the_plane(&here, spec, &corners, seed)?
+        let (out, note) = if self.dimension() == 2 {
+            self.cells_in_the_plane(&here, spec, corners, seed)?
         } else {
-            self.cells_in_space(&here, spec, &corners, seed)?
+            self.cells_in_space(&here, spec, corners, seed)?
         };
         self.samples
             .push(format!("{here}: {} Voronoi cells{note}", out.len()));
@@ -87,14 +91,14 @@ impl<S: Space> Builder<'_, S> {
         &self,
         here: &str,
         spec: &VoronoiSpec,
-        corners: &Corners<S::Vector>,
+        [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block<S>>, String), InputError> {
+    ) -> Result<(Vec<Block>, String), InputError> {
         let corners = Corners {
-            low: Vector2::new(corners.low[0], corners.low[1]),
-            high: Vector2::new(corners.high[0], corners.high[1]),
+            low: low.xy(),
+            high: high.xy(),
         };
-        let (size, periodic) = (spec.size, &self.shapes.periodic);
+        let (size, periodic) = (spec.size, self.assembly.periodic());
         let made = voronoi::tiling(&corners, periodic, size, spec.rounds, seed);
         let made = made.ok_or_else(|| self.no_room(here, size))?;
         let mut out = Vec::with_capacity(made.cells.len());
@@ -130,11 +134,10 @@ impl<S: Space> Builder<'_, S> {
         &self,
         here: &str,
         spec: &VoronoiSpec,
-        corners: &Corners<S::Vector>,
+        [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block<S>>, String), InputError> {
-        let [low, high] = [corners.low, corners.high].map(|c| Vector3::from(c.padded()));
-        let (size, periodic) = (spec.size, &self.shapes.periodic);
+    ) -> Result<(Vec<Block>, String), InputError> {
+        let (size, periodic) = (spec.size, self.assembly.periodic());
         let corners = Corners { low, high };
         let made = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
         let short = || {
@@ -169,7 +172,11 @@ impl<S: Space> Builder<'_, S> {
     fn no_room(&self, here: &str, size: f64) -> InputError {
         let message = format!(
             "cells of {size:e} m do not fit: the region must be wider and higher{} than half of that",
-            if S::D == 2 { "" } else { " and deeper" }
+            if self.dimension() == 2 {
+                ""
+            } else {
+                " and deeper"
+            }
         );
         self.fail(format!("{here}.size"), message)
     }
@@ -177,7 +184,11 @@ impl<S: Space> Builder<'_, S> {
     fn nothing_left(&self, here: &str, spec: &VoronoiSpec) -> InputError {
         let (band, side) = (
             0.5 * spec.gap + spec.rounding,
-            if S::D == 2 { "side" } else { "face" },
+            if self.dimension() == 2 {
+                "side"
+            } else {
+                "face"
+            },
         );
         let message = format!(
             "half the gap and the rounding take {band:e} m off each {side}, which leaves nothing of the thinnest cell; make them smaller, or make the cells more uniform with more `rounds`"
@@ -195,11 +206,11 @@ impl<S: Space> Builder<'_, S> {
         &self,
         here: &str,
         spec: &BlockWallSpec,
-    ) -> Result<Vec<Block<S>>, InputError> {
+    ) -> Result<Vec<Block>, InputError> {
         let at = self.vector(&format!("{here}.at"), &spec.at)?;
         let wide = self.length(&format!("{here}.block.0"), spec.block.0)?;
         let high = self.length(&format!("{here}.block.1"), spec.block.1)?;
-        if spec.thickness.is_some() != (S::D == 3) {
+        if spec.thickness.is_some() != (self.dimension() == 3) {
             let message = "the wall has a `thickness` in three dimensions, and in three alone";
             return Err(self.fail(here, message));
         }
@@ -237,12 +248,11 @@ impl<S: Space> Builder<'_, S> {
             for width in widths {
                 let mut block = Block::of(self.brick(here, width, thick, high)?);
                 let middle = [left + 0.5 * width, 0.5 * thick, low + 0.5 * high];
-                let middle = if S::D == 2 {
-                    vec![middle[0], middle[2]]
-                } else {
-                    middle.to_vec()
+                let middle = match self.dimension() {
+                    2 => Vector3::new(middle[0], middle[2], 0.0),
+                    _ => Vector3::from(middle),
                 };
-                block.at = at + S::Vector::from_slice(&middle);
+                block.start.position = (at + middle).into();
                 out.push(block);
                 left += width + gap;
             }
@@ -251,14 +261,8 @@ impl<S: Space> Builder<'_, S> {
     }
 
     /// Makes a block of a wall, centred at the origin.
-    fn brick(
-        &self,
-        here: &str,
-        width: f64,
-        thick: f64,
-        high: f64,
-    ) -> Result<ConvexPart<S>, InputError> {
-        if S::D == 3 {
+    fn brick(&self, here: &str, width: f64, thick: f64, high: f64) -> Result<AnyPart, InputError> {
+        if self.dimension() == 3 {
             return self.polyhedron(here, &Polyhedron::cuboid([width, thick, high]), 0.0);
         }
         let (x, y) = (0.5 * width, 0.5 * high);

@@ -5,7 +5,8 @@ use super::Builder;
 use super::elastic_grains::Shapes;
 use crate::recorded::{Deformed, Motion, ShapedBall, ShapedBody, ShapedGrain, ShapedPiece};
 use crate::source::InputError;
-use fretwork_core::bodies::von_mises;
+use fretwork_core::assembly::Parts;
+use fretwork_core::bodies::{Bodies, von_mises};
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_elastic::grain::shape::stresses;
@@ -17,11 +18,12 @@ const SAME_PLACE: f64 = 1e-6;
 /// grain.
 const SAME_STRESS: f64 = 1e-6;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Displacements of the points of a grain in its frame (m) and their rates (m/s), where a state
     /// of another run has them; empty otherwise.
-    pub(super) fn taken_over(
+    pub(super) fn taken_over<S: Space>(
         &self,
+        parts: &Parts<S>,
         body: u32,
         here: &str,
         material: &str,
@@ -55,18 +57,18 @@ impl<S: Space> Builder<'_, S> {
             return Err(self.fail(here, message));
         }
         let b = body as usize;
-        let (at, rotation) = (self.bodies.position[b], self.bodies.rotation[b]);
-        let (moves, spin) = (self.bodies.velocity[b], self.bodies.spin[b]);
+        let (at, rotation) = (parts.bodies.position[b], parts.bodies.rotation[b]);
+        let (moves, spin) = (parts.bodies.velocity[b], parts.bodies.spin[b]);
         let of = |numbers: &[f64; 3]| S::Vector::from_slice(numbers);
         let own = |v: S::Vector| S::unrotate(&rotation, &v);
         let displacement: Vec<S::Vector> = deformation.iter().map(|u| own(of(u))).collect();
         let without_load = places.iter().zip(&displacement).zip(mesh.points());
         let off = without_load.map(|((x, u), rest)| {
-            let arm = self.shapes.periodic.shortest(of(x) - at);
+            let arm = parts.shapes.periodic.shortest(of(x) - at);
             (own(arm) - *u - *rest * size).norm()
         });
         let off = off.fold(0.0, f64::max);
-        let length = self.bodies.length[b];
+        let length = parts.bodies.length[b];
         if off > SAME_PLACE * length {
             let message = format!(
                 "grain {id} of the other run has another mesh than here, whose points lie elsewhere by up to {off:e} m: take the same version and shape, {way_out}"
@@ -89,15 +91,20 @@ impl<S: Space> Builder<'_, S> {
             return Err(self.fail(format!("{here}.material"), message));
         }
         let rates = places.iter().zip(velocity).map(|(x, v)| {
-            let arm = self.shapes.periodic.shortest(of(x) - at);
+            let arm = parts.shapes.periodic.shortest(of(x) - at);
             own(of(v) - moves - S::spin_velocity(&spin, &arm))
         });
         Ok([displacement, rates.collect()])
     }
 
     /// A grain that deforms as a state records it: without load, as if it were rigid.
-    pub(super) fn unloaded(&self, b: usize, own: &Shapes<'_, S>, material: u16) -> ShapedGrain {
-        let bodies = &self.bodies;
+    pub(super) fn unloaded<S: Space>(
+        &self,
+        bodies: &Bodies<S>,
+        b: usize,
+        own: &Shapes<'_, S>,
+        material: u16,
+    ) -> ShapedGrain {
         let uniform = S::Tensor::uniform(bodies.inertia[b]);
         let inertia = bodies.tensors.get(b).and_then(Option::as_ref);
         let inertia = inertia.map_or(uniform, |t| *t.own());

@@ -1,26 +1,25 @@
 //! Deformable bodies: their meshes, supports and material.
 
 use super::mesh_block::BlockShape;
-use super::{Builder, Origin};
+use super::{Builder, Origin, components};
 use crate::case::{CellTouch, ElasticSpec, MeshSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
 use crate::holders;
 use crate::material::Sourced;
 use crate::names::word_fault;
 use crate::source::InputError;
-use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
-use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::assembly::AnySystem;
+use fretwork_core::bodies::{ContactorShape, Dof};
 use fretwork_elastic::mesh::MeshError;
-use fretwork_elastic::{BodyError, BodySpec, ElasticBody, Elasticity, Mesh, Support, Touching};
+use fretwork_elastic::{AnyBodySpec, AnyMesh, BodyError, Elasticity, Support, Touching};
 use std::collections::BTreeMap;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// The deformable bodies of the case, in its order.
     pub(super) fn elastic_bodies(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
-    ) -> Result<Vec<Box<dyn DynamicalSystem<S>>>, InputError> {
+    ) -> Result<Vec<AnySystem>, InputError> {
         let mut out = Vec::new();
         for (k, spec) in self.case.elastic.iter().enumerate() {
             let system = self.elastic_body(&format!("elastic.{k}"), spec, properties)?;
@@ -128,32 +127,14 @@ impl<S: Space> Builder<'_, S> {
         Ok(())
     }
 
-    /// Radius of the smallest of the balls about the centres of the balls and convex parts of
-    /// grains that they hold (m); infinite without grains.
-    fn thinnest_grain(&self) -> f64 {
-        let grain = self.bodies.grain_flags();
-        let balls = self.shapes.balls.iter().map(|b| (b.body, b.radius));
-        let pieces = self.shapes.pieces.iter().map(|p| {
-            let (distance, _) = p.core.outward(&S::Vector::zero());
-            (p.body, (-distance).max(0.0) + p.rounding)
-        });
-        let of_grains = balls.chain(pieces).filter(|(b, _)| grain[*b as usize]);
-        of_grains
-            .map(|(_, radius)| radius)
-            .fold(f64::INFINITY, f64::min)
-    }
-
     /// Grains that fit between the points of a body would fall into it. Every cut through the
     /// centre of one holds a disk of the radius of the ball in it: where that is larger than the
     /// gaps between points, one of them stops it.
-    pub(super) fn check_elastic_points(
-        &self,
-        systems: &[Box<dyn DynamicalSystem<S>>],
-    ) -> Result<(), InputError> {
-        let thinnest = self.thinnest_grain();
+    pub(super) fn check_elastic_points(&self, systems: &[AnySystem]) -> Result<(), InputError> {
+        let thinnest = self.assembly.thinnest_grain();
         // The size of a point is half of the distance to the next, in space the radius of the disk
         // of its area a: a disk of the radius sqrt(a/2) fits between four.
-        let wide = match S::D {
+        let wide = match self.dimension() {
             2 => 1.0,
             _ => std::f64::consts::FRAC_PI_2.sqrt(),
         };
@@ -215,8 +196,8 @@ impl<S: Space> Builder<'_, S> {
         here: &str,
         spec: &ElasticSpec,
         properties: &[BTreeMap<String, Sourced>],
-    ) -> Result<Box<dyn DynamicalSystem<S>>, InputError> {
-        if self.shapes.periodic.period.iter().any(Option::is_some) {
+    ) -> Result<AnySystem, InputError> {
+        if self.assembly.periodic().period.iter().any(Option::is_some) {
             let message = "deformable bodies do not repeat with a period; take `periodic` away";
             return Err(self.fail(here, message));
         }
@@ -231,19 +212,20 @@ impl<S: Space> Builder<'_, S> {
             TouchSpec::Points(part) => Touching::Points(part),
             TouchSpec::Surface(part) => Touching::Surface(part),
         };
-        let built = ElasticBody::new(BodySpec {
+        let built = AnyBodySpec {
             name: &spec.name,
-            mesh: mesh.moved(&position),
+            mesh,
+            position: position.into(),
             material: elasticity,
             strain: spec.strain,
             damping: spec.damping,
             supports: &supports,
             touching,
             surface_material: material,
-            velocity,
+            velocity: velocity.into(),
             spin,
-        });
-        let built = built.map_err(|error| {
+        };
+        built.build().map_err(|error| {
             let below = match &error {
                 BodyError::Mesh(_) => "mesh",
                 BodyError::Material(_) => "material",
@@ -261,8 +243,7 @@ impl<S: Space> Builder<'_, S> {
                 _ => "supports",
             };
             self.fail(format!("{here}.{below}"), error.to_string())
-        })?;
-        Ok(Box::new(built))
+        })
     }
 
     fn supports(&self, here: &str, body: &ElasticSpec) -> Result<Vec<Support>, InputError> {
@@ -285,7 +266,7 @@ impl<S: Space> Builder<'_, S> {
 
     /// Checks the drive of a holder along an axis.
     pub(super) fn check_holder(&self, at: &str, axis: &str, dof: &Dof) -> Result<(), InputError> {
-        if axis == "z" && S::D == 2 {
+        if axis == "z" && self.dimension() == 2 {
             return Err(self.fail(at, "a case in two dimensions has no z; leave it out"));
         }
         if let Some((below, why)) = dof.error() {
@@ -295,7 +276,7 @@ impl<S: Space> Builder<'_, S> {
         Ok(())
     }
 
-    fn mesh(&self, here: &str, owner: &ElasticSpec) -> Result<Mesh<S>, InputError> {
+    fn mesh(&self, here: &str, owner: &ElasticSpec) -> Result<AnyMesh, InputError> {
         let spec = &owner.mesh;
         let wrong = |error: MeshError| self.fail(here, error.to_string());
         match spec {
@@ -320,7 +301,7 @@ impl<S: Space> Builder<'_, S> {
                     return Err(self.fail(format!("{here}.scale"), message));
                 }
                 let path = self.folder.join(file);
-                let mut read = gmsh::read(&path, S::D)
+                let mut read = gmsh::read(&path, self.dimension())
                     .map_err(|why| self.fail(format!("{here}.file"), why))?;
                 let named = |part: &str| {
                     let touches = match &owner.touches {
@@ -332,8 +313,10 @@ impl<S: Space> Builder<'_, S> {
                 // Other groups may lie inside the body.
                 read.parts.retain(|part, _| named(part));
                 let points = read.points.iter();
-                let points = points.map(|p| S::Vector::from_slice(p) * *scale).collect();
-                Mesh::new(points, read.elements, &read.parts).map_err(wrong)
+                let points = points.map(|p| (components(p) * *scale).into());
+                let points: Vec<[f64; 3]> = points.collect();
+                let dimension = self.dimension();
+                AnyMesh::new(dimension, &points, read.elements, &read.parts).map_err(wrong)
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::case::ElasticGrainSpec;
 use crate::material::Sourced;
 use crate::measures::MeasureSpec;
 use crate::source::InputError;
+use fretwork_core::assembly::{self, AnyParts, AnySystem, Parts};
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
@@ -20,7 +21,11 @@ use std::sync::Arc;
 const MAX_ELEMENTS: [usize; 2] = [12, 5];
 
 /// Grains that were taken out of the rigid bodies, with their entries in the case.
-pub(super) type ElasticGrains<S> = Vec<(Box<dyn DynamicalSystem<S>>, Origin)>;
+pub(super) type ElasticGrains = Vec<(AnySystem, Origin)>;
+
+/// What the case says of the grains of a material that deform: its entry, path first, elasticity and
+/// elements along the radius.
+type OfMaterial<'a> = BTreeMap<u16, (String, &'a ElasticGrainSpec, Elasticity, usize)>;
 
 /// What grains of one shape share: a number for their kind, and all that their modes depend on.
 type ShapeKey = (usize, Vec<u64>);
@@ -47,15 +52,14 @@ impl<S: Space> Shapes<'_, S> {
     }
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Takes the grains of the materials that deform out of the rigid bodies. Called after the
     /// grains and before all other bodies.
     pub(super) fn elastic_grains(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
-    ) -> Result<ElasticGrains<S>, InputError> {
-        let mut of_material: BTreeMap<u16, (String, &ElasticGrainSpec, Elasticity, usize)> =
-            BTreeMap::new();
+    ) -> Result<ElasticGrains, InputError> {
+        let mut of_material: OfMaterial<'_> = BTreeMap::new();
         for (k, spec) in self.case.elastic_grains.iter().enumerate() {
             let here = format!("elastic_grains.{k}");
             let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
@@ -77,8 +81,10 @@ impl<S: Space> Builder<'_, S> {
                     return Err(self.fail(format!("{here}.damping.{name}"), message));
                 }
             }
-            let most = MAX_ELEMENTS[S::D - 2];
-            let elements = spec.elements.unwrap_or(if S::D == 2 { 4 } else { 2 });
+            let most = MAX_ELEMENTS[self.dimension() - 2];
+            let elements = spec
+                .elements
+                .unwrap_or(if self.dimension() == 2 { 4 } else { 2 });
             if !(1..=most).contains(&elements) {
                 let message = format!(
                     "a grain has 1 to {most} elements along its radius here, got {elements}"
@@ -111,20 +117,42 @@ impl<S: Space> Builder<'_, S> {
             let message = "local shear is not measured of grains that deform; take `shear` away";
             return Err(self.fail("output.shear", message));
         }
+        let none = assembly::empty(self.dimension(), *self.assembly.periodic());
+        let mut assembly = std::mem::replace(&mut self.assembly, none);
+        let made = match assembly.parts() {
+            AnyParts::Plane(parts) => {
+                let grains = self.deform(parts, &of_material)?;
+                in_any(grains, AnySystem::Plane)
+            }
+            AnyParts::Space(parts) => {
+                let grains = self.deform(parts, &of_material)?;
+                in_any(grains, AnySystem::Space)
+            }
+        };
+        self.assembly = assembly;
+        Ok(made)
+    }
+
+    /// Makes grains of the parts of these materials, and leaves them out there.
+    fn deform<S: Space>(
+        &mut self,
+        parts: &mut Parts<S>,
+        of_material: &OfMaterial<'_>,
+    ) -> Result<GrainsIn<S>, InputError> {
         let mut shapes: Vec<Shapes<'_, S>> = Vec::new();
-        shapes.resize_with(self.bodies.len(), || Shapes {
+        shapes.resize_with(parts.bodies.len(), || Shapes {
             balls: Vec::new(),
             pieces: Vec::new(),
         });
-        for ball in &self.shapes.balls {
+        for ball in &parts.shapes.balls {
             shapes[ball.body as usize].balls.push(ball);
         }
-        for piece in &self.shapes.pieces {
+        for piece in &parts.shapes.pieces {
             shapes[piece.body as usize].pieces.push(piece);
         }
         let mut known: HashMap<ShapeKey, Arc<GrainShape<S>>> = HashMap::new();
         let mut out = Vec::new();
-        let mut kept = vec![true; self.bodies.len()];
+        let mut kept = vec![true; parts.bodies.len()];
         let mut used = BTreeSet::new();
         let mut unloaded = Vec::new();
         for (b, own) in shapes.iter().enumerate() {
@@ -140,7 +168,7 @@ impl<S: Space> Builder<'_, S> {
                 self.grain_shape(own, origin, (*elements, elasticity.poisson), &mut known)?;
             let (shape, size) = shape;
             let of = (&*shape, size, elasticity);
-            let displacement = self.taken_over(b as u32, here, &spec.material, of)?;
+            let displacement = self.taken_over(parts, b as u32, here, &spec.material, of)?;
             let grain = Grain {
                 name: format!("grain_{}", out.len()),
                 shape,
@@ -149,16 +177,16 @@ impl<S: Space> Builder<'_, S> {
                 material: *elasticity,
                 damping: spec.damping,
                 surface_material: material.unwrap_or_default(),
-                position: self.bodies.position[b],
-                rotation: self.bodies.rotation[b],
-                velocity: self.bodies.velocity[b],
-                spin: self.bodies.spin[b],
+                position: parts.bodies.position[b],
+                rotation: parts.bodies.rotation[b],
+                velocity: parts.bodies.velocity[b],
+                spin: parts.bodies.spin[b],
                 displacement,
             };
-            unloaded.push(self.unloaded(b, own, material.unwrap_or_default()));
+            unloaded.push(self.unloaded(&parts.bodies, b, own, material.unwrap_or_default()));
             let bound = own.bound();
             for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-                let period = self.shapes.periodic.period[k];
+                let period = parts.shapes.periodic.period[k];
                 if period.is_some_and(|p| p < 8.0 * bound) {
                     let message = format!(
                         "the period must be at least 4 diameters of the largest grain ({:e} m)",
@@ -178,13 +206,16 @@ impl<S: Space> Builder<'_, S> {
             let message = "the case has no grains of this material; give the name of theirs";
             return Err(self.fail(format!("{here}.material"), message));
         }
-        self.keep_bodies(&kept);
+        parts.keep(&kept);
+        let mut kept = kept.iter();
+        self.origins
+            .retain(|_| kept.next().copied().unwrap_or(true));
         self.deforming = unloaded;
         Ok(out)
     }
 
     /// The shape of a grain, and the length of its unit (m).
-    fn grain_shape(
+    fn grain_shape<S: Space>(
         &self,
         own: &Shapes<'_, S>,
         origin: Origin,
@@ -225,26 +256,19 @@ impl<S: Space> Builder<'_, S> {
         known.insert(key, Arc::clone(&shape));
         Ok((shape, size))
     }
+}
 
-    /// Leaves out bodies, with their shapes.
-    fn keep_bodies(&mut self, kept: &[bool]) {
-        let moved = self.bodies.keep(kept);
-        let at = |body: &mut u32| match moved[*body as usize] {
-            Some(new) => {
-                *body = new;
-                true
-            }
-            None => false,
-        };
-        self.shapes.balls.retain_mut(|ball| at(&mut ball.body));
-        self.shapes.pieces.retain_mut(|piece| at(&mut piece.body));
-        self.shapes
-            .surfaces
-            .retain_mut(|surface| at(&mut surface.body));
-        let mut kept = kept.iter();
-        self.origins
-            .retain(|_| kept.next().copied().unwrap_or(true));
-    }
+/// Grains in their dimension, with their entries in the case.
+type GrainsIn<S> = Vec<(Box<dyn DynamicalSystem<S>>, Origin)>;
+
+fn in_any<S: Space>(
+    grains: GrainsIn<S>,
+    any: fn(Box<dyn DynamicalSystem<S>>) -> AnySystem,
+) -> ElasticGrains {
+    let grains = grains.into_iter();
+    grains
+        .map(|(system, origin)| (any(system), origin))
+        .collect()
 }
 
 /// The mesh of a ball of unit radius.

@@ -3,10 +3,10 @@
 use super::{Builder, Origin};
 use crate::case::{BodySpec, ShapeSpec};
 use crate::source::InputError;
-use fretwork_core::bodies::{Driven, tensor};
-use fretwork_core::geometry::space::{MatrixLike, Space};
+use fretwork_core::assembly::{Inertia, Start, Weight};
+use fretwork_core::bodies::Driven;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     pub(super) fn first_bodies(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.bodies.iter().enumerate() {
             self.first_body(&format!("bodies.{k}"), spec)?;
@@ -19,40 +19,33 @@ impl<S: Space> Builder<'_, S> {
         let (material, density) = self.material(&format!("{here}.material"), &spec.material)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let union = self.union(&format!("{here}.shapes"), &spec.shapes)?;
-        let centre = union.centre();
-        let (volume, own) = (union.volume(), union.inertia(&centre));
-        let dofs = spec.ordered(S::D);
+        let volume = union.volume(self.dimension());
+        let dofs = spec.ordered(self.dimension());
         self.check_dofs(here, spec, volume > 0.0)?;
         self.check_periods(here, spec)?;
         let mass = spec
             .mass
             .unwrap_or(if volume > 0.0 { density * volume } else { 1.0 });
         let inertia = match spec.inertia {
-            Some(inertia) => S::Tensor::uniform(inertia),
+            Some(inertia) => Inertia::Uniform(inertia),
             // If a drive imposes its rotation at any time, the body has one scalar inertia
             // throughout, so that its energy does not jump when the drive ends.
-            None if volume > 0.0 && self.turned_by_drives(spec) => {
-                S::Tensor::uniform(tensor::mean::<S>(&own) * density)
-            }
-            None if volume > 0.0 => own.scaled(density),
-            None => S::Tensor::uniform(1.0),
+            None if volume > 0.0 && self.turned_by_drives(spec) => Inertia::Mean(density),
+            None if volume > 0.0 => Inertia::OfShapes(density),
+            None => Inertia::Uniform(1.0),
         };
-        let only = union.only_ball().unwrap_or(0.0);
-        let length = if only > 0.0 {
-            only
-        } else {
-            (tensor::mean::<S>(&inertia) / mass).sqrt()
+        let start = Start {
+            position: position.into(),
+            ..Start::default()
         };
-        let body = self
-            .bodies
-            .add_shaped(position + centre, mass, &inertia, length);
-        self.bodies.drive(Driven {
+        let first = self.assembly.surface_count();
+        let weight = Weight::First(mass, inertia);
+        let body = self.assembly.add_union(union, weight, material, &start);
+        self.assembly.drive(Driven {
             name: spec.name.clone(),
             body,
             dofs,
         });
-        let first = self.shapes.surfaces.len();
-        self.carry(union, body, material, &centre);
         self.wears(here, spec, first)
     }
 
@@ -60,12 +53,12 @@ impl<S: Space> Builder<'_, S> {
     /// axis is accepted: it is a wall of a case that was made periodic by `--set`, and it is
     /// dropped.
     fn check_periods(&self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
-        let periods = self.shapes.periodic.period;
+        let periods = self.assembly.periodic().period;
         for (k, shape) in spec.shapes.iter().enumerate() {
             let ShapeSpec::HalfSpace { normal, .. } = shape else {
                 continue;
             };
-            let cut = (0..S::D).find(|a| periods[*a].is_some() && normal[*a] != 0.0);
+            let cut = (0..self.dimension()).find(|a| periods[*a].is_some() && normal[*a] != 0.0);
             if let (Some(axis), None) = (cut, spec.vanishes) {
                 let axis = ["x", "y", "z"][axis];
                 let message = format!(
@@ -81,7 +74,9 @@ impl<S: Space> Builder<'_, S> {
     /// Whether a rotation of the body is imposed at some time.
     fn turned_by_drives(&self, spec: &BodySpec) -> bool {
         let drives = crate::phases::drives_of(self.case, spec);
-        drives.iter().any(|d| d.0 >= S::D && d.1.imposes())
+        drives
+            .iter()
+            .any(|d| d.0 >= self.dimension() && d.1.imposes())
     }
 
     fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {
@@ -96,10 +91,13 @@ impl<S: Space> Builder<'_, S> {
                 ),
             ));
         }
-        if drives.iter().any(|d| d.0 >= S::D && moves(&d.1)) {
+        if drives
+            .iter()
+            .any(|d| d.0 >= self.dimension() && moves(&d.1))
+        {
             let all = |d: usize| drives.iter().filter(|x| x.0 == d).all(|x| moves(&x.1));
             let named = |d: usize| drives.iter().any(|x| x.0 == d);
-            if S::D == 3 && !(3..6).all(|d| named(d) && all(d)) {
+            if self.dimension() == 3 && !(3..6).all(|d| named(d) && all(d)) {
                 return Err(self.fail(format!("{here}.dofs"), "in three dimensions a body turns freely about all axes or about none; free rx, ry and rz, or fix or drive all three"));
             }
             if spec.inertia.is_none() && !has_mass {

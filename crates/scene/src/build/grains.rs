@@ -1,12 +1,11 @@
 //! Grains, and the walls that come with scene files.
 
-use super::{Builder, Origin};
+use super::{Builder, Origin, components};
 use crate::case::{GrainSpec, OneGrain};
 use crate::sample::lattice::lattice;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::bodies::Driven;
-use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::assembly::{Filling, Start};
+use nalgebra::Vector3;
 
 /// Limit on grains read from a file; more do not fit into memory.
 pub(super) const MAX_READ: usize = 10_000_000;
@@ -14,41 +13,36 @@ pub(super) const MAX_READ: usize = 10_000_000;
 pub(super) const MAX_MADE: usize = 2_000_000;
 
 /// A ball to be added to the scene.
-pub(super) struct Seed<S: Space> {
-    /// Position of its centre (m).
-    pub at: S::Vector,
+pub(super) struct Seed {
     /// Radius (m).
     pub radius: f64,
     /// Material index, and its density (kg/m^3).
-    pub of: (u16, f64),
-    /// Orientation.
-    pub rotation: S::Rotation,
-    /// Velocity (m/s).
-    pub velocity: S::Vector,
-    /// Angular velocity (rad/s).
-    pub spin: S::Spin,
+    pub of: Filling,
+    /// Where it is and how it moves.
+    pub start: Start,
     /// Its entry in the case.
     pub origin: Origin,
 }
 
-impl<S: Space> Seed<S> {
+impl Seed {
     /// A ball at rest.
-    pub fn still(at: S::Vector, radius: f64, of: (u16, f64), origin: Origin) -> Self {
+    pub fn still(at: Vector3<f64>, radius: f64, of: Filling, origin: Origin) -> Self {
+        let start = Start {
+            position: at.into(),
+            ..Start::default()
+        };
         Self {
-            at,
             radius,
             of,
-            rotation: S::identity(),
-            velocity: S::Vector::zero(),
-            spin: S::Spin::zero(),
+            start,
             origin,
         }
     }
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
-        let mut balls: Vec<Seed<S>> = Vec::new();
+        let mut balls: Vec<Seed> = Vec::new();
         let mut shaped = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
             match spec {
@@ -98,7 +92,7 @@ impl<S: Space> Builder<'_, S> {
         k: usize,
         material: &str,
         grains: &[OneGrain],
-        out: &mut Vec<Seed<S>>,
+        out: &mut Vec<Seed>,
     ) -> Result<(), InputError> {
         let of = self.material(&format!("grains.{k}.material"), material)?;
         for (g, grain) in grains.iter().enumerate() {
@@ -107,11 +101,9 @@ impl<S: Space> Builder<'_, S> {
             let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
             let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
             let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-            out.push(Seed {
-                velocity,
-                spin,
-                ..Seed::still(at, radius, of, Origin::Grain(k, Some(g)))
-            });
+            let mut seed = Seed::still(at, radius, of, Origin::Grain(k, Some(g)));
+            (seed.start.velocity, seed.start.spin) = (velocity.into(), spin);
+            out.push(seed);
         }
         Ok(())
     }
@@ -123,7 +115,7 @@ impl<S: Space> Builder<'_, S> {
         count: usize,
         radius: (f64, f64),
         [low, high]: [&[f64]; 2],
-    ) -> Result<impl Iterator<Item = Seed<S>> + use<S>, InputError> {
+    ) -> Result<impl Iterator<Item = Seed> + use<>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         for r in [radius.0, radius.1] {
@@ -136,8 +128,16 @@ impl<S: Space> Builder<'_, S> {
             self.corner(&format!("{here}.{name}"), corner)?;
         }
         self.few_enough(&format!("{here}.count"), count, MAX_MADE)?;
-        let periodic = self.shapes.periodic.period[0].is_some();
-        let list = lattice(S::D, periodic, count, radius, low, high, self.case.seed);
+        let periodic = self.assembly.periodic().period[0].is_some();
+        let list = lattice(
+            self.dimension(),
+            periodic,
+            count,
+            radius,
+            low,
+            high,
+            self.case.seed,
+        );
         if list.len() < count {
             let message = format!("only {} of {count} grains fit into the box", list.len());
             return Err(self.source.locate(
@@ -145,10 +145,10 @@ impl<S: Space> Builder<'_, S> {
                     .expected("a larger box, smaller grains or fewer"),
             ));
         }
-        Ok(list.into_iter().map(move |(x, r)| {
-            let at = S::Vector::from_slice(&x);
-            Seed::still(at, r, of, Origin::Grain(k, None))
-        }))
+        let seed = move |(x, r): (Vec<f64>, f64)| {
+            Seed::still(components(&x), r, of, Origin::Grain(k, None))
+        };
+        Ok(list.into_iter().map(seed))
     }
 
     /// The balls of a scene file; adds its walls, if they are wanted.
@@ -158,24 +158,18 @@ impl<S: Space> Builder<'_, S> {
         file: &str,
         material: &str,
         walls: Option<&str>,
-    ) -> Result<Vec<Seed<S>>, InputError> {
+    ) -> Result<Vec<Seed>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         let scene = self.scene_file(&here, file)?;
-        let ball = |(x, r): &(Vec<f64>, f64)| {
-            let at = S::Vector::from_slice(x);
-            Seed::still(at, *r, of, Origin::Grain(k, None))
-        };
+        let ball =
+            |(x, r): &(Vec<f64>, f64)| Seed::still(components(x), *r, of, Origin::Grain(k, None));
         let balls = scene.balls.iter().map(ball).collect();
         if let Some(walls) = walls {
             let (m, _) = self.material(&format!("{here}.walls"), walls)?;
             for (w, wall) in scene.walls.iter().enumerate() {
-                let shape = HalfSpace {
-                    normal: S::Vector::from_slice(&wall.normal),
-                    shown: 1.0,
-                };
-                let at = S::Vector::from_slice(&wall.at);
-                self.add_wall(format!("wall_{w}"), at, Box::new(shape), m);
+                let [at, normal] = [&wall.at, &wall.normal].map(|v| components(v).into());
+                self.assembly.add_wall(format!("wall_{w}"), at, normal, m);
                 self.origins.push(Origin::Grain(k, None));
             }
         }
@@ -183,51 +177,50 @@ impl<S: Space> Builder<'_, S> {
     }
 
     /// Adds balls, sorted so that neighbours in space are neighbours in memory.
-    fn add_balls(&mut self, mut balls: Vec<Seed<S>>) {
+    fn add_balls(&mut self, mut balls: Vec<Seed>) {
         let width = 4.0 * balls.iter().map(|g| g.radius).fold(0.0, f64::max);
-        let cell = |x: &S::Vector| -> Vec<i64> {
-            (0..S::D)
-                .rev()
-                .map(|k| (x[k] / width).floor() as i64)
-                .collect()
+        let dimension = self.dimension();
+        let cell = |x: &[f64; 3]| -> Vec<i64> {
+            let axes = (0..dimension).rev();
+            axes.map(|k| (x[k] / width).floor() as i64).collect()
         };
         if width > 0.0 {
-            balls.sort_by_cached_key(|g| cell(&g.at));
+            balls.sort_by_cached_key(|g| cell(&g.start.position));
         }
         for seed in balls {
-            let (material, density) = seed.of;
-            let body = self.bodies.add_ball(seed.at, seed.radius, density);
+            self.assembly.add_ball(seed.radius, seed.of, &seed.start);
             self.origins.push(seed.origin);
-            self.bodies.rotation[body as usize] = seed.rotation;
-            self.bodies.velocity[body as usize] = seed.velocity;
-            self.bodies.spin[body as usize] = seed.spin;
-            self.shapes.balls.push(Ball {
-                body,
-                radius: seed.radius,
-                offset: S::Vector::zero(),
-                material,
-                area: S::Vector::zero(),
-            });
         }
     }
 
-    pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<S::Spin, InputError> {
-        if !values.is_empty() && values.len() != S::Spin::N {
-            let message = format!("a spin has {} components here", S::Spin::N);
+    /// An angular velocity of the case (rad/s), about the third axis in the plane; zero where it is
+    /// left out.
+    pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<[f64; 3], InputError> {
+        let count = if self.dimension() == 2 { 1 } else { 3 };
+        if !values.is_empty() && values.len() != count {
+            let message = format!("a spin has {count} components here");
             return Err(self.fail(path, message));
         }
         if values.iter().any(|x| !x.is_finite()) {
             return Err(self.fail(path, "the components must be finite numbers"));
         }
-        Ok(S::Spin::from_slice(values))
+        Ok(self.about_axes(components(values).into()))
+    }
+
+    /// An angular velocity about the axes, of numbers of which the first alone counts in the plane.
+    pub(super) fn about_axes(&self, numbers: [f64; 3]) -> [f64; 3] {
+        match self.dimension() {
+            2 => [0.0, 0.0, numbers[0]],
+            _ => numbers,
+        }
     }
 
     /// The corner of a box as a vector; an error if it is missing.
-    pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<S::Vector, InputError> {
+    pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<Vector3<f64>, InputError> {
         if corner.is_empty() {
             return Err(self.source.locate(
                 ValidationError::new(path, "a corner of the box is empty")
-                    .expected(format!("{} numbers", S::D)),
+                    .expected(format!("{} numbers", self.dimension())),
             ));
         }
         self.vector(path, corner)
@@ -245,17 +238,5 @@ impl<S: Space> Builder<'_, S> {
         let fault = ValidationError::new(path, format!("{count} grains are too many"));
         let fault = fault.expected(format!("at most {most}"));
         Err(self.source.locate(fault))
-    }
-
-    fn add_wall(&mut self, name: String, at: S::Vector, shape: Box<dyn Surface<S>>, material: u16) {
-        let body = self.bodies.add(at, 1.0, 1.0, 1.0);
-        let dofs = vec![fretwork_core::bodies::Dof::Fixed; S::D + S::Spin::N];
-        self.bodies.drive(Driven { name, body, dofs });
-        self.shapes.surfaces.push(Carried {
-            body,
-            offset: S::Vector::zero(),
-            shape,
-            material,
-        });
     }
 }

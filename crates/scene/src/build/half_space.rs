@@ -6,12 +6,10 @@ use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
 use crate::height_grid;
 use crate::material::Sourced;
 use crate::source::InputError;
-use fretwork_core::bodies::{Dof, DynamicalSystem, TimeFunction};
-use fretwork_core::geometry::space::Space;
-use fretwork_elastic::HalfSpace;
-use fretwork_elastic::half_space::{
-    Cells, Fills, Grid, HalfSpaceError, HalfSpaceSpec as Parts, Profile, Reach,
-};
+use fretwork_core::assembly::AnySystem;
+use fretwork_core::bodies::{Dof, TimeFunction};
+use fretwork_elastic::AnyHalfSpaceSpec;
+use fretwork_elastic::half_space::{Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
 use std::collections::BTreeMap;
 
 /// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
@@ -21,12 +19,12 @@ const MIN_THETA: f64 = 0.55;
 /// Creepage of one surface over another that may come on top of rolling by one cell a step.
 const MOST_CREEPAGE: f64 = 0.01;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// The half-spaces of the case, in its order.
     pub(super) fn half_spaces(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
-    ) -> Result<Vec<Box<dyn DynamicalSystem<S>>>, InputError> {
+    ) -> Result<Vec<AnySystem>, InputError> {
         let mut out = Vec::new();
         for (k, spec) in self.case.half_spaces.iter().enumerate() {
             let system = self.elastic_half_space(&format!("half_spaces.{k}"), spec, properties)?;
@@ -50,7 +48,7 @@ impl<S: Space> Builder<'_, S> {
         here: &str,
         spec: &HalfSpaceSpec,
         properties: &[BTreeMap<String, Sourced>],
-    ) -> Result<Box<dyn DynamicalSystem<S>>, InputError> {
+    ) -> Result<AnySystem, InputError> {
         let (elasticity, material) = self.elasticity(here, &spec.material, properties)?;
         let grid = self.cells(here, spec)?;
         let axes = self.holder(&format!("{here}.dofs"), spec)?;
@@ -67,14 +65,17 @@ impl<S: Space> Builder<'_, S> {
             }
             self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
         }
-        let built = HalfSpace::new(Parts {
+        let built = AnyHalfSpaceSpec {
+            dimension: self.dimension(),
             name: &spec.name,
             material: elasticity,
             fills: match spec.side {
                 Side::Below => Fills::Below,
                 Side::Above => Fills::Above,
             },
-            position: self.vector(&format!("{here}.position"), &spec.position)?,
+            position: self
+                .vector(&format!("{here}.position"), &spec.position)?
+                .into(),
             repeats,
             reach: self.reach(&format!("{here}.depth"), spec)?,
             profile: self.height_profile(&format!("{here}.profile"), spec, &grid)?,
@@ -87,8 +88,8 @@ impl<S: Space> Builder<'_, S> {
                 CellTouch::Surface => Cells::Surface,
             },
             surface_material: material,
-        });
-        let built = built.map_err(|error| {
+        };
+        built.build().map_err(|error| {
             let below = match &error {
                 HalfSpaceError::Material(_) => "material",
                 HalfSpaceError::Depth(..) => "depth",
@@ -100,8 +101,7 @@ impl<S: Space> Builder<'_, S> {
                 HalfSpaceError::NoSurface(_) => "touches",
             };
             self.fail(format!("{here}.{below}"), error.to_string())
-        })?;
-        Ok(Box::new(built))
+        })
     }
 
     fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Grid, InputError> {
@@ -126,7 +126,7 @@ impl<S: Space> Builder<'_, S> {
             Ok((from, (to - from) / cells as f64, cells))
         };
         let x = line("x", &spec.x)?;
-        let y = match (S::D, &spec.y) {
+        let y = match (self.dimension(), &spec.y) {
             (2, None) => (-0.5, 1.0, 1),
             (3, Some(y)) => line("y", y)?,
             (2, Some(_)) => {
@@ -148,8 +148,8 @@ impl<S: Space> Builder<'_, S> {
     fn reach(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Reach, InputError> {
         match (spec.periodic, spec.depth) {
             (true, Some(depth)) => Ok(Reach::Periodic(depth)),
-            (false, Some(depth)) if S::D == 2 => Ok(Reach::Infinite(depth)),
-            (false, None) if S::D == 3 => Ok(Reach::Infinite(f64::INFINITY)),
+            (false, Some(depth)) if self.dimension() == 2 => Ok(Reach::Infinite(depth)),
+            (false, None) if self.dimension() == 3 => Ok(Reach::Infinite(f64::INFINITY)),
             (false, Some(_)) => {
                 let message = "in three dimensions displacements vanish at infinity; leave `depth` out, or let the cells be `periodic`";
                 Err(self.fail(here, message))
@@ -164,8 +164,8 @@ impl<S: Space> Builder<'_, S> {
 
     /// Whether the surface repeats with the period of the case.
     fn repeats(&self, here: &str, spec: &HalfSpaceSpec, grid: &Grid) -> Result<bool, InputError> {
-        let [x, across @ ..] = self.shapes.periodic.period;
-        if across.iter().any(Option::is_some) || (S::D == 3 && x.is_some()) {
+        let [x, across @ ..] = self.assembly.periodic().period;
+        if across.iter().any(Option::is_some) || (self.dimension() == 3 && x.is_some()) {
             let message = "an elastic half-space can repeat along x in two dimensions; take other periods of the case away";
             return Err(self.fail(here, message));
         }
@@ -190,7 +190,7 @@ impl<S: Space> Builder<'_, S> {
             }
             out.push(dof.clone().unwrap_or(Dof::Fixed));
         }
-        out.truncate(S::D);
+        out.truncate(self.dimension());
         Ok(out)
     }
 
@@ -248,7 +248,7 @@ impl<S: Space> Builder<'_, S> {
             ])),
             HalfSpaceProfile::Wave { amplitude, x, y } => {
                 let lengths = [positive("x", *x)?, positive("y", *y)?];
-                for (k, length) in lengths.iter().enumerate().take(S::D - 1) {
+                for (k, length) in lengths.iter().enumerate().take(self.dimension() - 1) {
                     let (size, waves) = (grid.size[k], grid.extent()[k] / length);
                     if *length < 4.0 * size {
                         let message = format!(
@@ -271,7 +271,7 @@ impl<S: Space> Builder<'_, S> {
                 longest,
                 shortest,
             } => {
-                if S::D == 3 {
+                if self.dimension() == 3 {
                     return Err(self.fail(
                         here,
                         "a rough profile is one in two dimensions; give `Heights` in three",

@@ -2,32 +2,26 @@
 
 use crate::case::Side;
 use fretwork_core::geometry::any_shape::{AnyPart, AnySurface};
-use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polygon::Polygon;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::crossing;
 use fretwork_core::geometry::height_field::HeightField;
 use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
-use fretwork_core::geometry::shape::Surface;
-use fretwork_core::geometry::space::Space;
 use nalgebra::{Vector2, Vector3};
-
-/// A surface in the dimension of the case.
-type Made<S> = Result<Box<dyn Surface<S>>, String>;
 
 /// Makes a profile from its points, left to right (m).
 ///
 /// # Errors
 /// The reason why the points are not a valid profile, or that the dimension has no profiles.
-pub(super) fn profile<S: Space>(
+pub(super) fn profile(
+    dimension: usize,
     points: Vec<(f64, f64)>,
     side: Side,
     period: Option<f64>,
-) -> Made<S> {
-    let other = || "a profile needs two dimensions; use a HeightField in three".to_owned();
-    if S::D != 2 {
-        return Err(other());
+) -> Result<AnySurface, String> {
+    if dimension != 2 {
+        return Err("a profile needs two dimensions; use a HeightField in three".to_owned());
     }
     let points = points.into_iter().map(|(x, y)| Vector2::new(x, y));
     let mut points: Vec<Vector2<f64>> = points.collect();
@@ -46,8 +40,7 @@ pub(super) fn profile<S: Space>(
         points.reverse();
     }
     let line = Polyline::new(points, period).map_err(|e| e.to_string())?;
-    let surface = AnySurface::Plane(Box::new(line));
-    surface.into_dimension().ok_or_else(other)
+    Ok(AnySurface::Plane(Box::new(line)))
 }
 
 /// Makes a height field of so many points along x and y, their distances and heights (m), and along
@@ -55,72 +48,59 @@ pub(super) fn profile<S: Space>(
 ///
 /// # Errors
 /// The reason why the heights are not a valid field, or that the dimension has no height fields.
-pub(super) fn height_field<S: Space>(
+pub(super) fn height_field(
+    dimension: usize,
     points: (usize, usize),
     spacing: (f64, f64),
     heights: Vec<f64>,
     periodic: [bool; 2],
-) -> Made<S> {
-    let other =
-        || "a height field needs three dimensions; use a Profile or RoughProfile in two".to_owned();
-    if S::D != 3 {
-        return Err(other());
+) -> Result<AnySurface, String> {
+    if dimension != 3 {
+        let message = "a height field needs three dimensions; use a Profile or RoughProfile in two";
+        return Err(message.to_owned());
     }
     let spacing = [spacing.0, spacing.1];
     let field = HeightField::new(points.0, points.1, spacing, heights, periodic);
-    let surface = AnySurface::Space(Box::new(field.map_err(|e| e.to_string())?));
-    surface.into_dimension().ok_or_else(other)
+    Ok(AnySurface::Space(Box::new(
+        field.map_err(|e| e.to_string())?,
+    )))
 }
 
 /// A surface of triangles.
 ///
 /// # Errors
 /// The dimension has none.
-pub(super) fn mesh<S: Space>(mesh: Mesh) -> Made<S> {
-    let surface = AnySurface::Space(Box::new(mesh)).into_dimension();
-    surface.ok_or_else(|| "a mesh needs three dimensions; use a Profile in two".to_owned())
-}
-
-/// A convex part from a polygon.
-///
-/// # Errors
-/// The dimension has none.
-pub(super) fn polygon<S: Space>(core: &Polygon, rounding: f64) -> Result<ConvexPart<S>, String> {
-    let part = AnyPart::Plane(core.part(rounding)).into_dimension();
-    part.ok_or_else(|| "polygons and arches need two dimensions; use polyhedra in three".to_owned())
+pub(super) fn mesh(dimension: usize, mesh: Mesh) -> Result<AnySurface, String> {
+    if dimension != 3 {
+        return Err("a mesh needs three dimensions; use a Profile in two".to_owned());
+    }
+    Ok(AnySurface::Space(Box::new(mesh)))
 }
 
 /// A convex part from a polyhedron.
 ///
 /// # Errors
 /// The dimension has none.
-pub(super) fn polyhedron<S: Space>(
+pub(super) fn polyhedron(
+    dimension: usize,
     core: &Polyhedron,
     rounding: f64,
-) -> Result<ConvexPart<S>, String> {
-    let part = AnyPart::Space(core.part(rounding)).into_dimension();
-    part.ok_or_else(|| "polyhedra and boxes need three dimensions; use polygons in two".to_owned())
+) -> Result<AnyPart, String> {
+    if dimension != 3 {
+        return Err("polyhedra and boxes need three dimensions; use polygons in two".to_owned());
+    }
+    Ok(AnyPart::Space(core.part(rounding)))
 }
 
 /// A capsule: all points within a radius of a segment (m).
-///
-/// # Errors
-/// None: there are capsules in both dimensions.
-pub(super) fn capsule<S: Space>(
-    from: &S::Vector,
-    to: &S::Vector,
+pub(super) fn capsule(
+    dimension: usize,
+    from: &Vector3<f64>,
+    to: &Vector3<f64>,
     radius: f64,
-) -> Result<ConvexPart<S>, String> {
-    let part = match S::D {
-        2 => {
-            let [from, to] = [from, to].map(|v| Vector2::new(v[0], v[1]));
-            AnyPart::Plane(Polygon::segment(from, to).part(radius))
-        }
-        _ => {
-            let [from, to] = [from, to].map(|v| Vector3::new(v[0], v[1], v[2]));
-            AnyPart::Space(Polyhedron::segment(from, to).part(radius))
-        }
-    };
-    let part = part.into_dimension();
-    part.ok_or_else(|| "a capsule has the dimension of the case".to_owned())
+) -> AnyPart {
+    match dimension {
+        2 => AnyPart::Plane(Polygon::segment(from.xy(), to.xy()).part(radius)),
+        _ => AnyPart::Space(Polyhedron::segment(*from, *to).part(radius)),
+    }
 }

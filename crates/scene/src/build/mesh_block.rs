@@ -3,9 +3,8 @@
 use super::Builder;
 use crate::case::{CoarsenSpec, LineSpec, MeshProfileSpec, RoundSpec};
 use crate::source::InputError;
-use fretwork_core::geometry::space::Space;
-use fretwork_elastic::Mesh;
-use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded, mapped_grid};
+use fretwork_elastic::AnyMesh;
+use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded};
 use fretwork_elastic::mesh::MeshError;
 
 /// Most points of a block along an axis, and at all.
@@ -19,15 +18,15 @@ pub(super) struct BlockShape<'a> {
     pub(super) coarsen: Option<&'a CoarsenSpec>,
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// A block between lines along x, y and, in 3D, z.
     pub(super) fn block(
         &self,
         here: &str,
         lines: [Option<&LineSpec>; 3],
         shape: &BlockShape,
-    ) -> Result<Mesh<S>, InputError> {
-        match (S::D, lines[2]) {
+    ) -> Result<AnyMesh, InputError> {
+        match (self.dimension(), lines[2]) {
             (2, Some(_)) => {
                 let message = "a block in two dimensions has no z; leave it out";
                 return Err(self.fail(format!("{here}.z"), message));
@@ -43,7 +42,7 @@ impl<S: Space> Builder<'_, S> {
         let lines: Result<Vec<Vec<f64>>, _> = named.filter_map(along).collect();
         let grid = self.grid(here, &lines?, shape.coarsen)?;
         match (shape.round, shape.profile) {
-            (None, None) => self.mapped(here, &grid, |p| *p),
+            (None, None) => self.mapped(here, &grid, &|p| p),
             (Some(round), None) => self.rounded(&format!("{here}.round"), &grid, round),
             (None, Some(profile)) => self.profiled(&format!("{here}.profile"), &grid, profile),
             (Some(_), Some(_)) => {
@@ -97,9 +96,9 @@ impl<S: Space> Builder<'_, S> {
         &self,
         here: &str,
         grid: &Grid,
-        map: impl Fn(&S::Vector) -> S::Vector,
-    ) -> Result<Mesh<S>, InputError> {
-        mapped_grid(grid, map).map_err(|error| {
+        map: &dyn Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<AnyMesh, InputError> {
+        AnyMesh::mapped(self.dimension(), grid, map).map_err(|error| {
             let bent = matches!(error, MeshError::Inverted(..) | MeshError::Flat(..));
             let more = match bent && grid.is_coarsened() {
                 true => {
@@ -113,8 +112,8 @@ impl<S: Space> Builder<'_, S> {
     }
 
     /// Bends a side of a block, and what is behind it less and less.
-    fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<Mesh<S>, InputError> {
-        let up = S::D - 1;
+    fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<AnyMesh, InputError> {
+        let up = self.dimension() - 1;
         let ends: Vec<[f64; 2]> = grid
             .lines()
             .iter()
@@ -141,7 +140,7 @@ impl<S: Space> Builder<'_, S> {
             );
             return Err(self.fail(format!("{here}.radius"), message));
         }
-        let map = |p: &S::Vector| {
+        let map = |p: [f64; 3]| {
             let squared: f64 = (0..curved).map(|k| (p[k] - middle[k]).powi(2)).sum();
             let sagitta = squared / (round.radius + (round.radius * round.radius - squared).sqrt());
             let from = if into > 0.0 {
@@ -149,11 +148,11 @@ impl<S: Space> Builder<'_, S> {
             } else {
                 p[up] - bottom
             };
-            let mut out = *p;
+            let mut out = p;
             out[up] += into * sagitta * from / (top - bottom);
             out
         };
-        self.mapped(here, grid, map)
+        self.mapped(here, grid, &map)
     }
 }
 

@@ -5,8 +5,7 @@ use super::surface::Roughness;
 use crate::case::{MeshProfileSpec, ProfileShape};
 use crate::profile_file;
 use crate::source::InputError;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_elastic::Mesh;
+use fretwork_elastic::AnyMesh;
 use fretwork_elastic::generate::Grid;
 use std::f64::consts::TAU;
 
@@ -43,15 +42,15 @@ impl Heights {
     }
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// A block of which a side has a profile; what is behind it moves less and less.
     pub(super) fn profiled(
         &self,
         here: &str,
         grid: &Grid,
         spec: &MeshProfileSpec,
-    ) -> Result<Mesh<S>, InputError> {
-        let (up, lines) = (S::D - 1, grid.lines());
+    ) -> Result<AnyMesh, InputError> {
+        let (up, lines) = (self.dimension() - 1, grid.lines());
         let ends = |k: usize| [lines[k][0], lines[k][lines[k].len() - 1]];
         let [bottom, top] = ends(up);
         let height = top - bottom;
@@ -65,13 +64,12 @@ impl<S: Space> Builder<'_, S> {
         };
         let shape = format!("{here}.shape");
         let heights = self.heights(&shape, &spec.shape, ends(0))?;
-        let over = |p: &S::Vector| heights.at([p[0], if S::D == 3 { p[1] } else { 0.0 }]);
-        let mut place = S::Vector::zero();
+        let space = self.dimension() == 3;
+        let over = |p: [f64; 3]| heights.at([p[0], if space { p[1] } else { 0.0 }]);
         let mut most = 0.0f64;
         for x in &lines[0] {
-            for y in if S::D == 3 { &lines[1][..] } else { &[0.0][..] } {
-                (place[0], place[1]) = (*x, *y);
-                most = most.max(over(&place).abs());
+            for y in if space { &lines[1][..] } else { &[0.0][..] } {
+                most = most.max(over([*x, *y, 0.0]).abs());
             }
         }
         if most >= DEEPEST * height || most.is_nan() {
@@ -80,17 +78,17 @@ impl<S: Space> Builder<'_, S> {
             );
             return Err(self.fail(shape, message));
         }
-        let map = |p: &S::Vector| {
+        let map = |p: [f64; 3]| {
             let from = if outward > 0.0 {
                 p[up] - bottom
             } else {
                 top - p[up]
             };
-            let mut out = *p;
+            let mut out = p;
             out[up] += outward * over(p) * from / height;
             out
         };
-        self.mapped(here, grid, map)
+        self.mapped(here, grid, &map)
     }
 
     fn heights(
@@ -112,7 +110,7 @@ impl<S: Space> Builder<'_, S> {
                 }
                 Ok(Heights::Wave(*amplitude, [*x, *y]))
             }
-            ProfileShape::Rough { .. } if S::D == 3 => Err(plane("a rough profile")),
+            ProfileShape::Rough { .. } if self.dimension() == 3 => Err(plane("a rough profile")),
             ProfileShape::Rough {
                 rms,
                 hurst,
@@ -134,7 +132,9 @@ impl<S: Space> Builder<'_, S> {
                 let table = around.map(|(k, z)| (from + step * k as f64, *z));
                 Ok(Heights::Table(table.collect()))
             }
-            ProfileShape::Table { .. } if S::D == 3 => Err(plane("a profile of a table")),
+            ProfileShape::Table { .. } if self.dimension() == 3 => {
+                Err(plane("a profile of a table"))
+            }
             ProfileShape::Table { file } => {
                 let read = profile_file::read(&self.folder.join(file));
                 let points = read.map_err(|e| self.source.named_at(&format!("{here}.file"), e))?;

@@ -33,16 +33,15 @@ use super::recorded::{Deformed, RecordReader, ShapedGrain};
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
 use super::wear_coefficient::WearCoefficient;
-use fretwork_core::bodies::{Bodies, DynamicalSystem};
+use fretwork_core::assembly::{self, AnySystem, Assembly};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::periodic::Periodic;
-use fretwork_core::geometry::shape::Shapes;
-use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::{Interface, SearchPath};
 use fretwork_core::solve::{self, error::Norm};
 use fretwork_core::step::{Scheme, Simulation};
 use fretwork_core::view::AnySimulation;
-use fretwork_core::wear::Scar;
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -89,10 +88,77 @@ impl Loaded {
     /// # Errors
     /// An [`InputError`] with file, line and column.
     pub fn build(&self, path: &SearchPath) -> Result<Built, InputError> {
-        match self.case.dimension {
-            2 => self.build_by::<Dim2>(path),
-            _ => self.build_by::<Dim3>(path),
+        let shelf = self.shelf();
+        let Materials {
+            densities,
+            properties,
+            mut texts,
+        } = self.materials(&shelf)?;
+        let laws = interfaces::build(&self.case, &self.source, &shelf, &properties, path)?;
+        texts.extend(laws.files);
+        let periodic = Periodic {
+            period: [
+                self.case.periodic.x,
+                self.case.periodic.y,
+                self.case.periodic.z,
+            ],
+        };
+        let mut builder = Builder {
+            case: &self.case,
+            source: &self.source,
+            records: self.records,
+            folder: self.path.parent().map(Path::to_owned).unwrap_or_default(),
+            densities: densities
+                .into_iter()
+                .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
+                .collect(),
+            files: BTreeMap::new(),
+            origins: Vec::new(),
+            samples: Vec::new(),
+            deformed: BTreeMap::new(),
+            deforming: Vec::new(),
+            assembly: assembly::empty(self.case.dimension as usize, periodic),
+        };
+        builder.grains()?;
+        let grains = builder.elastic_grains(&properties)?;
+        builder.first_bodies()?;
+        builder.refuse_idle_wear()?;
+        builder.check_elastic_names()?;
+        builder.check_elastic_pairs()?;
+        let mut systems = builder.elastic_bodies(&properties)?;
+        systems.extend(builder.half_spaces(&properties)?);
+        builder.check_elastic_points(&systems)?;
+        for (grain, origin) in grains {
+            systems.push(grain);
+            builder.origins.push(origin);
         }
+        let driven = builder.assembly.driven().iter();
+        let names = driven.map(|d| d.name.clone()).collect();
+        let samples = std::mem::take(&mut builder.samples);
+        let origins = builder.origins.clone();
+        let deforming = std::mem::take(&mut builder.deforming);
+        let mut densities = vec![0.0; builder.densities.len()];
+        for (k, density) in builder.densities.values() {
+            densities[usize::from(*k)] = *density;
+        }
+        let source = builder.source;
+        let mut simulation = builder.finish(laws.interfaces, laws.table, systems)?;
+        let unscaled: Vec<f64> = densities
+            .iter()
+            .map(|d| d / self.case.inertia_scaling)
+            .collect();
+        crate::heat::install(&self.case, &properties, &unscaled, simulation.setup())
+            .map_err(|f| source.locate(f))?;
+        Ok(Built {
+            simulation,
+            materials: texts,
+            densities,
+            names,
+            samples,
+            origins,
+            deforming,
+            wear_coefficients: laws.wear_coefficients,
+        })
     }
 
     /// Builds the simulation alone, in the dimension of the case.
@@ -110,90 +176,6 @@ impl Loaded {
             );
             self.source
                 .locate(ValidationError::new("dimension", message))
-        })
-    }
-
-    fn build_by<S: Space>(&self, path: &SearchPath) -> Result<Built, InputError> {
-        let shelf = self.shelf();
-        let Materials {
-            densities,
-            properties,
-            mut texts,
-        } = self.materials(&shelf)?;
-        let laws = interfaces::build(&self.case, &self.source, &shelf, &properties, path)?;
-        texts.extend(laws.files);
-        let mut builder = Builder::<S> {
-            case: &self.case,
-            source: &self.source,
-            records: self.records,
-            folder: self.path.parent().map(Path::to_owned).unwrap_or_default(),
-            densities: densities
-                .into_iter()
-                .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
-                .collect(),
-            files: BTreeMap::new(),
-            origins: Vec::new(),
-            samples: Vec::new(),
-            deformed: BTreeMap::new(),
-            deforming: Vec::new(),
-            scars: Vec::new(),
-            bodies: Bodies::default(),
-            shapes: Shapes {
-                balls: Vec::new(),
-                pieces: Vec::new(),
-                surfaces: Vec::new(),
-                periodic: Periodic {
-                    period: [
-                        self.case.periodic.x,
-                        self.case.periodic.y,
-                        self.case.periodic.z,
-                    ],
-                },
-            },
-        };
-        builder.grains()?;
-        let grains = builder.elastic_grains(&properties)?;
-        builder.first_bodies()?;
-        builder.refuse_idle_wear()?;
-        builder.check_elastic_names()?;
-        builder.check_elastic_pairs()?;
-        let mut systems = builder.elastic_bodies(&properties)?;
-        systems.extend(builder.half_spaces(&properties)?);
-        builder.check_elastic_points(&systems)?;
-        for (grain, origin) in grains {
-            systems.push(grain);
-            builder.origins.push(origin);
-        }
-        let names = builder
-            .bodies
-            .driven
-            .iter()
-            .map(|d| d.name.clone())
-            .collect();
-        let samples = std::mem::take(&mut builder.samples);
-        let origins = builder.origins.clone();
-        let deforming = std::mem::take(&mut builder.deforming);
-        let mut densities = vec![0.0; builder.densities.len()];
-        for (k, density) in builder.densities.values() {
-            densities[usize::from(*k)] = *density;
-        }
-        let source = builder.source;
-        let mut simulation = builder.finish(laws.interfaces, laws.table, systems)?;
-        let unscaled: Vec<f64> = densities
-            .iter()
-            .map(|d| d / self.case.inertia_scaling)
-            .collect();
-        crate::heat::install(&self.case, &properties, &unscaled, &mut simulation)
-            .map_err(|f| source.locate(f))?;
-        Ok(Built {
-            simulation: simulation.into(),
-            materials: texts,
-            densities,
-            names,
-            samples,
-            origins,
-            deforming,
-            wear_coefficients: laws.wear_coefficients,
         })
     }
 
@@ -242,15 +224,15 @@ struct Materials {
     texts: Vec<(String, String)>,
 }
 
-struct Builder<'a, S: Space> {
+struct Builder<'a> {
     records: Option<RecordReader>,
     case: &'a Case,
     source: &'a Source,
     folder: PathBuf,
     densities: BTreeMap<String, (u16, f64)>,
     files: BTreeMap<String, SceneFile>,
-    bodies: Bodies<S>,
-    shapes: Shapes<S>,
+    /// Bodies and shapes so far.
+    assembly: Box<dyn Assembly>,
     /// The entry of the case that made each body: an index in `grains`, an index in its list, or an
     /// index in `bodies`.
     origins: Vec<Origin>,
@@ -260,8 +242,6 @@ struct Builder<'a, S: Space> {
     deformed: BTreeMap<u32, (u64, Deformed)>,
     /// See [`Built::deforming`].
     deforming: Vec<ShapedGrain>,
-    /// Surfaces that wear.
-    scars: Vec<Scar<S>>,
 }
 
 /// The entry of the case that made a body.
@@ -290,7 +270,7 @@ impl Origin {
     }
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
         self.source.locate(ValidationError::new(path, message))
     }
@@ -306,24 +286,30 @@ impl<S: Space> Builder<'_, S> {
         })
     }
 
-    fn vector(&self, path: &str, values: &[f64]) -> Result<S::Vector, InputError> {
+    fn dimension(&self) -> usize {
+        self.case.dimension as usize
+    }
+
+    /// A vector of the case, zero where it is left out; in the plane its third component is zero.
+    fn vector(&self, path: &str, values: &[f64]) -> Result<Vector3<f64>, InputError> {
         if values.is_empty() {
-            return Ok(S::Vector::zero());
+            return Ok(Vector3::zeros());
         }
-        if values.len() != S::D {
+        if values.len() != self.dimension() {
             let message = format!(
                 "{} components in a case of dimension {}",
                 values.len(),
-                S::D
+                self.dimension()
             );
             return Err(self.source.locate(
-                ValidationError::new(path, message).expected(format!("{} numbers", S::D)),
+                ValidationError::new(path, message)
+                    .expected(format!("{} numbers", self.dimension())),
             ));
         }
         if values.iter().any(|x| !x.is_finite()) {
             return Err(self.fail(path, "the components must be finite numbers"));
         }
-        Ok(S::Vector::from_slice(values))
+        Ok(components(values))
     }
 
     fn radius(&self, path: &str, radius: f64) -> Result<f64, InputError> {
@@ -340,28 +326,29 @@ impl<S: Space> Builder<'_, S> {
         if let Some(scene) = self.files.get(file) {
             return Ok(scene.clone());
         }
-        let read = scene_file::read(&self.folder.join(file), S::D);
+        let read = scene_file::read(&self.folder.join(file), self.dimension());
         let scene = read.map_err(|e| self.source.named_at(&format!("{here}.file"), e))?;
         self.files.insert(file.to_owned(), scene.clone());
         Ok(scene)
     }
 
     fn finish(
-        self,
+        mut self,
         laws: Vec<Interface>,
         table: LawTable,
-        systems: Vec<Box<dyn DynamicalSystem<S>>>,
-    ) -> Result<Simulation<S>, InputError> {
+        systems: Vec<AnySystem>,
+    ) -> Result<AnySimulation, InputError> {
         let case = self.case;
         let points = systems.iter().flat_map(|s| s.contactors());
-        let smallest = self.radii().chain(points.map(|c| c.radius));
+        let radii = self.assembly.radii();
+        let smallest = radii.iter().copied().chain(points.map(|c| c.radius));
         let smallest = smallest.fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
         let needed = case.interfaces.iter().filter_map(|i| i.bonds_within);
         let needed = needed.fold(0.05 * smallest, f64::max);
         let alert = attraction::alert(self.source, case, &laws, needed)?;
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
-        let largest = self.radii().fold(0.0, f64::max);
+        let largest = radii.iter().copied().fold(0.0, f64::max);
         if largest > 0.0 && alert > 10.0 * largest {
             let message = format!(
                 "an alert distance of {alert} m is more than ten times the largest radius ({largest} m): all pairs would be \
@@ -374,49 +361,43 @@ impl<S: Space> Builder<'_, S> {
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let wears = self.deformable_wear()?;
-        let (source, mut simulation) = (
-            self.source,
-            Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
-        );
-        let mut scars = self.scars;
-        let mut wears = wears.into_iter();
+        let source = self.source;
         for system in systems {
-            let surface = simulation.shapes.surfaces.len();
-            simulation.add_system(system);
-            // Grains come last and do not recede.
-            if let Some(Some(wears)) = wears.next() {
-                let scar = wears.scar(&simulation, surface);
-                scars.extend(scar.map_err(|f| source.locate(f))?);
+            self.assembly.add_system(system);
+        }
+        let (mut built, surfaces) = self.assembly.into_simulation(laws, table, alert, skin);
+        // Grains come last and do not recede.
+        for (wears, surface) in wears.into_iter().zip(surfaces) {
+            if let (Some(wears), Some(surface)) = (wears, surface) {
+                let scar = wears.add_scar(built.setup(), surface);
+                scar.map_err(|f| source.locate(f))?;
             }
         }
-        let service = Demands::of(&simulation).service(case.solver.method);
+        let simulation = built.setup();
+        let service = Demands::of(simulation).service(case.solver.method);
         if let Service::Refuses(reason) = service {
-            return Err(self
-                .source
-                .locate(ValidationError::new("solver.method", reason)));
+            return Err(source.locate(ValidationError::new("solver.method", reason)));
         }
-        simulation.state.gravity = gravity;
-        for scar in scars {
-            simulation.follow_wear(scar);
-        }
-        super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
-        simulation.options.correction = case.solver.correction;
-        simulation.options.projection = case.solver.projection;
-        simulation.options.coupling = case.coupling;
-        simulation.options.scheme = Scheme {
+        simulation.set_gravity(gravity.into(), None);
+        super::phases::install(case, simulation).map_err(|f| source.locate(f))?;
+        let springs = simulation.laws().iter().all(Interface::compliant);
+        let by_heat = springs && !simulation.laws().is_empty() && case.solver.tolerance.is_none();
+        let options = simulation.options_mut();
+        options.correction = case.solver.correction;
+        options.projection = case.solver.projection;
+        options.coupling = case.coupling;
+        options.scheme = Scheme {
             h: case.time.step,
             theta: case.time.theta,
         };
         // A scene of springs can be slow: its error is measured by the heat of slip, unless the
         // case gives a tolerance of its own.
-        let springs = simulation.laws.iter().all(Interface::compliant);
-        let by_heat = springs && !simulation.laws.is_empty() && case.solver.tolerance.is_none();
         let norm = case
             .solver
             .norm
             .unwrap_or(if by_heat { Norm::Power } else { Norm::Balance });
         let tolerance = case.solver.tolerance;
-        simulation.options.solver = solve::Options {
+        options.solver = solve::Options {
             tolerance: tolerance.unwrap_or(norm.default_tolerance()),
             norm,
             max_iterations: case.solver.max_iterations,
@@ -426,12 +407,17 @@ impl<S: Space> Builder<'_, S> {
             method: case.solver.method,
             parallel: false,
         };
-        super::magnitudes::check(&simulation, &self.origins, case.time.end)
+        super::magnitudes::check(simulation, &self.origins, case.time.end)
             .map_err(|f| source.locate(f))?;
-        super::deep::points(&simulation, &self.origins).map_err(|f| source.locate(f))?;
-        super::check::overlaps(&mut simulation, smallest, &self.origins)
+        super::deep::points(simulation, &self.origins).map_err(|f| source.locate(f))?;
+        super::check::overlaps(simulation, smallest, &self.origins)
             .map_err(|f| source.locate(f))?;
         simulation.set_in_motion();
-        Ok(simulation)
+        Ok(built)
     }
+}
+
+/// A vector of three components, zero where the case gives none.
+fn components(values: &[f64]) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| values.get(k).copied().unwrap_or_default())
 }

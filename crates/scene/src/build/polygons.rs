@@ -3,44 +3,15 @@
 use super::{Builder, Origin, in_dimension};
 use crate::case::{Coordinates, GrainSpec, OnePolygon};
 use crate::source::InputError;
-use fretwork_core::bodies::tensor;
-use fretwork_core::geometry::convex::ConvexPart;
+use fretwork_core::assembly::{Block, Filling, Start};
+use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
-use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 /// Limit on the sides of a regular polygon: a larger number is taken for a typing error.
 const MAX_SIDES: usize = 10_000;
 
-/// A grain of one convex part: its centre of mass (m), volume and moment of inertia at unit
-/// density.
-pub(super) struct Block<S: Space> {
-    pub at: S::Vector,
-    pub volume: f64,
-    pub inertia: S::Tensor,
-    pub part: ConvexPart<S>,
-    /// Position of the part's centre relative to the block's centre of mass (m).
-    pub offset: S::Vector,
-    pub velocity: S::Vector,
-    pub spin: S::Spin,
-}
-
-impl<S: Space> Block<S> {
-    /// The block of a part that does not move relative to it.
-    pub fn of(part: ConvexPart<S>) -> Self {
-        Self {
-            at: part.centre,
-            volume: part.volume,
-            inertia: part.inertia,
-            offset: S::Vector::zero(),
-            velocity: S::Vector::zero(),
-            spin: S::Spin::zero(),
-            part,
-        }
-    }
-}
-
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Adds the grains that are polygons.
     pub(super) fn polygons(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
@@ -77,23 +48,12 @@ impl<S: Space> Builder<'_, S> {
         Ok(())
     }
 
-    pub(super) fn add_block(
-        &mut self,
-        block: Block<S>,
-        (material, density): (u16, f64),
-        origin: Origin,
-    ) {
-        let length = (tensor::mean::<S>(&block.inertia) / block.volume).sqrt();
-        let (mass, inertia) = (density * block.volume, block.inertia.scaled(density));
-        let body = self.bodies.add_shaped(block.at, mass, &inertia, length);
-        self.bodies.velocity[body as usize] = block.velocity;
-        self.bodies.spin[body as usize] = block.spin;
+    pub(super) fn add_block(&mut self, block: Block, of: Filling, origin: Origin) {
+        self.assembly.add_block(block, of);
         self.origins.push(origin);
-        let piece = block.part.carried(body, block.offset, material);
-        self.shapes.pieces.push(piece);
     }
 
-    fn one_polygon(&self, here: &str, grain: &OnePolygon) -> Result<Block<S>, InputError> {
+    fn one_polygon(&self, here: &str, grain: &OnePolygon) -> Result<Block, InputError> {
         let at = self.vector(&format!("{here}.at"), &grain.at)?;
         let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
         let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
@@ -123,13 +83,15 @@ impl<S: Space> Builder<'_, S> {
             .map(|(x, y)| (c * x - s * y, s * x + c * y))
             .collect();
         let part = self.polygon(here, &turned, grain.rounding)?;
-        let block = Block::of(part);
-        Ok(Block {
-            at: at + block.at,
-            velocity,
+        let mut block = Block::of(part);
+        let centre = Vector3::from(block.start.position);
+        block.start = Start {
+            position: (at + centre).into(),
+            rotation: None,
+            velocity: velocity.into(),
             spin,
-            ..block
-        })
+        };
+        Ok(block)
     }
 
     /// Makes a convex part from the corners of a polygon (m).
@@ -138,19 +100,19 @@ impl<S: Space> Builder<'_, S> {
         here: &str,
         points: &[(f64, f64)],
         rounding: f64,
-    ) -> Result<ConvexPart<S>, InputError> {
+    ) -> Result<AnyPart, InputError> {
         if !(rounding.is_finite() && rounding >= 0.0) {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));
         }
-        if S::D == 3 {
+        if self.dimension() == 3 {
             let message = "polygons and arches need two dimensions; use polyhedra in three";
             return Err(self.fail(here, message));
         }
         let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
         let bad = |e: PolygonError| self.fail(format!("{here}.points"), e.to_string());
         let polygon = Polygon::new(points).map_err(bad)?;
-        in_dimension::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
+        Ok(AnyPart::Plane(polygon.part(rounding)))
     }
 
     /// Makes a capsule.
@@ -160,7 +122,7 @@ impl<S: Space> Builder<'_, S> {
         from: &Coordinates,
         to: &Coordinates,
         radius: f64,
-    ) -> Result<ConvexPart<S>, InputError> {
+    ) -> Result<AnyPart, InputError> {
         self.radius(&format!("{here}.radius"), radius)?;
         let from = self.vector(&format!("{here}.from"), &from.0)?;
         let to = self.vector(&format!("{here}.to"), &to.0)?;
@@ -170,6 +132,6 @@ impl<S: Space> Builder<'_, S> {
                 "the ends of a capsule must be two different points; for a disk use Balls";
             return Err(self.fail(here, message));
         }
-        in_dimension::capsule::<S>(&from, &to, radius).map_err(|e| self.fail(here, e))
+        Ok(in_dimension::capsule(self.dimension(), &from, &to, radius))
     }
 }

@@ -1,18 +1,17 @@
 //! Convex polyhedra, as grains and as parts of bodies, and meshes from files.
 
-use super::polygons::Block;
 use super::{Builder, Origin, in_dimension};
 use crate::case::{GrainSpec, OnePolyhedron};
 use crate::mesh_file;
 use crate::source::InputError;
-use fretwork_core::geometry::convex::ConvexPart;
+use fretwork_core::assembly::{Block, Start};
+use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{UnitQuaternion, Vector3};
 
 type V = Vector3<f64>;
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Adds the grains that are polyhedra.
     pub(super) fn polyhedra(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
@@ -29,7 +28,7 @@ impl<S: Space> Builder<'_, S> {
         Ok(())
     }
 
-    fn one_polyhedron(&self, here: &str, grain: &OnePolyhedron) -> Result<Block<S>, InputError> {
+    fn one_polyhedron(&self, here: &str, grain: &OnePolyhedron) -> Result<Block, InputError> {
         let at = self.vector(&format!("{here}.at"), &grain.at)?;
         let given = [
             !grain.points.is_empty(),
@@ -51,15 +50,16 @@ impl<S: Space> Builder<'_, S> {
         };
         let core = self.placed(here, &core, &grain.turned)?;
         let part = self.polyhedron(here, &core, grain.rounding)?;
-        Ok(Block {
-            at: at + part.centre,
-            volume: part.volume,
-            inertia: part.inertia,
-            part,
-            offset: S::Vector::zero(),
-            velocity: self.vector(&format!("{here}.velocity"), &grain.velocity)?,
+        let mut block = Block::of(part);
+        block.start = Start {
+            position: (at + V::from(block.start.position)).into(),
+            rotation: None,
+            velocity: self
+                .vector(&format!("{here}.velocity"), &grain.velocity)?
+                .into(),
             spin: self.spin(&format!("{here}.spin"), &grain.spin)?,
-        })
+        };
+        Ok(block)
     }
 
     /// Makes the convex hull of points (m).
@@ -96,7 +96,6 @@ impl<S: Space> Builder<'_, S> {
     ) -> Result<Polyhedron, InputError> {
         use fretwork_core::geometry::convex::Core;
         let turned = self.vector(&format!("{here}.turned"), turned)?;
-        let turned = V::from(turned.padded());
         Ok(core.turned(&UnitQuaternion::from_scaled_axis(turned)))
     }
 
@@ -106,12 +105,12 @@ impl<S: Space> Builder<'_, S> {
         here: &str,
         core: &Polyhedron,
         rounding: f64,
-    ) -> Result<ConvexPart<S>, InputError> {
+    ) -> Result<AnyPart, InputError> {
         if !(rounding.is_finite() && rounding >= 0.0) {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));
         }
-        in_dimension::polyhedron(core, rounding).map_err(|e| self.fail(here, e))
+        in_dimension::polyhedron(self.dimension(), core, rounding).map_err(|e| self.fail(here, e))
     }
 
     /// Reads the points (m) and triangles of a mesh file, given by a path relative to the case.

@@ -1,37 +1,42 @@
 //! Samples that are generated at random, and grains read from tables.
 
 use super::grains::{MAX_MADE, MAX_READ, Seed};
-use super::{Builder, Origin};
-use crate::sample::deposit::{Corners, deposit};
+use super::{Builder, Origin, components};
+use crate::sample::deposit::deposit_between;
 use crate::sample::sizes::Sizes;
 use crate::sample::spec::{Counted, CsvSpec, DepositSpec, SizeSpec};
 use crate::sample::table::Table;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::geometry::space::{Space, VectorLike};
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Makes a random deposit.
     pub(super) fn deposit(
         &mut self,
         k: usize,
         spec: &DepositSpec,
-    ) -> Result<Vec<Seed<S>>, InputError> {
+    ) -> Result<Vec<Seed>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), &spec.material)?;
         let sizes = self.sizes(&format!("{here}.sizes"), &spec.sizes)?;
-        let corners = Corners {
-            low: self.corner(&format!("{here}.low"), &spec.low)?,
-            high: self.corner(&format!("{here}.high"), &spec.high)?,
-        };
-        if (0..S::D).any(|k| corners.high[k] <= corners.low[k]) {
+        let low = self.corner(&format!("{here}.low"), &spec.low)?;
+        let high = self.corner(&format!("{here}.high"), &spec.high)?;
+        if (0..self.dimension()).any(|k| high[k] <= low[k]) {
             let message = "each number must be greater than that of `low`";
             return Err(self.fail(format!("{here}.high"), message));
         }
         let path = format!("{here}.count");
         self.few_enough(&path, spec.count, MAX_MADE)?;
-        let periodic = self.shapes.periodic;
+        let periodic = self.assembly.periodic();
         let seed = self.case.seed.wrapping_add(k as u64);
-        let made = deposit::<S>(spec.count, &sizes, &corners, &periodic, seed);
+        let corners = [low.into(), high.into()];
+        let made = deposit_between(
+            self.dimension(),
+            spec.count,
+            &sizes,
+            corners,
+            periodic,
+            seed,
+        );
         let placed = made.grains.len();
         if placed < spec.count {
             let message = format!(
@@ -39,7 +44,7 @@ impl<S: Space> Builder<'_, S> {
                  placed at random fit up to about {} %",
                 spec.count,
                 100.0 * made.filling,
-                if S::D == 2 { 50 } else { 35 }
+                if self.dimension() == 2 { 50 } else { 35 }
             );
             let fault = ValidationError::new(path, message);
             let advice = "a larger box, smaller grains or fewer; a `Lattice` is denser";
@@ -51,7 +56,7 @@ impl<S: Space> Builder<'_, S> {
         ));
         let seeds = made.grains.into_iter();
         Ok(seeds
-            .map(|(at, r)| Seed::still(at, r, of, Origin::Grain(k, None)))
+            .map(|(at, r)| Seed::still(at.into(), r, of, Origin::Grain(k, None)))
             .collect())
     }
 
@@ -79,7 +84,7 @@ impl<S: Space> Builder<'_, S> {
         }
         let steeper = match by {
             Counted::Number => 0.0,
-            Counted::Mass => S::D as f64,
+            Counted::Mass => self.dimension() as f64,
         };
         Ok(Sizes::power(radius, exponent + steeper))
     }
@@ -115,7 +120,7 @@ impl<S: Space> Builder<'_, S> {
             }
             curve.push((0.5 * d, p));
         }
-        Ok(Sizes::sieve(&curve, S::D))
+        Ok(Sizes::sieve(&curve, self.dimension()))
     }
 
     /// Reads the grains of a table.
@@ -123,11 +128,11 @@ impl<S: Space> Builder<'_, S> {
         &mut self,
         k: usize,
         spec: &CsvSpec,
-    ) -> Result<Vec<Seed<S>>, InputError> {
+    ) -> Result<Vec<Seed>, InputError> {
         let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
-        let place = &["x", "y", "z"][..S::D];
-        let moving = &["velocity_x", "velocity_y", "velocity_z"][..S::D];
-        let turning: &[&str] = if S::D == 2 {
+        let place = &["x", "y", "z"][..self.dimension()];
+        let moving = &["velocity_x", "velocity_y", "velocity_z"][..self.dimension()];
+        let turning: &[&str] = if self.dimension() == 2 {
             &["spin"]
         } else {
             &["spin_x", "spin_y", "spin_z"]
@@ -150,12 +155,10 @@ impl<S: Space> Builder<'_, S> {
             if r <= 0.0 {
                 return Err(table.fail(row, format!("a radius must be positive, got {r}")));
             }
-            let at = S::Vector::from_slice(&values(&place));
-            found.push(Seed {
-                velocity: S::Vector::from_slice(&values(&moving)),
-                spin: S::Spin::from_slice(&values(&turning)),
-                ..Seed::still(at, r, of, Origin::Grain(k, None))
-            });
+            let mut seed = Seed::still(components(&values(&place)), r, of, Origin::Grain(k, None));
+            seed.start.velocity = components(&values(&moving)).into();
+            seed.start.spin = self.about_axes(components(&values(&turning)).into());
+            found.push(seed);
         }
         let file = &spec.file;
         self.samples

@@ -4,10 +4,10 @@ use super::{Builder, in_dimension};
 use crate::case::{ShapeSpec, Side};
 use crate::source::{InputError, split_path};
 use crate::{height_grid, profile, profile_file, standard};
-use fretwork_core::geometry::drum::Drum;
+use fretwork_core::assembly;
+use fretwork_core::geometry::any_shape::AnySurface;
 use fretwork_core::geometry::mesh::Mesh;
-use fretwork_core::geometry::shape::{HalfSpace, Surface};
-use fretwork_core::geometry::space::{Space, VectorLike};
+use nalgebra::Vector3;
 
 /// Limit on the points of a random surface.
 const MAX_POINTS: usize = 1_000_000;
@@ -24,11 +24,11 @@ pub(super) struct Roughness {
 }
 
 /// A surface, and its offset in the frame of its body (m).
-pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+pub(super) type Placed = (Vector3<f64>, AnySurface);
 
-impl<S: Space> Builder<'_, S> {
-    pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
-        let centred = |surface| (S::Vector::zero(), surface);
+impl Builder<'_> {
+    pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed, InputError> {
+        let centred = |surface| (Vector3::zeros(), surface);
         match shape {
             ShapeSpec::HalfSpace { normal, at } => self.half_space(here, normal, at),
             ShapeSpec::Drum { radius, axis } => self.drum(here, *radius, *axis).map(centred),
@@ -89,7 +89,8 @@ impl<S: Space> Builder<'_, S> {
                 let mesh = mesh.map_err(|e| self.fail(format!("{here}.file"), e.to_string()))?;
                 Ok((
                     at,
-                    in_dimension::mesh(mesh).map_err(|why| self.fail(here, why))?,
+                    in_dimension::mesh(self.dimension(), mesh)
+                        .map_err(|why| self.fail(here, why))?,
                 ))
             }
             ShapeSpec::Balls(_)
@@ -102,31 +103,25 @@ impl<S: Space> Builder<'_, S> {
         }
     }
 
-    fn half_space(&self, here: &str, normal: &[f64], at: &[f64]) -> Result<Placed<S>, InputError> {
+    fn half_space(&self, here: &str, normal: &[f64], at: &[f64]) -> Result<Placed, InputError> {
         let n = self.vector(&format!("{here}.normal"), normal)?;
         if n.norm() == 0.0 {
             return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
         }
         let at = self.vector(&format!("{here}.at"), at)?;
-        let half_space = HalfSpace {
-            normal: n * (1.0 / n.norm()),
-            shown: self.shapes.periodic.period[0].map_or(1.0, |p| 0.5 * p),
-        };
-        Ok((at, Box::new(half_space)))
+        let shown = self.assembly.periodic().period[0].map_or(1.0, |p| 0.5 * p);
+        let normal = (n * (1.0 / n.norm())).into();
+        let plane = assembly::half_space(self.dimension(), normal, shown);
+        Ok((at, plane))
     }
 
-    fn drum(
-        &self,
-        here: &str,
-        radius: f64,
-        axis: usize,
-    ) -> Result<Box<dyn Surface<S>>, InputError> {
+    fn drum(&self, here: &str, radius: f64, axis: usize) -> Result<AnySurface, InputError> {
         let radius = self.radius(&format!("{here}.radius"), radius)?;
         if axis > 2 {
             let message = format!("axis {axis} does not exist; use 0, 1 or 2");
             return Err(self.fail(format!("{here}.axis"), message));
         }
-        Ok(Box::new(Drum::new(radius, axis)))
+        Ok(AnySurface::drum(self.dimension(), radius, axis))
     }
 
     /// Points of a profile, from the case or from a file.
@@ -154,8 +149,8 @@ impl<S: Space> Builder<'_, S> {
         roughness: &Roughness,
         height: f64,
         side: Side,
-    ) -> Result<Box<dyn Surface<S>>, InputError> {
-        let Some(period) = self.shapes.periodic.period[0] else {
+    ) -> Result<AnySurface, InputError> {
+        let Some(period) = self.assembly.periodic().period[0] else {
             return Err(self.fail(here, "a rough profile needs a periodic x"));
         };
         let points = roughness.points;
@@ -167,7 +162,8 @@ impl<S: Space> Builder<'_, S> {
             .map(|(k, z)| (x(k), height + z))
             .collect();
         chain.push((period, chain[0].1));
-        in_dimension::profile(chain, side, Some(period)).map_err(|why| self.fail(here, why))
+        in_dimension::profile(self.dimension(), chain, side, Some(period))
+            .map_err(|why| self.fail(here, why))
     }
 
     /// Random heights at equal distances over a period (m).
@@ -214,7 +210,7 @@ impl<S: Space> Builder<'_, S> {
         points: (usize, usize),
         spacing: (f64, f64),
         (heights, rms): (&[f64], Option<f64>),
-    ) -> Result<Box<dyn Surface<S>>, InputError> {
+    ) -> Result<AnySurface, InputError> {
         let bad = |message: String| self.fail(here, message);
         let count = points.0.saturating_mul(points.1);
         if count > 10_000_000 {
@@ -227,12 +223,13 @@ impl<S: Space> Builder<'_, S> {
                 heights.to_vec()
             }
         };
-        let p = self.shapes.periodic.period;
+        let p = self.assembly.periodic().period;
         let fits = |axis: usize, n: usize, s: f64| {
             p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
         };
         let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
-        in_dimension::height_field(points, spacing, heights, periodic).map_err(bad)
+        in_dimension::height_field(self.dimension(), points, spacing, heights, periodic)
+            .map_err(bad)
     }
 
     /// Rejects heights whose lines in the case are the columns of the grid, or places with heights.
@@ -290,11 +287,12 @@ impl<S: Space> Builder<'_, S> {
         here: &str,
         points: Vec<(f64, f64)>,
         side: Side,
-    ) -> Result<Box<dyn Surface<S>>, InputError> {
+    ) -> Result<AnySurface, InputError> {
         let spans = |p: &f64| {
             points.len() > 1 && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
         };
-        let period = self.shapes.periodic.period[0].filter(spans);
-        in_dimension::profile(points, side, period).map_err(|why| self.fail(here, why))
+        let period = self.assembly.periodic().period[0].filter(spans);
+        in_dimension::profile(self.dimension(), points, side, period)
+            .map_err(|why| self.fail(here, why))
     }
 }

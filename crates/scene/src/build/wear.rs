@@ -3,11 +3,9 @@
 use super::Builder;
 use crate::case::{BodySpec, CellTouch, InterfaceSpec, TouchSpec, WearSpec};
 use crate::source::{InputError, ValidationError};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::geometry::worn_mesh::facing;
 use fretwork_core::laws::Kind;
-use fretwork_core::step::Simulation;
-use fretwork_core::wear::Scar;
+use fretwork_core::view::RunSetup;
 use nalgebra::Vector3;
 
 /// What a deformable body says of its wear.
@@ -19,49 +17,48 @@ pub(super) struct DeformableWear {
 }
 
 impl DeformableWear {
-    /// The scar of a surface of a body that was added.
+    /// Has a surface of the body wear.
     ///
     /// # Errors
     /// The surface is vertical or overhangs somewhere.
-    pub(super) fn scar<S: Space>(
+    pub(super) fn add_scar(
         &self,
-        s: &Simulation<S>,
+        s: &mut dyn RunSetup,
         surface: usize,
-    ) -> Result<Option<Scar<S>>, ValidationError> {
-        let Some(carried) = s.shapes.surfaces.get(surface) else {
-            return Ok(None);
-        };
-        let origin = s.state.bodies.position[carried.body as usize] + carried.offset;
-        if let Some(place) = wall::<S>(&carried.shape.outline()) {
+    ) -> Result<(), ValidationError> {
+        let dimension = s.dimension();
+        if let Some(place) = wall(dimension, &s.surface_lines(surface)) {
+            let carried = s.surfaces()[surface];
+            let body = s.motion(carried.body as usize).position;
+            let origin = Vector3::from(body) + Vector3::from(carried.offset);
             let at = origin + place;
-            let at: Vec<String> = (0..S::D).map(|k| format!("{:.4e}", at[k])).collect();
+            let at: Vec<String> = (0..dimension).map(|k| format!("{:.4e}", at[k])).collect();
             let message = format!(
                 "what touches of `{}` is vertical or overhangs at ({}) m, where it cannot recede along {}: let a part touch that has one height at each place, as `Surface(\"top\")` or `Surface(\"bottom\")`, or leave `wears` out",
                 self.name,
                 at.join(", "),
-                if S::D == 2 { "y" } else { "z" }
+                if dimension == 2 { "y" } else { "z" }
             );
             return Err(ValidationError::new(self.here.as_str(), message));
         }
         let WearSpec { thickness, every } = self.wears;
-        let name = self.name.clone();
-        let scar = Scar::new(name, surface, carried, thickness, every);
-        Ok(scar.map(|scar| scar.shifted(origin)))
+        s.add_scar(surface, self.name.clone(), thickness, every);
+        Ok(())
     }
 }
 
 /// The first place of an outline that does not face the side that most of it faces, up or down.
-fn wall<S: Space>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
-    let facing = |face: &[S::Vector]| {
-        if S::D == 2 {
-            let along = face[1] - face[0];
+fn wall(dimension: usize, outline: &[Vec<[f64; 3]>]) -> Option<Vector3<f64>> {
+    let facing = |face: &[[f64; 3]]| {
+        if dimension == 2 {
+            let along = Vector3::from(face[1]) - Vector3::from(face[0]);
             let upright = along[0].abs() <= 1e-9 * along.norm();
             return if upright { 0.0 } else { along[0].signum() };
         }
-        let [a, b, c] = [0, 1, 2].map(|k| Vector3::new(face[k][0], face[k][1], face[k][2]));
+        let [a, b, c] = [0, 1, 2].map(|k| Vector3::from(face[k]));
         facing(a, b, c)
     };
-    let size = if S::D == 2 { 2 } else { 3 };
+    let size = if dimension == 2 { 2 } else { 3 };
     let faces = || outline.iter().flat_map(|face| face.windows(size));
     let most = if faces().map(facing).sum::<f64>() < 0.0 {
         -1.0
@@ -69,12 +66,13 @@ fn wall<S: Space>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
         1.0
     };
     faces().find(|face| facing(face) != most).map(|face| {
-        let sum = face.iter().fold(S::Vector::zero(), |sum, at| sum + *at);
+        let places = face.iter().map(|at| Vector3::from(*at));
+        let sum = places.fold(Vector3::zeros(), |sum, at| sum + at);
         sum * (1.0 / size as f64)
     })
 }
 
-impl<S: Space> Builder<'_, S> {
+impl Builder<'_> {
     /// Makes the scars of a body whose surfaces begin at index `first` of the list.
     pub(super) fn wears(
         &mut self,
@@ -87,37 +85,38 @@ impl<S: Space> Builder<'_, S> {
         };
         let here = format!("{here}.wears");
         self.check_wears(&here, wears)?;
-        let before = self.scars.len();
-        for surface in first..self.shapes.surfaces.len() {
-            let name = match self.scars.len() - before {
+        let mut worn = 0;
+        for surface in first..self.assembly.surface_count() {
+            let name = match worn {
                 0 => spec.name.clone(),
                 k => format!("{}_{}", spec.name, k + 1),
             };
             let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-            if !name.chars().all(plain) || self.scars.iter().any(|s| s.name == name) {
+            if !name.chars().all(plain) || self.assembly.worn_names().contains(&name.as_str()) {
                 let message = format!(
                     "the name `{name}` of a body that wears names columns and files: it must be unique and made of letters, digits, `-` and `_`"
                 );
                 return Err(self.fail(here, message));
             }
-            let carried = &self.shapes.surfaces[surface];
-            let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
-            let outline = carried.shape.outline();
-            let upright = |w: &[S::Vector]| S::D == 2 && w[0][0] == w[1][0];
+            let outline = self.assembly.surface_lines(surface);
+            let (thickness, every) = (wears.thickness, wears.every);
+            let can_wear = self.assembly.add_scar(surface, name, thickness, every);
+            let plane = self.dimension() == 2;
+            let upright = |w: &[[f64; 3]]| plane && w[0][0] == w[1][0];
             let at = outline
                 .iter()
                 .find_map(|line| line.windows(2).position(upright));
-            if let (Some(k), Some(_)) = (at, &scar) {
+            if let (Some(k), true) = (at, can_wear) {
                 let message = format!(
                     "the profile is vertical between points {k} and {}, where it cannot recede; tilt it, or leave `wears` out",
                     k + 1
                 );
                 return Err(self.fail(here, message));
             }
-            self.scars.extend(scar);
+            worn += usize::from(can_wear);
         }
-        if self.scars.len() == before {
-            let which = if S::D == 2 {
+        if worn == 0 {
+            let which = if self.dimension() == 2 {
                 "a Profile, RoughProfile or StandardProfile"
             } else {
                 "a HeightField"
@@ -183,7 +182,7 @@ impl<S: Space> Builder<'_, S> {
                     Some(format!(
                         "no interface of the material `{material}` has a wear law, so that `{name}` cannot wear; give one a `wear` law, or leave `wears` out"
                     ))
-                } else if self.scars.iter().any(|s| s.name == *name) {
+                } else if self.assembly.worn_names().contains(&name.as_str()) {
                     Some(format!(
                         "another surface that wears has the name `{name}`; rename one"
                     ))
@@ -266,10 +265,8 @@ impl<S: Space> Builder<'_, S> {
                 .iter()
                 .all(|d| d.1 == fretwork_core::bodies::Dof::Fixed)
         };
-        let grains = self.shapes.balls.len() + self.shapes.pieces.len();
-        let carried = |b: u32| self.bodies.driven.iter().any(|d| d.body == b);
-        let loose = self.shapes.balls.iter().any(|b| !carried(b.body))
-            || self.shapes.pieces.iter().any(|p| !carried(p.body));
+        let grains = self.assembly.radii().len();
+        let loose = self.assembly.has_loose_shapes();
         grains > 0
             && (loose
                 || !held(body)

@@ -1,0 +1,85 @@
+//! Pairs of grains that a scene may make, counted before any pair is stored.
+
+use super::Parts;
+use crate::contact::detect::{LawTable, centre};
+use crate::geometry::grid::{self, Balls};
+use crate::geometry::space::{Space, VectorLike};
+
+/// A place where more grains come near each other than can be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pile {
+    /// A body there.
+    pub body: u32,
+    /// Its place (m).
+    pub at: [f64; 3],
+    /// Number of shapes there, and within which distance (m).
+    pub count: usize,
+    /// See [`Pile::count`].
+    pub size: f64,
+    /// An upper bound of the pairs at all.
+    pub pairs: f64,
+}
+
+impl<S: Space> Parts<S> {
+    /// Radii of all balls, and of the bounding balls of the convex parts (m).
+    pub(super) fn all_radii(&self) -> Vec<f64> {
+        let pieces = self.shapes.pieces.iter().map(|p| p.bound);
+        let balls = self.shapes.balls.iter().map(|b| b.radius);
+        balls.chain(pieces).collect()
+    }
+
+    pub(super) fn pairs_of_bodies(&self, reach: f64) -> f64 {
+        let of = |body: u32| self.bodies.position[body as usize];
+        let balls = self.shapes.balls.iter().map(|b| of(b.body));
+        let centres: Vec<S::Vector> = balls
+            .chain(self.shapes.pieces.iter().map(|p| of(p.body)))
+            .collect();
+        grid::pairs_bound(&Balls {
+            centres: &centres,
+            radii: &self.all_radii(),
+            reach,
+            periodic: &self.shapes.periodic,
+        })
+    }
+
+    pub(super) fn find_pile(
+        &self,
+        reach: f64,
+        most: &dyn Fn(usize) -> usize,
+        table: &LawTable,
+    ) -> Option<Pile> {
+        let balls = &self.shapes.balls;
+        let owner = |at: u32| match balls.get(at as usize) {
+            Some(ball) => (ball.body, ball.material),
+            None => {
+                let piece = &self.shapes.pieces[at as usize - balls.len()];
+                (piece.body, piece.material)
+            }
+        };
+        let mut centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &self.bodies)).collect();
+        centres.extend(self.shapes.pieces.iter().map(|p| {
+            let b = p.body as usize;
+            self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
+        }));
+        let radii = self.all_radii();
+        let still = self.bodies.still();
+        let keep = |a: u32, b: u32| {
+            let ((i, m), (j, n)) = (owner(a), owner(b));
+            i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
+        };
+        let all = Balls {
+            centres: &centres,
+            radii: &radii,
+            reach,
+            periodic: &self.shapes.periodic,
+        };
+        let dense = grid::dense_cell(&all, most(centres.len()), keep)?;
+        Some(Pile {
+            body: owner(dense.ball).0,
+            at: centres[dense.ball as usize].padded(),
+            count: dense.count,
+            size: dense.size,
+            pairs: grid::pairs_bound(&all),
+        })
+    }
+}

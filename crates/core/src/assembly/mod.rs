@@ -1,0 +1,203 @@
+//! Bodies and shapes that become a simulation, described without their dimension.
+//!
+//! A scene says what there is, with vectors of three components, zero in the third in the plane;
+//! spins are about the axes, about the third alone in the plane. Behind [`Assembly`] it is put
+//! together in the dimension of the case.
+
+mod checks;
+mod parts;
+mod recorded;
+mod system;
+mod union;
+
+pub use checks::Pile;
+pub use parts::{AnyParts, Parts};
+pub use recorded::RecordedPiece;
+pub use system::AnySystem;
+pub use union::AnyUnion;
+
+use crate::bodies::Driven;
+use crate::contact::detect::LawTable;
+use crate::geometry::any_shape::{AnyPart, AnySurface};
+use crate::geometry::periodic::Periodic;
+use crate::geometry::space::{Dim2, Dim3};
+use crate::laws::Interface;
+use crate::view::AnySimulation;
+use std::fmt::Debug;
+
+/// Where a body is and how it moves at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Position (m).
+    pub position: [f64; 3],
+    /// Orientation in numbers, see [`crate::view::Motion`]; `None` for that of the case's axes.
+    pub rotation: Option<[f64; 4]>,
+    /// Velocity (m/s).
+    pub velocity: [f64; 3],
+    /// Angular velocity (rad/s).
+    pub spin: [f64; 3],
+}
+
+/// Index of a material and its density (kg/m^3).
+pub type Filling = (u16, f64);
+
+/// Moments of inertia of a first body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inertia {
+    /// About any axis (kg m^2).
+    Uniform(f64),
+    /// The mean over the axes of its shapes, of a density (kg/m^3).
+    Mean(f64),
+    /// That of its shapes, of a density (kg/m^3).
+    OfShapes(f64),
+}
+
+/// Mass and inertia of a body of several shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Weight {
+    /// A grain: those of its shapes, of a density (kg/m^3).
+    Grain(f64),
+    /// A first body of a mass (kg).
+    First(f64, Inertia),
+}
+
+/// A body of one convex part.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// The part.
+    pub part: AnyPart,
+    /// Its start; the position is that of its centre of mass.
+    pub start: Start,
+    /// Its volume (m^3; m^2 in 2D).
+    pub volume: f64,
+    /// Moment of inertia about its centre of mass at unit density (m^5; m^4 in 2D); that of the
+    /// part where it is not given.
+    pub inertia: Option<f64>,
+    /// Position of the part's centre relative to the centre of mass (m).
+    pub offset: [f64; 3],
+}
+
+impl Block {
+    /// The block of a part that does not move relative to it, at rest.
+    pub fn of(part: AnyPart) -> Self {
+        Self {
+            start: Start {
+                position: part.centre(),
+                ..Start::default()
+            },
+            volume: part.volume(),
+            inertia: None,
+            offset: [0.0; 3],
+            part,
+        }
+    }
+}
+
+/// A scene that is put together.
+pub trait Assembly: Debug + Send {
+    /// Number of dimensions, 2 or 3.
+    fn dimension(&self) -> usize;
+    /// Lengths of the periodic cell.
+    fn periodic(&self) -> &Periodic;
+    /// Number of bodies.
+    fn body_count(&self) -> usize;
+    /// The driven first bodies.
+    fn driven(&self) -> &[Driven];
+    /// Radii of all balls, and of the bounding balls of the convex parts (m).
+    fn radii(&self) -> Vec<f64>;
+    /// Whether a ball or part belongs to no driven body.
+    fn has_loose_shapes(&self) -> bool;
+    /// Radius of the smallest of the balls about the centres of the balls and convex parts of
+    /// grains that they hold (m); infinite without grains.
+    fn thinnest_grain(&self) -> f64;
+    /// Number of surfaces.
+    fn surface_count(&self) -> usize;
+    /// Lines of a surface in its own frame (m).
+    fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>>;
+    /// Names of the surfaces that wear.
+    fn worn_names(&self) -> Vec<&str>;
+
+    /// Adds a ball as a grain; its index.
+    fn add_ball(&mut self, radius: f64, of: Filling, start: &Start) -> u32;
+    /// Adds a fixed plane as a first body, with its outward unit normal.
+    fn add_wall(&mut self, name: String, at: [f64; 3], normal: [f64; 3], material: u16);
+    /// Adds a body of several shapes, of which the start is that of its frame; its index.
+    fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32;
+    /// Adds a grain of one convex part; its index.
+    fn add_block(&mut self, block: Block, of: Filling) -> u32;
+    /// Adds a grain with its mass (kg), moments of inertia in its axes, row by row (kg m^2), in 2D
+    /// the first alone, which are multiplied by a factor, and length (m).
+    ///
+    /// # Errors
+    /// What is no number, or no orientation.
+    fn add_weighed(
+        &mut self,
+        mass: f64,
+        inertia: &[f64; 9],
+        factor: f64,
+        length: f64,
+        start: &Start,
+    ) -> Result<u32, String>;
+    /// Adds a ball to a body, at an offset in its frame (m).
+    ///
+    /// # Errors
+    /// Its radius is not above zero, or its place is not finite.
+    fn carry_ball(
+        &mut self,
+        body: u32,
+        offset: [f64; 3],
+        radius: f64,
+        material: u16,
+    ) -> Result<(), String>;
+    /// Adds a convex part to a body from its record.
+    ///
+    /// # Errors
+    /// What is wrong with the record.
+    fn carry_piece(&mut self, body: u32, piece: RecordedPiece, material: u16)
+    -> Result<(), String>;
+    /// Drives a body.
+    fn drive(&mut self, driven: Driven);
+    /// Has a surface wear; whether it can.
+    fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool;
+    /// Adds a dynamical system after those that are there.
+    fn add_system(&mut self, system: AnySystem);
+
+    /// An upper bound of the pairs of bodies that come within a distance of each other (m).
+    fn most_pairs(&self, reach: f64) -> f64;
+    /// A place with many grains, where more than `most(shapes)` pairs of shapes with an interface
+    /// come within a distance (m) of each other.
+    fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile>;
+
+    /// The bodies and shapes in their dimension.
+    fn parts(&mut self) -> AnyParts<'_>;
+    /// The simulation, with the surface that each dynamical system has added to it.
+    fn into_simulation(
+        self: Box<Self>,
+        laws: Vec<Interface>,
+        table: LawTable,
+        alert: f64,
+        skin: f64,
+    ) -> (AnySimulation, Vec<Option<usize>>);
+}
+
+/// An empty scene of so many dimensions.
+pub fn empty(dimension: usize, periodic: Periodic) -> Box<dyn Assembly> {
+    match dimension {
+        2 => Box::new(Parts::<Dim2>::new(periodic)),
+        _ => Box::new(Parts::<Dim3>::new(periodic)),
+    }
+}
+
+/// A plane whose open side is that of its outward unit normal; figures show it up to a distance
+/// (m).
+pub fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
+    parts::half_space(dimension, normal, shown)
+}
+
+/// The vector turned by an orientation in numbers; `None` if they are not those of a rotation.
+pub fn turned(dimension: usize, rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
+    match dimension {
+        2 => parts::turned::<Dim2>(rotation, v),
+        _ => parts::turned::<Dim3>(rotation, v),
+    }
+}
