@@ -96,7 +96,7 @@ enum Command {
     /// seeds
     #[command(
         allow_negative_numbers = true,
-        after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --setting step --setting tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
+        after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --setting step --setting tolerance --budget 30m\n\ndocs/trade.md says how errors are tested and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
     /// Internal: opens libraries in a separate process
