@@ -45,8 +45,8 @@ impl Columns {
             .fold(0.0, f64::max)
     }
 
-    /// Lets heat flow along the axes for a step (s), in their order or against it; returns what
-    /// nodes store by it (J), which is rounding.
+    /// Lets heat flow along the axes for a step (s), in their order or in reverse; returns the heat
+    /// that nodes store by it (J), which is rounding.
     pub(crate) fn conduct(&self, nodes: &mut [Node], h: f64, theta: f64, reverse: bool) -> f64 {
         let mut order: Vec<usize> = (0..self.axes.len()).collect();
         if reverse {
@@ -193,7 +193,7 @@ impl Line {
         }
     }
 
-    /// Takes out of the changes at each depth what rounding adds to their sum, which is zero.
+    /// Corrects the changes at each depth for rounding, so that their sum is zero.
     fn keep_heat(&self, change: &mut [f64], points: usize) {
         let count = self.inverse.len();
         for p in 0..points {

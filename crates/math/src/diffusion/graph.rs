@@ -26,7 +26,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// So many nodes with edges and no elements.
+    /// A graph of nodes with edges, without elements.
     pub fn new(nodes: usize, edges: Vec<Edge>) -> Self {
         Self {
             nodes,
@@ -35,7 +35,7 @@ impl Graph {
         }
     }
 
-    /// Edges and elements.
+    /// All conductances, of edges and of elements.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Edge> {
         self.edges.iter().chain(&self.elements)
     }

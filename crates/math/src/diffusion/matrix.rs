@@ -42,8 +42,8 @@ pub(crate) struct Matrix {
 }
 
 impl Matrix {
-    /// Of the diagonal without the edges, and of the edges between unknowns; self-loops are
-    /// ignored.
+    /// A matrix of the diagonal without the edges, and of the edges between unknowns; self-loops
+    /// are ignored.
     pub fn new(own: &[f64], edges: &[Edge]) -> Self {
         let mut counts = vec![0u32; own.len()];
         for_pairs(edges, |[a, b], _, again| {

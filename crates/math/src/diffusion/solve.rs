@@ -21,7 +21,8 @@ pub(crate) struct System {
 }
 
 impl System {
-    /// Of the diagonal without the edges, the edges between unknowns and the right-hand side.
+    /// A system of the diagonal without the edges, the edges between unknowns and the right-hand
+    /// side.
     pub fn new(own: &[f64], edges: &[Edge], right: &[f64]) -> Self {
         let matrix = Matrix::new(own, edges);
         Self {
@@ -131,7 +132,7 @@ impl System {
             each.for_each(|(r, p)| *r -= length * p);
             let next = size(&r, &inverse);
             if next <= goal {
-                // The true residual is what the recurrence says it is, up to rounding.
+                // The recurrence gives the true residual, up to rounding.
                 let holds = size(&self.residual(&x), &inverse) <= 100.0 * goal;
                 return holds.then_some(x);
             }
@@ -163,7 +164,7 @@ impl System {
             .sp_cholesky(faer::Side::Lower)
             .map_err(|e| fail(format!("{e:?}")))?;
         let mut x = vec![Lanes::default(); self.right.len()];
-        // One refinement takes the rounding of the factors out.
+        // One refinement removes the rounding of the factors.
         for _ in 0..2 {
             let left = self.residual(&x);
             let right = faer::Mat::from_fn(n, 1, |k, _| left.as_flattened()[k]);
