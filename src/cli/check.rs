@@ -24,7 +24,6 @@ use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
 use features::{Features, memory};
-use fretwork_core::in_dimension;
 use load::Load;
 use std::fmt::Write as _;
 
@@ -257,7 +256,7 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
     let Some((spec, test)) = case
         .biaxial
         .as_ref()
-        .and_then(|spec| Some((spec, in_dimension!(s, |s| Biaxial::new(spec, s))?)))
+        .and_then(|spec| Some((spec, Biaxial::new(spec, s.view())?)))
     else {
         return;
     };
@@ -287,7 +286,7 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
         format!("about {side:.2e} m wide at a compacity of 0.82, under {pressure:.3e} Pa"),
     );
     let rate = speed / side;
-    let inertial = rate * (in_dimension!(s, |s| test.grain_mass(s)) / pressure).sqrt();
+    let inertial = rate * (test.grain_mass(s.view()) / pressure).sqrt();
     line(
         "inertial number",
         format!(

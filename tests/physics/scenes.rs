@@ -6,7 +6,7 @@ use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
 use fretwork::scene::Loaded;
-use fretwork::step::{InDimension, Simulation};
+use fretwork::step::Simulation;
 use fretwork_observe::picture::Shows;
 use std::path::Path;
 
@@ -265,7 +265,6 @@ fn end_walls_make_a_narrow_drum_steeper() {
 fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
-    let s = InDimension::of(s);
     let camera = Camera::new(s, &loaded.case.output);
     let frame = camera.frame(s, &Shows::Scene, "", Vec::new()).unwrap();
     frame.draw(&path).unwrap_or_else(|e| panic!("{e}"));

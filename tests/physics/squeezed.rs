@@ -59,7 +59,7 @@ fn reported<S: Space>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions
     let (mut reported, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        reported.add(s, &report);
+        reported.add(s.state.time, |body| s.state.bodies.name(body), &report);
         converged += usize::from(report.solver.converged);
         let received = s.state.received.iter().map(|r| r.0[S::D - 1].abs());
         force = received.fold(force, f64::max);

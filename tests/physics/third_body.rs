@@ -87,7 +87,7 @@ fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
     let mut s = scene::simulation::<S>(&loaded);
     let case = &loaded.case;
-    let mut observers = measures::<S>(&case.measures, case.inertia_scaling, case.heat.is_some());
+    let mut observers = measures(&case.measures, case.inertia_scaling, &s);
     observers.begin(&mut s);
     change(&mut s);
     s.state.time += 1.0;

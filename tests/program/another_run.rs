@@ -3,7 +3,7 @@
 
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
-use fretwork::record::picture::piece_outline;
+use fretwork::record::placement::piece_outline;
 use fretwork::record::results::{Header, Part, Results};
 use fretwork::record::statistics::Column;
 use fretwork::step::Simulation;

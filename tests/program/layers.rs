@@ -306,3 +306,25 @@ fn stages_of_the_step_name_those_before_them() {
         }
     }
 }
+
+/// What observes, writes and draws a run reads it without its dimension. The identity of a run alone
+/// hashes the state itself.
+#[test]
+fn observers_files_and_pictures_have_no_dimension() {
+    let identity = Path::new("crates/store/src/checkpoint/identity.rs");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for layer in ["crates/observe", "crates/store", "crates/view"] {
+        let mut files = Vec::new();
+        source_files(&root.join(layer).join("src"), &mut files);
+        assert!(files.len() > 5, "{layer}");
+        for file in files {
+            if file.ends_with(identity) {
+                continue;
+            }
+            let text = std::fs::read_to_string(&file).unwrap();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let generic = code.filter(|l| l.contains(": Space") || l.contains("Simulation<"));
+            assert_eq!(generic.count(), 0, "{}", file.display());
+        }
+    }
+}

@@ -514,7 +514,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
         self.held_parts()
     }
 
-    fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+    fn deformed_mesh(&self) -> Option<DeformedMesh<S::Vector>> {
         Some(self.mesh_now())
     }
 
@@ -527,7 +527,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
         all.map(|p| self.model.of(&self.velocity, p)).collect()
     }
 
-    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+    fn touching_surface(&self) -> Option<TouchingSurface<S::Vector>> {
         self.surface_part()
     }
 

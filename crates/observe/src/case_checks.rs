@@ -5,9 +5,8 @@ use super::heat::without_heat;
 use super::quantity::Findings;
 use super::warning::Warning;
 use super::{biaxial, circuit, friction_report, jump};
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use crate::observer::{Observer, RunEnd};
+use fretwork_core::view::RunView;
 use fretwork_scene::case::Case;
 use fretwork_scene::sampling;
 
@@ -20,14 +19,14 @@ pub(crate) struct CaseChecks {
 }
 
 impl CaseChecks {
-    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
+    pub fn of(case: &Case, run: &dyn RunView) -> Self {
         let drives = sampling::unresolved(case);
         let texts = |aliased: bool| {
             let drives = drives.iter().filter(|d| d.aliased == aliased);
             let texts: Vec<&str> = drives.map(|d| d.text.as_str()).collect();
             (!texts.is_empty()).then(|| texts.join("; "))
         };
-        let idle = without_heat(s);
+        let idle = without_heat(run);
         let aliased = texts(true).map(|text| Warning::serious("ALIASED DRIVE", text));
         let coarse = texts(false).map(|text| Warning::note("COARSE DRIVE", text));
         let idle = (!idle.is_empty()).then(|| Warning::note("NO HEAT", idle.join("; ")));
@@ -43,7 +42,7 @@ impl CaseChecks {
     }
 }
 
-impl<S: Space> ObserverIn<S> for CaseChecks {
+impl Observer for CaseChecks {
     fn name(&self) -> String {
         "checks of the case".to_owned()
     }
@@ -52,7 +51,7 @@ impl<S: Space> ObserverIn<S> for CaseChecks {
         false
     }
 
-    fn report(&self, _: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
         let none: [fn(&mut Findings); 4] = [
             friction_report::report_none,
             biaxial::report_none,
@@ -64,7 +63,7 @@ impl<S: Space> ObserverIn<S> for CaseChecks {
                 report_none(found);
             }
         }
-        ObserverIn::<S>::report_so_far(self, found);
+        Observer::report_so_far(self, found);
     }
 
     fn report_so_far(&self, found: &mut Findings) {

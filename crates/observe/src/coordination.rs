@@ -1,7 +1,7 @@
 //! Coordination number: contacts per grain that carry force.
 
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use std::collections::HashSet;
 
 /// A contact counts if its normal force exceeds this fraction of the mean; smaller forces are
@@ -22,38 +22,41 @@ pub struct Coordination {
 }
 
 /// Counts the contacts of the last step.
-pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
-    count_pairs(&s.state.bodies.grain_flags(), &bearing(s))
+pub fn coordination(run: &dyn RunView) -> Coordination {
+    count_pairs(&run.grain_flags(), &bearing(run))
 }
 
 /// Number of contacts of each body that carry force in the last step, with the threshold of
 /// [`coordination`].
-pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
-    let mut degree = vec![0; s.state.bodies.len()];
-    for body in bearing(s).into_iter().flatten() {
+pub fn degrees(run: &dyn RunView) -> Vec<u32> {
+    let mut degree = vec![0; run.bodies().len()];
+    for body in bearing(run).into_iter().flatten() {
         degree[body as usize] += 1;
     }
     degree
 }
 
 /// Bodies of the contacts that carry force.
-fn bearing<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
-    let force = |c: &fretwork_core::contact::Contact<S>| c.normal.dot(&c.impulse);
-    let carrying = s.state.network.contacts.iter().filter(|c| force(c) > 0.0);
-    let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));
+fn bearing(run: &dyn RunView) -> Vec<[u32; 2]> {
+    let mut pressed: Vec<([u32; 2], f64)> = Vec::new();
+    run.visit_contacts(&mut |c| {
+        let force = Vector3::from(c.normal).dot(&Vector3::from(c.impulse));
+        if force > 0.0 {
+            pressed.push((c.bodies, force));
+        }
+    });
+    let (sum, count) = pressed.iter().fold((0.0, 0), |(f, n), p| (f + p.1, n + 1));
     let least = FAINT * sum / f64::from(count.max(1));
-    let pairs = s.state.network.contacts.iter().filter(|c| force(c) > least);
-    let deforms = |b: u32| {
-        let carrier = s.state.bodies.carrier(b as usize);
-        carrier.is_some_and(|c| c.grain)
-    };
+    let pairs = pressed.into_iter().filter(|p| p.1 > least);
+    let bodies = run.bodies();
+    let deforms = |b: u32| bodies.carrier(b as usize).is_some_and(|c| c.grain);
     // Points of grains that deform touch one by one: a neighbour counts once.
     let mut seen = HashSet::new();
     let once = |bodies: &[u32; 2]| {
         let [a, b] = *bodies;
         !(deforms(a) || deforms(b)) || seen.insert([a.min(b), a.max(b)])
     };
-    pairs.map(|c| c.bodies).filter(once).collect()
+    pairs.map(|p| p.0).filter(once).collect()
 }
 
 fn count_pairs(free: &[bool], pairs: &[[u32; 2]]) -> Coordination {

@@ -12,13 +12,13 @@ use super::resolution::{self, Resolution};
 use super::statistics::Column;
 use super::tractions::{SurfaceState, loaded, signed};
 use super::warning::Warning;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
+use crate::observer::{Observer, RunEnd};
+use fretwork_core::bodies::{DeformedMesh, Holder, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::AreaRule;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{RunView, SystemView};
 use fretwork_scene::case::Case;
+use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -125,27 +125,28 @@ impl BorderLoad {
 
 impl Deformable {
     /// Of the dynamical systems of the simulation of a case.
-    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
-        let systems = || first_bodies(s);
+    pub fn of(case: &Case, run: &dyn RunView) -> Self {
+        let systems = || first_bodies(run);
         let rolls = |name: &str| {
             let mut all = case.half_spaces.iter();
             all.any(|b| b.name == name && b.rolling.is_some())
         };
         let named = systems().flat_map(|system| {
-            let holders = system.holders().into_iter();
-            holders.map(|h| format!("{}_{}_{}", system.name(), h.part, ["x", "y", "z"][h.axis]))
+            let of =
+                |h: Holder| format!("{}_{}_{}", system.name(), h.part, ["x", "y", "z"][h.axis]);
+            system.holders().into_iter().map(of).collect::<Vec<_>>()
         });
         Self {
             holders: named.collect(),
             bodies: systems().map(|s| s.name().to_owned()).collect(),
-            distortions: systems().map(DynamicalSystem::small_strain).collect(),
+            distortions: systems().map(|s| s.small_strain()).collect(),
             borders: vec![0.0; systems().count()],
             resolutions: systems()
                 .map(|system| Resolution::new(system.name()))
                 .collect(),
             rolls: systems().map(|system| rolls(system.name())).collect(),
             nearest: NearestPlaces::default(),
-            grains: strain_of_grains(s),
+            grains: strain_of_grains(run),
             materials: case
                 .elastic_grains
                 .iter()
@@ -156,20 +157,20 @@ impl Deformable {
 }
 
 /// Deformable bodies that are no grains; these come last.
-fn first_bodies<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = &dyn DynamicalSystem<S>> {
-    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+fn first_bodies(run: &dyn RunView) -> impl Iterator<Item = Box<dyn SystemView + '_>> {
+    let systems = (0..run.system_count()).filter_map(|k| run.system(k));
     systems.take_while(|system| !system.is_grain())
 }
 
 /// Grains that deform.
-fn grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = &dyn DynamicalSystem<S>> {
-    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+fn grains(run: &dyn RunView) -> impl Iterator<Item = Box<dyn SystemView + '_>> {
+    let systems = (0..run.system_count()).filter_map(|k| run.system(k));
     systems.filter(|system| system.is_grain())
 }
 
 /// Largest strain and rotation in grains that deform.
-fn strain_of_grains<S: Space>(s: &Simulation<S>) -> Option<[f64; 2]> {
-    let all = grains(s).filter_map(DynamicalSystem::small_strain);
+fn strain_of_grains(run: &dyn RunView) -> Option<[f64; 2]> {
+    let all = grains(run).filter_map(|s| s.small_strain());
     all.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
 }
 
@@ -182,11 +183,11 @@ fn larger(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
 impl Deformable {
     /// Largest strains of what is computed in small strain, and loads on borders, with those of the
     /// current state.
-    fn distortions<S: Space>(&self, s: &Simulation<S>) -> (Vec<SmallStrain>, Vec<BorderLoad>) {
+    fn distortions(&self, run: &dyn RunView) -> (Vec<SmallStrain>, Vec<BorderLoad>) {
         let (mut strains, mut borders) = (Vec::new(), Vec::new());
         for (k, name) in self.bodies.iter().enumerate() {
-            let system = s.state.systems.get(k);
-            let now = system.and_then(DynamicalSystem::small_strain);
+            let system = run.system(k);
+            let now = system.as_ref().and_then(|s| s.small_strain());
             if let Some([strain, rotation]) = larger(self.distortions[k], now) {
                 strains.push(SmallStrain {
                     body: Some(name.clone()),
@@ -194,7 +195,7 @@ impl Deformable {
                     rotation,
                 });
             }
-            let now = system.and_then(DynamicalSystem::load_at_border);
+            let now = system.as_ref().and_then(|s| s.load_at_border());
             if let Some(share) = now.map(|share| share.max(self.borders[k])) {
                 borders.push(BorderLoad {
                     body: name.clone(),
@@ -202,7 +203,7 @@ impl Deformable {
                 });
             }
         }
-        if let Some([strain, rotation]) = larger(self.grains, strain_of_grains(s)) {
+        if let Some([strain, rotation]) = larger(self.grains, strain_of_grains(run)) {
             strains.push(SmallStrain {
                 body: None,
                 strain,
@@ -213,14 +214,15 @@ impl Deformable {
     }
 }
 
-impl<S: Space> ObserverIn<S> for Deformable {
+impl Observer for Deformable {
     fn name(&self) -> String {
         "deformable bodies".to_owned()
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let flat = end.simulation.dimension() == 2;
         let mut charts = Vec::new();
-        for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 2) {
+        for (k, name) in self.bodies.iter().enumerate().filter(|_| flat) {
             charts.push(traction_chart(end.simulation, k, name));
         }
         for name in &self.holders {
@@ -230,7 +232,7 @@ impl<S: Space> ObserverIn<S> for Deformable {
             charts.push(Chart::new(title, x, y).with(series));
         }
         let mut out = vec![Output::figure("deformable", charts, 2)];
-        for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 3) {
+        for (k, name) in self.bodies.iter().enumerate().filter(|_| !flat) {
             if let Some(state) = SurfaceState::of(end.simulation, k) {
                 let maps = contact_map::charts(name, &state, has_tractions(end.simulation, k));
                 out.push(Output::figure(format!("{name}_slip"), maps, 2));
@@ -249,15 +251,15 @@ impl<S: Space> ObserverIn<S> for Deformable {
         self.holders.iter().flat_map(of).collect()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let systems = || first_bodies(s);
-        self.nearest = self.nearest.and(NearestPlaces::of(s));
-        self.grains = larger(self.grains, strain_of_grains(s));
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let systems = || first_bodies(run);
+        self.nearest = self.nearest.and(NearestPlaces::of(run));
+        self.grains = larger(self.grains, strain_of_grains(run));
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
         }
         for (k, resolution) in self.resolutions.iter_mut().enumerate() {
-            resolution.add(s, k, &self.rolls, s.state.energy.friction);
+            resolution.add(run, k, &self.rolls, run.energies().friction);
         }
         for (most, system) in self.borders.iter_mut().zip(systems()) {
             *most = system.load_at_border().unwrap_or(0.0).max(*most);
@@ -266,8 +268,8 @@ impl<S: Space> ObserverIn<S> for Deformable {
         holders.flat_map(|h| [h.displacement, h.force]).collect()
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
-        if S::D == 2 {
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
+        if run.dimension() == 2 {
             return vec![Picture {
                 name: "stress",
                 shows: Shows::Stress,
@@ -276,8 +278,8 @@ impl<S: Space> ObserverIn<S> for Deformable {
         let systems = self.bodies.iter().enumerate();
         // What sticks and slips, and the pressure.
         let maps = systems.flat_map(|(k, name)| {
-            let state = SurfaceState::of(s, k);
-            let maps = state.map(|state| contact_map::charts(name, &state, has_tractions(s, k)));
+            let state = SurfaceState::of(run, k);
+            let maps = state.map(|state| contact_map::charts(name, &state, has_tractions(run, k)));
             maps.into_iter().flatten().take(2)
         });
         vec![Picture {
@@ -290,7 +292,7 @@ impl<S: Space> ObserverIn<S> for Deformable {
         vec!["stress", "slip"]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         found.begin(Topic::Run, Role::Diagnostic);
         let (strains, borders) = self.distortions(end.simulation);
         if !strains.is_empty() {
@@ -332,16 +334,17 @@ impl<S: Space> ObserverIn<S> for Deformable {
         Ok(())
     }
 
-    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let dimension = end.simulation.dimension();
         let mut out = Vec::new();
         for (k, name) in self.bodies.iter().enumerate() {
-            let Some(system) = end.simulation.state.systems.get(k) else {
+            let Some(system) = end.simulation.system(k) else {
                 continue;
             };
             if let Some(mesh) = system.deformed_mesh() {
                 out.push(Output::Text {
                     file: format!("{name}.vtk"),
-                    text: vtk(name, &mesh),
+                    text: vtk(name, &mesh, dimension),
                 });
             }
             out.push(Output::Text {
@@ -352,7 +355,7 @@ impl<S: Space> ObserverIn<S> for Deformable {
         if self.grains.is_some() {
             out.push(Output::Text {
                 file: GRAINS.to_owned(),
-                text: vtk("grains", &all_grains(end.simulation)),
+                text: vtk("grains", &all_grains(end.simulation), dimension),
             });
         }
         out
@@ -383,15 +386,9 @@ impl<S: Space> ObserverIn<S> for Deformable {
 const GRAINS: &str = "elastic_grains.vtk";
 
 /// The meshes of all grains that deform as one.
-fn all_grains<S: Space>(s: &Simulation<S>) -> DeformedMesh<S> {
-    let mut out = DeformedMesh {
-        points: Vec::new(),
-        displacement: Vec::new(),
-        elements: Vec::new(),
-        boundary: Vec::new(),
-        stress: Vec::new(),
-    };
-    for mesh in grains(s).filter_map(DynamicalSystem::deformed_mesh) {
+fn all_grains(run: &dyn RunView) -> DeformedMesh<Vector3<f64>> {
+    let mut out = DeformedMesh::default();
+    for mesh in grains(run).filter_map(|s| s.deformed_mesh()) {
         let first = out.points.len() as u32;
         out.points.extend(mesh.points);
         out.displacement.extend(mesh.displacement);
@@ -411,12 +408,12 @@ fn force(name: &str) -> String {
 /// A mesh as an unstructured grid in VTK's legacy text format, points where they are now.
 ///
 /// Source: Kitware, "VTK file formats", simple legacy formats, version 3.0.
-fn vtk<S: Space>(name: &str, mesh: &DeformedMesh<S>) -> String {
+fn vtk(name: &str, mesh: &DeformedMesh<Vector3<f64>>, dimension: usize) -> String {
     let mut out = format!("# vtk DataFile Version 3.0\n{name}\nASCII\nDATASET UNSTRUCTURED_GRID\n");
-    let corners = S::D + 1;
+    let corners = dimension + 1;
     let cells = mesh.elements.len() / corners;
-    let triple = |out: &mut String, v: &S::Vector| {
-        let [x, y, z] = v.padded();
+    let triple = |out: &mut String, v: &Vector3<f64>| {
+        let [x, y, z] = (*v).into();
         let _ = writeln!(out, "{x:e} {y:e} {z:e}");
     };
     let _ = writeln!(out, "POINTS {} double", mesh.points.len());
@@ -433,7 +430,7 @@ fn vtk<S: Space>(name: &str, mesh: &DeformedMesh<S>) -> String {
     }
     let _ = writeln!(out, "CELL_TYPES {cells}");
     for _ in 0..cells {
-        let _ = writeln!(out, "{}", VTK_CELLS[S::D - 2]);
+        let _ = writeln!(out, "{}", VTK_CELLS[dimension - 2]);
     }
     let _ = writeln!(
         out,
@@ -459,11 +456,11 @@ fn vtk<S: Space>(name: &str, mesh: &DeformedMesh<S>) -> String {
 
 /// A contact of a deformable body over the last step.
 #[derive(Clone, Copy, Debug)]
-struct Traction<S: Space> {
+struct Traction {
     /// Where it is (m).
-    place: S::Vector,
+    place: Vector3<f64>,
     /// Force on the body (N; N/m in 2D).
-    force: S::Vector,
+    force: Vector3<f64>,
     /// Its part along the normal, positive in compression, and along the surface: in the plane
     /// positive along +x.
     parts: [f64; 2],
@@ -473,21 +470,22 @@ struct Traction<S: Space> {
 }
 
 /// The loaded contacts of a system, along x.
-fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
-    let bodies = &s.state.bodies;
-    let even = has_tractions(s, system);
-    let mut out: Vec<Traction<S>> = Vec::new();
-    for acting in loaded(s, system) {
+fn tractions(run: &dyn RunView, system: usize) -> Vec<Traction> {
+    let (bodies, balls) = (run.bodies(), run.balls());
+    let even = has_tractions(run, system);
+    let mut out: Vec<Traction> = Vec::new();
+    for acting in loaded(run, system) {
         let (contact, side) = (acting.contact, acting.side);
-        let point = contact.key.ball().and_then(|k| s.shapes.balls.get(k));
+        let point = contact.key.ball().and_then(|k| balls.get(k));
         let point = point.filter(|ball| ball.radius == 0.0 && side == 0);
         out.push(Traction {
-            place: bodies.position[contact.bodies[side] as usize] + contact.arms[side],
+            place: Vector3::from(bodies.position.at(contact.bodies[side] as usize))
+                + Vector3::from(contact.arms[side]),
             force: acting.force,
-            parts: [acting.normal, signed::<S>(&acting.along)],
+            parts: [acting.normal, signed(run.dimension(), &acting.along)],
             area: point
                 .filter(|_| even)
-                .map(|_| AreaRule::default().area(S::D, contact.radius)),
+                .map(|_| AreaRule::default().area(run.dimension(), contact.radius)),
             slips: contact.slides,
         });
     }
@@ -497,29 +495,29 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
 
 /// Whether forces of points over the areas that they stand for are tractions. (In space the points
 /// of a block have more and fewer elements in turn.)
-fn has_tractions<S: Space>(s: &Simulation<S>, system: usize) -> bool {
-    let system = s.state.systems.get(system);
-    S::D == 2 || system.is_some_and(|s| s.has_equal_points())
+fn has_tractions(run: &dyn RunView, system: usize) -> bool {
+    let system = run.system(system);
+    run.dimension() == 2 || system.is_some_and(|s| s.has_equal_points())
 }
 
 /// The contacts of a system as a table. Where a surface touches by its points also pressure and
 /// shear.
-fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
-    let axes = &["x", "y", "z"][..S::D];
-    let newton = FORCE.symbol(S::D);
+fn traction_table(run: &dyn RunView, system: usize) -> String {
+    let axes = &["x", "y", "z"][..run.dimension()];
+    let newton = FORCE.symbol(run.dimension());
     let mut out: Vec<String> = axes.iter().map(|a| format!("{a} [m]")).collect();
     out.extend(axes.iter().map(|a| format!("force_{a} [{newton}]")));
     out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} [{newton}]")));
-    let even = has_tractions(s, system);
+    let even = has_tractions(run, system);
     if even {
         out.extend(["pressure [Pa]", "shear [Pa]"].map(str::to_owned));
     }
     out.push("slips".to_owned());
     let mut out = out.join(",");
     out.push('\n');
-    for traction in tractions(s, system) {
-        let mut row: Vec<f64> = (0..S::D).map(|a| traction.place[a]).collect();
-        row.extend((0..S::D).map(|a| traction.force[a]));
+    for traction in tractions(run, system) {
+        let mut row: Vec<f64> = (0..run.dimension()).map(|a| traction.place[a]).collect();
+        row.extend((0..run.dimension()).map(|a| traction.force[a]));
         row.extend(traction.parts);
         if even {
             row.extend(match traction.area {
@@ -534,16 +532,16 @@ fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
 }
 
 /// Pressure and shear along what touches by its points (2D), and where it slips.
-fn traction_chart<S: Space>(s: &Simulation<S>, system: usize, name: &str) -> Chart {
+fn traction_chart(run: &dyn RunView, system: usize, name: &str) -> Chart {
     let along = Axis::new("position x", "m");
     let mut chart = Chart::new(
         format!("Tractions along {name}"),
         along,
         Axis::new("traction", "Pa"),
     );
-    let found = tractions(s, system);
+    let found = tractions(run, system);
     let curve = |which: usize, slipping: bool| {
-        let at = |t: &Traction<S>| {
+        let at = |t: &Traction| {
             let shown = !slipping || t.slips;
             let value = t.parts[which] / t.area?;
             shown.then_some((t.place[0], value))

@@ -1,8 +1,7 @@
 //! Wear of the individual first bodies.
 
 use super::quantity::unit::{METRE, VOLUME, WEAR_RATE, WORD};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -25,27 +24,30 @@ crate::described! {
 
 /// What each first body lost: volume and depths of its scars. A friction test adds the specific
 /// wear rate.
-pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
+pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
     let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
-    for (surface, volume) in &s.state.network.worn {
-        if let Some(carried) = s.shapes.surfaces.get(*surface) {
+    let surfaces = run.surfaces();
+    for (surface, volume) in run.worn() {
+        if let Some(carried) = surfaces.get(*surface) {
             bodies.entry(carried.body).or_default().volume += volume;
         }
     }
-    for scar in s.state.scars.iter().filter(|scar| scar.volume() > 0.0) {
-        let Some(carried) = s.shapes.surfaces.get(scar.surface) else {
+    let scars = run.scars().into_iter().enumerate();
+    for (k, scar) in scars.filter(|(_, scar)| scar.volume > 0.0) {
+        let Some(carried) = surfaces.get(scar.surface) else {
             continue;
         };
         let worn = bodies.entry(carried.body).or_default();
         worn.scarred = true;
-        worn.depth = worn.depth.max(scar.deepest());
-        for (vertex, depth) in scar.vertices().filter(|(_, depth)| *depth > 0.0) {
+        worn.depth = worn.depth.max(scar.deepest);
+        let vertices = run.scar_vertices(k).into_iter();
+        for vertex in vertices.filter(|vertex| vertex.depth > 0.0) {
             worn.area += vertex.tributary;
-            worn.put += vertex.tributary * depth;
+            worn.put += vertex.tributary * vertex.depth;
         }
     }
     let summary = |(body, worn): (u32, Worn)| BodyWear {
-        body: name(s, body),
+        body: name(run, body),
         volume: worn.volume,
         depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
         depth_max: worn.scarred.then_some(worn.depth),
@@ -54,7 +56,6 @@ pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
     bodies.into_iter().map(summary).collect()
 }
 
-/// Sums over the surfaces of a body.
 #[derive(Default)]
 struct Worn {
     volume: f64,
@@ -65,13 +66,14 @@ struct Worn {
     scarred: bool,
 }
 
-fn name<S: Space>(s: &Simulation<S>, body: u32) -> String {
-    let driven = s.state.bodies.driven.iter().find(|d| d.body == body);
-    let carrier = s.state.bodies.carrier(body as usize);
-    let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
+fn name(run: &dyn RunView, body: u32) -> String {
+    let bodies = run.bodies();
+    let driven = bodies.driven.iter().find(|d| d.body == body);
+    let carrier = bodies.carrier(body as usize);
+    let system = carrier.and_then(|c| run.system(c.system as usize));
     match (driven, system) {
         (Some(driven), _) => driven.name.clone(),
         (None, Some(system)) => system.name().to_owned(),
-        (None, None) => format!("body {}", s.state.bodies.id[body as usize]),
+        (None, None) => format!("body {}", bodies.id[body as usize]),
     }
 }

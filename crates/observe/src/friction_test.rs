@@ -12,28 +12,27 @@ use super::quantity::{Findings, Role, Topic};
 use super::run_state::damage_ratio;
 use super::statistics::Column;
 use super::wear::WearSummary;
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::SlidingBody;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// Observes a friction test.
 #[derive(Debug)]
-pub struct FrictionTest<S: Space> {
+pub struct FrictionTest {
     body: SlidingBody,
     sample: Sample,
     before: State,
-    state: Followed<S>,
+    state: Followed,
 }
 
 /// What the test carries from step to step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-struct Followed<S: Space> {
+struct Followed {
     cycles: Cycles,
-    layer: Layer<S>,
+    layer: Layer,
     /// Displacement of the body so far (m).
     slide: f64,
     /// Tangential force of the last step (N; N/m).
@@ -44,16 +43,16 @@ struct Followed<S: Space> {
     load_path: f64,
 }
 
-impl<S: Space> FrictionTest<S> {
+impl FrictionTest {
     /// A test of a body with these cycles, from the current state on.
-    pub fn new(body: SlidingBody, cycles: Cycles, s: &Simulation<S>) -> Self {
+    pub fn new(body: SlidingBody, cycles: Cycles, run: &dyn RunView) -> Self {
         Self {
             body,
             sample: Sample::default(),
             before: State::default(),
             state: Followed {
                 cycles,
-                layer: Layer::new(s),
+                layer: Layer::new(run),
                 slide: 0.0,
                 force: 0.0,
                 worn: 0.0,
@@ -63,28 +62,28 @@ impl<S: Space> FrictionTest<S> {
     }
 
     /// What was cumulated so far.
-    fn cumulated(&self, s: &Simulation<S>) -> State {
+    fn cumulated(&self, run: &dyn RunView) -> State {
         State {
-            balance: self.state.layer.balance(s),
-            broken: s.state.network.bonds_broken(),
+            balance: self.state.layer.balance(run),
+            broken: run.bonds_broken(),
             worn: self.state.worn,
         }
     }
 
     /// Q, P and the slide of the last step.
-    fn measure(&self, s: &Simulation<S>) -> Sample {
-        let drive = self.body.drive(s);
+    fn measure(&self, run: &dyn RunView) -> Sample {
+        let (drive, normal) = run.rubbing(&self.body);
         Sample {
-            time: s.state.time,
+            time: run.time(),
             q: drive.force,
-            p: self.body.normal_force(s),
+            p: normal,
             slide: drive.slide,
             work: drive.work(self.state.force),
         }
     }
 }
 
-impl<S: Space> ObserverIn<S> for FrictionTest<S> {
+impl Observer for FrictionTest {
     fn name(&self) -> String {
         "friction test".to_owned()
     }
@@ -93,31 +92,31 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         false
     }
 
-    fn before_step(&mut self, s: &Simulation<S>) {
-        self.before = self.cumulated(s);
+    fn before_step(&mut self, run: &dyn RunView) {
+        self.before = self.cumulated(run);
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
-        self.sample = self.measure(s);
+    fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
+        self.sample = self.measure(run);
         let work = self.sample.work;
-        self.state.layer.follow(s, Some((&self.body, work)));
+        self.state.layer.follow(run, Some((&self.body, work)));
         self.state.worn += report.totals.worn_first;
         self.state.force = self.sample.q;
-        let after = self.cumulated(s);
+        let after = self.cumulated(run);
         let (sample, state) = (&self.sample, &mut self.state);
         state.slide += sample.slide;
-        state.load_path += s.state.network.cycle_multiplier * sample.p * sample.slide.abs();
+        state.load_path += run.cycle_multiplier() * sample.p * sample.slide.abs();
         state.cycles.add(
             sample,
-            s.options.scheme.h,
+            run.options().scheme.h,
             self.before,
             after,
-            damage_ratio(s),
+            damage_ratio(run),
         );
         // The current cycle may stand for others, see the process of cycle jumps.
-        let number = state.cycles.number(s.state.time);
+        let number = state.cycles.number(run.time());
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
-            cycle.jumped = s.state.network.cycle_multiplier as u32 - 1;
+            cycle.jumped = run.cycle_multiplier() as u32 - 1;
         }
     }
 
@@ -131,7 +130,7 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         ]
     }
 
-    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
         let Sample { q, p, .. } = self.sample;
         let ratio = if p > 0.0 { q.abs() / p } else { 0.0 };
         vec![self.state.slide, q, p, ratio]
@@ -142,10 +141,10 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         Some((cycles.number(time), cycles.total()))
     }
 
-    fn caption(&self, s: &Simulation<S>) -> Vec<String> {
+    fn caption(&self, run: &dyn RunView) -> Vec<String> {
         let cycles = &self.state.cycles;
         let mut caption = Vec::new();
-        let number = cycles.number(s.state.time);
+        let number = cycles.number(run.time());
         if number > 0 && cycles.oscillates() {
             caption.push(format!("cycle {number} of {}", cycles.total()));
         }
@@ -156,7 +155,7 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         caption
     }
 
-    fn report(&self, _: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
         let path = self.state.load_path;
         let doc = "normal force times sliding distance: the integral of P |ds| over the run";
         found.begin(Topic::Wear, Role::Detail);
@@ -164,7 +163,7 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         if let Some(mut wear) = found.get::<WearSummary>().cloned().filter(|_| path > 0.0) {
             wear.rate(path, found);
         }
-        ObserverIn::<S>::report_so_far(self, found);
+        Observer::report_so_far(self, found);
     }
 
     fn report_so_far(&self, found: &mut Findings) {
@@ -173,7 +172,7 @@ impl<S: Space> ObserverIn<S> for FrictionTest<S> {
         friction_report::report(cycles, fretting, found);
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let known = &end.uncertainty.friction_coefficient;
         figures::friction_test(&self.state.cycles, known)
     }

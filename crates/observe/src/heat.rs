@@ -11,12 +11,12 @@ use super::picture::{Picture, Shows};
 use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use checks::{ContactShares, checks};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// What the observer carries from row to row.
@@ -48,8 +48,8 @@ pub struct HeatObserver {
 
 impl HeatObserver {
     /// From the current state on; none where no heat is computed.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Option<Self> {
-        let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
+    pub fn of(run: &dyn RunView) -> Option<Self> {
+        let (heat, state) = (run.heat()?, run.heat_state()?);
         let temperatures = || state.nodes.iter().map(|n| n.temperature);
         Some(Self {
             names: heat.first_bodies.iter().map(|b| b.0.clone()).collect(),
@@ -59,24 +59,24 @@ impl HeatObserver {
                 highest: temperatures().fold(0.0, f64::max),
                 off: state.ledger.relative_residual(),
                 received: state.received.clone(),
-                time: s.state.time,
+                time: run.time(),
                 shares: ContactShares::default(),
                 row: None,
             },
         })
     }
 
-    fn row<S: Space>(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
-            return vec![f64::NAN; ObserverIn::<S>::columns(self).len()];
+    fn row(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let (Some(heat), Some(state)) = (run.heat(), run.heat_state()) else {
+            return vec![f64::NAN; Observer::columns(self).len()];
         };
-        let [highest, mean] = of_grains(s, heat, state);
+        let [highest, mean] = of_grains(run, heat, state);
         let mut row = vec![highest, mean];
         let of_body = |(_, nodes): &(String, std::ops::Range<usize>)| {
-            s.mean_temperature(nodes.clone()).unwrap_or(f64::NAN)
+            state.mean_temperature(nodes.clone()).unwrap_or(f64::NAN)
         };
         row.extend(heat.first_bodies.iter().map(of_body));
-        let span = heat.clock * (s.state.time - self.state.time);
+        let span = heat.clock * (run.time() - self.state.time);
         let flows = state.received.iter().zip(&self.state.received);
         row.extend(flows.map(|(now, before)| match span > 0.0 {
             true => (now - before) / span,
@@ -85,22 +85,22 @@ impl HeatObserver {
         row.extend(state.ledger.entries().map(|e| e.2));
         if self.circuit {
             let circuit = &state.circuit;
-            row.extend(match s.state.time > heat.start {
+            row.extend(match run.time() > heat.start {
                 true => [1.0 / circuit.conductance, circuit.voltage, circuit.current],
                 // Nothing is joined to the bodies yet.
                 false => [f64::NAN; 3],
             });
         }
-        (self.state.received, self.state.time) = (state.received.clone(), s.state.time);
+        (self.state.received, self.state.time) = (state.received.clone(), run.time());
         row
     }
 }
 
 /// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat
 /// capacities (K).
-fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f64; 2] {
-    let removed = &s.state.bodies.removed;
-    let grain = s.state.bodies.grain_flags();
+fn of_grains(run: &dyn RunView, heat: &Heat, state: &HeatState) -> [f64; 2] {
+    let removed = run.bodies().removed;
+    let grain = run.grain_flags();
     let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
     // Meshes are seen once, with the first bodies, not with each body that touches for them.
     for (_, nodes) in &heat.first_bodies {
@@ -126,17 +126,17 @@ fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f6
     [highest, mean]
 }
 
-impl<S: Space> ObserverIn<S> for HeatObserver {
+impl Observer for HeatObserver {
     fn name(&self) -> String {
         "heat".to_owned()
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        if let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) {
-            let [highest, _] = of_grains(s, heat, state);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        if let (Some(heat), Some(state)) = (run.heat(), run.heat_state()) {
+            let [highest, _] = of_grains(run, heat, state);
             self.state.highest = self.state.highest.max(highest);
             self.state.off = state.ledger.relative_residual();
-            self.state.shares.add(s, heat, state);
+            self.state.shares.add(run, heat, state);
         }
     }
 
@@ -144,7 +144,7 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         let mut all = vec![
             Column::new(
                 "temperature_max",
-                "K",
+                KELVIN,
                 "highest temperature of grains and of the surfaces of first bodies",
             ),
             Column::new(
@@ -184,25 +184,25 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         all
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         if let Some((time, row)) = &self.state.row
-            && *time == s.state.time
+            && *time == run.time()
         {
             return row.clone();
         }
-        let row = self.row(s);
-        self.state.row = Some((s.state.time, row.clone()));
+        let row = self.row(run);
+        self.state.row = Some((run.time(), row.clone()));
         row
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         let lowest = self.state.lowest;
         let above = |body: u32| {
-            s.temperature(body as usize)
+            run.temperature(body as usize)
                 .map_or(f64::NAN, |t| t - lowest)
         };
-        let balls = s.shapes.balls.iter().map(|b| above(b.body));
-        let pieces = s.shapes.pieces.iter().map(|p| above(p.body));
+        let balls = run.balls().into_iter().map(|b| above(b.body));
+        let pieces = run.pieces().into_iter().map(|p| above(p.body));
         vec![Picture {
             name: "temperature",
             shows: Shows::Values {
@@ -217,7 +217,7 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         vec!["temperature"]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let last = |name: &str| {
             let column = end.table.column(name);
             column.last().copied().filter(|x| x.is_finite())
@@ -235,7 +235,7 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
             self.state.highest
         );
         found.finding("temperatures", text, "temperatures at the end");
-        let unit = RESISTANCE.symbol(S::D);
+        let unit = RESISTANCE.symbol(end.simulation.dimension());
         if self.circuit {
             let column = end.table.column("resistance");
             let mut closed = column.iter().filter(|r| r.is_finite());
@@ -285,9 +285,9 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         found.warn(checks.warnings());
     }
 
-    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
-        let s = end.simulation;
-        let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
+    fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let run = end.simulation;
+        let (Some(heat), Some(state)) = (run.heat(), run.heat_state()) else {
             return Vec::new();
         };
         let surface = |(name, nodes): &(String, std::ops::Range<usize>)| {
@@ -313,7 +313,7 @@ impl<S: Space> ObserverIn<S> for HeatObserver {
         heat.first_bodies.iter().filter_map(surface).collect()
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let all = [
             ("highest", "temperature_max"),
             ("mean of grains", "temperature_mean"),

@@ -6,17 +6,16 @@ use super::quantity::unit::{ONE, VOLUME, WORD};
 use super::quantity::{Field, Findings, Role, Schema, Topic, field};
 use super::statistics::Column;
 use super::warning::{NOT_REACHED, Warning};
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::process::jump::Jumps;
 pub use fretwork_core::process::jump::{Jump, JumpPoint, JumpSummary};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Observes the jumps over cycles, which are a process of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct CycleJumps;
 
-impl<S: Space> ObserverIn<S> for CycleJumps {
+impl Observer for CycleJumps {
     fn name(&self) -> String {
         "cycle jumps".to_owned()
     }
@@ -29,14 +28,13 @@ impl<S: Space> ObserverIn<S> for CycleJumps {
         vec![Column::new("cycles", "", "cycles with those jumped over")]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let jumps = s.process::<Jumps>();
-        vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.state.time))]
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let jumps = run.process::<Jumps>();
+        vec![jumps.map_or(f64::NAN, |j| j.cycles_at(run.time()))]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let s = end.simulation;
-        let Some(jump) = s.process::<Jumps>().map(|j| j.outcome(s)) else {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let Some(jump) = end.simulation.jump_summary() else {
             // The process is not installed yet.
             report_none(found);
             return found.edit("jump", |q| q.lacks = None);
@@ -51,12 +49,10 @@ impl<S: Space> ObserverIn<S> for CycleJumps {
         found.keep(jump);
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
-        let s = end.simulation;
-        let jumps = s.process::<Jumps>().into_iter();
-        jumps
-            .map(|j| figures::jump::charts(&j.outcome(s), S::D))
-            .collect()
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let jumps = end.simulation.jump_summary();
+        let charts = |jumps| figures::jump::charts(&jumps, end.simulation.dimension());
+        jumps.map(charts).into_iter().collect()
     }
 
     fn set_end(&mut self, _: f64, later: bool) -> Result<(), &'static str> {

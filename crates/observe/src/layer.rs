@@ -5,9 +5,9 @@
 //! contacts: it is dissipated in contacts or stored by the other bodies. The ledger's external work
 //! is not used here, so the two balances check each other.
 
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::process::cycle::{SlidingBody, SlidingPart};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Energies since the start (J; J/m in 2D).
@@ -22,10 +22,9 @@ pub struct Balance {
 
 /// Observer of the balance.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Layer<S: Space> {
+pub struct Layer {
     /// Velocities of the driven bodies at the end of the last processed step.
-    velocity: Vec<(S::Vector, S::Spin)>,
+    velocity: Vec<(Vector3<f64>, Vector3<f64>)>,
     /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger
     /// includes.
     apart: f64,
@@ -34,35 +33,38 @@ pub struct Layer<S: Space> {
     external: f64,
 }
 
-impl<S: Space> Layer<S> {
+impl Layer {
     /// Starts from the current state.
-    pub fn new(s: &Simulation<S>) -> Self {
+    pub fn new(run: &dyn RunView) -> Self {
         Self {
-            velocity: velocities(s),
+            velocity: velocities(run),
             apart: 0.0,
             other: 0.0,
-            external: s.state.energy.external_work,
+            external: run.energies().external_work,
         }
     }
 
     /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given,
     /// which is kept apart. Where the body of the test deforms, the work of all other drives is
     /// that of the ledger.
-    pub fn follow(&mut self, s: &Simulation<S>, test: Option<(&SlidingBody, f64)>) {
-        let external = s.state.energy.external_work;
+    pub fn follow(&mut self, run: &dyn RunView, test: Option<(&SlidingBody, f64)>) {
+        let external = run.energies().external_work;
         let deforms = test.filter(|(body, _)| matches!(body.part, SlidingPart::System { .. }));
         if let Some((_, work)) = deforms {
             self.other += external - self.external - work;
         }
         self.external = external;
-        let (h, theta) = (s.options.scheme.h, s.options.scheme.theta);
-        let now = velocities(s);
-        let steps = s.state.started.iter().zip(&now).zip(&s.state.received);
-        for (d, (((v0, w0), (v1, w1)), (impulse, moment))) in steps.enumerate() {
-            let b = s.state.bodies.driven[d].body as usize;
+        let (h, theta) = (run.options().scheme.h, run.options().scheme.theta);
+        let now = velocities(run);
+        let (bodies, gravity) = (run.bodies(), Vector3::from(run.gravity()));
+        let steps = run.started().into_iter().zip(&now).zip(run.received());
+        for (d, ((started, (v1, w1)), received)) in steps.enumerate() {
+            let [v0, w0] = started.map(Vector3::from);
+            let [impulse, moment] = received.map(Vector3::from);
+            let b = bodies.driven[d].body as usize;
             let (v, w) = (
-                *v0 * (1.0 - theta) + *v1 * theta,
-                *w0 * (1.0 - theta) + *w1 * theta,
+                v0 * (1.0 - theta) + *v1 * theta,
+                w0 * (1.0 - theta) + *w1 * theta,
             );
             if deforms.is_none() {
                 self.other -= impulse.dot(&v) + moment.dot(&w);
@@ -70,41 +72,40 @@ impl<S: Space> Layer<S> {
             if let Some((body, _)) = test.filter(|(body, _)| body.part == SlidingPart::Driven(d)) {
                 self.other += impulse[body.along] * v[body.along];
             }
-            let (dv, dw) = (*v1 - *v0, *w1 - *w0);
-            self.apart -= h * s.state.bodies.mass[b] * s.state.gravity.dot(&v);
+            let (dv, dw) = (*v1 - v0, *w1 - w0);
+            self.apart -= h * bodies.mass[b] * gravity.dot(&v);
             self.apart += (theta - 0.5)
-                * (s.state.bodies.mass[b] * dv.dot(&dv)
-                    + dw.dot(&s.state.bodies.angular_momentum(b, &dw)));
+                * (bodies.mass[b] * dv.dot(&dv) + dw.dot(&angular_momentum(run, b, &dw)));
         }
         self.velocity = now;
     }
 
     /// The balance at the end of the last processed step.
-    pub fn balance(&self, s: &Simulation<S>) -> Balance {
-        let e = &s.state.energy;
-        let driven = s.state.bodies.driven.iter().zip(&self.velocity);
+    pub fn balance(&self, run: &dyn RunView) -> Balance {
+        let (e, bodies) = (run.energies(), run.bodies());
+        let driven = bodies.driven.iter().zip(&self.velocity);
         let kinetic: f64 = driven
             .map(|(driven, (v, w))| {
                 let b = driven.body as usize;
-                0.5 * (s.state.bodies.mass[b] * v.dot(v)
-                    + w.dot(&s.state.bodies.angular_momentum(b, w)))
+                0.5 * (bodies.mass[b] * v.dot(v) + w.dot(&angular_momentum(run, b, w)))
             })
             .sum();
         let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
         Balance {
             // Work of the projection against loads does not pass through a contact.
-            taken: e.dissipated() + e.scheme + kept + s.state.projection_work - self.apart,
+            taken: e.dissipated() + e.scheme + kept + run.projection_work() - self.apart,
             other: self.other,
         }
     }
 }
 
-fn velocities<S: Space>(s: &Simulation<S>) -> Vec<(S::Vector, S::Spin)> {
-    let of = |body: u32| {
-        (
-            s.state.bodies.velocity[body as usize],
-            s.state.bodies.spin[body as usize],
-        )
-    };
-    s.state.bodies.driven.iter().map(|d| of(d.body)).collect()
+fn velocities(run: &dyn RunView) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+    let bodies = run.bodies();
+    let of = |body: usize| (bodies.velocity.at(body).into(), bodies.spin.at(body).into());
+    let driven = bodies.driven.iter();
+    driven.map(|d| of(d.body as usize)).collect()
+}
+
+fn angular_momentum(run: &dyn RunView, body: usize, spin: &Vector3<f64>) -> Vector3<f64> {
+    run.angular_momentum(body, (*spin).into()).into()
 }

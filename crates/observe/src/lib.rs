@@ -48,7 +48,6 @@ pub mod strain;
 pub mod stress;
 pub mod summary;
 pub mod tractions;
-mod typed;
 pub mod warning;
 pub mod wear;
 

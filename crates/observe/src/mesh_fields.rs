@@ -3,10 +3,10 @@
 //! touches.
 
 use super::tractions::{SurfaceState, Zone, signed};
-use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::bodies::{DeformedMesh, von_mises};
 use fretwork_core::unit::AREA;
+use fretwork_core::view::{RunView, SystemView};
+use nalgebra::Vector3;
 
 /// What the values of a field stand at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,73 +36,54 @@ pub struct MeshField<T> {
 
 /// A body with a mesh as it is now.
 #[derive(Clone, Debug)]
-pub struct BodyState<S: Space> {
-    mesh: DeformedMesh<S>,
-    velocity: Vec<S::Vector>,
+pub struct BodyState {
+    mesh: DeformedMesh<Vector3<f64>>,
+    velocity: Vec<Vector3<f64>>,
 }
 
-impl<S: Space> BodyState<S> {
+impl BodyState {
     /// Of a system; none where it has no mesh.
-    pub fn of(system: &dyn DynamicalSystem<S>) -> Option<Self> {
+    pub fn of(system: &dyn SystemView) -> Option<Self> {
         let mesh = system.deformed_mesh()?;
         let mut velocity = system.mesh_velocity();
-        velocity.resize(mesh.points.len(), S::Vector::zero());
+        velocity.resize(mesh.points.len(), Vector3::zeros());
         Some(Self { mesh, velocity })
     }
 
     /// Its mesh.
-    pub fn mesh(&self) -> &DeformedMesh<S> {
+    pub fn mesh(&self) -> &DeformedMesh<Vector3<f64>> {
         &self.mesh
     }
 }
 
 /// Grains that deform as one mesh, as it is now.
-#[derive(Clone, Debug)]
-pub struct GrainsState<S: Space> {
-    mesh: DeformedMesh<S>,
-    velocity: Vec<S::Vector>,
+#[derive(Clone, Debug, Default)]
+pub struct GrainsState {
+    mesh: DeformedMesh<Vector3<f64>>,
+    velocity: Vec<Vector3<f64>>,
     /// Points at the start of the run, without load (m), and their way from there.
-    start: Vec<S::Vector>,
-    travel: Vec<S::Vector>,
+    start: Vec<Vector3<f64>>,
+    travel: Vec<Vector3<f64>>,
     /// By point and by element the identity of the body.
     bodies: [Vec<i64>; 2],
 }
 
-impl<S: Space> Default for GrainsState<S> {
-    fn default() -> Self {
-        Self {
-            mesh: DeformedMesh {
-                points: Vec::new(),
-                displacement: Vec::new(),
-                elements: Vec::new(),
-                boundary: Vec::new(),
-                stress: Vec::new(),
-            },
-            velocity: Vec::new(),
-            start: Vec::new(),
-            travel: Vec::new(),
-            bodies: [Vec::new(), Vec::new()],
-        }
-    }
-}
-
-impl<S: Space> GrainsState<S> {
+impl GrainsState {
     /// Of the systems of these indices; those that have no mesh are left out. Grains that left the
     /// period of the scene are shown in it.
-    pub fn of(s: &Simulation<S>, systems: &[usize]) -> Self {
+    pub fn of(run: &dyn RunView, systems: &[usize]) -> Self {
         let mut out = Self::default();
         for k in systems {
-            let (Some(system), [body, ..]) = (s.state.systems.get(*k), s.state.systems.bodies(*k))
-            else {
+            let (Some(system), [body, ..]) = (run.system(*k), run.bodies_of_system(*k)) else {
                 continue;
             };
             let (Some(mesh), at) = (
                 system.deformed_mesh(),
-                s.state.bodies.position[*body as usize],
+                Vector3::from(run.bodies().position.at(*body as usize)),
             ) else {
                 continue;
             };
-            let shift = s.shapes.periodic.wrapped(at) - at;
+            let shift = run.periodic().wrapped(at) - at;
             let (start, now) = (system.mesh_at_start(), &mesh.points);
             let moved = now.iter().zip(&mesh.displacement).zip(&start);
             out.travel
@@ -110,8 +91,8 @@ impl<S: Space> GrainsState<S> {
             out.start.extend(start);
             out.velocity.extend(system.mesh_velocity());
             let first = out.mesh.points.len() as u32;
-            let id = s.state.bodies.id[*body as usize] as i64;
-            let cells = mesh.elements.len() / (S::D + 1);
+            let id = run.bodies().id[*body as usize] as i64;
+            let cells = mesh.elements.len() / (run.dimension() + 1);
             for (ids, count) in out.bodies.iter_mut().zip([mesh.points.len(), cells]) {
                 ids.resize(ids.len() + count, id);
             }
@@ -125,7 +106,7 @@ impl<S: Space> GrainsState<S> {
     }
 
     /// Points at the start of the run, without load (m).
-    pub fn start(&self) -> &[S::Vector] {
+    pub fn start(&self) -> &[Vector3<f64>] {
         &self.start
     }
 
@@ -141,36 +122,36 @@ impl<S: Space> GrainsState<S> {
 }
 
 /// Numbers of vectors, three each.
-pub fn triples<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
-    vectors.iter().flat_map(V::padded).collect()
+pub fn triples(vectors: &[Vector3<f64>]) -> Vec<f64> {
+    vectors.iter().flatten().copied().collect()
 }
 
 /// A mesh that deforms, with the velocity of its points.
-trait Meshed<S: Space> {
-    fn mesh(&self) -> &DeformedMesh<S>;
-    fn velocity(&self) -> &[S::Vector];
+trait Meshed {
+    fn mesh(&self) -> &DeformedMesh<Vector3<f64>>;
+    fn velocity(&self) -> &[Vector3<f64>];
 }
 
-impl<S: Space> Meshed<S> for BodyState<S> {
-    fn mesh(&self) -> &DeformedMesh<S> {
+impl Meshed for BodyState {
+    fn mesh(&self) -> &DeformedMesh<Vector3<f64>> {
         &self.mesh
     }
-    fn velocity(&self) -> &[S::Vector] {
+    fn velocity(&self) -> &[Vector3<f64>] {
         &self.velocity
     }
 }
 
-impl<S: Space> Meshed<S> for GrainsState<S> {
-    fn mesh(&self) -> &DeformedMesh<S> {
+impl Meshed for GrainsState {
+    fn mesh(&self) -> &DeformedMesh<Vector3<f64>> {
         &self.mesh
     }
-    fn velocity(&self) -> &[S::Vector] {
+    fn velocity(&self) -> &[Vector3<f64>] {
         &self.velocity
     }
 }
 
 /// What bodies of finite elements and grains have alike: velocity and stress.
-fn of_meshes<S: Space, T: Meshed<S>>() -> [MeshField<T>; 3] {
+fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
     [
         MeshField {
             name: "velocity",
@@ -200,37 +181,37 @@ fn of_meshes<S: Space, T: Meshed<S>>() -> [MeshField<T>; 3] {
 }
 
 /// Fields inside a body of finite elements.
-pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
+pub fn of_bodies() -> [MeshField<BodyState>; 4] {
     let [velocity, stress, von_mises] = of_meshes();
-    let displacement = MeshField::<BodyState<S>> {
+    let displacement = MeshField {
         name: "displacement",
         unit: "m",
         doc: "displacement from the place without load",
         at: At::Points,
         width: 3,
-        values: |b| triples(&b.mesh.displacement),
+        values: |b: &BodyState| triples(&b.mesh.displacement),
     };
     [displacement, velocity, stress, von_mises]
 }
 
 /// Fields inside grains that deform.
-pub fn of_grains<S: Space>() -> [MeshField<GrainsState<S>>; 5] {
+pub fn of_grains() -> [MeshField<GrainsState>; 5] {
     let [velocity, stress, von_mises] = of_meshes();
-    let displacement = MeshField::<GrainsState<S>> {
+    let displacement = MeshField {
         name: "displacement",
         unit: "m",
         doc: "way of the point since the start of the run, with the motion of the grain",
         at: At::Points,
         width: 3,
-        values: |g| triples(&g.travel),
+        values: |g: &GrainsState| triples(&g.travel),
     };
-    let deformation = MeshField::<GrainsState<S>> {
+    let deformation = MeshField {
         name: "deformation",
         unit: "m",
         doc: "displacement of the point against the frame that moves with the grain, in world axes",
         at: At::Points,
         width: 3,
-        values: |g| triples(&g.mesh.displacement),
+        values: |g: &GrainsState| triples(&g.mesh.displacement),
     };
     [displacement, deformation, velocity, stress, von_mises]
 }
@@ -246,7 +227,7 @@ fn in_vtk_order(stress: &[[f64; 6]]) -> Vec<f64> {
 }
 
 /// Fields along a surface that touches.
-pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
+pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
     [
         MeshField {
             name: "displacement",
@@ -282,7 +263,7 @@ pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
         },
         MeshField {
             name: "area",
-            unit: AREA.symbol(S::D),
+            unit: AREA.symbol(dimension),
             doc: "area (length in 2D) that the point stands for: pressure times area sums up to the force",
             at: At::Points,
             width: 1,
@@ -313,7 +294,7 @@ pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
             values: |s| {
                 s.facets()
                     .iter()
-                    .map(|f| signed::<S>(&f.tangential))
+                    .map(|f| signed(s.dimension, &f.tangential))
                     .collect()
             },
         },

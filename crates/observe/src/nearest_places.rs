@@ -2,8 +2,7 @@
 //! be found.
 
 use super::quantity::unit::ONE;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// Share of the load that may act on nearest places without a warning: that of a touch in passing.
@@ -33,11 +32,9 @@ crate::described! {
 
 impl NearestPlaces {
     /// Of the last step of a simulation.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
+    pub fn of(run: &dyn RunView) -> Self {
         let mut out = Self::default();
-        let per_time = 1.0 / s.options.scheme.h;
-        for (contact, mean) in s.acted_on_mean_places() {
-            let force = contact.impulse.norm() * per_time;
+        for (force, mean) in run.forces_on_points() {
             if force > 0.0 {
                 out.of += 1;
                 out.all += force;

@@ -16,8 +16,8 @@ use super::quantity::unit::{ONE, WORD};
 use super::quantity::{Findings, Topic};
 use super::tractions::loaded;
 use super::warning::Warning;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -101,10 +101,10 @@ impl Resolution {
     /// Adds a row of the statistics: the state of a system after its last step, with the heat of
     /// friction of all contacts so far (J; J/m). `rolls` says of each system whether its material
     /// passes.
-    pub fn add<S: Space>(&mut self, s: &Simulation<S>, system: usize, rolls: &[bool], heat: f64) {
+    pub fn add(&mut self, run: &dyn RunView, system: usize, rolls: &[bool], heat: f64) {
         let made = (heat - self.before).max(0.0);
         self.before = heat;
-        let Some(strip) = Strip::of(s, system) else {
+        let Some(strip) = Strip::of(run, system) else {
             return;
         };
         let passes = |system: Option<usize>| {
@@ -218,10 +218,10 @@ struct Strip {
 
 /// A point in contact.
 #[derive(Clone, Copy, Debug)]
-struct Loaded<S: Space> {
-    place: S::Vector,
+struct Loaded {
+    place: Vector3<f64>,
     /// Normal of what touches it times the load, and the load (N; N/m).
-    pushes: S::Vector,
+    pushes: Vector3<f64>,
     load: f64,
     slips: bool,
 }
@@ -234,29 +234,31 @@ type Point = (u32, usize);
 
 impl Strip {
     /// Of a system and the body that carries most of its load; none where it touches many bodies.
-    fn of<S: Space>(s: &Simulation<S>, system: usize) -> Option<Self> {
+    fn of(run: &dyn RunView, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded<S>>> = BTreeMap::new();
+        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded>> = BTreeMap::new();
         let mut total = 0.0;
-        for (k, acting) in loaded(s, system).enumerate() {
+        let bodies = run.bodies();
+        for (k, acting) in loaded(run, system).into_iter().enumerate() {
             let other = acting.contact.bodies[1 - acting.side];
-            let carrier = s.state.bodies.carrier(other as usize);
+            let carrier = bodies.carrier(other as usize);
             let counterpart = carrier.map_or((1, other), |c| (0, c.system));
             let own = acting.contact.bodies[acting.side];
             let load = acting.force.norm();
             total += load;
             let candidate = acting.contact.bodies[0];
-            let is_point = s.state.bodies.carrier(candidate as usize).is_some();
+            let is_point = bodies.carrier(candidate as usize).is_some();
             let point = (candidate, if is_point { 0 } else { k });
             let points = all.entry(counterpart).or_default();
             let of_point = points.entry(point).or_insert(Loaded {
-                place: s.state.bodies.position[own as usize] + acting.contact.arms[acting.side],
-                pushes: S::Vector::zero(),
+                place: Vector3::from(bodies.position.at(own as usize))
+                    + Vector3::from(acting.contact.arms[acting.side]),
+                pushes: Vector3::zeros(),
                 load: 0.0,
                 slips: true,
             });
             let towards = if acting.side == 0 { load } else { -load };
-            of_point.pushes += acting.contact.normal * towards;
+            of_point.pushes += Vector3::from(acting.contact.normal) * towards;
             of_point.load += load;
             of_point.slips &= acting.contact.slides;
         }
@@ -264,12 +266,12 @@ impl Strip {
             let system = (kind == 0).then_some(other as usize);
             (system, points.into_values().collect::<Vec<_>>())
         });
-        let sum = |list: &[Loaded<S>]| list.iter().map(|c| c.load).sum::<f64>();
+        let sum = |list: &[Loaded]| list.iter().map(|c| c.load).sum::<f64>();
         let (other, most) = lists.max_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b)))?;
         if sum(&most) < MOST * total {
             return None;
         }
-        let strip = Self::across(most)?;
+        let strip = Self::across(run.dimension(), most)?;
         Some(Self {
             system: other,
             ..strip
@@ -277,7 +279,7 @@ impl Strip {
     }
 
     /// Of the points that touch one counterpart; none where these are few.
-    fn across<S: Space>(mut most: Vec<Loaded<S>>) -> Option<Self> {
+    fn across(dimension: usize, mut most: Vec<Loaded>) -> Option<Self> {
         let largest = most.iter().map(|c| c.load).fold(0.0, f64::max);
         most.retain(|c| c.load >= TRACE * largest);
         if most.len() < FEWEST {
@@ -285,7 +287,7 @@ impl Strip {
         }
         let count = most.len() as f64;
         let slipping = most.iter().filter(|c| c.slips).count() as f64;
-        if S::D == 3 {
+        if dimension == 3 {
             let diameter = |n: f64| 2.0 * (n / std::f64::consts::PI).sqrt();
             let (across, stick) = (diameter(count), diameter(count - slipping));
             return Some(Self {
@@ -296,8 +298,8 @@ impl Strip {
             });
         }
         // In the order along the mean tangent.
-        let normal = most.iter().fold(S::Vector::zero(), |sum, c| sum + c.pushes);
-        let along = |c: &Loaded<S>| c.place[0] * normal[1] - c.place[1] * normal[0];
+        let normal = most.iter().fold(Vector3::zeros(), |sum, c| sum + c.pushes);
+        let along = |c: &Loaded| c.place[0] * normal[1] - c.place[1] * normal[0];
         most.sort_by(|a, b| along(a).total_cmp(&along(b)));
         let begins = |k: usize| most[k].slips && (k == 0 || !most[k - 1].slips);
         let strips = (0..most.len()).filter(|k| begins(*k)).count().max(1);
@@ -313,8 +315,6 @@ impl Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_core::geometry::space::Dim2;
-    use nalgebra::Vector2;
 
     fn of(heat_error: f64, slip: Option<f64>) -> Resolution {
         Resolution {
@@ -346,18 +346,17 @@ mod tests {
 
     /// Points along a line in the plane, loaded as in Hertz' contact, of which the outer ones slip,
     /// with traces beyond.
-    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded<Dim2>> {
-        let normal = Vector2::new(-towards[1], towards[0]);
+    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded> {
+        let normal = Vector3::new(-towards[1], towards[0], 0.0);
         let of = |k: i32, load: f64, slips: bool| Loaded {
-            place: Vector2::new(towards[0], towards[1]) * (1e-3 * f64::from(k)),
+            place: Vector3::new(towards[0], towards[1], 0.0) * (1e-3 * f64::from(k)),
             pushes: normal * load,
             load,
             slips,
         };
         let load = |k: i32| (1.0 - (f64::from(k) / 20.0).powi(2)).sqrt();
         // Sticks from -9 to 9, slips in ten elements at either side.
-        let mut points: Vec<Loaded<Dim2>> =
-            (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
+        let mut points: Vec<Loaded> = (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
         points.extend((0..traces as i32).map(|k| of(20 + k, 1e-7, k % 2 == 0)));
         // In no order.
         points.sort_by_key(|p| ((p.place[0] + p.place[1]) * 1e6) as i64 * 7919 % 1009);
@@ -370,7 +369,7 @@ mod tests {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         for towards in [[1.0, 0.0], [0.0, 1.0], [half, -half], [-1.0, 0.0]] {
             for traces in [0, 80] {
-                let strip = Strip::across(along_a_line(towards, traces)).unwrap();
+                let strip = Strip::across(2, along_a_line(towards, traces)).unwrap();
                 let counts = (strip.across, strip.stick, strip.slip);
                 assert_eq!(counts, (39.0, 19.0, 10.0), "{towards:?}, {traces} traces");
             }

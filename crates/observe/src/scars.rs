@@ -5,10 +5,9 @@ use super::output::Output;
 use super::quantity::unit::{METRE, VOLUME, WORD};
 use super::quantity::{Findings, Role, Topic, quantity};
 use super::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
-use fretwork_core::wear::{Scar, ScarForm, shape};
+use crate::observer::{Observer, RunEnd};
+use fretwork_core::view::{RunView, ScarView};
+use fretwork_core::wear::{ScarForm, shape};
 use serde::Serialize;
 
 crate::described! {
@@ -39,13 +38,13 @@ crate::described! {
 }
 
 impl ScarSummary {
-    fn of<S: Space>(scar: &Scar<S>) -> Self {
-        let o = shape::outline(&scar.along());
+    fn of(run: &dyn RunView, place: usize, scar: &ScarView<'_>) -> Self {
+        let o = shape::outline(&run.scar_profile(place));
         Self {
-            body: scar.name.clone(),
-            volume: scar.volume(),
-            depth: scar.deepest(),
-            deepest_at: scar.deepest_at()[0],
+            body: scar.name.to_owned(),
+            volume: scar.volume,
+            depth: scar.deepest,
+            deepest_at: scar.deepest_at[0],
             form: o.form,
             from: o.from.is_finite().then_some(o.from),
             to: o.to.is_finite().then_some(o.to),
@@ -85,14 +84,18 @@ pub struct Scars {
 
 impl Scars {
     /// Of the surfaces of a simulation that follow their wear.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
+    pub fn of(run: &dyn RunView) -> Self {
         Self {
-            names: s.state.scars.iter().map(|scar| scar.name.clone()).collect(),
+            names: run
+                .scars()
+                .iter()
+                .map(|scar| scar.name.to_owned())
+                .collect(),
         }
     }
 }
 
-impl<S: Space> ObserverIn<S> for Scars {
+impl Observer for Scars {
     fn name(&self) -> String {
         "scars".to_owned()
     }
@@ -112,14 +115,15 @@ impl<S: Space> ObserverIn<S> for Scars {
         self.names.iter().flat_map(two).collect()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let two = |scar: &Scar<S>| [scar.volume(), scar.deepest()];
-        s.state.scars.iter().flat_map(two).collect()
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let scars = run.scars().into_iter();
+        scars.flat_map(|scar| [scar.volume, scar.deepest]).collect()
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let scars = end.simulation.state.scars.iter();
-        let scars: Vec<ScarSummary> = scars.map(ScarSummary::of).collect();
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let run = end.simulation;
+        let scars = run.scars().into_iter().enumerate();
+        let scars: Vec<ScarSummary> = scars.map(|(k, s)| ScarSummary::of(run, k, &s)).collect();
         found.begin(Topic::Wear, Role::Detail);
         found.parts::<ScarSummary>("scars", &scars, "scars of the surfaces that recede");
         for (k, scar) in scars.iter().enumerate().filter(|(_, s)| s.volume > 0.0) {
@@ -136,13 +140,13 @@ impl<S: Space> ObserverIn<S> for Scars {
     }
 
     /// The tables of all scars, `scar_NAME.csv`.
-    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
-        let s = end.simulation;
-        let file = |scar: &Scar<S>| Output::Text {
-            file: format!("{}.csv", file_name(&scar.name)),
-            text: table(s, scar),
+    fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let run = end.simulation;
+        let file = |(place, scar): (usize, ScarView<'_>)| Output::Text {
+            file: format!("{}.csv", file_name(scar.name)),
+            text: table(run, place),
         };
-        s.state.scars.iter().map(file).collect()
+        run.scars().into_iter().enumerate().map(file).collect()
     }
 
     fn file_names(&self) -> Vec<String> {
@@ -152,34 +156,36 @@ impl<S: Space> ObserverIn<S> for Scars {
             .collect()
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         figures::scars::charts(end.simulation)
     }
 }
 
 /// The scar as a table: positions in the body's frame, current and initial height, depth (m). A
 /// case can read it as the `file` of a `Profile`.
-pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
-    let across = if S::D == 2 { "x [m]" } else { "x [m],y [m]" };
+pub fn table(run: &dyn RunView, scar: usize) -> String {
+    let dimension = run.dimension();
+    let across = if dimension == 2 {
+        "x [m]"
+    } else {
+        "x [m],y [m]"
+    };
     let mut text = format!("{across},z [m],z_first [m],depth [m]\n");
-    let Some(shape) = s.shapes.surfaces[scar.surface].shape.receding() else {
+    let Some(sign) = run.scar_sign(scar) else {
         return text;
     };
-    let mut rows: Vec<(S::Vector, f64)> = scar.vertices().map(|(v, d)| (v.at, d)).collect();
+    let vertices = run.scar_vertices(scar).into_iter();
+    let mut rows: Vec<([f64; 3], f64)> = vertices.map(|v| (v.at, v.depth)).collect();
     let repeated = rows.first().map(|r| r.1);
-    // The scar of a surface that deforms is not in the frame of the surface.
-    let (scar_at, shape_at) = (rows.first().map(|r| r.0), shape.vertices());
-    let end = shape.end().zip(scar_at).zip(shape_at.first());
-    let end = end.map(|((end, first), v)| end + (first - v.at));
-    rows.extend(end.zip(repeated));
+    rows.extend(run.scar_end(scar).zip(repeated));
     // From left to right, independent of the orientation of the profile.
-    if S::D == 2 && shape.sign() < 0.0 {
+    if dimension == 2 && sign < 0.0 {
         rows.reverse();
     }
     for (at, depth) in rows {
-        let first = at[S::D - 1];
-        let places = (0..S::D - 1).map(|k| at[k]);
-        let heights = [first - shape.sign() * depth, first, depth];
+        let first = at[dimension - 1];
+        let places = at[..dimension - 1].iter().copied();
+        let heights = [first - sign * depth, first, depth];
         let numbers: Vec<String> = places.chain(heights).map(|x| format!("{x:e}")).collect();
         text += &(numbers.join(",") + "\n");
     }

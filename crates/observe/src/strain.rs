@@ -9,44 +9,43 @@
 
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
-use crate::typed::ObserverIn;
+use crate::observer::Observer;
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::contact::detect::centre;
 use fretwork_core::geometry::grid::{Balls, pairs};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
-use nalgebra::{DMatrix, Matrix3};
+use fretwork_core::view::RunView;
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A neighbour: its index among the grains' balls, and the vector to it at the reference time (m).
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Neighbour<V> {
+struct Neighbour {
     ball: u32,
-    vector: V,
+    vector: Vector3<f64>,
     /// Periodic shift of the difference of positions (m).
-    image: V,
+    image: Vector3<f64>,
 }
 
 /// The neighbours of each ball at the reference time.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Strain<S: Space> {
-    around: Vec<Vec<Neighbour<S::Vector>>>,
+pub struct Strain {
+    /// Number of dimensions.
+    dimension: usize,
+    around: Vec<Vec<Neighbour>>,
 }
 
-impl<S: Space> Strain<S> {
+impl Strain {
     /// Takes the current state as reference. Neighbours of a grain are those with a gap below a
     /// mean diameter: two shells, so that no single neighbour dominates.
-    pub fn new(s: &Simulation<S>) -> Self {
-        let balls = &s.shapes.balls;
-        let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.state.bodies)).collect();
+    pub fn new(run: &dyn RunView) -> Self {
+        let balls = run.balls();
+        let centres: Vec<Vector3<f64>> = balls.iter().map(|b| b.centre.into()).collect();
         let radii: Vec<f64> = balls.iter().map(|b| b.radius).collect();
-        let grain = s.state.bodies.grain_flags();
+        let grain = run.grain_flags();
         let counts = |b: u32| grain[balls[b as usize].body as usize];
         let grains = balls.iter().filter(|b| grain[b.body as usize]);
         let (sum, n) = grains.fold((0.0, 0.0), |(sum, n), b| (sum + 2.0 * b.radius, n + 1.0));
         let reach = if n > 0.0 { sum / n } else { 0.0 };
-        let periodic = &s.shapes.periodic;
+        let periodic = run.periodic();
         let mut around = vec![Vec::new(); balls.len()];
         let all = Balls {
             centres: &centres,
@@ -66,24 +65,21 @@ impl<S: Space> Strain<S> {
             around[a as usize].push(one(b, 1.0));
             around[b as usize].push(one(a, -1.0));
         }
-        Self { around }
+        let dimension = run.dimension();
+        Self { dimension, around }
     }
 
     /// Shear of each ball since the reference time; NaN for balls of first bodies, and if the
     /// neighbours do not span the space.
-    pub fn shear(&self, s: &Simulation<S>) -> Vec<f64> {
-        let now: Vec<S::Vector> = s
-            .shapes
-            .balls
-            .iter()
-            .map(|b| centre(b, &s.state.bodies))
-            .collect();
+    pub fn shear(&self, run: &dyn RunView) -> Vec<f64> {
+        let balls = run.balls().into_iter();
+        let now: Vec<Vector3<f64>> = balls.map(|b| b.centre.into()).collect();
         let all = self.around.iter().enumerate();
-        let of = |(a, around): (usize, &Vec<Neighbour<S::Vector>>)| {
+        let of = |(a, around): (usize, &Vec<Neighbour>)| {
             let pairs = around
                 .iter()
                 .map(|n| (n.vector, now[n.ball as usize] - now[a] + n.image));
-            shear::<S>(pairs)
+            shear(self.dimension, pairs)
         };
         all.map(of).collect()
     }
@@ -92,23 +88,23 @@ impl<S: Space> Strain<S> {
 /// Observes the local shear since the second phase began, or the start: a column of the grains, and
 /// a picture.
 #[derive(Clone, Debug)]
-pub struct LocalShear<S: Space> {
-    strain: Strain<S>,
+pub struct LocalShear {
+    strain: Strain,
     /// The shear that is drawn darkest.
     top: f64,
 }
 
-impl<S: Space> LocalShear<S> {
+impl LocalShear {
     /// Counts from the current state, with the shear that is drawn darkest.
-    pub fn new(s: &Simulation<S>, top: f64) -> Self {
+    pub fn new(run: &dyn RunView, top: f64) -> Self {
         Self {
-            strain: Strain::new(s),
+            strain: Strain::new(run),
             top,
         }
     }
 }
 
-impl<S: Space> ObserverIn<S> for LocalShear<S> {
+impl Observer for LocalShear {
     fn name(&self) -> String {
         "local shear".to_owned()
     }
@@ -117,8 +113,8 @@ impl<S: Space> ObserverIn<S> for LocalShear<S> {
         false
     }
 
-    fn begin(&mut self, s: &Simulation<S>) {
-        self.strain = Strain::new(s);
+    fn begin(&mut self, run: &dyn RunView) {
+        self.strain = Strain::new(run);
     }
 
     fn grain_columns(&self) -> Vec<Column> {
@@ -127,15 +123,15 @@ impl<S: Space> ObserverIn<S> for LocalShear<S> {
         vec![Column::new("shear", "", doc)]
     }
 
-    fn grain_values(&self, s: &Simulation<S>) -> Vec<Vec<f64>> {
-        vec![self.strain.shear(s)]
+    fn grain_values(&self, run: &dyn RunView) -> Vec<Vec<f64>> {
+        vec![self.strain.shear(run)]
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "shear",
             shows: Shows::Values {
-                values: self.strain.shear(s),
+                values: self.strain.shear(run),
                 label: "local shear",
                 top: self.top,
             },
@@ -153,17 +149,17 @@ impl<S: Space> ObserverIn<S> for LocalShear<S> {
 }
 
 /// The shear of the gradient that carries the first of each pair of vectors into the second.
-fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
+fn shear(dimension: usize, pairs: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) -> f64 {
     let (mut moment, mut moved) = (Matrix3::zeros(), Matrix3::zeros());
     for (before, after) in pairs {
-        for i in 0..S::D {
-            for j in 0..S::D {
+        for i in 0..dimension {
+            for j in 0..dimension {
                 moment[(i, j)] += before[i] * before[j];
                 moved[(i, j)] += after[i] * before[j];
             }
         }
     }
-    let square = |m: &Matrix3<f64>| DMatrix::from_fn(S::D, S::D, |i, j| m[(i, j)]);
+    let square = |m: &Matrix3<f64>| DMatrix::from_fn(dimension, dimension, |i, j| m[(i, j)]);
     let (moment, moved) = (square(&moment), square(&moved));
     // Neighbours on a line do not determine the gradient across it.
     let spread = moment.clone().symmetric_eigenvalues();
@@ -185,23 +181,22 @@ fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_core::geometry::space::{Dim2, Dim3};
-    use nalgebra::{Matrix2, Rotation2, Rotation3, Vector2, Vector3};
+    use nalgebra::Rotation3;
 
     /// A simple shear, rotated and dilated, gives its own amount at small and large strain, and a
     /// pure rotation gives zero.
     #[test]
     fn simple_shear_has_its_amount() {
-        let star: Vec<Vector2<f64>> = (0..7)
+        let star: Vec<Vector3<f64>> = (0..7)
             .map(|k| {
                 let (sin, cos) = (0.9 * f64::from(k)).sin_cos();
-                Vector2::new(cos, sin) * (1.0 + 0.1 * f64::from(k))
+                Vector3::new(cos, sin, 0.0) * (1.0 + 0.1 * f64::from(k))
             })
             .collect();
         for amount in [0.0, 1e-3, 0.4, 3.0] {
-            let turn = Rotation2::new(0.7).matrix() * 1.2;
-            let f = turn * Matrix2::new(1.0, amount, 0.0, 1.0);
-            let got = shear::<Dim2>(star.iter().map(|x| (*x, f * x)));
+            let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.7).matrix() * 1.2;
+            let f = turn * Matrix3::new(1.0, amount, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+            let got = shear(2, star.iter().map(|x| (*x, f * x)));
             assert!((got - amount).abs() < 1e-9, "{got} in place of {amount}");
         }
         let ball: Vec<Vector3<f64>> = (0..20)
@@ -216,14 +211,14 @@ mod tests {
             .collect();
         let turn = Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix() * 0.8;
         let f = turn * Matrix3::new(1.0, 0.0, 0.6, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-        let got = shear::<Dim3>(ball.iter().map(|x| (*x, f * x)));
+        let got = shear(3, ball.iter().map(|x| (*x, f * x)));
         assert!((got - 0.6).abs() < 1e-9, "{got}");
     }
 
     #[test]
     fn neighbours_on_a_line_give_nothing() {
-        let line = [1.0, -1.0, 2.0].map(|x| Vector2::new(x, 0.5 * x));
-        assert!(shear::<Dim2>(line.iter().map(|x| (*x, *x))).is_nan());
-        assert!(shear::<Dim2>(std::iter::empty()).is_nan());
+        let line = [1.0, -1.0, 2.0].map(|x| Vector3::new(x, 0.5 * x, 0.0));
+        assert!(shear(2, line.iter().map(|x| (*x, *x))).is_nan());
+        assert!(shear(2, std::iter::empty()).is_nan());
     }
 }

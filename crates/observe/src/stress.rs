@@ -1,7 +1,7 @@
 //! Love-Weber stress of the contacts.
 
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 
 /// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume,
 /// positive in compression; row: axis of the force, column: axis of the branch.
@@ -9,11 +9,12 @@ use fretwork_core::step::Simulation;
 /// f is the mean force of the last step; l points from a grain's centre to the contact: to the face
 /// of a wall, or to the middle of the gap to another grain. At rest the stress equals that on the
 /// walls.
-pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
+pub fn love_weber(run: &dyn RunView, volume: f64) -> [[f64; 3]; 3] {
     let mut moment = [[0.0; 3]; 3];
-    each_moment(s, |_, force, branch| {
-        for (a, row) in moment.iter_mut().enumerate().take(S::D) {
-            for (b, value) in row.iter_mut().enumerate().take(S::D) {
+    let dimension = run.dimension();
+    each_moment(run, |_, force, branch| {
+        for (a, row) in moment.iter_mut().enumerate().take(dimension) {
+            for (b, value) in row.iter_mut().enumerate().take(dimension) {
                 *value += force[a] * branch[b] / volume;
             }
         }
@@ -24,23 +25,22 @@ pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
 /// Calls a function for each contact of each free grain, with the body, the mean force of the last
 /// step (N; N/m in 2D) and the branch (m), signed such that their product is positive in
 /// compression.
-pub fn each_moment<S: Space>(
-    s: &Simulation<S>,
-    mut take: impl FnMut(usize, &S::Vector, &S::Vector),
-) {
-    let free = s.state.bodies.grain_flags();
-    for contact in &s.state.network.contacts {
+pub fn each_moment(run: &dyn RunView, mut take: impl FnMut(usize, &Vector3<f64>, &Vector3<f64>)) {
+    let free = run.grain_flags();
+    let h = run.options().scheme.h;
+    run.visit_contacts(&mut |contact| {
         let members = contact.bodies.map(|b| free[b as usize]);
         let share = if members == [true, true] { 0.5 } else { 1.0 };
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if !members[side] {
                 continue;
             }
-            let arm = contact.arms[side] + contact.normal * (sign * share * contact.gap);
-            let force = contact.impulse * (sign / s.options.scheme.h);
+            let normal = Vector3::from(contact.normal);
+            let arm = Vector3::from(contact.arms[side]) + normal * (sign * share * contact.gap);
+            let force = Vector3::from(contact.impulse) * (sign / h);
             take(contact.bodies[side] as usize, &force, &arm);
         }
-    }
+    });
 }
 
 /// Mean pressure, and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal

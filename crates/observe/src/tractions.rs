@@ -3,9 +3,8 @@
 //! these stand for. The sum of pressure times area is the normal force of all contacts.
 
 use fretwork_core::bodies::TouchingSurface;
-use fretwork_core::contact::Contact;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{ContactView, RunView};
+use nalgebra::Vector3;
 use std::collections::HashMap;
 
 /// What a point of a surface does.
@@ -38,19 +37,21 @@ const TRACE: f64 = 0.1;
 
 /// The surface of a deformable body that touches, with what acts on it.
 #[derive(Clone, Debug)]
-pub struct SurfaceState<S: Space> {
+pub struct SurfaceState {
+    /// Number of dimensions.
+    pub dimension: usize,
     /// Its points and facets.
-    pub surface: TouchingSurface<S>,
+    pub surface: TouchingSurface<Vector3<f64>>,
     /// Displacement of each point (m).
-    pub displacement: Vec<S::Vector>,
+    pub displacement: Vec<Vector3<f64>>,
     /// Traction on each point, force over area in world axes (Pa).
-    pub traction: Vec<S::Vector>,
+    pub traction: Vec<Vector3<f64>>,
     /// Its part along the normals of the contacts (Pa), positive in compression.
     pub pressure: Vec<f64>,
     /// Its part along the surface (Pa): in the plane positive along +x, in space its size.
     pub shear: Vec<f64>,
     /// The vector of that part (Pa).
-    pub tangential: Vec<S::Vector>,
+    pub tangential: Vec<Vector3<f64>>,
     /// What each point does.
     pub zone: Vec<Zone>,
 }
@@ -58,34 +59,34 @@ pub struct SurfaceState<S: Space> {
 /// Tractions on a facet: means of its points, which sum up to the same force. Where points have
 /// more and fewer facets in turn, pressures of points alternate, and those of facets do not.
 #[derive(Clone, Copy, Debug)]
-pub struct FacetTraction<S: Space> {
+pub struct FacetTraction {
     /// Pressure (Pa).
     pub pressure: f64,
     /// Traction along the surface (Pa).
-    pub tangential: S::Vector,
+    pub tangential: Vector3<f64>,
 }
 
-impl<S: Space> SurfaceState<S> {
+impl SurfaceState {
     /// Of a system of a simulation, over its last step; none where the system has no such surface.
-    pub fn of(s: &Simulation<S>, system: usize) -> Option<Self> {
-        let body = s.state.systems.get(system)?;
+    pub fn of(run: &dyn RunView, system: usize) -> Option<Self> {
+        let body = run.system(system)?;
         let surface = body.touching_surface()?;
         let count = surface.points.len();
         let place = surface.points.iter().zip(&surface.nodes);
         let displacement = place.map(|(rest, node)| body.node_position(*node) - *rest);
         let displacement = displacement.collect();
         let at: HashMap<u32, usize> = surface.nodes.iter().copied().zip(0..).collect();
-        let zero = S::Vector::zero();
+        let zero = Vector3::zeros();
         let (mut force, mut tangential) = (vec![zero; count], vec![zero; count]);
         let (mut pressure, mut share) = (vec![0.0; count], vec![0.0; count]);
         let mut slipping = vec![[0.0; 2]; count];
         let mut others = Areas::default();
-        for acting in loaded(s, system) {
-            let Some(nodes) = acting.nodes(s) else {
+        for acting in loaded(run, system) {
+            let Some(nodes) = run.nodes_of_side(acting.contact.place, acting.side) else {
                 continue;
             };
             let touching = match acting.side {
-                1 => others.of_point(s, acting.contact).unwrap_or(0.0),
+                1 => others.of_point(run, &acting.contact).unwrap_or(0.0),
                 _ => 0.0,
             };
             for (node, weight) in nodes.terms() {
@@ -97,18 +98,20 @@ impl<S: Space> SurfaceState<S> {
                 slipping[k][usize::from(acting.contact.slides)] += acting.force.norm() * weight;
             }
         }
-        let over = |v: &S::Vector, k: usize| *v * (1.0 / surface.areas[k]);
+        let over = |v: &Vector3<f64>, k: usize| *v * (1.0 / surface.areas[k]);
         let traction = force.iter().enumerate().map(|(k, f)| over(f, k));
         let along = tangential.iter().enumerate().map(|(k, f)| over(f, k));
-        let tangential: Vec<S::Vector> = along.collect();
+        let tangential: Vec<Vector3<f64>> = along.collect();
         let zone = |([sticks, slips], share): (&[f64; 2], &f64)| match () {
             () if *share < TRACE => Zone::Open,
             () if slips >= sticks => Zone::Slip,
             () => Zone::Stick,
         };
+        let dimension = run.dimension();
         Some(Self {
+            dimension,
             traction: traction.collect(),
-            shear: tangential.iter().map(signed::<S>).collect(),
+            shear: tangential.iter().map(|t| signed(dimension, t)).collect(),
             tangential,
             zone: slipping.iter().zip(&share).map(zone).collect(),
             pressure,
@@ -118,12 +121,12 @@ impl<S: Space> SurfaceState<S> {
     }
 
     /// Tractions on the facets, in their order.
-    pub fn facets(&self) -> Vec<FacetTraction<S>> {
+    pub fn facets(&self) -> Vec<FacetTraction> {
         let mean = |points: &[u32]| {
             let share = 1.0 / points.len() as f64;
             let mut out = FacetTraction {
                 pressure: 0.0,
-                tangential: S::Vector::zero(),
+                tangential: Vector3::zeros(),
             };
             for k in points.iter().map(|k| *k as usize) {
                 out.pressure += self.pressure[k] * share;
@@ -131,11 +134,12 @@ impl<S: Space> SurfaceState<S> {
             }
             out
         };
-        self.surface.facets.chunks_exact(S::D).map(mean).collect()
+        let facets = self.surface.facets.chunks_exact(self.dimension);
+        facets.map(mean).collect()
     }
 
     /// Where a point is now (m).
-    pub fn place(&self, point: usize) -> S::Vector {
+    pub fn place(&self, point: usize) -> Vector3<f64> {
         self.surface.points[point] + self.displacement[point]
     }
 }
@@ -147,22 +151,22 @@ struct Areas(HashMap<u32, HashMap<u32, f64>>);
 
 impl Areas {
     /// Of the point of a contact; none where it is none of the surface of a system.
-    fn of_point<S: Space>(&mut self, s: &Simulation<S>, contact: &Contact<S>) -> Option<f64> {
-        let carrier = s.state.bodies.carrier(contact.bodies[0] as usize)?;
+    fn of_point(&mut self, run: &dyn RunView, contact: &ContactView) -> Option<f64> {
+        let carrier = run.bodies().carrier(contact.bodies[0] as usize)?;
         let areas = self.0.entry(carrier.system).or_insert_with(|| {
-            let system = s.state.systems.get(carrier.system as usize);
+            let system = run.system(carrier.system as usize);
             let surface = system.and_then(|system| system.touching_surface());
             let by_node = surface.map(|surface| surface.nodes.into_iter().zip(surface.areas));
             by_node.into_iter().flatten().collect()
         });
-        let (node, _) = s.nodes_of_side(contact, 0)?.terms().next()?;
+        let (node, _) = run.nodes_of_side(contact.place, 0)?.terms().next()?;
         areas.get(&node).copied()
     }
 }
 
 /// Size of a vector along a surface: in the plane positive along +x.
-pub fn signed<S: Space>(along: &S::Vector) -> f64 {
-    match S::D {
+pub fn signed(dimension: usize, along: &Vector3<f64>) -> f64 {
+    match dimension {
         2 if along[0] < 0.0 => -along.norm(),
         _ => along.norm(),
     }
@@ -170,52 +174,44 @@ pub fn signed<S: Space>(along: &S::Vector) -> f64 {
 
 /// A contact that presses or pulls on a system, over the last step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Acting<'a, S: Space> {
-    pub contact: &'a Contact<S>,
+pub(crate) struct Acting {
+    pub contact: ContactView,
     /// Which of the bodies of the contact is the system's.
     pub side: usize,
     /// Force on the system (N; N/m in 2D).
-    pub force: S::Vector,
+    pub force: Vector3<f64>,
     /// Its part along the normal, positive in compression, and its part along the surface.
     pub normal: f64,
-    pub along: S::Vector,
-}
-
-impl<S: Space> Acting<'_, S> {
-    fn nodes(&self, s: &Simulation<S>) -> Option<fretwork_core::bodies::Nodes> {
-        s.nodes_of_side(self.contact, self.side)
-    }
+    pub along: Vector3<f64>,
 }
 
 /// The contacts of a system that carry force.
-pub(crate) fn loaded<S: Space>(
-    s: &Simulation<S>,
-    system: usize,
-) -> impl Iterator<Item = Acting<'_, S>> {
-    let h = s.options.scheme.h;
-    s.state.network.contacts.iter().filter_map(move |contact| {
-        if contact.impulse == S::Vector::zero() {
-            return None;
+pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<Acting> {
+    let bodies = run.bodies();
+    let mut out = Vec::new();
+    run.visit_contacts(&mut |contact| {
+        if contact.impulse == [0.0; 3] {
+            return;
         }
         let carrier = |b: u32| {
-            let carrier = s.state.bodies.carrier(b as usize);
+            let carrier = bodies.carrier(b as usize);
             carrier.is_some_and(|c| c.system as usize == system)
         };
         let [first, second] = contact.bodies.map(carrier);
         let side = match (first, second) {
             (true, _) => 0,
             (false, true) => 1,
-            (false, false) => return None,
+            (false, false) => return,
         };
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        let force = contact.impulse * (1.0 / h);
-        let normal = force.dot(&contact.normal);
-        Some(Acting {
-            contact,
+        let (force, normal) = (Vector3::from(contact.force), Vector3::from(contact.normal));
+        out.push(Acting {
+            contact: *contact,
             side,
             force: force * sign,
-            normal,
-            along: (force - contact.normal * normal) * sign,
-        })
-    })
+            normal: contact.normal_force,
+            along: (force - normal * contact.normal_force) * sign,
+        });
+    });
+    out
 }

@@ -8,12 +8,12 @@ use super::output::Output;
 use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WORD};
 use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
 use super::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
 use fretwork_core::threads::{map_ranges, worth_dividing};
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
@@ -237,7 +237,7 @@ impl Wear {
     }
 }
 
-impl<S: Space> ObserverIn<S> for Wear {
+impl Observer for Wear {
     fn name(&self) -> String {
         "wear".to_owned()
     }
@@ -246,13 +246,13 @@ impl<S: Space> ObserverIn<S> for Wear {
         false
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
+    fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
         let state = &mut self.state;
         state.volumes.0 += report.totals.worn_first;
         state.volumes.1 += report.totals.worn_third;
         state
             .flows
-            .add(s, self.along, self.scaling, state.volumes.0);
+            .add(run, self.along, self.scaling, state.volumes.0);
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -262,19 +262,19 @@ impl<S: Space> ObserverIn<S> for Wear {
         ]
     }
 
-    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
         vec![self.state.volumes.0, self.state.volumes.1]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let (s, state) = (end.simulation, &self.state);
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let (run, state) = (end.simulation, &self.state);
         // Wear goes on over the cycles that were jumped over.
-        let jumps = s.process::<Jumps>();
-        let over = jumps.map_or(0.0, |j| j.jumped_at(s.state.time) * j.period());
+        let jumps = run.process::<Jumps>();
+        let over = jumps.map_or(0.0, |j| j.jumped_at(run.time()) * j.period());
         // Nothing leaves a contact that is periodic along the sliding.
-        let closed = s.shapes.periodic.period[self.along].map(|_| 0.0);
+        let closed = run.periodic().period[self.along].map(|_| 0.0);
         let summary = WearSummary {
-            unit: MASS_FLOW.symbol(S::D),
+            unit: MASS_FLOW.symbol(run.dimension()),
             start: state.flows.start,
             Qs: state.flows.source(over) * self.density,
             Qi: state.flows.internal(),
@@ -283,14 +283,14 @@ impl<S: Space> ObserverIn<S> for Wear {
             volume_first_bodies: state.volumes.0,
             volume_third_body: state.volumes.1,
             load_path: None,
-            bodies: first_bodies::wear(s),
+            bodies: first_bodies::wear(run),
         };
         summary.report(self.wears, found);
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
-        let own = end.simulation.state.scars.iter();
-        let own = own.map(|scar| (scar.name.as_str(), format!("{}_worn", scar.name)));
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let own = end.simulation.scars().into_iter();
+        let own = own.map(|scar| (scar.name, format!("{}_worn", scar.name)));
         let all = [
             ("first bodies", "worn_first"),
             ("between grains", "worn_third"),
@@ -340,15 +340,15 @@ impl Flows {
 
     /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off
     /// first bodies so far.
-    fn add<S: Space>(&mut self, s: &Simulation<S>, along: usize, scaling: f64, worn: f64) {
-        let h = s.options.scheme.h;
-        if s.state.time - 0.5 * h < self.start {
+    fn add(&mut self, run: &dyn RunView, along: usize, scaling: f64, worn: f64) {
+        let h = run.options().scheme.h;
+        if run.time() - 0.5 * h < self.start {
             self.before = worn;
             return;
         }
         self.time += h;
         self.worn = worn - self.before;
-        self.crossed += h * internal_flow(s, along) / scaling;
+        self.crossed += h * internal_flow(run, along) / scaling;
     }
 
     /// Volume worn off first bodies a second, over a longer time by so much (m^3/s; m^3/(m s));
@@ -372,20 +372,19 @@ const CHUNK: usize = 4096;
 const EACH: f64 = 4.0;
 
 /// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
-fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
-    let bodies = &s.state.bodies;
-    let grain = bodies.grain_flags();
-    let divide = worth_dividing(s.options.solver.parallel, bodies.len(), EACH);
+fn internal_flow(run: &dyn RunView, along: usize) -> f64 {
+    let (bodies, grain) = (run.bodies(), run.grain_flags());
+    let divide = worth_dividing(run.options().solver.parallel, bodies.len(), EACH);
     let parts = map_ranges(divide, bodies.len(), CHUNK, |range| {
         let (mut low, mut high, mut flow) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for b in range {
-            let moves =
-                bodies.inverse_mass[b][along] > 0.0 || bodies.carrier(b).is_some_and(|c| c.grain);
+            let moves = bodies.inverse_mass.at(b)[along] > 0.0
+                || bodies.carrier(b).is_some_and(|c| c.grain);
             if moves && bodies.length[b] > 0.0 {
-                let x = bodies.position[b][along];
+                let x = bodies.position.at(b)[along];
                 (low, high) = (low.min(x), high.max(x));
                 if grain[b] {
-                    flow += bodies.mass[b] * bodies.velocity[b][along].abs();
+                    flow += bodies.mass[b] * bodies.velocity.at(b)[along].abs();
                 }
             }
         }
@@ -396,7 +395,7 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
         (low, high) = (low.min(l), high.max(h));
         flow += f;
     }
-    let length = s.shapes.periodic.period[along].unwrap_or(high - low);
+    let length = run.periodic().period[along].unwrap_or(high - low);
     if length.is_finite() && length > 0.0 {
         flow / length
     } else {

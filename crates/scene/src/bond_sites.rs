@@ -105,7 +105,7 @@ fn of_contacts(s: &dyn RunView, law: usize) -> Vec<BondPair> {
         }
         let (mut normal, mut shear) = (0.0, 0.0);
         for (body, arm) in c.bodies.iter().zip(&c.arms) {
-            let inverse = s.inverse_mass(*body as usize);
+            let inverse = s.bodies().inverse_mass.at(*body as usize);
             let along: f64 = (0..3).map(|k| inverse[k] * c.normal[k].powi(2)).sum();
             normal += of_deforming(s, *body).map_or(along, |inverse| inverse[0]);
             let arm = Vector3::from(*arm).norm();
@@ -264,7 +264,7 @@ fn inverse_mass(s: &dyn RunView, body: u32) -> f64 {
     if let Some([inverse, _]) = of_deforming(s, body) {
         return inverse;
     }
-    let inverse = s.inverse_mass(body as usize);
+    let inverse = s.bodies().inverse_mass.at(body as usize);
     inverse.into_iter().fold(0.0, f64::max)
 }
 

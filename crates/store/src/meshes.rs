@@ -3,9 +3,7 @@
 //! one mesh. Bodies are those that the case lists as `elastic` and `half_spaces`.
 
 use super::results::{Field, Mesh};
-use fretwork_core::bodies::DynamicalSystem;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::{RunView, SystemView};
 use fretwork_observe::mesh_fields::{
     At, BodyState, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
 };
@@ -14,24 +12,24 @@ use fretwork_scene::case::Case;
 use std::collections::BTreeMap;
 
 /// The systems whose fields are written.
-fn systems<'a, S: Space>(
+fn systems<'a>(
     case: &'a Case,
-    s: &'a Simulation<S>,
-) -> impl Iterator<Item = (usize, &'a dyn DynamicalSystem<S>)> {
+    run: &'a dyn RunView,
+) -> impl Iterator<Item = (usize, Box<dyn SystemView + 'a>)> {
     let listed = move |name: &str| {
         let elastic = case.elastic.iter().map(|b| &b.name);
         let mut names = elastic.chain(case.half_spaces.iter().map(|b| &b.name));
         names.any(|n| n == name)
     };
-    let all = (0..s.state.systems.len()).filter_map(|k| Some((k, s.state.systems.get(k)?)));
+    let all = (0..run.system_count()).filter_map(move |k| Some((k, run.system(k)?)));
     all.filter(move |(_, system)| listed(system.name()))
 }
 
 /// The grains that deform, by the name of their material: the indices of their systems.
-fn grains<'a, S: Space>(case: &'a Case, s: &Simulation<S>) -> Vec<(&'a str, Vec<usize>)> {
+fn grains<'a>(case: &'a Case, run: &dyn RunView) -> Vec<(&'a str, Vec<usize>)> {
     let mut of_material: BTreeMap<u16, Vec<usize>> = BTreeMap::new();
-    for k in 0..s.state.systems.len() {
-        let system = s.state.systems.get(k).filter(|s| s.is_grain());
+    for k in 0..run.system_count() {
+        let system = run.system(k).filter(|s| s.is_grain());
         if let Some(contactor) = system.and_then(|s| s.contactors().into_iter().next()) {
             of_material.entry(contactor.material).or_default().push(k);
         }
@@ -44,38 +42,38 @@ fn grains<'a, S: Space>(case: &'a Case, s: &Simulation<S>) -> Vec<(&'a str, Vec<
 }
 
 /// The meshes and surfaces of the bodies of a case, and its grains that deform.
-pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Mesh> {
+pub fn of(case: &Case, run: &dyn RunView) -> Vec<Mesh> {
     let mut out = Vec::new();
-    for (k, system) in systems(case, s) {
+    for (k, system) in systems(case, run) {
         if let Some(mesh) = system.deformed_mesh() {
             out.push(Mesh {
                 group: format!("meshes/{}", system.name()),
                 points: triples(&mesh.points),
                 cells: mesh.elements.iter().map(|p| i64::from(*p)).collect(),
-                corners: S::D + 1,
-                fields: fields(&of_bodies::<S>()),
+                corners: run.dimension() + 1,
+                fields: fields(&of_bodies()),
                 ..Mesh::default()
             });
         }
-        if let Some(state) = SurfaceState::of(s, k) {
+        if let Some(state) = SurfaceState::of(run, k) {
             out.push(Mesh {
                 group: format!("surfaces/{}", system.name()),
                 points: triples(&state.surface.points),
                 cells: state.surface.facets.iter().map(|p| i64::from(*p)).collect(),
-                corners: S::D,
-                fields: fields(&of_surfaces::<S>()),
+                corners: run.dimension(),
+                fields: fields(&of_surfaces(run.dimension())),
                 ..Mesh::default()
             });
         }
     }
-    for (material, systems) in grains(case, s) {
-        let state = GrainsState::of(s, &systems);
+    for (material, systems) in grains(case, run) {
+        let state = GrainsState::of(run, &systems);
         out.push(Mesh {
             group: format!("elastic_grains/{material}"),
             points: triples(state.start()),
             cells: state.elements().iter().map(|p| i64::from(*p)).collect(),
-            corners: S::D + 1,
-            fields: fields(&of_grains::<S>()),
+            corners: run.dimension() + 1,
+            fields: fields(&of_grains()),
             bodies: state.bodies().clone(),
         });
     }
@@ -94,27 +92,27 @@ fn fields<T>(registered: &[MeshField<T>]) -> Vec<Field> {
 }
 
 /// The values of all fields now, in the order of [`of`].
-pub fn values<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Vec<Vec<f64>>> {
+pub fn values(case: &Case, run: &dyn RunView) -> Vec<Vec<Vec<f64>>> {
     let mut out = Vec::new();
-    for (k, system) in systems(case, s) {
-        if let Some(state) = BodyState::of(system) {
+    for (k, system) in systems(case, run) {
+        if let Some(state) = BodyState::of(&*system) {
             let values = of_bodies().map(|f| (f.values)(&state));
             out.push(values.to_vec());
         }
-        if let Some(state) = SurfaceState::of(s, k) {
-            let values = of_surfaces().map(|f| (f.values)(&state));
+        if let Some(state) = SurfaceState::of(run, k) {
+            let values = of_surfaces(run.dimension()).map(|f| (f.values)(&state));
             out.push(values.to_vec());
         }
     }
-    for (_, systems) in grains(case, s) {
-        let state = GrainsState::of(s, &systems);
+    for (_, systems) in grains(case, run) {
+        let state = GrainsState::of(run, &systems);
         out.push(of_grains().map(|f| (f.values)(&state)).to_vec());
     }
     out
 }
 
 /// Bytes of a recorded state of all bodies.
-pub fn bytes<S: Space>(case: &Case, s: &Simulation<S>) -> usize {
-    let values = values(case, s).into_iter().flatten();
+pub fn bytes(case: &Case, run: &dyn RunView) -> usize {
+    let values = values(case, run).into_iter().flatten();
     values.map(|column| 8 * column.len()).sum()
 }

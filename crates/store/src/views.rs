@@ -3,19 +3,17 @@
 use super::results::{Header, Part, Results, ResultsError};
 use super::summary::RunFacts;
 use super::{meshes, shapes};
-use fretwork_core::fields::{Field, FieldList, Fields, GrainPart, Value, orientation, removed};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::{InDimension, Simulation};
+use fretwork_core::view::{FieldInfo, FieldKind, FieldValues, GrainFields, RunView};
+use fretwork_observe::Observers;
 use fretwork_observe::statistics::Column;
-use fretwork_observe::{Observers, placement};
 use fretwork_scene::build::Loaded;
 use fretwork_scene::recorded::ShapedGrain;
 
 /// References to the built scene.
 #[derive(Debug)]
-pub struct Made<'a, S: Space> {
+pub struct Made<'a> {
     /// The simulation.
-    pub simulation: &'a Simulation<S>,
+    pub simulation: &'a dyn RunView,
     /// Material files: name and text.
     pub materials: &'a [(String, String)],
     /// Densities of the materials (kg/m^3).
@@ -25,13 +23,14 @@ pub struct Made<'a, S: Space> {
 }
 
 /// What the file says before the first step, with the columns and tables of the observers.
-pub fn header<S: Space>(
-    loaded: &Loaded,
-    built: &Made<'_, S>,
-    run: &RunFacts,
-    observers: &Observers,
-) -> Header {
-    let fields = fields(built.simulation, loaded.case.circuit.is_some());
+pub fn header(loaded: &Loaded, built: &Made<'_>, run: &RunFacts, observers: &Observers) -> Header {
+    let simulation = built.simulation;
+    let dimension = simulation.dimension();
+    let grains = simulation.grain_fields(with(simulation, loaded.case.circuit.is_some()));
+    let contacts = simulation.contact_fields();
+    let both = |kind| [columns(&grains, kind), columns(&contacts, kind), Vec::new()];
+    let [mut of_grains, of_contacts, _] = both(FieldKind::Number);
+    of_grains.extend(observers.grain_columns());
     Header {
         events: observers.event_tables(),
         case_name: loaded.case.name.clone(),
@@ -39,97 +38,54 @@ pub fn header<S: Space>(
         materials: built.materials.to_vec(),
         plugins: run.plugins.clone(),
         seed: loaded.case.seed,
-        dimension: S::D,
-        shapes: shapes::of(built.simulation, built.densities, built.deforming),
-        meshes: meshes::of(&loaded.case, built.simulation),
+        dimension,
+        shapes: shapes::of(simulation, built.densities, built.deforming),
+        meshes: meshes::of(&loaded.case, simulation),
         version: run.version.clone(),
         statistics: observers.columns(),
         fields: [
-            columns(&fields.grains, Kept::Number)
-                .chain(observers.grain_columns())
-                .collect(),
-            columns(&fields.contacts, Kept::Number).collect(),
+            of_grains,
+            of_contacts,
             vec![Column::new("body", "", "identity of the body")],
         ],
-        numbers: [
-            columns(&fields.grains, Kept::Whole).collect(),
-            columns(&fields.contacts, Kept::Whole).collect(),
-            Vec::new(),
-        ],
-        vectors: [
-            columns(&fields.grains, Kept::Vector).collect(),
-            columns(&fields.contacts, Kept::Vector).collect(),
-            Vec::new(),
-        ],
+        numbers: both(FieldKind::Whole),
+        vectors: both(FieldKind::Vector),
     }
 }
 
-/// The fields of a simulation's views: those it registers, orientations where there are grains that
-/// are no lone balls, and whether grains were taken out where a circuit does so.
-fn fields<S: Space>(s: &Simulation<S>, circuit: bool) -> Fields<S> {
-    let mut fields = s.fields.clone();
-    let turns = shapes::needed(s).then(orientation).into_iter().flatten();
-    let gone = circuit.then(removed);
-    turns.chain(gone).for_each(|field| fields.grains.add(field));
-    fields
+/// The fields of grains beside those that a simulation registers: orientations where there are
+/// grains that are no lone balls, and whether grains were taken out where a circuit does so.
+fn with(run: &dyn RunView, circuit: bool) -> GrainFields {
+    GrainFields {
+        orientation: shapes::needed(run),
+        removed: circuit,
+    }
 }
 
-/// How the values of a field are kept in the file.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kept {
-    Number,
-    Whole,
-    Vector,
+/// Columns of the fields of a kind.
+fn columns(fields: &[FieldInfo], kind: FieldKind) -> Vec<Column> {
+    let listed = fields.iter().filter(|f| f.kind == kind);
+    listed.map(|f| Column::new(f.name, f.unit, f.doc)).collect()
 }
 
-impl Kept {
-    fn of<S: Space, T>(field: &Field<S, T>) -> Self {
-        match field.value {
-            Value::Number(_) => Self::Number,
-            Value::Whole(_) => Self::Whole,
-            Value::Vector(_) => Self::Vector,
+/// A part with the values of fields, one column each.
+fn part(values: Vec<FieldValues>) -> Part {
+    let mut part = Part::default();
+    for column in values {
+        match column {
+            FieldValues::Number(all) => part.data.push(all),
+            FieldValues::Whole(all) => part.numbers.push(all),
+            FieldValues::Vector(all) => part.vectors.push(all),
         }
     }
-}
-
-/// Columns of the fields that are kept in this way.
-fn columns<S: Space, T>(fields: &FieldList<S, T>, kept: Kept) -> impl Iterator<Item = Column> {
-    let listed = fields.iter().filter(move |f| Kept::of(f) == kept);
-    listed.map(|f| Column::new(f.name, f.unit, f.doc))
-}
-
-/// Appends the values of all fields for one thing.
-fn push_fields<S: Space, T>(part: &mut Part, fields: &FieldList<S, T>, s: &Simulation<S>, of: &T) {
-    let (mut data, mut numbers) = (part.data.iter_mut(), part.numbers.iter_mut());
-    let mut vectors = part.vectors.iter_mut();
-    for field in fields.iter() {
-        match &field.value {
-            Value::Number(get) => data.next().into_iter().for_each(|c| c.push(get(s, of))),
-            Value::Whole(get) => numbers.next().into_iter().for_each(|c| c.push(get(s, of))),
-            Value::Vector(get) => vectors
-                .next()
-                .into_iter()
-                .for_each(|c| c.extend(get(s, of))),
-        }
-    }
-}
-
-/// A part with empty columns for these fields.
-fn empty<S: Space, T>(fields: &FieldList<S, T>) -> Part {
-    let count = |kept: Kept| fields.iter().filter(|f| Kept::of(f) == kept).count();
-    Part {
-        data: vec![Vec::new(); count(Kept::Number)],
-        numbers: vec![Vec::new(); count(Kept::Whole)],
-        vectors: vec![Vec::new(); count(Kept::Vector)],
-        ..Part::default()
-    }
+    part
 }
 
 /// Bytes per grain and per contact of a recorded state: points, cells and fields, 8 bytes a number.
-pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
-    let fields = fields(s, circuit);
-    let grain: usize = fields.grains.iter().map(Field::width).sum();
-    let contact: usize = fields.contacts.iter().map(Field::width).sum();
+pub fn bytes(run: &dyn RunView, circuit: bool) -> [usize; 2] {
+    let width = |fields: Vec<FieldInfo>| fields.iter().map(FieldInfo::width).sum::<usize>();
+    let grain = width(run.grain_fields(with(run, circuit)));
+    let contact = width(run.contact_fields());
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
@@ -138,109 +94,63 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append<S: Space>(
+pub fn append(
     results: &mut Results,
-    s: &Simulation<S>,
+    run: &dyn RunView,
     loaded: &Loaded,
     values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
-    append_known(results, InDimension::of(s), loaded, values)
-}
-
-// Without a type parameter it is compiled in this crate, and not in the program, which is not
-// optimised (`Cargo.toml`).
-fn append_known(
-    results: &mut Results,
-    s: InDimension<'_>,
-    loaded: &Loaded,
-    values: Vec<Vec<f64>>,
-) -> Result<(), ResultsError> {
-    match s {
-        InDimension::Dim2(s) => append_in(results, s, loaded, values),
-        InDimension::Dim3(s) => append_in(results, s, loaded, values),
-    }
-}
-
-fn append_in<S: Space>(
-    results: &mut Results,
-    s: &Simulation<S>,
-    loaded: &Loaded,
-    values: Vec<Vec<f64>>,
-) -> Result<(), ResultsError> {
-    let fields = fields(s, loaded.case.circuit.is_some());
-    let mut grains = grains(s, &fields);
+    let mut grains = grains(run, loaded.case.circuit.is_some());
     let count = grains.cells.len();
     grains.data.extend(values.into_iter().map(|mut column| {
         column.resize(count, f64::NAN);
         column
     }));
-    results.append_meshes(s.state.time, &meshes::values(&loaded.case, s))?;
-    results.append_views(s.state.time, &[grains, contacts(s, &fields), bodies(s)])
+    results.append_meshes(run.time(), &meshes::values(&loaded.case, run))?;
+    results.append_views(run.time(), &[grains, contacts(run), bodies(run)])
 }
 
-fn grains<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
-    let mut part = empty(&fields.grains);
-    for grain in GrainPart::all(s) {
-        part.cells.push(vec![part.points.len() as i64 / 3]);
-        let at = s.shapes.periodic.wrapped(grain.centre);
-        part.points.extend(at.padded());
-        push_fields(&mut part, &fields.grains, s, &grain);
+fn grains(run: &dyn RunView, circuit: bool) -> Part {
+    let points = run.grain_points();
+    Part {
+        cells: (0..points.len() as i64).map(|k| vec![k]).collect(),
+        points: points.into_iter().flatten().collect(),
+        ..part(run.grain_values(with(run, circuit)))
     }
-    part
 }
 
-fn contacts<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
-    let mut part = empty(&fields.contacts);
-    for (k, contact) in s.state.network.counted_contacts().enumerate() {
-        let (a, b) = placement::ends(s, contact);
-        let at = s.shapes.periodic.wrapped(a);
-        part.points.extend(at.padded());
-        part.points.extend((b - a + at).padded());
-        part.cells.push(vec![2 * k as i64, 2 * k as i64 + 1]);
-        push_fields(&mut part, &fields.contacts, s, contact);
+fn contacts(run: &dyn RunView) -> Part {
+    let ends = run.contact_ends();
+    let cells = (0..ends.len() as i64).map(|k| vec![2 * k, 2 * k + 1]);
+    Part {
+        cells: cells.collect(),
+        points: ends.into_iter().flatten().flatten().collect(),
+        ..part(run.contact_values(true))
     }
-    part
 }
 
-fn bodies<S: Space>(s: &Simulation<S>) -> Part {
+fn bodies(run: &dyn RunView) -> Part {
     let mut part = Part {
         data: vec![Vec::new(); 1],
         ..Part::default()
     };
-    let shown = |body: u32| !s.state.bodies.removed[body as usize];
-    for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
-        let b = surface.body as usize;
-        for chain in surface.shape.outline() {
-            let first = part.points.len() as i64 / 3;
-            for p in &chain {
-                let x = s.state.bodies.position[b]
-                    + S::rotate(&s.state.bodies.rotation[b], &(surface.offset + *p));
-                part.points.extend(x.padded());
-            }
-            part.cells
-                .push((first..first + chain.len() as i64).collect());
-            push(&mut part, &[s.state.bodies.id[b] as f64]);
-        }
+    let ids = run.bodies().id;
+    let mut add = |body: u32, points: &[[f64; 3]]| {
+        let first = part.points.len() as i64 / 3;
+        part.points.extend(points.iter().flatten());
+        part.cells
+            .push((first..first + points.len() as i64).collect());
+        part.data[0].push(ids[body as usize] as f64);
+    };
+    for line in run.surface_outlines() {
+        add(line.body, &line.points);
     }
-    for piece in &s.shapes.pieces {
-        for mut corners in placement::piece_outline(s, piece) {
-            // Lines need an explicit closing point, polygons do not.
-            if S::D == 2 {
-                corners.extend(corners.first().copied());
-            }
-            let first = part.points.len() as i64 / 3;
-            part.points
-                .extend(corners.iter().flat_map(VectorLike::padded));
-            part.cells
-                .push((first..first + corners.len() as i64).collect());
-            push(&mut part, &[s.state.bodies.id[piece.body as usize] as f64]);
+    for mut line in run.piece_outlines() {
+        // Lines need an explicit closing point, polygons do not.
+        if run.dimension() == 2 {
+            line.points.extend(line.points.first().copied());
         }
+        add(line.body, &line.points);
     }
     part
-}
-
-fn push(part: &mut Part, values: &[f64]) {
-    for (column, value) in part.data.iter_mut().zip(values) {
-        column.push(*value);
-    }
 }

@@ -9,7 +9,6 @@ use crate::scene::methods::Demands;
 use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
 use crate::step::Coupling;
 use crate::{AnySimulation, RunView};
-use fretwork_core::in_dimension;
 
 /// Names of the enabled and disabled features.
 #[derive(Default)]
@@ -269,8 +268,8 @@ impl Features {
             "frames",
             (o.frames > 0).then(|| format!("{} of {} pixels", o.frames, o.width)),
         );
-        let [grain, contact] = in_dimension!(s, |s| views::bytes(s, case.circuit.is_some()));
-        let meshes = match in_dimension!(s, |s| meshes::bytes(case, s)) {
+        let [grain, contact] = views::bytes(s.view(), case.circuit.is_some());
+        let meshes = match meshes::bytes(case, s.view()) {
             0 => String::new(),
             bytes => format!(", {:.2} MB of deformable bodies", bytes as f64 / 1e6),
         };

@@ -7,7 +7,6 @@ use crate::laws::bench::{Bench, Motion};
 use crate::laws::{Interface, Kind};
 use crate::scene::case::Case;
 use crate::{AnySimulation, RunView};
-use fretwork_core::in_dimension;
 use fretwork_observe::heat::without_heat;
 
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D.
@@ -24,7 +23,7 @@ pub fn lines(case: &Case, simulation: &AnySimulation, load: &Load) -> Vec<CheckL
     let s = simulation.view();
     let mut out = Vec::new();
     let Some(heat) = s.heat() else {
-        let idle = in_dimension!(simulation, |s| without_heat(s)).into_iter();
+        let idle = without_heat(s).into_iter();
         out.extend(idle.map(|text| ("NO HEAT".to_owned(), text)));
         return out;
     };

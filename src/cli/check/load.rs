@@ -5,7 +5,6 @@ use crate::record::biaxial::Biaxial;
 use crate::scene::case::Case;
 use crate::scene::phases::drives_of;
 use crate::{AnySimulation, RunView};
-use fretwork_core::in_dimension;
 use std::f64::consts::TAU;
 
 /// Number of samples of a drive over the run.
@@ -106,7 +105,7 @@ pub fn friction_area(case: &Case, s: &AnySimulation) -> Option<f64> {
 /// Lateral force on a square sample of compacity 0.82.
 fn biaxial_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
     let spec = case.biaxial.as_ref()?;
-    let test = in_dimension!(s, |s| Biaxial::new(spec, s))?;
+    let test = Biaxial::new(spec, s.view())?;
     let walls = s.bodies().driven.iter();
     let walls = walls.filter(|d| d.name == spec.lateral.0 || d.name == spec.lateral.1);
     let forces = walls.flat_map(|d| &d.dofs[..s.dimension()]);

@@ -6,7 +6,6 @@ use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
 use crate::step::ProcessState;
 use crate::view::Paint;
-use fretwork_core::in_dimension;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
@@ -126,7 +125,7 @@ impl Recorder<'_> {
         (self.done, self.resumed_at) = (state.done, state.done);
         self.accuracy = state.accuracy.into_owned();
         if let Some(accuracy) = &mut self.accuracy {
-            in_dimension!(&mut self.simulation, |s| accuracy.resume(s));
+            accuracy.resume(&mut *self.simulation);
         }
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();

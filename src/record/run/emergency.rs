@@ -13,7 +13,6 @@ use crate::record::statistics::Table;
 use crate::record::summary::{Summary, Uncertainty};
 use crate::step::StepReport;
 use cpu_time::ProcessTime;
-use fretwork_core::in_dimension;
 use fretwork_observe::Observers;
 use fretwork_observe::error_estimate::Repeats;
 use fretwork_store::folder_lock::FolderLock;
@@ -91,9 +90,7 @@ impl Recorder<'_> {
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
         // A law may not come back from a repeated step either.
-        let repeated = in_dimension!(&mut self.simulation, |s| {
-            self.estimate.before_step(s, self.done)
-        });
+        let repeated = self.estimate.before_step(&mut *self.simulation, self.done);
         let repeated = repeated.map_err(RunError::from);
         let report = repeated.and_then(|()| self.part());
         // The watch took it just before the law came back: it is written.
@@ -116,13 +113,10 @@ impl Recorder<'_> {
         let spans = [self.done, self.total];
         let parts = match &mut self.parts {
             Some(parts) => parts,
-            none => none.insert(in_dimension!(&mut self.simulation, |s| {
-                control.begin_step(s, spans, most)
-            })?),
+            none => none.insert(control.begin_step(&mut *self.simulation, spans, most)?),
         };
         let report = loop {
-            let part = in_dimension!(&mut self.simulation, |s| control.part(s, parts));
-            if let Some(report) = part? {
+            if let Some(report) = control.part(&mut *self.simulation, parts)? {
                 break report;
             }
         };

@@ -2,9 +2,7 @@
 
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
-use crate::step::InDimension;
 use crate::view::quantity;
-use fretwork_core::in_dimension;
 use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
 use std::path::PathBuf;
@@ -27,10 +25,10 @@ impl Recorder<'_> {
         if self.simulation.bonds_made() > 0 {
             caption.push(format!(
                 "damage ratio {:.3}",
-                in_dimension!(&self.simulation, |s| damage_ratio(s))
+                damage_ratio(self.simulation.view())
             ));
         }
-        self.camera.follow((&self.simulation).into());
+        self.camera.follow(self.simulation.view());
         let mut pictures = vec![("frame", Shows::Scene)];
         if self.loaded.case.output.layers.is_some() && self.simulation.bonds_made() > 0 {
             pictures.push(("bonds", Shows::Bonds));
@@ -38,7 +36,7 @@ impl Recorder<'_> {
         let own = self.observers.pictures(self.simulation.view());
         pictures.extend(own.into_iter().map(|p| (p.name, p.shows)));
         let (notice, title) = (self.notice(), &self.loaded.case.name);
-        let simulation = InDimension::from(&self.simulation);
+        let simulation = self.simulation.view();
         let shown = pictures.into_iter().filter_map(|(name, shows)| {
             let Shows::Charts(mut charts) = shows else {
                 let frame = self

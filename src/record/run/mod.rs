@@ -36,7 +36,6 @@ use crate::scene::{Built, Loaded};
 use crate::step::StepReport;
 use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
-use fretwork_core::in_dimension;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
@@ -308,11 +307,11 @@ impl<'a> Recorder<'a> {
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
         let mut recorder = Self {
-            estimate: in_dimension!(&simulation, |s| ErrorEstimate::new(case, s, total)),
-            accuracy: in_dimension!(&simulation, |s| AccuracyControl::new(case, s)),
+            estimate: ErrorEstimate::new(case, simulation.view(), total),
+            accuracy: AccuracyControl::new(case, simulation.view()),
             parts: None,
             done: 0,
-            camera: Camera::new((&simulation).into(), &case.output),
+            camera: Camera::new(simulation.view(), &case.output),
             drawing: Drawing::default(),
             out: options.out.clone(),
             table: Table::new(columns, simulation.dimension()),
@@ -367,7 +366,7 @@ impl<'a> Recorder<'a> {
             self.done += self.accuracy.as_ref().map_or(1, AccuracyControl::spanned);
             let step = self.done;
             if phase == 1 && self.simulation.phase() == 2 {
-                self.camera.assign_layers((&self.simulation).into());
+                self.camera.assign_layers(self.simulation.view());
                 self.observers.begin(&mut *self.simulation);
             }
             self.simulation.between_steps()?;
@@ -403,7 +402,7 @@ impl<'a> Recorder<'a> {
         loop {
             let report = self.step()?;
             self.unconverged += u64::from(!report.solver.converged);
-            in_dimension!(&self.simulation, |s| self.estimate.after_step(s, &report));
+            self.estimate.after_step(self.simulation.view(), &report);
             self.timed(
                 |t| &mut t.observers,
                 |run| run.observers.after_step(run.simulation.view(), &report),
@@ -476,10 +475,8 @@ impl<'a> Recorder<'a> {
     /// Writes the current state.
     fn record_state(&mut self) -> Result<(), RunError> {
         let values = self.observers.grain_values(self.simulation.view());
-        let results = &mut self.results;
-        in_dimension!(&self.simulation, |s| {
-            Ok(views::append(results, s, self.loaded, values)?)
-        })
+        let (results, run) = (&mut self.results, self.simulation.view());
+        Ok(views::append(results, run, self.loaded, values)?)
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {
@@ -494,7 +491,7 @@ impl<'a> Recorder<'a> {
             iterations: report.solver.iterations,
             error: report.solver.error,
             unconverged: self.unconverged,
-            damage_ratio: in_dimension!(&self.simulation, |s| damage_ratio(s)),
+            damage_ratio: damage_ratio(self.simulation.view()),
         }
     }
 }
@@ -507,14 +504,12 @@ fn create_results(
     facts: &RunFacts,
     observers: &Observers,
 ) -> Result<Results, RunError> {
-    let header = in_dimension!(&built.simulation, |simulation| {
-        let made = views::Made {
-            simulation,
-            materials: &built.materials,
-            densities: &built.densities,
-            deforming: &built.deforming,
-        };
-        views::header(loaded, &made, facts, observers)
-    });
+    let made = views::Made {
+        simulation: built.simulation.view(),
+        materials: &built.materials,
+        densities: &built.densities,
+        deforming: &built.deforming,
+    };
+    let header = views::header(loaded, &made, facts, observers);
     Ok(Results::create(part, &header)?)
 }

@@ -216,9 +216,9 @@ fn blocks_are_measured() {
         above: 0.2,
         start: 0.0,
     };
-    let mut scaled = measures::<Dim3>(std::slice::from_ref(&mass), 1e3, false);
-    let mut mass = measures::<Dim3>(&[mass], 1.0, false);
     let mut s = scene::<Dim3>("block_wall", &WALL);
+    let mut scaled = measures(std::slice::from_ref(&mass), 1e3, &s);
+    let mut mass = measures(&[mass], 1.0, &s);
     let whole: f64 = s.state.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
     assert!(close(mass.sample(&s).unwrap()[0], 0.6 * whole, 1e-14));
@@ -236,7 +236,7 @@ fn blocks_are_measured() {
         turned: 0.0,
         start: 0.0,
     };
-    let mut profile = measures::<Dim3>(&[profile], 1.0, false);
+    let mut profile = measures(&[profile], 1.0, &s);
     step(&mut s);
     profile.sample(&s).unwrap();
     let table = Table::create(&folder.join("t.csv"), Vec::new(), 3).unwrap();
@@ -279,6 +279,6 @@ fn blocks_are_measured() {
     };
     // In three columns the highest of three, two and three blocks.
     let known = f64::atan((0.17 - 0.12) / (0.8 * 2.0 / 3.0));
-    let found = measures::<Dim3>(&[slope], 1.0, false).sample(&s).unwrap()[0];
+    let found = measures(&[slope], 1.0, &s).sample(&s).unwrap()[0];
     assert!((found - known).abs() < 1e-6, "{found} {known}");
 }

@@ -103,7 +103,7 @@ fn add<S: Space>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
     s.add_system(Box::new(system))
 }
 
-fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
+fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S::Vector> {
     let system = s.state.systems.get(system).unwrap();
     system.deformed_mesh().unwrap()
 }

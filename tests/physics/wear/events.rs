@@ -43,7 +43,7 @@ fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
             assert!(missing.abs() < 1e-9 * most, "{missing} of {b:?}");
             assert!((0.0..=1.0).contains(&life.mode_mix()));
             let near = b.bodies.iter().any(|i| {
-                let d = s.state.bodies.position[*i as usize] - b.place;
+                let d = s.state.bodies.position[*i as usize] - S::Vector::from_slice(&b.place);
                 d.norm() < 3.0 * s.state.bodies.length[*i as usize].max(1e-12)
             });
             assert!(near, "{b:?}");

@@ -105,9 +105,9 @@ fn every_field_of_the_views_is_documented() {
         more.for_each(|f| fields.grains.add(f));
         let grains = fields.grains.iter().map(|f| (f.name, f.unit));
         let contacts = fields.contacts.iter().map(|f| (f.name, f.unit));
-        let meshes = of_bodies::<S>().map(|f| (f.name, f.unit));
-        let surfaces = of_surfaces::<S>().map(|f| (f.name, f.unit));
-        let soft = of_grains::<S>().map(|f| (f.name, f.unit));
+        let meshes = of_bodies().map(|f| (f.name, f.unit));
+        let surfaces = of_surfaces(S::D).map(|f| (f.name, f.unit));
+        let soft = of_grains().map(|f| (f.name, f.unit));
         let of_bodies = meshes.into_iter().chain(surfaces).chain(soft);
         let missing = undocumented(grains.chain(contacts).chain(of_bodies));
         missing.into_iter().map(str::to_owned).collect()

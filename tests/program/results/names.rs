@@ -152,8 +152,8 @@ fn names_on_meshes_are_those_of_the_registry() {
             let groups = ["PointData", "CellData"].map(|place| format!("views/{group}/{place}"));
             written(file, &groups.each_ref().map(String::as_str))
         };
-        assert_eq!(of("meshes/lower"), of_mesh(&of_bodies::<Dim2>()));
-        assert_eq!(of("surfaces/lower"), of_mesh(&of_surfaces::<Dim2>()));
+        assert_eq!(of("meshes/lower"), of_mesh(&of_bodies()));
+        assert_eq!(of("surfaces/lower"), of_mesh(&of_surfaces(2)));
     });
 }
 
@@ -172,9 +172,9 @@ fn no_field_is_documented_that_no_registry_has() {
         [
             of_list(&fields.grains),
             of_list(&fields.contacts),
-            of_mesh(&of_bodies::<S>()),
-            of_mesh(&of_grains::<S>()),
-            of_mesh(&of_surfaces::<S>()),
+            of_mesh(&of_bodies()),
+            of_mesh(&of_grains()),
+            of_mesh(&of_surfaces(S::D)),
         ]
         .map(|known| known.into_keys().collect())
     }

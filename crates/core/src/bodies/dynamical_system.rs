@@ -24,7 +24,7 @@ use super::conduction::Conduction;
 use super::contactor::{Contactor, ContactorMotion};
 use super::drive::Dof;
 use super::nodes::Nodes;
-use super::system_report::{SystemSize, TouchingSurface};
+use super::system_report::{DeformedMesh, SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::fmt::Debug;
@@ -78,21 +78,6 @@ pub struct Holder {
     pub velocity: f64,
     /// Force of the holder on the part over the last step (N; N/m in 2D).
     pub force: f64,
-}
-
-/// A mesh that a system deforms, for results and pictures.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeformedMesh<S: Space> {
-    /// Points without load (m).
-    pub points: Vec<S::Vector>,
-    /// Their displacements (m).
-    pub displacement: Vec<S::Vector>,
-    /// The D + 1 points of each element, one after the other.
-    pub elements: Vec<u32>,
-    /// The D points of each facet of the boundary.
-    pub boundary: Vec<u32>,
-    /// Stress in each element (Pa): xx, yy, zz, yz, xz, xy; in plane strain zz is along the depth.
-    pub stress: Vec<[f64; 6]>,
 }
 
 /// The von Mises stress of a stress tensor xx, yy, zz, yz, xz, xy (Pa).
@@ -391,7 +376,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     }
 
     /// Its mesh as it is now; none of systems that have no mesh.
-    fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+    fn deformed_mesh(&self) -> Option<DeformedMesh<S::Vector>> {
         None
     }
 
@@ -413,7 +398,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// The surface that touches, for tractions along it; none of systems of which tractions are not
     /// known. Its points and facets stay the same over a run.
-    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+    fn touching_surface(&self) -> Option<TouchingSurface<S::Vector>> {
         None
     }
 

@@ -23,12 +23,13 @@ pub use conduction::Conduction;
 pub use contactor::{Carrier, Contactor, ContactorMotion, ContactorShape};
 pub use drive::{Dof, Driven, Stage};
 pub use dynamical_system::{
-    DeformedMesh, DynamicalSystem, Holder, SystemStep, SystemWork, compliance_by_solving,
-    compliance_of_points, von_mises,
+    DynamicalSystem, Holder, SystemStep, SystemWork, compliance_by_solving, compliance_of_points,
+    von_mises,
 };
 pub use horizon::STEPS_A_PERIOD;
 pub use nodes::Nodes;
 pub use state::Bodies;
-pub use system_report::{SystemSize, TouchingSurface};
+pub(crate) use system_report::padded;
+pub use system_report::{DeformedMesh, SystemSize, TouchingSurface};
 pub use systems::{HeldAxis, Systems, TurningNode};
 pub use time_function::TimeFunction;

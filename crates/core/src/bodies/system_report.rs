@@ -1,20 +1,66 @@
 //! Data of a dynamical system for results, pictures and checks: its contact surface, and its size in
 //! memory.
 
-use crate::geometry::space::Space;
+use crate::geometry::space::VectorLike;
+use nalgebra::Vector3;
 
-/// The surface of a system that touches, as points with facets between them.
+/// A mesh that a system deforms, for results and pictures; `V` is a vector.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TouchingSurface<S: Space> {
+pub struct DeformedMesh<V> {
+    /// Points without load (m).
+    pub points: Vec<V>,
+    /// Their displacements (m).
+    pub displacement: Vec<V>,
+    /// The D + 1 points of each element, one after the other.
+    pub elements: Vec<u32>,
+    /// The D points of each facet of the boundary.
+    pub boundary: Vec<u32>,
+    /// Stress in each element (Pa): xx, yy, zz, yz, xz, xy; in plane strain zz is along the depth.
+    pub stress: Vec<[f64; 6]>,
+}
+
+impl<V: VectorLike> DeformedMesh<V> {
+    /// Returns the mesh with three components; the third is zero in the plane.
+    pub fn padded(self) -> DeformedMesh<Vector3<f64>> {
+        DeformedMesh {
+            points: padded(&self.points),
+            displacement: padded(&self.displacement),
+            elements: self.elements,
+            boundary: self.boundary,
+            stress: self.stress,
+        }
+    }
+}
+
+/// The surface of a system that touches, as points with facets between them; `V` is a vector.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TouchingSurface<V> {
     /// The node of the system at each point.
     pub nodes: Vec<u32>,
     /// Places of the points without load (m).
-    pub points: Vec<S::Vector>,
+    pub points: Vec<V>,
     /// The D points of each facet, one after the other, by their place among the points.
     pub facets: Vec<u32>,
     /// Area (m^2; length in the plane, m) that each point stands for now. They sum up to that of
     /// the surface.
     pub areas: Vec<f64>,
+}
+
+impl<V: VectorLike> TouchingSurface<V> {
+    /// Returns the surface with three components; the third is zero in the plane.
+    pub fn padded(self) -> TouchingSurface<Vector3<f64>> {
+        TouchingSurface {
+            nodes: self.nodes,
+            points: padded(&self.points),
+            facets: self.facets,
+            areas: self.areas,
+        }
+    }
+}
+
+/// Vectors with three components; the third is zero in the plane.
+pub(crate) fn padded<V: VectorLike>(all: &[V]) -> Vec<Vector3<f64>> {
+    all.iter().map(|v| v.padded().into()).collect()
 }
 
 /// Memory of a system for its solutions (bytes), and their cost, as far as known before the first

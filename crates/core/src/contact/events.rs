@@ -1,13 +1,11 @@
 //! Events and energies of contacts in a step: broken bonds, dissipation, wear.
 
 use super::network::Key;
-use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// A broken bond.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Break<S: Space> {
+pub struct Break {
     /// Key of its contact at that time.
     pub key: Key,
     /// Bodies: candidate, antagonist.
@@ -15,7 +13,8 @@ pub struct Break<S: Space> {
     /// Index of the interface law.
     pub law: u16,
     /// Position of its contact (m): the candidate's centre plus the lever arm, at q_m of the step.
-    pub place: S::Vector,
+    /// The third component is zero in the plane.
+    pub place: [f64; 3],
     /// Normal opening at failure, and norm of the tangential one (m).
     pub opening: [f64; 2],
     /// Twist and norm of the bending at failure (rad); 0 for a bond that does not resist rotation.

@@ -287,7 +287,7 @@ pub struct Network<S: Space> {
     /// ledger.
     pub torn_energy: f64,
     /// Bonds broken in the last step, in order.
-    pub bond_breaks: Vec<Break<S>>,
+    pub bond_breaks: Vec<Break>,
     /// Bodies (candidate, antagonist) and interface law of the bonds formed in the last step.
     pub bonds_formed: Vec<([u32; 2], u16)>,
     /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output
@@ -453,7 +453,7 @@ impl<S: Space> Network<S> {
             key: contact.key,
             bodies: contact.bodies,
             law: contact.law,
-            place: contact.arms[0],
+            place: contact.arms[0].padded(),
             opening: [bond.opening_n, bond.opening_t.norm()],
             rotation,
             area: bond.area,
@@ -467,7 +467,8 @@ impl<S: Space> Network<S> {
     /// Completes the positions of breaks, which are recorded as lever arms.
     pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
         for b in &mut self.bond_breaks {
-            b.place += bodies.position[b.bodies[0] as usize];
+            let centre = bodies.position[b.bodies[0] as usize].padded();
+            b.place = std::array::from_fn(|k| b.place[k] + centre[k]);
         }
     }
 

@@ -18,6 +18,48 @@ pub fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
+/// A column of vectors of either dimension, read in three components.
+#[derive(Clone, Copy, Debug)]
+pub enum Vectors<'a> {
+    /// Along the third axis: angular velocities and moments in the plane.
+    Depth(&'a [Vector1<f64>]),
+    /// In the plane of the first two axes.
+    Plane(&'a [Vector2<f64>]),
+    /// In space.
+    Space(&'a [Vector3<f64>]),
+}
+
+impl Vectors<'_> {
+    /// Number of vectors.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Depth(all) => all.len(),
+            Self::Plane(all) => all.len(),
+            Self::Space(all) => all.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One of them; panics beyond their number.
+    #[inline]
+    pub fn at(&self, place: usize) -> [f64; 3] {
+        match self {
+            Self::Depth(all) => [0.0, 0.0, all[place].x],
+            Self::Plane(all) => [all[place].x, all[place].y, 0.0],
+            Self::Space(all) => all[place].into(),
+        }
+    }
+
+    /// All of them, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + Clone + '_ {
+        (0..self.len()).map(|place| self.at(place))
+    }
+}
+
 /// Arithmetic shared by positions, velocities and spins of either dimension.
 pub trait VectorLike:
     Copy
@@ -72,6 +114,8 @@ pub trait VectorLike:
         }
         out
     }
+    /// Returns vectors as a column.
+    fn column(all: &[Self]) -> Vectors<'_>;
     /// Returns whether every component is finite.
     fn is_finite(&self) -> bool {
         (0..Self::N).all(|k| self[k].is_finite())
@@ -79,9 +123,12 @@ pub trait VectorLike:
 }
 
 macro_rules! vector_like {
-    ($type:ty, $n:literal) => {
+    ($type:ty, $n:literal, $column:ident) => {
         impl VectorLike for $type {
             const N: usize = $n;
+            fn column(all: &[Self]) -> Vectors<'_> {
+                Vectors::$column(all)
+            }
             #[inline(always)]
             fn zero() -> Self {
                 Self::zeros()
@@ -116,9 +163,9 @@ macro_rules! vector_like {
         }
     };
 }
-vector_like!(Vector1<f64>, 1);
-vector_like!(Vector2<f64>, 2);
-vector_like!(Vector3<f64>, 3);
+vector_like!(Vector1<f64>, 1, Depth);
+vector_like!(Vector2<f64>, 2, Plane);
+vector_like!(Vector3<f64>, 3, Space);
 
 /// Arithmetic of the small square matrices of contact blocks.
 pub trait MatrixLike:

@@ -3,7 +3,7 @@
 //! Time stepping, detection and solvers are generic over [`Space`]; each dimension is compiled to
 //! separate code without data of the other.
 
-pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
+pub use super::algebra::{MatrixLike, VectorLike, Vectors, greatest, least};
 use super::lane_space::LaneSpace;
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use serde::{Serialize, de::DeserializeOwned};

@@ -28,8 +28,8 @@ pub enum EjectedFate {
 pub struct Zone {
     /// Its name.
     pub name: String,
-    /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third number
-    /// counts for nothing.
+    /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third component
+    /// is not read.
     pub low: [f64; 3],
     /// Highest corner (m); infinity in unbounded directions.
     pub high: [f64; 3],
@@ -72,15 +72,15 @@ pub struct Spec {
 
 /// Debris: grains that detached together.
 #[derive(Clone, Debug)]
-pub struct Debris<S: Space> {
+pub struct Debris {
     /// Time at which it was detected (s).
     pub time: f64,
     /// Identities of its grains.
     pub grains: Vec<u64>,
     /// Mass (kg; kg/m in 2D).
     pub mass: f64,
-    /// Centre of mass (m).
-    pub place: S::Vector,
+    /// Centre of mass (m); the third component is zero in the plane.
+    pub place: [f64; 3],
     /// Index of the first body from which it detached.
     pub base: u32,
     /// Fraction of sliding in the work on the bonds whose failure released it; see
@@ -102,8 +102,7 @@ struct BrokenBond {
 
 /// The circuit of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct GrainCircuit<S: Space> {
+pub struct GrainCircuit {
     spec: Spec,
     /// Body indices of the grains.
     grains: Vec<u32>,
@@ -121,14 +120,14 @@ pub struct GrainCircuit<S: Space> {
     past: BTreeMap<u32, Vec<BrokenBond>>,
     /// Debris detached in the last update.
     #[serde(skip)]
-    pub debris: Vec<Debris<S>>,
+    pub debris: Vec<Debris>,
     /// Wall-clock time spent on the circuit.
     pub cost: Duration,
 }
 
-impl<S: Space> GrainCircuit<S> {
+impl GrainCircuit {
     /// Creates the circuit from the current bonds.
-    pub fn new(spec: Spec, s: &Simulation<S>) -> Self {
+    pub fn new<S: Space>(spec: Spec, s: &Simulation<S>) -> Self {
         let grains: Vec<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
         let mut number = vec![None; s.state.bodies.len()];
         for (k, b) in grains.iter().enumerate() {
@@ -180,7 +179,7 @@ impl<S: Space> GrainCircuit<S> {
     }
 
     /// Records the bonds formed and broken in the last step. Must be called after every step.
-    pub fn record_bonds(&mut self, s: &Simulation<S>) {
+    pub fn record_bonds<S: Space>(&mut self, s: &Simulation<S>) {
         let clock = Instant::now();
         let (number, spec) = (&self.number, &self.spec);
         let ties = |bodies: &[u32; 2], law: u16| {
@@ -209,7 +208,7 @@ impl<S: Space> GrainCircuit<S> {
 
     /// Updates connections, zones and ledger to the current state, and removes lost grains from the
     /// scene.
-    pub fn update(&mut self, s: &mut Simulation<S>) {
+    pub fn update<S: Space>(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
         let change = if self.made.is_empty() && self.cuts.is_empty() {
             Default::default()
@@ -241,7 +240,7 @@ impl<S: Space> GrainCircuit<S> {
     }
 
     /// Returns the current place of each grain.
-    fn places(&mut self, s: &Simulation<S>) -> Vec<GrainPlace> {
+    fn places<S: Space>(&mut self, s: &Simulation<S>) -> Vec<GrainPlace> {
         let mut places = Vec::with_capacity(self.grains.len());
         for (k, body) in self.grains.iter().enumerate() {
             let old = self.ledger.places()[k];
@@ -273,7 +272,7 @@ impl<S: Space> GrainCircuit<S> {
         places
     }
 
-    fn debris_of(&self, s: &Simulation<S>, base: u32, piece: &[u32]) -> Debris<S> {
+    fn debris_of<S: Space>(&self, s: &Simulation<S>, base: u32, piece: &[u32]) -> Debris {
         let first = s.state.bodies.position[piece[0] as usize];
         let (mut mass, mut moment) = (0.0, S::Vector::zero());
         for b in piece {
@@ -299,7 +298,11 @@ impl<S: Space> GrainCircuit<S> {
             time: s.state.time,
             grains: piece.iter().map(id).collect(),
             mass: mass / self.spec.scaling,
-            place: s.shapes.periodic.wrapped(first + moment * (1.0 / mass)),
+            place: s
+                .shapes
+                .periodic
+                .wrapped(first + moment * (1.0 / mass))
+                .padded(),
             base,
             mode_mix: if all > 0.0 { work[1] / all } else { 0.0 },
             energy,
@@ -320,19 +323,18 @@ pub struct Intervals {
 /// The circuit as a process: from its start on it records the bonds of every step, and removes lost
 /// grains between steps.
 #[derive(Clone, Debug)]
-pub struct CircuitProcess<S: Space> {
+pub struct CircuitProcess {
     spec: Spec,
     start: f64,
     intervals: Intervals,
-    state: AccountState<S>,
+    state: AccountState,
 }
 
 /// The part of a circuit that changes from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(bound = "")]
-struct AccountState<S: Space> {
+struct AccountState {
     /// None before it begins.
-    circuit: Option<GrainCircuit<S>>,
+    circuit: Option<GrainCircuit>,
     /// Number of the last step whose bonds it recorded.
     recorded: u64,
     /// Number of the last step after which it was updated.
@@ -350,7 +352,7 @@ pub struct NoBonds {
     pub body: String,
 }
 
-impl<S: Space> CircuitProcess<S> {
+impl CircuitProcess {
     /// A circuit whose account begins after the first step that ends at a time (s) or later.
     pub fn new(spec: Spec, start: f64, intervals: Intervals) -> Self {
         Self {
@@ -362,7 +364,7 @@ impl<S: Space> CircuitProcess<S> {
     }
 
     /// The circuit; none before it begins.
-    pub fn circuit(&self) -> Option<&GrainCircuit<S>> {
+    pub fn circuit(&self) -> Option<&GrainCircuit> {
         self.state.circuit.as_ref()
     }
 
@@ -371,12 +373,12 @@ impl<S: Space> CircuitProcess<S> {
         self.start
     }
 
-    /// Whether it was brought up to date after the last step of a simulation.
-    pub fn is_up_to_date(&self, s: &Simulation<S>) -> bool {
-        self.state.updated == s.state.steps
+    /// Whether it was brought up to date after so many steps.
+    pub fn is_up_to_date(&self, steps: u64) -> bool {
+        self.state.updated == steps
     }
 
-    fn begin(&mut self, s: &Simulation<S>) -> Result<(), NoBonds> {
+    fn begin<S: Space>(&mut self, s: &Simulation<S>) -> Result<(), NoBonds> {
         let circuit = GrainCircuit::new(self.spec.clone(), s);
         let untied = |base: &&u32| circuit.tied_to(**base) == 0;
         if let Some(base) = circuit.bases().iter().find(untied) {
@@ -389,7 +391,7 @@ impl<S: Space> CircuitProcess<S> {
         Ok(())
     }
 
-    fn update(&mut self, s: &mut Simulation<S>) {
+    fn update<S: Space>(&mut self, s: &mut Simulation<S>) {
         if let Some(circuit) = &mut self.state.circuit {
             circuit.update(s);
             self.state.updated = s.state.steps;
@@ -397,7 +399,7 @@ impl<S: Space> CircuitProcess<S> {
     }
 }
 
-impl<S: Space> Process<S> for CircuitProcess<S> {
+impl<S: Space> Process<S> for CircuitProcess {
     fn name(&self) -> &str {
         "tribological circuit"
     }

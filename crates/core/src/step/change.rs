@@ -1,13 +1,14 @@
 //! How much a step has changed: what tells whether a longer one would do.
 
 use crate::contact::Key;
-use crate::geometry::space::{Space, VectorLike};
+use nalgebra::Vector3;
 
-/// Forces of all contacts in the last step (N; N/m in 2D), in the order of their keys.
+/// Forces of all contacts in the last step (N; N/m in 2D), in the order of their keys; the
+/// third component is zero in the plane.
 #[derive(Clone, Debug, Default)]
-pub struct ContactForces<S: Space>(pub(super) Vec<(Key, S::Vector)>);
+pub struct ContactForces(pub(super) Vec<(Key, Vector3<f64>)>);
 
-impl<S: Space> ContactForces<S> {
+impl ContactForces {
     /// Root of the sum of squares of the differences, over that of the forces, the larger of the
     /// two; 0 where there is none.
     pub fn change(&self, after: &Self) -> f64 {
@@ -21,7 +22,7 @@ impl<S: Space> ContactForces<S> {
                 (Some(_), None) => (old.next(), None),
                 _ => (None, new.next()),
             };
-            let force = |of: Option<&(Key, S::Vector)>| of.map_or(S::Vector::zero(), |x| x.1);
+            let force = |of: Option<&(Key, Vector3<f64>)>| of.map_or(Vector3::zeros(), |x| x.1);
             let (a, b) = (force(a), force(b));
             difference += (a - b).dot(&(a - b));
             sums[0] += a.dot(&a);
@@ -48,10 +49,8 @@ pub struct StepChange {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Dim2;
-    use nalgebra::Vector2;
 
-    fn forces(list: &[(u32, f64)]) -> ContactForces<Dim2> {
+    fn forces(list: &[(u32, f64)]) -> ContactForces {
         let key = |candidate| Key {
             candidate,
             antagonist: 9,
@@ -59,7 +58,7 @@ mod tests {
         };
         ContactForces(
             list.iter()
-                .map(|(k, f)| (key(*k), Vector2::new(0.0, *f)))
+                .map(|(k, f)| (key(*k), Vector3::new(0.0, *f, 0.0)))
                 .collect(),
         )
     }

@@ -9,42 +9,6 @@ use crate::contact::detect::{CollisionScene, detect};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;
 
-/// A simulation by its dimension.
-#[derive(Clone, Copy, Debug)]
-pub enum InDimension<'a> {
-    /// Two dimensions.
-    Dim2(&'a Simulation<Dim2>),
-    /// Three dimensions.
-    Dim3(&'a Simulation<Dim3>),
-}
-
-impl<'a> InDimension<'a> {
-    /// The simulation, whose type parameter is one of the two dimensions.
-    pub fn of<S: Space>(simulation: &'a Simulation<S>) -> Self {
-        let simulation: &dyn Any = simulation;
-        if let Some(plane) = simulation.downcast_ref() {
-            return Self::Dim2(plane);
-        }
-        match simulation.downcast_ref() {
-            Some(space) => Self::Dim3(space),
-            None => unreachable!("there are two and three dimensions"),
-        }
-    }
-
-    /// The simulation, of which the dimension is known.
-    #[doc(hidden)]
-    pub fn get<S: Space>(self) -> &'a Simulation<S> {
-        let simulation: &dyn Any = match self {
-            Self::Dim2(s) => s,
-            Self::Dim3(s) => s,
-        };
-        match simulation.downcast_ref() {
-            Some(simulation) => simulation,
-            None => unreachable!("its dimension is known"),
-        }
-    }
-}
-
 /// A simulation by its dimension, to be changed.
 #[derive(Debug)]
 pub enum InDimensionMut<'a> {

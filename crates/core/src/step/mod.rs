@@ -45,7 +45,7 @@ mod workspace;
 
 pub use change::{ContactForces, StepChange};
 pub use control::ImpossibleMotions;
-pub use dimension::{InDimension, InDimensionMut};
+pub use dimension::InDimensionMut;
 pub use error::StepError;
 pub use options::{Coupling, Options, Scheme};
 pub use reading::ContactRow;

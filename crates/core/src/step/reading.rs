@@ -182,11 +182,12 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The forces of the contacts in the last step.
-    pub fn contact_forces(&self) -> ContactForces<S> {
+    pub fn contact_forces(&self) -> ContactForces {
         let per = 1.0 / self.options.scheme.h;
         let contacts = self.state.network.contacts.iter();
         let carrying = contacts.filter(|c| c.impulse != S::Vector::zero());
-        ContactForces(carrying.map(|c| (c.key, c.impulse * per)).collect())
+        let force = |c: &Contact<S>| (c.key, (c.impulse * per).padded().into());
+        ContactForces(carrying.map(force).collect())
     }
 
     /// The largest displacement of a point of a body in a step at the current velocities, over the
@@ -226,7 +227,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// What the last step has changed; `before` are the forces of the step before.
-    pub fn change_since(&self, before: &ContactForces<S>) -> StepChange {
+    pub fn change_since(&self, before: &ContactForces) -> StepChange {
         StepChange {
             displacement: self.largest_displacement(),
             forces: before.change(&self.contact_forces()),
@@ -235,8 +236,13 @@ impl<S: Space> Simulation<S> {
 
     /// The process of a type, the first where there are several.
     pub fn process<P: Process<S>>(&self) -> Option<&P> {
-        let mut list = self.features.iter().chain(&self.processes);
-        list.find_map(|p| (p.as_ref() as &dyn Any).downcast_ref())
+        self.processes_as_any().find_map(|p| p.downcast_ref())
+    }
+
+    /// What the core itself added to the stages of a step, and then the processes.
+    pub(crate) fn processes_as_any(&self) -> impl Iterator<Item = &dyn Any> {
+        let list = self.features.iter().chain(&self.processes);
+        list.map(|p| p.as_ref() as &dyn Any)
     }
 
     /// Whether the last phase has come to its end, or a process has reached what it was to reach.

@@ -2,7 +2,7 @@
 
 use super::{RunControl, RunSetup, RunView};
 use crate::geometry::space::{Dim2, Dim3, Space};
-use crate::step::{InDimension, Simulation, StepError, StepReport};
+use crate::step::{Simulation, StepError, StepReport};
 use std::any::Any;
 use std::ops::{ControlFlow, Deref, DerefMut};
 
@@ -107,28 +107,9 @@ impl DerefMut for AnySimulation {
     }
 }
 
-impl<'a> InDimension<'a> {
-    /// The simulation for reading.
-    pub fn view(self) -> &'a dyn RunView {
-        match self {
-            Self::Dim2(s) => s,
-            Self::Dim3(s) => s,
-        }
-    }
-}
-
 impl<S: Space> Simulation<S> {
     /// The simulation without its dimension, for reading.
     pub fn view(&self) -> &dyn RunView {
-        InDimension::of(self).view()
-    }
-}
-
-impl<'a> From<&'a AnySimulation> for InDimension<'a> {
-    fn from(simulation: &'a AnySimulation) -> Self {
-        match simulation {
-            AnySimulation::Plane(s) => Self::Dim2(s),
-            AnySimulation::Space(s) => Self::Dim3(s),
-        }
+        self
     }
 }

@@ -37,6 +37,11 @@ pub trait RunControl: RunView + Send {
     fn options_mut(&mut self) -> &mut Options;
     /// Continues with another time step (s); see [`Simulation::change_step`].
     fn change_step(&mut self, h: f64);
+    /// Goes on with steps that each span so many of the case, of `h` (s); see
+    /// [`Simulation::span_steps`].
+    fn span_steps(&mut self, h: f64, count: u32);
+    /// Replaces the tolerance that the current phase has set, see [`RunView::phase_tolerance`].
+    fn set_phase_tolerance(&mut self, tolerance: Option<f64>);
     /// Applies an impulse to a body and adds its work to the ledger; see
     /// [`Simulation::apply_impulse`].
     fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]);
@@ -70,6 +75,54 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// As [`Simulation::repeat`].
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError>;
+    /// Has `trial` make steps, and restores the state before it where it returns false; see
+    /// [`Simulation::attempt`]. Returns what it returned.
+    ///
+    /// # Errors
+    /// As [`Simulation::attempt`].
+    fn attempt(
+        &mut self,
+        trial: &mut dyn FnMut(&mut dyn RunControl) -> bool,
+    ) -> Result<bool, RepeatError>;
+}
+
+impl dyn RunControl + '_ {
+    /// Returns what `trial` returns, and restores the state before it, see
+    /// [`RunControl::repeat`].
+    ///
+    /// # Errors
+    /// As [`RunControl::repeat`].
+    pub fn repeated<R>(
+        &mut self,
+        trial: impl FnOnce(&mut dyn RunControl) -> R,
+    ) -> Result<R, RepeatError> {
+        let (mut trial, mut result) = (Some(trial), None);
+        self.repeat(&mut |run| result = trial.take().map(|trial| trial(run)))?;
+        match result {
+            Some(result) => Ok(result),
+            None => unreachable!("the trial is made once"),
+        }
+    }
+
+    /// Returns what `trial` returns, and restores the state before it where that is an error, see
+    /// [`RunControl::attempt`].
+    ///
+    /// # Errors
+    /// As [`RunControl::attempt`].
+    pub fn attempted<R, E>(
+        &mut self,
+        trial: impl FnOnce(&mut dyn RunControl) -> Result<R, E>,
+    ) -> Result<Result<R, E>, RepeatError> {
+        let (mut trial, mut result) = (Some(trial), None);
+        self.attempt(&mut |run| {
+            result = trial.take().map(|trial| trial(run));
+            matches!(result, Some(Ok(_)))
+        })?;
+        match result {
+            Some(result) => Ok(result),
+            None => unreachable!("the trial is made once"),
+        }
+    }
 }
 
 impl<S: Space> RunControl for Simulation<S> {
@@ -97,6 +150,12 @@ impl<S: Space> RunControl for Simulation<S> {
     fn change_step(&mut self, h: f64) {
         self.change_step(h);
     }
+    fn span_steps(&mut self, h: f64, count: u32) {
+        self.span_steps(h, count);
+    }
+    fn set_phase_tolerance(&mut self, tolerance: Option<f64>) {
+        self.state.control.tolerance = tolerance;
+    }
     fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]) {
         let angular = match S::D {
             2 => S::Spin::from_slice(&angular[2..]),
@@ -123,5 +182,12 @@ impl<S: Space> RunControl for Simulation<S> {
     }
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError> {
         self.repeat(|s| trial(s))
+    }
+    fn attempt(
+        &mut self,
+        trial: &mut dyn FnMut(&mut dyn RunControl) -> bool,
+    ) -> Result<bool, RepeatError> {
+        let made = self.attempt(|s| if trial(s) { Ok(()) } else { Err(()) });
+        Ok(made?.is_ok())
     }
 }

@@ -6,6 +6,9 @@
 //! Simulation<Dim3> ─┘
 //! ```
 //!
+//! A `RunView` is a [`BodiesView`], a [`ShapesView`] and a [`ContactsView`] too: a reference to one
+//! has the methods of all of them.
+//!
 //! Positions, velocities and forces are `[f64; 3]` in world axes. In the plane the third component
 //! is zero, angular velocities and moments are about the third axis, and extensive quantities are
 //! those of a depth of 1 m.
@@ -38,6 +41,8 @@
 //! ```
 
 mod any;
+mod bodies_view;
+mod contacts_view;
 mod control;
 mod fields;
 mod memory;
@@ -45,17 +50,22 @@ pub mod placement;
 mod rows;
 mod run_view;
 mod setup;
+mod shapes_view;
 mod systems;
 
 pub use any::AnySimulation;
+pub use bodies_view::BodiesView;
+pub use contacts_view::ContactsView;
 pub use control::RunControl;
 pub use fields::{FieldInfo, FieldKind, FieldValues, GrainFields};
 pub use memory::MemoryUse;
 pub use rows::{
-    BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
+    BallView, BodyColumns, BondCounts, ContactView, Motion, Outline, PieceView, ScarVertex,
+    ScarView, SurfaceView,
 };
 pub use run_view::RunView;
 pub use setup::{PointBehind, RunSetup};
+pub use shapes_view::ShapesView;
 pub use systems::{SystemTrial, SystemView};
 
 #[cfg(test)]

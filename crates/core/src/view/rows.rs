@@ -1,8 +1,8 @@
 //! Rows of a view: plain data with three components.
 
 use crate::bodies::{Carrier, Driven};
-use crate::contact::{BondState, Key};
-use crate::geometry::space::VectorLike;
+use crate::contact::{BondState, Key, Slides};
+use crate::geometry::space::{VectorLike, Vectors};
 use nalgebra::Vector3;
 
 /// Columns of the bodies, grains first, then first bodies. In 2D masses are per metre of depth.
@@ -10,8 +10,16 @@ use nalgebra::Vector3;
 pub struct BodyColumns<'a> {
     /// Stable identities.
     pub id: &'a [u64],
+    /// Centres of mass (m).
+    pub position: Vectors<'a>,
+    /// Velocities of the centres of mass (m/s).
+    pub velocity: Vectors<'a>,
+    /// Angular velocities (rad/s).
+    pub spin: Vectors<'a>,
     /// Masses (kg).
     pub mass: &'a [f64],
+    /// Inverse masses along each axis, zero where motion is imposed (1/kg).
+    pub inverse_mass: Vectors<'a>,
     /// Moments of inertia (kg m^2); the mean where they differ by axis.
     pub inertia: &'a [f64],
     /// Inverse moments of inertia, zero where rotation is imposed (1/(kg m^2)).
@@ -87,7 +95,7 @@ pub struct BallView {
 }
 
 /// A convex piece of a body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PieceView {
     /// Index of its body.
     pub body: u32,
@@ -103,10 +111,6 @@ pub struct PieceView {
     pub centre: [f64; 3],
     /// Its centre in the frame of the body (m).
     pub offset: [f64; 3],
-    /// Corners of its core about its centre, in the axes of the body (m).
-    pub corners: Vec<[f64; 3]>,
-    /// Corners of each face in space, anticlockwise from outside; empty in the plane.
-    pub faces: Vec<Vec<u32>>,
 }
 
 /// A surface of a body.
@@ -118,8 +122,12 @@ pub struct SurfaceView {
     pub material: u16,
     /// Its origin in the frame of the body (m).
     pub offset: [f64; 3],
-    /// Whether it is a plane.
-    pub flat: bool,
+    /// Whether it is the surface of a grain that deforms.
+    pub closed: bool,
+    /// Whether it has an end everywhere, unlike a plane.
+    pub bounded: bool,
+    /// Outward normal of a plane, in its own frame.
+    pub flat: Option<[f64; 3]>,
 }
 
 /// A line of a shape: of a surface, or around a piece or one of its faces.
@@ -146,11 +154,26 @@ pub struct ScarView<'a> {
     pub volume: f64,
     /// Greatest depth (m).
     pub deepest: f64,
+    /// Where that is, in the frame of the surface before any wear (m).
+    pub deepest_at: [f64; 3],
+}
+
+/// A vertex of a scar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScarVertex {
+    /// Where it is, in the frame of the surface before any wear (m).
+    pub at: [f64; 3],
+    /// Area that it stands for (m^2; length in 2D, m).
+    pub tributary: f64,
+    /// Depth that was worn off there (m).
+    pub depth: f64,
 }
 
 /// A contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactView {
+    /// Its place among the contacts of the step.
+    pub place: usize,
     /// Key in the scene.
     pub key: Key,
     /// The bodies: candidate, antagonist.
@@ -167,8 +190,10 @@ pub struct ContactView {
     pub gap: f64,
     /// Reduced radius (m); zero where it is not known.
     pub radius: f64,
-    /// Mean force of the last step on the candidate (N; N/m in 2D); the antagonist has its
+    /// Impulse of the last step on the candidate (N s; N s/m in 2D); the antagonist has its
     /// opposite.
+    pub impulse: [f64; 3],
+    /// Mean force of the last step on the candidate (N; N/m in 2D).
     pub force: [f64; 3],
     /// Component of the force along the normal (N; N/m in 2D), positive in compression.
     pub normal_force: f64,
@@ -182,4 +207,15 @@ pub struct ContactView {
     pub bond: BondState,
     /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
     pub counts: bool,
+}
+
+/// The bonds of an interface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondCounts {
+    /// Made so far.
+    pub made: u64,
+    /// Broken so far.
+    pub broken: u64,
+    /// How far they opened or slid in a step.
+    pub slides: Slides,
 }

@@ -1,36 +1,32 @@
 //! Reading a simulation.
 
+use super::bodies_view::BodiesView;
+use super::contacts_view::ContactsView;
 use super::fields::{self, FieldInfo, FieldValues, GrainFields};
 use super::memory::MemoryUse;
-use super::placement;
-use super::rows::{
-    BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
-};
-use super::systems::{SystemReader, SystemView};
-use crate::bodies::SystemStep;
-use crate::contact::detect::{self, LawTable};
-use crate::contact::{Contact, StepSizeDiagnostics};
+use super::shapes_view::ShapesView;
+use crate::contact::detect::LawTable;
 use crate::energy::Energy;
-use crate::geometry::convex::Core;
 use crate::geometry::periodic::Periodic;
-use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{Heat, HeatState};
 use crate::laws::Interface;
 use crate::momentum::Momentum;
+use crate::process::cycle::{Drive, SlidingBody};
 use crate::process::expansion::ThermalExpansion;
+use crate::process::jump::{JumpSummary, Jumps};
 use crate::solve;
-use crate::step::control::{Begun, GravityDrive};
+use crate::step::control::{Begun, GravityDrive, StepBounds};
 use crate::step::fields::GrainPart;
-use crate::step::{InDimension, Options, Simulation};
+use crate::step::{Options, RepeatError, Simulation};
+use std::any::{Any, TypeId};
 use std::fmt::Debug;
 
 /// A simulation for reading, between two steps. The [module](super) describes the third components.
 ///
-/// Bodies are counted as in [`RunView::bodies`], surfaces as in [`RunView::surfaces`].
-pub trait RunView: Debug {
-    /// The simulation in its dimension.
-    #[doc(hidden)]
-    fn in_dimension(&self) -> InDimension<'_>;
+/// Its bodies, shapes and contacts have traits of their own, whose methods a `&dyn RunView` has
+/// too.
+pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
     /// Time at the end of the last step (s).
@@ -41,10 +37,26 @@ pub trait RunView: Debug {
     fn options(&self) -> &Options;
     /// The options of the solver, with the tolerance that the current phase has set, if any.
     fn solver_in_force(&self) -> solve::Options;
+    /// The tolerance of the solver that the current phase has set, if any.
+    fn phase_tolerance(&self) -> Option<f64>;
+    /// Whether steps can be repeated.
+    ///
+    /// # Errors
+    /// Which process does not permit it.
+    fn repeatable(&self) -> Result<(), RepeatError>;
+    /// What bounds the next step; see [`Simulation::step_bounds`].
+    fn step_bounds(&self) -> StepBounds;
+    /// The largest displacement of a point of a body in a step at the current velocities, over the
+    /// length of the smallest grain; see [`Simulation::largest_displacement`].
+    fn largest_displacement(&self) -> f64;
+    /// Whether the next step is the first of a phase.
+    fn phase_begins(&self) -> bool;
     /// Number of the current phase, from 1; 0 before the first step and without phases.
     fn phase(&self) -> usize;
     /// Whether phases or processes end the run before its time.
     fn finished(&self) -> bool;
+    /// Names of the phases of the case, in order.
+    fn phase_names(&self) -> Vec<&str>;
     /// The phases begun so far, in order.
     fn begun(&self) -> &[Begun];
     /// Acceleration of gravity (m/s^2).
@@ -62,77 +74,33 @@ pub trait RunView: Debug {
     /// Interface law of each pair of materials.
     fn table(&self) -> &LawTable;
 
-    /// Columns of the bodies.
-    fn bodies(&self) -> BodyColumns<'_>;
-    /// The bodies that are grains and are still there.
-    fn grains(&self) -> Vec<usize>;
-    /// Where a body is and how it moves.
-    fn motion(&self, body: usize) -> Motion;
-    /// Inverse mass of a body along each axis, zero where its motion is imposed (1/kg).
-    fn inverse_mass(&self, body: usize) -> [f64; 3];
-    /// Moments of inertia in the body's own axes, row by row (kg m^2); in 2D the first alone.
-    fn inertia_tensor(&self, body: usize) -> [f64; 9];
-    /// Kinetic energy of a body (J; J/m in 2D).
-    fn kinetic_energy(&self, body: usize) -> f64;
-    /// Name of a body in messages: a first body's name, a grain's identity.
-    fn body_name(&self, body: u32) -> String;
-    /// Mean force (N; N/m in 2D) and moment about its centre (N m; N in 2D) of the last step by its
-    /// contacts on a first body; `None` for a name that no first body has.
-    fn contact_force_on(&self, name: &str) -> Option<[[f64; 3]; 2]>;
-
-    /// The balls of all bodies, and the points of those that deform.
-    fn balls(&self) -> Vec<BallView>;
-    /// The convex pieces of all bodies.
-    fn pieces(&self) -> Vec<PieceView>;
-    /// The surfaces of all bodies.
-    fn surfaces(&self) -> Vec<SurfaceView>;
-    /// Lines of a surface in its own frame (m).
-    fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>>;
-    /// Lines of the surfaces of bodies that are still there.
-    fn surface_outlines(&self) -> Vec<Outline>;
-    /// Lines around the pieces: one around each in 2D, one around each face in 3D.
-    fn piece_outlines(&self) -> Vec<Outline>;
-    /// Surfaces that recede by wear.
-    fn scars(&self) -> Vec<ScarView<'_>>;
-    /// Number of dynamical systems.
-    fn system_count(&self) -> usize;
-    /// A dynamical system.
-    fn system(&self, system: usize) -> Option<Box<dyn SystemView + '_>>;
-    /// The dynamical system of a name.
-    fn system_named(&self, name: &str) -> Option<usize>;
-    /// The bodies that stand for the contactors of a dynamical system, in their order.
-    fn bodies_of_system(&self, system: usize) -> &[u32];
-
-    /// Number of contacts, open ones within the alert distance too.
-    fn contact_count(&self) -> usize;
-    /// Calls a function with each contact of the last step, in the order of their keys.
-    fn visit_contacts(&self, visit: &mut dyn FnMut(&ContactView));
-    /// End points of the contacts that [count](ContactView::counts): the candidate's centre, and
-    /// the antagonist's centre or the closest point on its surface (m), the first in the periodic
-    /// cell.
-    fn contact_ends(&self) -> Vec<[[f64; 3]; 2]>;
-    /// Bonds made so far.
-    fn bonds_made(&self) -> u64;
-    /// Bonds broken so far.
-    fn bonds_broken(&self) -> u64;
-    /// Mean damage of the bonds.
-    fn mean_damage(&self) -> f64;
     /// What grains and contacts take in memory.
     fn memory_use(&self) -> MemoryUse;
-    /// Diagnostics of the step size.
-    fn step_size(&self) -> &StepSizeDiagnostics;
-
     /// The energy ledger (J; J/m in 2D).
     fn energies(&self) -> &Energy;
+    /// Work of projections on driven bodies against imposed forces (J; J/m in 2D).
+    fn projection_work(&self) -> f64;
     /// The ledger of momentum (N s, N m s; in 2D per m).
     fn momentum(&self) -> &Momentum;
     /// Heat and current, as the case gives them.
     fn heat(&self) -> Option<&Heat>;
     /// Temperatures and the account of heat.
     fn heat_state(&self) -> Option<&HeatState>;
+    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its
+    /// mesh; `None` where it has none or no heat is computed.
+    fn temperature(&self, body: usize) -> Option<f64>;
     /// Coefficient of thermal expansion of each body (1/K), zero where it keeps its size, and the
     /// dynamical systems that expand; `None` where no body expands.
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)>;
+
+    /// What the drive of a rubbed body did in the last step, and the normal force of its contacts,
+    /// the mean over the step (N; N/m in 2D), positive in compression.
+    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64);
+    /// What the jumps over cycles came to so far; `None` where the case has none.
+    fn jump_summary(&self) -> Option<JumpSummary>;
+    /// The process of a type, the first where there are several; see
+    /// [`process`](trait.RunView.html#method.process) of `dyn RunView`.
+    fn process_of_type(&self, of: TypeId) -> Option<&dyn Any>;
 
     /// Centres of the parts of grains and first bodies that carry fields (m).
     fn grain_centres(&self) -> Vec<[f64; 3]>;
@@ -153,44 +121,27 @@ pub trait RunView: Debug {
     fn contact_field(&self, name: &str, counted: bool) -> Option<FieldValues>;
 }
 
+impl dyn RunView + '_ {
+    /// The process of a type, the first where there are several.
+    pub fn process<P: Any>(&self) -> Option<&P> {
+        self.process_of_type(TypeId::of::<P>())?.downcast_ref()
+    }
+}
+
 /// An angular velocity or a moment about world axes.
-fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
+pub(super) fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
     match spin.padded() {
         [about_depth, ..] if S::D == 2 => [0.0, 0.0, about_depth],
         spin => spin,
     }
 }
 
-fn padded<V: VectorLike>(points: Vec<V>) -> Vec<[f64; 3]> {
-    points.iter().map(VectorLike::padded).collect()
-}
-
-fn contact_view<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> ContactView {
-    let force = contact.impulse * (1.0 / s.options.scheme.h);
-    let candidate = contact.bodies[0] as usize;
-    ContactView {
-        key: contact.key,
-        bodies: contact.bodies,
-        interface: contact.law,
-        point: (s.state.bodies.position[candidate] + contact.arms[0]).padded(),
-        arms: contact.arms.map(|arm| arm.padded()),
-        normal: contact.normal.padded(),
-        gap: contact.gap,
-        radius: contact.radius,
-        force: force.padded(),
-        normal_force: force.dot(&contact.normal),
-        slides: contact.slides,
-        central: contact.central,
-        formed_at: contact.formed_at,
-        bond: s.state.network.bond_state(contact),
-        counts: contact.counts(),
-    }
+/// An angular velocity or a moment from its components about world axes.
+pub(super) fn from_axes<S: Space>(spin: [f64; 3]) -> S::Spin {
+    S::Spin::from_slice(&spin[3 - S::Spin::N..])
 }
 
 impl<S: Space> RunView for Simulation<S> {
-    fn in_dimension(&self) -> InDimension<'_> {
-        InDimension::of(self)
-    }
     fn dimension(&self) -> usize {
         S::D
     }
@@ -206,11 +157,32 @@ impl<S: Space> RunView for Simulation<S> {
     fn solver_in_force(&self) -> solve::Options {
         self.solver_in_force()
     }
+    fn phase_tolerance(&self) -> Option<f64> {
+        self.state.control.tolerance
+    }
+    fn repeatable(&self) -> Result<(), RepeatError> {
+        self.repeatable()
+    }
+    fn step_bounds(&self) -> StepBounds {
+        self.step_bounds()
+    }
+    fn largest_displacement(&self) -> f64 {
+        self.largest_displacement()
+    }
+    fn phase_begins(&self) -> bool {
+        self.phase_begins()
+    }
     fn phase(&self) -> usize {
         self.state.control.phase()
     }
     fn finished(&self) -> bool {
         self.finished()
+    }
+    fn phase_names(&self) -> Vec<&str> {
+        self.phases
+            .iter()
+            .map(|phase| phase.name.as_str())
+            .collect()
     }
     fn begun(&self) -> &[Begun] {
         self.state.control.begun()
@@ -237,194 +209,14 @@ impl<S: Space> RunView for Simulation<S> {
         &self.table
     }
 
-    fn bodies(&self) -> BodyColumns<'_> {
-        let bodies = &self.state.bodies;
-        BodyColumns {
-            id: &bodies.id,
-            mass: &bodies.mass,
-            inertia: &bodies.inertia,
-            inverse_inertia: &bodies.inverse_inertia,
-            length: &bodies.length,
-            removed: &bodies.removed,
-            driven: &bodies.driven,
-            carriers: &bodies.carriers,
-        }
-    }
-    fn grains(&self) -> Vec<usize> {
-        self.state.bodies.grains().collect()
-    }
-    fn motion(&self, body: usize) -> Motion {
-        let bodies = &self.state.bodies;
-        Motion {
-            position: bodies.position[body].padded(),
-            rotation: S::rotation_numbers(&bodies.rotation[body]),
-            velocity: bodies.velocity[body].padded(),
-            spin: about_axes::<S>(&bodies.spin[body]),
-        }
-    }
-    fn inverse_mass(&self, body: usize) -> [f64; 3] {
-        self.state.bodies.inverse_mass[body].padded()
-    }
-    fn inertia_tensor(&self, body: usize) -> [f64; 9] {
-        let bodies = &self.state.bodies;
-        let uniform = S::Tensor::uniform(bodies.inertia[body]);
-        let own = bodies.tensors.get(body).and_then(Option::as_ref);
-        let own = own.map_or(uniform, |t| *t.own());
-        let n = S::Spin::N;
-        std::array::from_fn(|k| {
-            let (i, j) = (k / 3, k % 3);
-            if i < n && j < n { own.entry(i, j) } else { 0.0 }
-        })
-    }
-    fn kinetic_energy(&self, body: usize) -> f64 {
-        self.state.bodies.energy_of(body)
-    }
-    fn body_name(&self, body: u32) -> String {
-        self.state.bodies.name(body)
-    }
-    fn contact_force_on(&self, name: &str) -> Option<[[f64; 3]; 2]> {
-        let (force, moment) = self.contact_force_on(name)?;
-        Some([force.padded(), about_axes::<S>(&moment)])
-    }
-
-    fn balls(&self) -> Vec<BallView> {
-        let bodies = &self.state.bodies;
-        let balls = self.shapes.balls.iter().map(|ball| BallView {
-            body: ball.body,
-            material: ball.material,
-            radius: ball.radius,
-            centre: detect::centre(ball, bodies).padded(),
-            offset: ball.offset.padded(),
-            area: ball.area.padded(),
-        });
-        balls.collect()
-    }
-    fn pieces(&self) -> Vec<PieceView> {
-        let bodies = &self.state.bodies;
-        let pieces = self.shapes.pieces.iter().map(|piece| {
-            let boundary = piece.core.boundary();
-            PieceView {
-                body: piece.body,
-                material: piece.material,
-                size: piece.size,
-                bound: piece.bound,
-                rounding: piece.rounding,
-                centre: detect::piece_centre(piece, bodies).padded(),
-                offset: piece.offset.padded(),
-                corners: padded(boundary.corners),
-                faces: boundary.faces,
-            }
-        });
-        pieces.collect()
-    }
-    fn surfaces(&self) -> Vec<SurfaceView> {
-        let surfaces = self.shapes.surfaces.iter().map(|surface| SurfaceView {
-            body: surface.body,
-            material: surface.material,
-            offset: surface.offset.padded(),
-            flat: surface.shape.flat().is_some(),
-        });
-        surfaces.collect()
-    }
-    fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>> {
-        let lines = self.shapes.surfaces[surface].shape.outline();
-        lines.into_iter().map(padded).collect()
-    }
-    fn surface_outlines(&self) -> Vec<Outline> {
-        let bodies = &self.state.bodies;
-        let surfaces = self.shapes.surfaces.iter();
-        let present = surfaces.filter(|f| !bodies.removed[f.body as usize]);
-        let lines = present.flat_map(|surface| {
-            let b = surface.body as usize;
-            let place = move |p: &S::Vector| {
-                let arm = S::rotate(&bodies.rotation[b], &(surface.offset + *p));
-                (bodies.position[b] + arm).padded()
-            };
-            let chains = surface.shape.outline().into_iter();
-            chains.map(move |chain| Outline {
-                body: surface.body,
-                points: chain.iter().map(place).collect(),
-            })
-        });
-        lines.collect()
-    }
-    fn piece_outlines(&self) -> Vec<Outline> {
-        let pieces = self.shapes.pieces.iter();
-        let lines = pieces.flat_map(|piece| {
-            let lines = placement::piece_outline(self, piece).into_iter();
-            lines.map(|corners| Outline {
-                body: piece.body,
-                points: padded(corners),
-            })
-        });
-        lines.collect()
-    }
-    fn scars(&self) -> Vec<ScarView<'_>> {
-        let scars = self.state.scars.iter().map(|scar| ScarView {
-            name: &scar.name,
-            surface: scar.surface,
-            thickness: scar.thickness,
-            vertices: scar.vertices().count(),
-            volume: scar.volume(),
-            deepest: scar.deepest(),
-        });
-        scars.collect()
-    }
-    fn system_count(&self) -> usize {
-        self.state.systems.len()
-    }
-    fn system(&self, system: usize) -> Option<Box<dyn SystemView + '_>> {
-        let system = self.state.systems.get(system)?;
-        let step = SystemStep {
-            time: self.state.time,
-            h: self.options.scheme.h,
-            theta: self.options.scheme.theta,
-            gravity: self.state.gravity,
-        };
-        Some(Box::new(SystemReader { system, step }))
-    }
-    fn system_named(&self, name: &str) -> Option<usize> {
-        self.state.systems.named(name)
-    }
-    fn bodies_of_system(&self, system: usize) -> &[u32] {
-        self.state.systems.bodies(system)
-    }
-
-    fn contact_count(&self) -> usize {
-        self.state.network.contacts.len()
-    }
-    fn visit_contacts(&self, visit: &mut dyn FnMut(&ContactView)) {
-        for contact in &self.state.network.contacts {
-            visit(&contact_view(self, contact));
-        }
-    }
-    fn contact_ends(&self) -> Vec<[[f64; 3]; 2]> {
-        let contacts = self.state.network.counted_contacts();
-        let ends = contacts.map(|contact| {
-            let (a, b) = placement::ends(self, contact);
-            let at = self.shapes.periodic.wrapped(a);
-            [at.padded(), (b - a + at).padded()]
-        });
-        ends.collect()
-    }
-    fn bonds_made(&self) -> u64 {
-        self.state.network.bonds_made()
-    }
-    fn bonds_broken(&self) -> u64 {
-        self.state.network.bonds_broken()
-    }
-    fn mean_damage(&self) -> f64 {
-        self.state.network.mean_damage()
-    }
     fn memory_use(&self) -> MemoryUse {
         MemoryUse::of::<S>()
     }
-    fn step_size(&self) -> &StepSizeDiagnostics {
-        &self.state.network.step_size
-    }
-
     fn energies(&self) -> &Energy {
         &self.state.energy
+    }
+    fn projection_work(&self) -> f64 {
+        self.state.projection_work
     }
     fn momentum(&self) -> &Momentum {
         &self.state.momentum
@@ -435,10 +227,24 @@ impl<S: Space> RunView for Simulation<S> {
     fn heat_state(&self) -> Option<&HeatState> {
         self.state.heat.as_ref()
     }
+    fn temperature(&self, body: usize) -> Option<f64> {
+        self.temperature(body)
+    }
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)> {
         let expansion = ThermalExpansion::of(self)?;
         let systems = expansion.systems.iter().map(|e| e.system).collect();
         Some((&expansion.coefficient, systems))
+    }
+
+    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64) {
+        (body.drive(self), body.normal_force(self))
+    }
+    fn jump_summary(&self) -> Option<JumpSummary> {
+        Some(self.process::<Jumps>()?.outcome(self))
+    }
+    fn process_of_type(&self, of: TypeId) -> Option<&dyn Any> {
+        self.processes_as_any()
+            .find(|process| (*process).type_id() == of)
     }
 
     fn grain_centres(&self) -> Vec<[f64; 3]> {

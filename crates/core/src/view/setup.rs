@@ -114,7 +114,7 @@ impl<S: Space> RunSetup for Simulation<S> {
         self.add_process(jumps);
     }
     fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals) {
-        self.add_process(CircuitProcess::<S>::new(spec, start, intervals));
+        self.add_process(CircuitProcess::new(spec, start, intervals));
     }
     fn point_behind(&self, sizes: f64) -> Option<PointBehind> {
         let bodies = &self.state.bodies;

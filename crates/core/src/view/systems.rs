@@ -1,7 +1,11 @@
 //! Dynamical systems without their dimension.
 
-use crate::bodies::{Conduction, Contactor, DynamicalSystem, Holder, SystemSize, SystemStep};
+use crate::bodies::{
+    Conduction, Contactor, DeformedMesh, DynamicalSystem, Holder, SystemSize, SystemStep,
+    TouchingSurface, padded,
+};
 use crate::geometry::space::{Space, VectorLike};
+use nalgebra::Vector3;
 
 /// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
 /// same names.
@@ -26,6 +30,24 @@ pub trait SystemView {
     fn holders(&self) -> Vec<Holder>;
     /// Memory and cost of its solutions.
     fn size(&self) -> Option<SystemSize>;
+    /// Its mesh as it is now; `None` where it has none.
+    fn deformed_mesh(&self) -> Option<DeformedMesh<Vector3<f64>>>;
+    /// Velocities of the points of that mesh (m/s); none where they are not known.
+    fn mesh_velocity(&self) -> Vec<Vector3<f64>>;
+    /// Places of the points of that mesh at the start of the run, without load (m), of a body that
+    /// travels as grains do; none of others.
+    fn mesh_at_start(&self) -> Vec<Vector3<f64>>;
+    /// The surface that touches; `None` where tractions along it are not known.
+    fn touching_surface(&self) -> Option<TouchingSurface<Vector3<f64>>>;
+    /// Where a node is (m).
+    fn node_position(&self, node: u32) -> Vector3<f64>;
+    /// Whether the points that touch stand for equal areas in space.
+    fn has_equal_points(&self) -> bool;
+    /// The largest strain and the largest rotation (rad) in it now, where it takes both for small.
+    fn small_strain(&self) -> Option<[f64; 2]>;
+    /// Where loads must stay away from the border of what can be loaded: the largest force there
+    /// over the largest at all, in the last step.
+    fn load_at_border(&self) -> Option<f64>;
     /// Numbers of points and elements of its mesh; `None` where it has none.
     fn mesh_size(&self) -> Option<[usize; 2]>;
     /// Number of points of the surface by which it touches; 0 where it has none.
@@ -81,6 +103,30 @@ impl<S: Space> SystemView for SystemReader<'_, S> {
     }
     fn size(&self) -> Option<SystemSize> {
         self.system.size()
+    }
+    fn deformed_mesh(&self) -> Option<DeformedMesh<Vector3<f64>>> {
+        Some(self.system.deformed_mesh()?.padded())
+    }
+    fn mesh_velocity(&self) -> Vec<Vector3<f64>> {
+        padded(&self.system.mesh_velocity())
+    }
+    fn mesh_at_start(&self) -> Vec<Vector3<f64>> {
+        padded(&self.system.mesh_at_start())
+    }
+    fn touching_surface(&self) -> Option<TouchingSurface<Vector3<f64>>> {
+        Some(self.system.touching_surface()?.padded())
+    }
+    fn node_position(&self, node: u32) -> Vector3<f64> {
+        self.system.node_position(node).padded().into()
+    }
+    fn has_equal_points(&self) -> bool {
+        self.system.has_equal_points()
+    }
+    fn small_strain(&self) -> Option<[f64; 2]> {
+        self.system.small_strain()
+    }
+    fn load_at_border(&self) -> Option<f64> {
+        self.system.load_at_border()
     }
     fn mesh_size(&self) -> Option<[usize; 2]> {
         let mesh = self.system.deformed_mesh()?;

@@ -44,6 +44,53 @@ fn a_plane_simulation_has_depth_along_the_third_axis() {
 }
 
 #[test]
+fn columns_and_turned_vectors_have_three_components() {
+    let run = two_disks();
+    let (bodies, motion) = (run.bodies(), run.motion(1));
+    assert_eq!(bodies.position.len(), bodies.len());
+    assert_eq!(bodies.velocity.at(1), motion.velocity);
+    assert_eq!(bodies.spin.at(1), motion.spin);
+    assert_eq!(bodies.position.iter().nth(1), Some(motion.position));
+    // The disk has turned by 3 rad/s for a quarter of a second.
+    let turned = run.turned(1, [1.0, 0.0, 0.0]);
+    assert!((turned[1] - motion.rotation[0].sin()).abs() < 1e-15 && turned[2] == 0.0);
+    let back = run.turned_back(1, turned);
+    assert!((back[0] - 1.0).abs() < 1e-15 && back[1].abs() < 1e-15);
+    let momentum = run.angular_momentum(1, [0.0, 0.0, 2.0]);
+    assert_eq!(momentum, [0.0, 0.0, 2.0 * bodies.inertia[1]]);
+    let mut forces = Vec::new();
+    run.visit_contacts(&mut |c| forces.push((c.force, c.bodies, run.ends_of_contact(c.place))));
+    let [(force, bodies, ends)] = forces[..] else {
+        panic!("{forces:?}");
+    };
+    assert!(force[0].abs() > 0.0);
+    assert_eq!(ends[0], run.motion(bodies[0] as usize).position);
+}
+
+#[test]
+fn a_failed_trial_is_undone_and_one_that_succeeds_is_kept() {
+    let mut run = two_disks();
+    let before = run.save().unwrap();
+    let failed = run.attempted(|run| {
+        run.step()
+            .map(|_| ())
+            .map_err(|_| 0)
+            .and(Err::<(), _>(run.steps()))
+    });
+    assert_eq!(failed.unwrap(), Err(2));
+    assert_eq!(run.save().unwrap(), before);
+    let made = run.attempted(|run| run.step().map(|_| run.steps()));
+    assert_eq!(made.unwrap().unwrap(), 2);
+    assert_eq!(run.steps(), 2);
+    let time = run.repeated(|run| {
+        run.span_steps(0.25, 2);
+        run.step().map(|_| run.time())
+    });
+    assert_eq!(time.unwrap().unwrap(), 1.0);
+    assert_eq!(run.time(), 0.5);
+}
+
+#[test]
 fn fields_are_columns_of_all_that_carry_them() {
     let run = two_disks();
     let (fields, values) = (

@@ -97,7 +97,7 @@ impl<S: Space> ElasticBody<S> {
     }
 
     /// Its mesh, displacements and stresses now.
-    pub(super) fn mesh_now(&self) -> DeformedMesh<S> {
+    pub(super) fn mesh_now(&self) -> DeformedMesh<S::Vector> {
         let mesh = &self.model.mesh;
         let all = 0..mesh.points().len() as u32;
         DeformedMesh {
@@ -112,7 +112,7 @@ impl<S: Space> ElasticBody<S> {
     }
 
     /// The part that touches, with its areas; none where nothing touches.
-    pub(super) fn surface_part(&self) -> Option<TouchingSurface<S>> {
+    pub(super) fn surface_part(&self) -> Option<TouchingSurface<S::Vector>> {
         let part = self.model.part.as_ref()?;
         let finite = self.model.large.is_some();
         let rest = |p: u32| self.model.mesh.points()[p as usize];

@@ -384,7 +384,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
         out
     }
 
-    fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+    fn deformed_mesh(&self) -> Option<DeformedMesh<S::Vector>> {
         let (model, rotation) = (&self.model, &self.state.rotation);
         let mesh = model.shape.mesh();
         let displacements = self.displacements();

@@ -362,7 +362,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         Some(if most > 0.0 { border / most } else { 0.0 })
     }
 
-    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+    fn touching_surface(&self) -> Option<TouchingSurface<S::Vector>> {
         let cells = self.fixed.grid.len() as u32;
         // The image of the first cell of a surface that repeats is no cell of its own.
         let mut facets = Vec::new();

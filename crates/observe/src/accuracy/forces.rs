@@ -2,8 +2,8 @@
 //! and with a hundredth of the tolerance.
 
 use crate::error_estimate::{FINER, cost, shorten, tighten};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{ContactForces, RepeatError, Simulation};
+use fretwork_core::step::{ContactForces, RepeatError};
+use fretwork_core::view::RunControl;
 
 /// Most iterations with the tight tolerance: this many times those of the run, and this many in any
 /// case.
@@ -21,24 +21,24 @@ pub(super) struct ForceChanges {
 }
 
 /// One way of making the next step.
-struct Made<S: Space> {
-    forces: ContactForces<S>,
+struct Made {
+    forces: ContactForces,
     cost: f64,
     iterations: u32,
     converged: bool,
 }
 
 /// Makes the next step in so many parts; `None` where it fails.
-fn made<S: Space>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
+fn made(run: &mut dyn RunControl, parts: u32) -> Option<Made> {
     let (mut spent, mut iterations, mut converged) = (0.0, 0, true);
     for _ in 0..parts {
-        let report = s.step().ok()?;
-        spent += cost(s, &report);
+        let report = run.step().ok()?;
+        spent += cost(run, &report);
         iterations = iterations.max(report.solver.iterations);
         converged &= report.solver.converged;
     }
     Some(Made {
-        forces: s.contact_forces(),
+        forces: run.contact_forces(),
         cost: spent,
         iterations,
         converged,
@@ -50,24 +50,24 @@ fn made<S: Space>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
 ///
 /// # Errors
 /// A process could not be put back: the run cannot go on.
-pub(super) fn repeat_step<S: Space>(
-    s: &mut Simulation<S>,
+pub(super) fn repeat_step(
+    run: &mut dyn RunControl,
 ) -> Result<(Option<ForceChanges>, [f64; 2]), RepeatError> {
-    let Some(base) = s.repeat(|s| made(s, 1))? else {
+    let Some(base) = run.repeated(|run| made(run, 1))? else {
         return Ok((None, [0.0; 2]));
     };
-    let finer = s.repeat(|s| {
-        let grown = s.options.grown + 1;
-        shorten(s);
-        s.options.grown = (grown / FINER).max(1) - 1;
-        made(s, FINER)
+    let finer = run.repeated(|run| {
+        let grown = run.options().grown + 1;
+        shorten(run);
+        run.options_mut().grown = (grown / FINER).max(1) - 1;
+        made(run, FINER)
     })?;
     let most = MOST_ITERATIONS
         .1
         .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
-    let tighter = s.repeat(|s| {
-        tighten(s, most);
-        made(s, 1)
+    let tighter = run.repeated(|run| {
+        tighten(run, most);
+        made(run, 1)
     })?;
     let (Some(finer), Some(tighter)) = (finer, tighter) else {
         return Ok((None, [base.cost; 2]));

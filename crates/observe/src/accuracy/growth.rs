@@ -9,8 +9,8 @@
 //!
 //! [`StepBounds`]: fretwork_core::step::control::StepBounds
 
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{ContactForces, Simulation, StepReport};
+use fretwork_core::step::{ContactForces, StepReport};
+use fretwork_core::view::RunView;
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
@@ -54,37 +54,37 @@ pub(super) struct Growth {
 
 /// What a step is compared with.
 #[derive(Debug)]
-pub(super) struct Before<S: Space> {
-    pub forces: ContactForces<S>,
+pub(super) struct Before {
+    pub forces: ContactForces,
     damage: f64,
 }
 
-impl<S: Space> Before<S> {
-    pub fn of(s: &Simulation<S>) -> Self {
+impl Before {
+    pub fn of(run: &dyn RunView) -> Self {
         Self {
-            forces: s.contact_forces(),
-            damage: damage(s),
+            forces: run.contact_forces(),
+            damage: damage(run),
         }
     }
 }
 
 /// Sum of the damage of all bonds.
-fn damage<S: Space>(s: &Simulation<S>) -> f64 {
-    let made = s.state.network.bonds_made();
+fn damage(run: &dyn RunView) -> f64 {
+    let made = run.bonds_made();
     if made == 0 {
         return 0.0;
     }
-    s.state.network.mean_damage() * made as f64
+    run.mean_damage() * made as f64
 }
 
 impl Growth {
-    pub fn new<S: Space>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
+    pub fn new(spec: &AccuracySpec, case: &Case, run: &dyn RunView) -> Self {
         let most = spec.largest(case.time.step) / case.time.step;
         // A largest step that is a multiple up to rounding is reached. The waves of deformable
         // bodies are not seen by what is looked at here.
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
         Self {
-            most: if s.state.systems.is_empty() { most } else { 1 },
+            most: if run.system_count() == 0 { most } else { 1 },
             allowed: spec.share.min(MOST_CHANGE),
             chosen: 1,
             last: 1,
@@ -107,15 +107,15 @@ impl Growth {
 
     /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than
     /// `most`.
-    pub fn next<S: Space>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
+    pub fn next(&mut self, run: &dyn RunView, h: f64, most: u64) -> u32 {
         self.event = false;
         if self.most == 1 {
             return 1;
         }
-        if s.phase_begins() {
+        if run.phase_begins() {
             self.chosen = 1;
         }
-        let [event, resolved] = s.step_bounds().steps(s.state.time, h);
+        let [event, resolved] = run.step_bounds().steps(run.time(), h);
         let wanted = u64::from(self.chosen).min(resolved).max(1);
         // Equal steps up to the next event or record, so that none is much shorter than the one
         // before it.
@@ -127,31 +127,30 @@ impl Growth {
 
     /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or
     /// may grow after it.
-    pub fn watches<S: Space>(&self, s: &Simulation<S>, count: u32) -> bool {
-        count > 1 || (self.most > 1 && s.largest_displacement() <= self.allowed)
+    pub fn watches(&self, run: &dyn RunView, count: u32) -> bool {
+        count > 1 || (self.most > 1 && run.largest_displacement() <= self.allowed)
     }
 
     /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
-    pub fn holds<S: Space>(
+    pub fn holds(
         &mut self,
-        s: &Simulation<S>,
-        before: Option<&Before<S>>,
+        run: &dyn RunView,
+        before: Option<&Before>,
         report: &StepReport,
         count: u32,
     ) -> bool {
-        let network = &s.state.network;
         let whole = report.solver.converged
             && report.projected.is_none()
-            && network.bond_breaks.is_empty()
-            && network.bonds_formed.is_empty();
+            && run.bond_breaks().is_empty()
+            && run.bonds_formed().is_empty();
         // Displacement, and change of forces and damage, over what steps aim at.
         let [moved, changed] = before
             .filter(|_| whole)
             .map_or([f64::INFINITY; 2], |before| {
-                let change = s.change_since(&before.forces);
-                let damage = (damage(s) - before.damage).abs() / before.damage.max(1.0);
-                let changed = change.forces.max(damage) / (CHANGE * self.allowed);
-                [change.displacement / self.allowed, changed]
+                let forces = before.forces.change(&run.contact_forces());
+                let damage = (damage(run) - before.damage).abs() / before.damage.max(1.0);
+                let changed = forces.max(damage) / (CHANGE * self.allowed);
+                [run.largest_displacement() / self.allowed, changed]
             });
         if count > 1 && moved > KEPT {
             return false;

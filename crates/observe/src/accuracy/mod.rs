@@ -18,9 +18,9 @@ pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report
 
 use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
 use fretwork_core::bodies::Dof;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::SlidingBody;
-use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport};
+use fretwork_core::step::{RepeatError, StepError, StepReport};
+use fretwork_core::view::{RunControl, RunView};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
 use fretwork_scene::processes::FrictionTest;
 use growth::{Before, Growth};
@@ -91,10 +91,10 @@ enum Quantity {
 
 impl Quantity {
     /// What a case asks for.
-    fn asked<S: Space>(of: AccurateResult, case: &Case, s: &Simulation<S>) -> Self {
+    fn asked(of: AccurateResult, case: &Case, run: &dyn RunView) -> Self {
         match of {
-            AccurateResult::Friction if FrictionTest::of(case, s).is_some() => Self::Friction,
-            AccurateResult::Friction if !driven(case, s) => Self::Forces,
+            AccurateResult::Friction if FrictionTest::of(case, run).is_some() => Self::Friction,
+            AccurateResult::Friction if !driven(case, run) => Self::Forces,
             AccurateResult::Friction | AccurateResult::FrictionEnergy => Self::FrictionEnergy,
             AccurateResult::Damage => Self::Damage,
             AccurateResult::Wear => Self::Wear,
@@ -133,16 +133,16 @@ pub struct StepParts {
 
 impl AccuracyControl {
     /// Of a run of a case that asks for an accuracy.
-    pub fn new<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
+    pub fn new(case: &Case, run: &dyn RunView) -> Option<Self> {
         let spec = case.accuracy.as_ref()?;
-        let test = FrictionTest::of(case, s);
+        let test = FrictionTest::of(case, run);
         let start = test.map_or(0.0, |t| t.clock.start / case.time.step);
         let coarsest = [
-            s.options.scheme.h,
-            s.options.solver.tolerance,
-            s.options.correction,
+            run.options().scheme.h,
+            run.options().solver.tolerance,
+            run.options().correction,
         ];
-        let of = Quantity::asked(spec.of, case, s);
+        let of = Quantity::asked(spec.of, case, run);
         let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
         if of == Quantity::Forces {
             // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is
@@ -162,7 +162,7 @@ impl AccuracyControl {
             coarsest,
             step: Setting::new(step),
             tolerance: Setting::new(tolerance),
-            growth: Growth::new(spec, case, s),
+            growth: Growth::new(spec, case, run),
             body: test.map(|t| t.body),
             next: start.round().max(0.0) as u64,
             stretches: [0; 2],
@@ -183,9 +183,9 @@ impl AccuracyControl {
     ///
     /// # Errors
     /// Steps cannot be repeated, or a process could not be put back.
-    pub fn begin_step<S: Space>(
+    pub fn begin_step(
         &mut self,
-        s: &mut Simulation<S>,
+        run: &mut dyn RunControl,
         [done, total]: [u64; 2],
         most: u64,
     ) -> Result<StepParts, RepeatError> {
@@ -198,28 +198,28 @@ impl AccuracyControl {
         // Not beyond the end, where drives and tables have ended.
         let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
         if self.of == Quantity::Forces {
-            let count = self.count(s, [done, total], most);
-            self.set(s, count);
-            if self.repeats_for_forces(s) {
-                self.measure_forces(s)?;
-                let count = self.count(s, [done, total], most);
-                self.set(s, count);
+            let count = self.count(run, [done, total], most);
+            self.set(run, count);
+            if self.repeats_for_forces(run) {
+                self.measure_forces(run)?;
+                let count = self.count(run, [done, total], most);
+                self.set(run, count);
             }
             return Ok(StepParts::default());
         }
         if done >= self.next && done + steps <= total {
-            self.set(s, 1);
-            self.measure(s, done)?;
+            self.set(run, 1);
+            self.measure(run, done)?;
         }
-        let count = self.count(s, [done, total], most);
-        self.set(s, count);
+        let count = self.count(run, [done, total], most);
+        self.set(run, count);
         Ok(StepParts::default())
     }
 
     /// Steps of the case that the next step spans.
-    fn count<S: Space>(&mut self, s: &Simulation<S>, [done, total]: [u64; 2], most: u64) -> u32 {
+    fn count(&mut self, run: &dyn RunView, [done, total]: [u64; 2], most: u64) -> u32 {
         match self.level() {
-            0 => (self.growth).next(s, self.coarsest[0], most.min(total - done)),
+            0 => (self.growth).next(run, self.coarsest[0], most.min(total - done)),
             _ => 1,
         }
     }
@@ -230,19 +230,19 @@ impl AccuracyControl {
     /// # Errors
     /// The step's own error, also that of a law that asks for less than the smallest step; steps
     /// cannot be repeated.
-    pub fn part<S: Space>(
+    pub fn part(
         &mut self,
-        s: &mut Simulation<S>,
+        run: &mut dyn RunControl,
         parts: &mut StepParts,
     ) -> Result<Option<StepReport>, PartError> {
         let level = self.level();
-        let count = s.options.grown + 1;
-        let watched = level == 0 && self.growth.watches(s, count);
-        let before = watched.then(|| Before::of(s));
+        let count = run.options().grown + 1;
+        let watched = level == 0 && self.growth.watches(run, count);
+        let before = watched.then(|| Before::of(run));
         let mut growth = self.growth.clone();
-        let made = s.attempt(|s| {
-            let report = s.step()?;
-            if growth.holds(s, before.as_ref(), &report, count) {
+        let made = run.attempted(|run| {
+            let report = run.step()?;
+            if growth.holds(run, before.as_ref(), &report, count) {
                 Ok(report)
             } else {
                 Err(Refused::Moves)
@@ -254,20 +254,20 @@ impl AccuracyControl {
                 parts.done += 1 << (self.step.finest - level);
                 self.parts += 1;
                 self.most_parts = self.most_parts.max(1 << level);
-                self.cost[0] += cost(s, &report);
+                self.cost[0] += cost(run, &report);
                 Ok(Some(report))
             }
             // Also what fails in a step that has grown may do so because of it.
             Err(_) if count > 1 => {
                 self.growth.repeated += 1;
                 self.growth.shrink(count);
-                self.set(s, self.growth.chosen());
+                self.set(run, self.growth.chosen());
                 Ok(None)
             }
             Err(Refused::Step(e)) if e.asks_for_smaller_step() && level < self.step.finest => {
                 (self.asked, self.calm) = (level + 1 - self.step.level, 0);
                 self.requests += 1;
-                self.set(s, 1);
+                self.set(run, 1);
                 Ok(None)
             }
             Err(Refused::Step(e)) => Err(e.into()),
@@ -298,40 +298,40 @@ impl AccuracyControl {
 
     /// Goes on in a simulation that was restored with its state: impulses are those of the step in
     /// force.
-    pub fn resume<S: Space>(&mut self, s: &mut Simulation<S>) {
+    pub fn resume(&mut self, run: &mut dyn RunControl) {
         let last = self.growth.last();
         let parts = f64::from(1u32 << self.level());
-        s.options.scheme.h = self.coarsest[0] / parts * f64::from(last);
-        s.options.grown = last - 1;
-        self.set(s, last);
+        run.options_mut().scheme.h = self.coarsest[0] / parts * f64::from(last);
+        run.options_mut().grown = last - 1;
+        self.set(run, last);
     }
 
     /// Sets the step, which spans `count` of the case or is a part of one, tolerance and
     /// correction.
-    fn set<S: Space>(&mut self, s: &mut Simulation<S>, count: u32) {
+    fn set(&mut self, run: &mut dyn RunControl, count: u32) {
         let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
-        s.span_steps(h / parts, count);
+        run.span_steps(h / parts, count);
         let parts = parts / f64::from(count);
         // As much of an overlap is taken out in a given time.
-        s.options.correction = if parts == 1.0 {
+        run.options_mut().correction = if parts == 1.0 {
             correction
         } else {
             1.0 - (1.0 - correction).powf(1.0 / parts)
         };
         let tolerance = self.chosen_tolerance();
-        s.options.solver.tolerance = tolerance;
+        run.options_mut().solver.tolerance = tolerance;
         self.smallest_tolerance = self.smallest_tolerance.min(tolerance);
     }
 
     /// Repeats a stretch, and decides.
-    fn measure<S: Space>(&mut self, s: &mut Simulation<S>, done: u64) -> Result<(), RepeatError> {
+    fn measure(&mut self, run: &mut dyn RunControl, done: u64) -> Result<(), RepeatError> {
         let stretch = RepeatedStretch {
             length: LENGTH,
             body: self.body,
             couples: false,
         };
-        let (place, [cost, each]) = stretch.at(s)?;
+        let (place, [cost, each]) = stretch.at(run)?;
         self.cost[1] += cost;
         // At the start, before anything is known, steps are worth measuring more often.
         let first = self.stretches[0] < FIRST;
@@ -354,21 +354,21 @@ impl AccuracyControl {
             return Ok(());
         };
         self.stretches[0] += 1;
-        self.decide(&place, s);
+        self.decide(&place, run);
         Ok(())
     }
 
     /// Whether a step is repeated for its forces: as often as the effort permits, since every step
     /// tells as much, and not the first ones, which are solved from nothing.
-    fn repeats_for_forces<S: Space>(&self, s: &Simulation<S>) -> bool {
-        let [run, repeats] = self.cost;
-        let each = run / self.parts.max(1) as f64;
-        s.state.steps > 3 && repeats + FORCES_COST * each <= self.effort * run
+    fn repeats_for_forces(&self, run: &dyn RunView) -> bool {
+        let [of_run, repeats] = self.cost;
+        let each = of_run / self.parts.max(1) as f64;
+        run.steps() > 3 && repeats + FORCES_COST * each <= self.effort * of_run
     }
 
     /// Repeats a step for its forces, and decides.
-    fn measure_forces<S: Space>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
-        let (changes, [cost, _]) = forces::repeat_step(s)?;
+    fn measure_forces(&mut self, run: &mut dyn RunControl) -> Result<(), RepeatError> {
+        let (changes, [cost, _]) = forces::repeat_step(run)?;
         self.cost[1] += cost;
         let Some(changes) = changes else {
             self.stretches[1] += 1;
@@ -385,7 +385,7 @@ impl AccuracyControl {
         if STEP_LIMIT * changes.finer > allowed {
             self.growth.shorten();
         }
-        if s.state.control.tolerance.is_some() || !changes.tight {
+        if run.phase_tolerance().is_some() || !changes.tight {
             return Ok(());
         }
         let decision =
@@ -393,8 +393,8 @@ impl AccuracyControl {
         let effects = [self.step.effect, self.tolerance.effect];
         if self.tolerance.adopt(decision, TOLERANCE_FACTOR) {
             self.changes.push(SettingChange {
-                time: s.state.time,
-                step: s.options.scheme.h,
+                time: run.time(),
+                step: run.options().scheme.h,
                 tolerance: self.chosen_tolerance(),
                 step_effect: effects[0],
                 tolerance_effect: effects[1],
@@ -403,7 +403,7 @@ impl AccuracyControl {
         Ok(())
     }
 
-    fn decide<S: Space>(&mut self, place: &Place, s: &Simulation<S>) {
+    fn decide(&mut self, place: &Place, run: &dyn RunView) {
         let allowed = 0.5 * self.share;
         let pair = |fine: &Increments| Pair {
             coarse: self.of.of(&place.base),
@@ -413,7 +413,7 @@ impl AccuracyControl {
         let step = self.step.decide(finer, STEP_LIMIT, 2.0, allowed);
         // A phase may have a tolerance of its own; a stretch that did not reach the tighter one
         // says too little.
-        let tolerance = if s.state.control.tolerance.is_none() && place.tight {
+        let tolerance = if run.phase_tolerance().is_none() && place.tight {
             self.tolerance
                 .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed)
         } else {
@@ -426,7 +426,7 @@ impl AccuracyControl {
         ];
         if changed.contains(&true) {
             self.changes.push(SettingChange {
-                time: s.state.time,
+                time: run.time(),
                 step: self.coarsest[0] / f64::from(1u32 << self.step.level),
                 tolerance: self.chosen_tolerance(),
                 step_effect: effects[0],
@@ -461,11 +461,11 @@ pub enum PartError {
 }
 
 /// Whether anything moves or loads a case but gravity that does not change.
-fn driven<S: Space>(case: &Case, s: &Simulation<S>) -> bool {
-    let dofs = s.state.bodies.driven.iter().flat_map(|d| &d.dofs);
+fn driven(case: &Case, run: &dyn RunView) -> bool {
+    let dofs = run.bodies().driven.iter().flat_map(|d| &d.dofs);
     case.gravity_drive.is_some()
         || !case.phases.is_empty()
-        || !s.state.systems.is_empty()
+        || run.system_count() > 0
         || dofs.flat_map(Dof::drives).any(|d| d.function().is_some())
 }
 

@@ -2,13 +2,12 @@
 
 use super::AccuracyControl;
 use crate::error_estimate::Change;
+use crate::observer::Observer;
 use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Findings, Role, Topic, number, part, quantity};
 use crate::statistics::Column;
-use crate::typed::ObserverIn;
 use crate::warning::Warning;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 crate::described! {
@@ -176,7 +175,7 @@ impl AccuracyReport {
 #[derive(Clone, Copy, Debug)]
 pub struct ChosenSettings;
 
-impl<S: Space> ObserverIn<S> for ChosenSettings {
+impl Observer for ChosenSettings {
     fn name(&self) -> String {
         "chosen settings".to_owned()
     }
@@ -192,7 +191,7 @@ impl<S: Space> ObserverIn<S> for ChosenSettings {
         ]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        vec![s.options.scheme.h, s.solver_in_force().tolerance]
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        vec![run.options().scheme.h, run.solver_in_force().tolerance]
     }
 }

@@ -15,10 +15,11 @@ use super::output::Output;
 use super::quantity::Findings;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::geometry::space::ball_volume;
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use fretwork_scene::case::BiaxialSpec;
 
 /// A flat wall normal to an axis.
@@ -72,13 +73,14 @@ pub struct State {
 
 impl Biaxial {
     /// Finds the walls, whose names and shapes were checked by [`fretwork_scene::biaxial`].
-    pub fn new<S: Space>(spec: &BiaxialSpec, s: &Simulation<S>) -> Option<Self> {
-        let axial = axis_of(s, &spec.axial.0)?;
+    pub fn new(spec: &BiaxialSpec, run: &dyn RunView) -> Option<Self> {
+        let axial = axis_of(run, &spec.axial.0)?;
         let axes = [axial, 1 - axial.min(1)];
+        let (bodies, surfaces) = (run.bodies(), run.surfaces());
         let wall = |name: &str, axis: usize| {
-            let place = s.state.bodies.driven.iter().position(|d| d.name == name)?;
-            let body = s.state.bodies.driven[place].body;
-            let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
+            let place = bodies.driven.iter().position(|d| d.name == name)?;
+            let body = bodies.driven[place].body;
+            let face = surfaces.iter().find(|f| f.body == body)?;
             Some(Wall {
                 place,
                 body: body as usize,
@@ -88,43 +90,45 @@ impl Biaxial {
         let pair = |names: &(String, String), axis: usize| {
             Some([wall(&names.0, axis)?, wall(&names.1, axis)?])
         };
-        let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
-        let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
-        let closed = s.shapes.surfaces.iter().filter(|f| f.shape.is_closed());
-        let deformable = closed.map(|f| (f.body, s.state.bodies.length[f.body as usize]));
+        let balls = run.balls().into_iter().map(|b| (b.body, b.radius));
+        let pieces = run.pieces().into_iter().map(|p| (p.body, p.size));
+        let closed = surfaces.iter().filter(|f| f.closed);
+        let deformable = closed.map(|f| (f.body, bodies.length[f.body as usize]));
         let grains = balls
             .chain(pieces)
             .chain(deformable)
-            .filter(|(body, _)| !s.state.bodies.driven.iter().any(|d| d.body == *body));
+            .filter(|(body, _)| !bodies.driven.iter().any(|d| d.body == *body));
         let mut test = Self {
             axes,
             walls: [pair(&spec.axial, axes[0])?, pair(&spec.lateral, axes[1])?],
             start: spec.start,
             reference: [1.0; 2],
-            solid: grains.map(|(_, radius)| S::ball_volume(radius)).sum(),
+            solid: grains
+                .map(|(_, radius)| ball_volume(run.dimension(), radius))
+                .sum(),
         };
-        test.reference = test.lengths(s);
+        test.reference = test.lengths(run);
         Some(test)
     }
 
     /// Distances between the faces along the two axes (m).
-    fn lengths<S: Space>(&self, s: &Simulation<S>) -> [f64; 2] {
+    fn lengths(&self, run: &dyn RunView) -> [f64; 2] {
+        let position = run.bodies().position;
         [0, 1].map(|k| {
-            let [low, high] =
-                self.walls[k].map(|w| s.state.bodies.position[w.body][self.axes[k]] + w.offset);
+            let [low, high] = self.walls[k].map(|w| position.at(w.body)[self.axes[k]] + w.offset);
             high - low
         })
     }
 
     /// Whether the test has started.
-    fn begun<S: Space>(&self, s: &Simulation<S>) -> bool {
-        s.state.time > self.start + 0.5 * s.options.scheme.h
+    fn begun(&self, run: &dyn RunView) -> bool {
+        run.time() > self.start + 0.5 * run.options().scheme.h
     }
 
     /// Processes the last step.
-    pub fn follow<S: Space>(&mut self, s: &Simulation<S>) {
-        if !self.begun(s) {
-            self.reference = self.lengths(s);
+    pub fn follow(&mut self, run: &dyn RunView) {
+        if !self.begun(run) {
+            self.reference = self.lengths(run);
         }
     }
 
@@ -134,21 +138,22 @@ impl Biaxial {
     }
 
     /// Mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
-    pub fn grain_mass<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        let masses = || s.state.bodies.grains().map(|b| s.state.bodies.mass[b]);
-        masses().sum::<f64>() / masses().count().max(1) as f64
+    pub fn grain_mass(&self, run: &dyn RunView) -> f64 {
+        let (grains, mass) = (run.grains(), run.bodies().mass);
+        grains.iter().map(|b| mass[*b]).sum::<f64>() / grains.len().max(1) as f64
     }
 
     /// Measured values for the last step.
-    pub fn state<S: Space>(&self, s: &Simulation<S>) -> State {
-        let lengths = self.lengths(s);
+    pub fn state(&self, run: &dyn RunView) -> State {
+        let lengths = self.lengths(run);
         let volume = lengths[0] * lengths[1];
         // Grains push the low wall down the axis and the high wall up, with equal forces at rest.
+        let received = run.received();
         let walls = [0, 1].map(|k| {
-            let [low, high] = self.walls[k].map(|w| s.state.received[w.place].0[self.axes[k]]);
-            0.5 * (high - low) / (s.options.scheme.h * lengths[1 - k])
+            let [low, high] = self.walls[k].map(|w| received[w.place][0][self.axes[k]]);
+            0.5 * (high - low) / (run.options().scheme.h * lengths[1 - k])
         });
-        let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(s, volume));
+        let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(run, volume));
         let sum = walls[0] + walls[1];
         let [l0, l1] = [0, 1].map(|k| lengths[k] / self.reference[k]);
         State {
@@ -164,7 +169,7 @@ impl Biaxial {
             axial_strain: 1.0 - l0,
             volumetric_strain: l0 * l1 - 1.0,
             compacity: self.solid / volume,
-            coordination: coordination(s),
+            coordination: coordination(run),
         }
     }
 
@@ -204,29 +209,29 @@ impl Biaxial {
     }
 }
 
-impl<S: Space> ObserverIn<S> for Biaxial {
+impl Observer for Biaxial {
     fn name(&self) -> String {
         "biaxial test".to_owned()
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        self.follow(s);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        self.follow(run);
     }
 
     fn columns(&self) -> Vec<Column> {
         Self::columns()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        self.state(s).row()
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        self.state(run).row()
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
         Outcome::new(end.table, self.start, mass).report(found);
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         vec![figures::biaxial::charts(self.start)]
     }
 
@@ -262,12 +267,12 @@ impl State {
 }
 
 /// Axis normal to the face of a wall.
-fn axis_of<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
-    let body = s.state.bodies.driven.iter().find(|d| d.name == name)?.body;
-    let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
-    let outline = face.shape.outline();
+fn axis_of(run: &dyn RunView, name: &str) -> Option<usize> {
+    let body = run.bodies().driven.iter().find(|d| d.name == name)?.body;
+    let face = run.surfaces().iter().position(|f| f.body == body)?;
+    let outline = run.surface_lines(face);
     let (a, b) = (outline.first()?.first()?, outline.first()?.last()?);
-    let along = *b - *a;
+    let along = [b[0] - a[0], b[1] - a[1]];
     Some(if along[0].abs() > along[1].abs() {
         1
     } else {

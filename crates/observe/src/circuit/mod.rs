@@ -16,12 +16,12 @@ use super::series::Series;
 use super::statistics::Column;
 use super::steady;
 use super::wear::show_flows;
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_core::wear::ledger::{Flows, GrainPlace, Ledger};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -45,7 +45,7 @@ fn place() -> [Column; 3] {
     ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
 }
 
-impl<S: Space> ObserverIn<S> for BrokenBonds {
+impl Observer for BrokenBonds {
     fn name(&self) -> String {
         "broken bonds".to_owned()
     }
@@ -99,15 +99,16 @@ impl<S: Space> ObserverIn<S> for BrokenBonds {
         self.any.then_some(table).into_iter().collect()
     }
 
-    fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
+    fn after_processes(&mut self, run: &dyn RunView) -> Vec<Event> {
         let mut events = Vec::new();
-        for b in &s.state.network.bond_breaks {
-            let at = s.shapes.periodic.wrapped(b.place).padded();
-            let id = |k: usize| s.state.bodies.id[b.bodies[k] as usize] as f64;
+        let bodies = run.bodies();
+        for b in run.bond_breaks() {
+            let at = run.periodic().wrapped(Vector3::from(b.place));
+            let id = |k: usize| bodies.id[b.bodies[k] as usize] as f64;
             self.count += 1;
             let row = vec![
                 self.count as f64,
-                s.state.time,
+                run.time(),
                 id(0),
                 id(1),
                 f64::from(b.law),
@@ -161,8 +162,8 @@ struct Followed {
 }
 
 /// The circuit of a simulation; none before it begins.
-fn circuit<S: Space>(s: &Simulation<S>) -> Option<&GrainCircuit<S>> {
-    s.process::<CircuitProcess<S>>()?.circuit()
+fn circuit(run: &dyn RunView) -> Option<&GrainCircuit> {
+    run.process::<CircuitProcess>()?.circuit()
 }
 
 impl CircuitAccount {
@@ -175,10 +176,10 @@ impl CircuitAccount {
     }
 
     /// A piece of debris as an event.
-    fn event<S: Space>(&mut self, s: &Simulation<S>, d: &Debris<S>) -> Event {
+    fn event(&mut self, run: &dyn RunView, d: &Debris) -> Event {
         self.state.pieces += 1;
         self.state.largest = self.state.largest.max(d.grains.len());
-        let at = d.place.padded();
+        let at = d.place;
         Event {
             table: "debris",
             row: vec![
@@ -189,7 +190,7 @@ impl CircuitAccount {
                 at[0],
                 at[1],
                 at[2],
-                s.state.bodies.id[d.base as usize] as f64,
+                run.bodies().id[d.base as usize] as f64,
                 d.mode_mix,
                 d.energy,
                 d.bonds as f64,
@@ -199,12 +200,12 @@ impl CircuitAccount {
     }
 
     /// The colours of balls and pieces by where they are; none before the account begins.
-    fn paints<S: Space>(s: &Simulation<S>) -> Vec<Paint> {
-        let Some(circuit) = circuit(s) else {
+    fn paints(run: &dyn RunView) -> Vec<Paint> {
+        let Some(circuit) = circuit(run) else {
             return Vec::new();
         };
-        let balls = s.shapes.balls.iter().map(|b| b.body);
-        let bodies = balls.chain(s.shapes.pieces.iter().map(|p| p.body));
+        let balls = run.balls().into_iter().map(|b| b.body);
+        let bodies = balls.chain(run.pieces().into_iter().map(|p| p.body));
         let paint = |body: u32| match circuit.place(body as usize) {
             Some(GrainPlace::Tied(base)) => {
                 Paint::Tied(circuit.bases().iter().position(|b| *b == base).unwrap_or(0))
@@ -217,8 +218,8 @@ impl CircuitAccount {
     }
 
     /// What the summary says.
-    fn summary<S: Space>(&self, s: &Simulation<S>, wall: Duration) -> Option<CircuitSummary> {
-        let circuit = circuit(s)?;
+    fn summary(&self, run: &dyn RunView, wall: Duration) -> Option<CircuitSummary> {
+        let circuit = circuit(run)?;
         let end = self.state.series.last().map_or(self.start, |p| p.0);
         let middle = 0.5 * (self.start + end);
         let flow = |of: &dyn Fn(&Flows, f64) -> f64| {
@@ -231,8 +232,7 @@ impl CircuitAccount {
             steady::flow(&points, middle, end)
         };
         let name = |b: u32| {
-            s.state
-                .bodies
+            run.bodies()
                 .driven
                 .iter()
                 .find(|d| d.body == b)
@@ -248,7 +248,7 @@ impl CircuitAccount {
             contents: circuit.ledger.contents,
             flows: circuit.ledger.flows,
             residual: circuit.ledger.residual(),
-            rates_unit: MASS_FLOW.symbol(S::D),
+            rates_unit: MASS_FLOW.symbol(run.dimension()),
             rates: Rates {
                 Qs: flow(&|f, _| f.source.mass),
                 Qa: flow(&|f, _| f.attached.mass),
@@ -266,7 +266,7 @@ impl CircuitAccount {
     }
 }
 
-impl<S: Space> ObserverIn<S> for CircuitAccount {
+impl Observer for CircuitAccount {
     fn name(&self) -> String {
         "tribological circuit".to_owned()
     }
@@ -302,17 +302,17 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
         }]
     }
 
-    fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
-        let process = s.process::<CircuitProcess<S>>();
-        let circuit = process.filter(|p| p.is_up_to_date(s));
+    fn after_processes(&mut self, run: &dyn RunView) -> Vec<Event> {
+        let process = run.process::<CircuitProcess>();
+        let circuit = process.filter(|p| p.is_up_to_date(run.steps()));
         let Some(circuit) = circuit.and_then(CircuitProcess::circuit) else {
             return Vec::new();
         };
         let ledger = &circuit.ledger;
         let contact = ledger.contents.contact.mass;
-        self.state.series.add((s.state.time, ledger.flows, contact));
+        self.state.series.add((run.time(), ledger.flows, contact));
         let pieces = circuit.debris.iter();
-        pieces.map(|d| self.event(s, d)).collect()
+        pieces.map(|d| self.event(run, d)).collect()
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -340,9 +340,9 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
         ]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         let none = Ledger::default();
-        let ledger = circuit(s).map_or(&none, |c| &c.ledger);
+        let ledger = circuit(run).map_or(&none, |c| &c.ledger);
         let (c, f, r) = (&ledger.contents, &ledger.flows, ledger.residual());
         let rest = [r.tied, r.contact, r.ejected, r.lost];
         let flows = [f.source, f.attached, f.ejected, f.recirculated, f.wear];
@@ -355,8 +355,8 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
         row
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
-        let paints = Self::paints(s);
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
+        let paints = Self::paints(run);
         if paints.is_empty() {
             return Vec::new();
         }
@@ -367,19 +367,19 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
     }
 
     /// Grains that came loose from first bodies are a source beside the wear law.
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let s = end.simulation;
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let run = end.simulation;
         for name in ["Qs", "Qe", "Qw"] {
             found.edit(&format!("wear.{name}"), |q| q.lacks = None);
         }
-        let Some(circuit) = self.summary(s, end.wall) else {
+        let Some(circuit) = self.summary(run, end.wall) else {
             // The account has not begun.
             report_none(found);
             found.edit("circuit", |q| q.lacks = None);
             return show_flows(found);
         };
         let worn = found.number("wear.Qs").unwrap_or(0.0);
-        let span = (s.state.time - circuit.start).max(f64::MIN_POSITIVE);
+        let span = (run.time() - circuit.start).max(f64::MIN_POSITIVE);
         for (name, mass) in [
             ("Qs", circuit.flows.source.mass),
             ("Qe", circuit.flows.ejected.mass),
@@ -394,7 +394,7 @@ impl<S: Space> ObserverIn<S> for CircuitAccount {
         show_flows(found);
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let summary = self.summary(end.simulation, end.wall);
         let figure = |c: CircuitSummary| figures::circuit::charts(c.window);
         summary.map(figure).into_iter().collect()

@@ -1,8 +1,8 @@
 //! What the results of a run grow by over a few steps.
 
-use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::SlidingBody;
-use fretwork_core::step::{Simulation, StepError, StepReport};
+use fretwork_core::step::{StepError, StepReport};
+use fretwork_core::view::{RunControl, RunView};
 use serde::{Deserialize, Serialize};
 
 /// Growth of the results over a stretch of steps (per metre of depth in 2D).
@@ -38,19 +38,14 @@ pub struct Stretch {
 const FIXED_ITERATIONS: f64 = 60.0;
 
 /// Cost of a step in iterations times contacts: the same on every machine.
-pub fn cost<S: Space>(s: &Simulation<S>, report: &StepReport) -> f64 {
+pub fn cost(run: &dyn RunView, report: &StepReport) -> f64 {
     let iterations = f64::from(report.solver.iterations) + FIXED_ITERATIONS;
-    iterations
-        * s.state
-            .network
-            .contact_count(s.options.solver.parallel)
-            .max(1) as f64
+    iterations * run.counted_contacts().max(1) as f64
 }
 
 /// The sum of the damage of all bonds; broken ones count 1.
-fn damage<S: Space>(s: &Simulation<S>) -> f64 {
-    let network = &s.state.network;
-    network.mean_damage() * network.bonds_made() as f64
+fn damage(run: &dyn RunView) -> f64 {
+    run.mean_damage() * run.bonds_made() as f64
 }
 
 impl Stretch {
@@ -60,13 +55,13 @@ impl Stretch {
     ///
     /// # Errors
     /// A step failed.
-    pub fn of<S: Space>(
-        s: &mut Simulation<S>,
+    pub fn of(
+        run: &mut dyn RunControl,
         [length, parts]: [u32; 2],
         body: Option<&SlidingBody>,
     ) -> Result<Self, StepError> {
-        let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
-        let mut force = body.map_or(0.0, |body| body.drive(s).force);
+        let (mut friction, mut bonds) = (run.energies().friction, damage(run));
+        let mut force = body.map_or(0.0, |body| run.rubbing(body).0.force);
         let mut stretch = Self {
             converged: true,
             ..Self::default()
@@ -77,22 +72,22 @@ impl Stretch {
             // The same stretch of time in as many parts as there may be.
             if k == parts * (length / 2) {
                 *sums = Increments::default();
-                (friction, bonds) = (s.state.energy.friction, damage(s));
+                (friction, bonds) = (run.energies().friction, damage(run));
             }
-            let report = s.step()?;
-            stretch.cost += cost(s, &report);
+            let report = run.step()?;
+            stretch.cost += cost(run, &report);
             stretch.converged &= report.solver.converged;
             stretch.iterations = stretch.iterations.max(report.solver.iterations);
             sums.wear += report.totals.worn_first;
             if let Some(body) = body {
-                let drive = body.drive(s);
+                let (drive, normal_force) = run.rubbing(body);
                 sums.work += drive.work(force);
                 force = drive.force;
-                sums.load_path += body.normal_force(s) * drive.slide.abs();
+                sums.load_path += normal_force * drive.slide.abs();
             }
         }
-        sums.friction_energy = s.state.energy.friction - friction;
-        sums.damage = damage(s) - bonds;
+        sums.friction_energy = run.energies().friction - friction;
+        sums.damage = damage(run) - bonds;
         Ok(stretch)
     }
 }

@@ -16,9 +16,9 @@ pub use change::Change;
 pub use report::{Effects, Repeats, Shares};
 
 pub(crate) use change::Pair;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::SlidingBody;
-use fretwork_core::step::{RepeatError, Simulation, StepReport};
+use fretwork_core::step::{RepeatError, StepReport};
+use fretwork_core::view::{RunControl, RunView};
 use fretwork_scene::case::Case;
 use fretwork_scene::processes::FrictionTest;
 pub(crate) use increments::Increments;
@@ -78,8 +78,8 @@ pub struct ErrorEstimate {
 
 impl ErrorEstimate {
     /// Draws the places of a run of so many steps.
-    pub fn new<S: Space>(case: &Case, s: &Simulation<S>, total: u64) -> Self {
-        let test = FrictionTest::of(case, s);
+    pub fn new(case: &Case, run: &dyn RunView, total: u64) -> Self {
+        let test = FrictionTest::of(case, run);
         let mut estimate = Self {
             total,
             body: test.map(|t| t.body),
@@ -89,7 +89,7 @@ impl ErrorEstimate {
         let from = test.map_or(0.0, |t| t.clock.start / case.time.step);
         let from = (from.round().max(0.0) as u64).min(total);
         let plan = places::plan(&case.uncertainty, total);
-        let permitted = s.repeatable().map_err(|e| e.to_string());
+        let permitted = run.repeatable().map_err(|e| e.to_string());
         match plan.and_then(|plan| permitted.map(|()| plan)) {
             Ok(plan) => {
                 estimate.length = plan.length;
@@ -105,11 +105,7 @@ impl ErrorEstimate {
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn before_step<S: Space>(
-        &mut self,
-        s: &mut Simulation<S>,
-        step: u64,
-    ) -> Result<(), RepeatError> {
+    pub fn before_step(&mut self, run: &mut dyn RunControl, step: u64) -> Result<(), RepeatError> {
         let mut due = false;
         while self.to_come.front().is_some_and(|at| *at <= step) {
             // A step that spans several of the case may pass some.
@@ -118,7 +114,7 @@ impl ErrorEstimate {
         if !due || self.reason.is_some() {
             return Ok(());
         }
-        if let Err(other) = s.repeatable() {
+        if let Err(other) = run.repeatable() {
             // A process that was added since the start.
             self.reason = Some(other.to_string());
             return Ok(());
@@ -132,7 +128,7 @@ impl ErrorEstimate {
             body: self.body,
             couples: true,
         };
-        let (place, [cost, _]) = repeats.at(s)?;
+        let (place, [cost, _]) = repeats.at(run)?;
         self.cost[1] += cost;
         match place {
             Some(place) => self.places.push(Place { step, ..place }),
@@ -154,9 +150,9 @@ impl ErrorEstimate {
     }
 
     /// Takes in a step of the run.
-    pub fn after_step<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
-        self.cost[0] += cost(s, report);
-        let e = &s.state.energy;
+    pub fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
+        self.cost[0] += cost(run, report);
+        let e = run.energies();
         let now = [e.external_work, e.potential];
         let supplied = (now[0] - self.last[0]).abs() + (now[1] - self.last[1]).abs();
         self.last = now;

@@ -2,11 +2,10 @@
 
 use super::increments::Stretch;
 use super::{FINER, Place};
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::SlidingBody;
-use fretwork_core::step::Coupling;
-use fretwork_core::step::{RepeatError, Simulation};
+use fretwork_core::step::{Coupling, RepeatError};
+use fretwork_core::view::RunControl;
 
 /// The tight tolerance is the tolerance over this number.
 const TIGHTER: f64 = 100.0;
@@ -15,6 +14,9 @@ const ROUNDING: f64 = 1e-12;
 /// Most iterations with the tight tolerance: this many times those of the run, and this many in any
 /// case.
 const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+
+/// Sets the options of a repeated stretch.
+type SetOptions<'a> = dyn Fn(&mut dyn RunControl) + 'a;
 
 /// What is repeated: so many steps, and the body under test.
 #[derive(Clone, Copy, Debug)]
@@ -32,35 +34,32 @@ impl RepeatedStretch {
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn at<S: Space>(
-        &self,
-        s: &mut Simulation<S>,
-    ) -> Result<(Option<Place>, [f64; 2]), RepeatError> {
+    pub fn at(&self, run: &mut dyn RunControl) -> Result<(Option<Place>, [f64; 2]), RepeatError> {
         let (length, mut cost) = (self.length, 0.0);
-        let mut stretch = |s: &mut Simulation<S>, parts, options: &dyn Fn(&mut Simulation<S>)| {
-            let made = s.repeat(|s| {
+        let mut stretch = |run: &mut dyn RunControl, parts, options: &SetOptions<'_>| {
+            let made = run.repeated(|run| {
                 // Steps that have grown would end beyond what lies ahead.
-                s.span_steps(s.options.event_step(), 1);
-                options(s);
-                Stretch::of(s, [length, parts], self.body.as_ref()).ok()
+                run.span_steps(run.options().event_step(), 1);
+                options(run);
+                Stretch::of(run, [length, parts], self.body.as_ref()).ok()
             })?;
             cost += made.as_ref().map_or(0.0, |m| m.cost);
             Ok::<_, RepeatError>(made)
         };
-        let Some(base) = stretch(s, 1, &|_| ())? else {
+        let Some(base) = stretch(run, 1, &|_| ())? else {
             return Ok((None, [cost, cost]));
         };
         let each = base.cost / f64::from(length);
-        let finer = stretch(s, FINER, &shorten)?;
+        let finer = stretch(run, FINER, &shorten)?;
         let most = MOST_ITERATIONS
             .1
             .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
-        let tighter = stretch(s, 1, &|s| tighten(s, most))?;
-        let damages = s.laws.iter().any(Interface::damages);
+        let tighter = stretch(run, 1, &|run| tighten(run, most))?;
+        let damages = run.laws().iter().any(Interface::damages);
         let mut coupled = None;
-        if self.couples && damages && s.options.coupling == Coupling::Explicit {
-            coupled = stretch(s, 1, &|s| {
-                s.options.coupling = Coupling::Implicit {
+        if self.couples && damages && run.options().coupling == Coupling::Explicit {
+            coupled = stretch(run, 1, &|run| {
+                run.options_mut().coupling = Coupling::Implicit {
                     tolerance: 1e-3,
                     max_iterations: 5,
                 };
@@ -70,7 +69,7 @@ impl RepeatedStretch {
             return Ok((None, [cost, each]));
         };
         let place = Place {
-            step: s.state.steps,
+            step: run.steps(),
             base: base.increments,
             finer: finer.increments,
             tighter: tighter.increments,
@@ -82,18 +81,19 @@ impl RepeatedStretch {
 }
 
 /// Sets a shorter step, in which as much of an overlap is taken out in a given time.
-pub(crate) fn shorten<S: Space>(s: &mut Simulation<S>) {
+pub(crate) fn shorten(run: &mut dyn RunControl) {
     let parts = f64::from(FINER);
-    s.change_step(s.options.scheme.h / parts);
-    let left = 1.0 - s.options.correction;
-    s.options.correction = 1.0 - left.powf(1.0 / parts);
+    run.change_step(run.options().scheme.h / parts);
+    let left = 1.0 - run.options().correction;
+    run.options_mut().correction = 1.0 - left.powf(1.0 / parts);
 }
 
 /// Sets a tight tolerance, also where a phase has set its own.
-pub(crate) fn tighten<S: Space>(s: &mut Simulation<S>, most_iterations: f64) {
+pub(crate) fn tighten(run: &mut dyn RunControl, most_iterations: f64) {
     let tight = |tolerance: f64| (tolerance / TIGHTER).max(ROUNDING.min(tolerance));
-    let solver = &mut s.options.solver;
+    let solver = &mut run.options_mut().solver;
     solver.tolerance = tight(solver.tolerance);
     solver.max_iterations = (f64::from(solver.max_iterations)).min(most_iterations) as u32;
-    s.state.control.tolerance = s.state.control.tolerance.map(tight);
+    let of_phase = run.phase_tolerance().map(tight);
+    run.set_phase_tolerance(of_phase);
 }

@@ -3,15 +3,15 @@
 use crate::chart::{Axis, Chart, Colours, Field, quantity};
 use crate::picture::{OPEN, SLIPS, STICKS};
 use crate::tractions::{FacetTraction, SurfaceState, Zone};
-use fretwork_core::geometry::space::{Space, VectorLike};
+use nalgebra::Vector3;
 
 /// The maps of the contact of a surface: what sticks and slips with the tractions along the
 /// surface, pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of
 /// its points where these stand for equal areas, or else those of its facets.
-pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool) -> Vec<Chart> {
+pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart> {
     let touching = |k: &usize| state.zone[*k] != Zone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
-    let Some(axes) = plane(state, &loaded).filter(|_| S::D == 3) else {
+    let Some(axes) = plane(state, &loaded).filter(|_| state.dimension == 3) else {
         return Vec::new();
     };
     let view = View {
@@ -74,7 +74,7 @@ fn single(p: [f64; 2]) -> [f32; 2] {
 }
 
 /// What sticks and slips at some points.
-fn zones<S: Space>(state: &SurfaceState<S>, points: &[usize]) -> Colours {
+fn zones(state: &SurfaceState, points: &[usize]) -> Colours {
     let classes = [("sticks", STICKS), ("slips", SLIPS), ("open", OPEN)];
     let class = |k: &usize| match state.zone[*k] {
         Zone::Stick => 0,
@@ -98,12 +98,12 @@ struct Local {
 }
 
 /// The two axes across the one that is nearest to the normal of the loaded part.
-fn plane<S: Space>(state: &SurfaceState<S>, loaded: &[usize]) -> Option<[usize; 2]> {
-    let mut normal = S::Vector::zero();
+fn plane(state: &SurfaceState, loaded: &[usize]) -> Option<[usize; 2]> {
+    let mut normal = Vector3::zeros();
     for k in loaded {
         normal += (state.traction[*k] - state.tangential[*k]) * state.surface.areas[*k];
     }
-    let normal = normal.padded().map(f64::abs);
+    let normal = normal.map(f64::abs);
     let across = (0..3).max_by(|a, b| normal[*a].total_cmp(&normal[*b]));
     match across.filter(|_| !loaded.is_empty())? {
         0 => Some([1, 2]),
@@ -113,7 +113,7 @@ fn plane<S: Space>(state: &SurfaceState<S>, loaded: &[usize]) -> Option<[usize; 
 }
 
 impl Local {
-    fn new<S: Space>(loaded: bool, pressure: f64, tangential: &S::Vector) -> Self {
+    fn new(loaded: bool, pressure: f64, tangential: &Vector3<f64>) -> Self {
         Self {
             loaded,
             pressure,
@@ -123,7 +123,7 @@ impl Local {
 }
 
 /// A square around some points with a margin: xmin, xmax, ymin, ymax (m).
-fn window<S: Space>(state: &SurfaceState<S>, axes: [usize; 2], loaded: &[usize]) -> [f64; 4] {
+fn window(state: &SurfaceState, axes: [usize; 2], loaded: &[usize]) -> [f64; 4] {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut area = 0.0f64;
     for k in loaded {
@@ -140,8 +140,8 @@ fn window<S: Space>(state: &SurfaceState<S>, axes: [usize; 2], loaded: &[usize])
 }
 
 /// A surface seen along an axis, in a window (m).
-struct View<'a, S: Space> {
-    state: &'a SurfaceState<S>,
+struct View<'a> {
+    state: &'a SurfaceState,
     axes: [usize; 2],
     window: [f64; 4],
 }
@@ -149,7 +149,7 @@ struct View<'a, S: Space> {
 /// Corners of polygons (m).
 type Shapes = Vec<Vec<[f64; 2]>>;
 
-impl<S: Space> View<'_, S> {
+impl View<'_> {
     fn at(&self, point: usize) -> [f64; 2] {
         let place = self.state.place(point);
         self.axes.map(|axis| place[axis])
@@ -194,8 +194,13 @@ impl<S: Space> View<'_, S> {
     /// facets around them.
     fn around(&self, points: &[usize], own: bool) -> Vec<(usize, [f64; 2])> {
         let state = self.state;
-        let mut sums = vec![(S::Vector::zero(), 0.0); state.zone.len()];
-        for (facet, traction) in state.surface.facets.chunks_exact(S::D).zip(state.facets()) {
+        let mut sums = vec![(Vector3::zeros(), 0.0); state.zone.len()];
+        for (facet, traction) in state
+            .surface
+            .facets
+            .chunks_exact(state.dimension)
+            .zip(state.facets())
+        {
             for k in facet {
                 let sum = &mut sums[*k as usize];
                 *sum = (sum.0 + traction.tangential, sum.1 + 1.0);
@@ -217,7 +222,7 @@ impl<S: Space> View<'_, S> {
         let state = self.state;
         let local = |k: &usize| {
             let loaded = state.zone[*k] != Zone::Open;
-            Local::new::<S>(loaded, state.pressure[*k], &state.tangential[*k])
+            Local::new(loaded, state.pressure[*k], &state.tangential[*k])
         };
         points.iter().map(local).collect()
     }
@@ -231,7 +236,7 @@ impl<S: Space> View<'_, S> {
                 tangential,
             } = &tractions[f];
             let loaded = !points.iter().all(open);
-            let local = Local::new::<S>(loaded, *pressure, tangential);
+            let local = Local::new(loaded, *pressure, tangential);
             (corners.to_vec(), local)
         };
         self.facets().map(facet).unzip()

@@ -13,8 +13,7 @@ use crate::friction::{Cycle, Cycles};
 use crate::output::Output;
 use crate::summary::Estimate;
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Limit on the drawn loops: the first, the last, and some in between.
 const LOOPS: usize = 40;
@@ -29,10 +28,10 @@ pub(crate) struct Drive {
 }
 
 /// The axes along which bodies are driven, the ones of the friction test apart.
-pub(crate) fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<Drive> {
+pub(crate) fn drives(run: &dyn RunView, test: Option<(&str, usize)>) -> Vec<Drive> {
     let mut out = Vec::new();
-    for driven in &s.state.bodies.driven {
-        for (axis, dof) in driven.dofs.iter().take(S::D).enumerate() {
+    for driven in run.bodies().driven {
+        for (axis, dof) in driven.dofs.iter().take(run.dimension()).enumerate() {
             if driven_along(dof) && test != Some((driven.name.as_str(), axis)) {
                 out.push(Drive {
                     body: driven.name.clone(),

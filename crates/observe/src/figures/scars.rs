@@ -3,16 +3,16 @@
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;
 use crate::scars::file_name;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_core::wear::{ScarForm, shape};
 
 /// The scars: the depth, in 3D averaged across the sliding, and in 2D the initial and the current
 /// profile.
-pub(crate) fn charts<S: Space>(s: &Simulation<S>) -> Vec<Output> {
+pub(crate) fn charts(run: &dyn RunView) -> Vec<Output> {
     let mut out = Vec::new();
-    for scar in s.state.scars.iter().filter(|c| c.deepest() > 0.0) {
-        let rows = scar.along();
+    let scars = run.scars().into_iter().enumerate();
+    for (k, scar) in scars.filter(|(_, scar)| scar.deepest > 0.0) {
+        let rows = run.scar_profile(k);
         let x = || Axis::new("position x", "m");
         let title = match shape::outline(&rows).form {
             ScarForm::None => format!("Wear scar of {}", scar.name),
@@ -22,13 +22,13 @@ pub(crate) fn charts<S: Space>(s: &Simulation<S>) -> Vec<Output> {
         let points = rows.iter().map(|r| (r[0], -r[2])).collect();
         let depth = Chart::new(title, x(), Axis::new("−depth", "m"));
         let mut charts = vec![depth.with(Series::new(String::new(), points))];
-        if S::D == 2
-            && let Some(shape) = s.shapes.surfaces[scar.surface].shape.receding()
+        if run.dimension() == 2
+            && let Some(sign) = run.scar_sign(k)
         {
-            let first = scar.vertices().map(|(v, _)| (v.at[0], v.at[1])).collect();
-            let now = scar
-                .vertices()
-                .map(|(v, d)| (v.at[0], v.at[1] - shape.sign() * d));
+            let vertices = run.scar_vertices(k);
+            let first = vertices.iter().map(|v| (v.at[0], v.at[1])).collect();
+            let now = vertices.iter();
+            let now = now.map(|v| (v.at[0], v.at[1] - sign * v.depth));
             charts.push(
                 Chart::new(
                     format!("Profile of {}", scar.name),
@@ -39,7 +39,7 @@ pub(crate) fn charts<S: Space>(s: &Simulation<S>) -> Vec<Output> {
                 .with(Series::new("worn", now.collect())),
             );
         }
-        out.push(Output::figure(file_name(&scar.name), charts, 2));
+        out.push(Output::figure(file_name(scar.name), charts, 2));
     }
     out
 }

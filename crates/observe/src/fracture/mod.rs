@@ -7,14 +7,14 @@ pub use summary::{AT_ONCE, BondEnergies, FractureSummary, Reference, WRONG_ENERG
 
 use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::Break;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::bench::Bench;
 use fretwork_core::laws::bench::scale::Mode;
 use fretwork_core::laws::{Interface, LawError};
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use fretwork_scene::bond_sites::BondSites;
 use fretwork_scene::case::Case;
 use serde::{Deserialize, Serialize};
@@ -63,7 +63,7 @@ struct Broken {
 }
 
 impl Broken {
-    fn add<S: Space>(&mut self, b: &Break<S>, law: &Interface) {
+    fn add(&mut self, b: &Break, law: &Interface) {
         if !b.damaged {
             self.torn += 1;
             return;
@@ -142,18 +142,18 @@ pub struct Fracture {
 
 impl Fracture {
     /// Of the bonds of a simulation.
-    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
+    pub fn of(case: &Case, run: &dyn RunView) -> Self {
         Self {
             jumps: case.jump.is_some(),
-            broken: vec![Broken::default(); s.laws.len()],
+            broken: vec![Broken::default(); run.laws().len()],
         }
     }
 
-    fn energies<S: Space>(&self, s: &Simulation<S>, place: usize) -> BondEnergies {
-        let (law, broken) = (&s.laws[place], &self.broken[place]);
-        let sites = BondSites::of(s, place);
+    fn energies(&self, run: &dyn RunView, place: usize) -> BondEnergies {
+        let (law, broken) = (&run.laws()[place], &self.broken[place]);
+        let sites = BondSites::of(run, place);
         let radius = sites.as_ref().map_or(RADIUS, |s| s.radius);
-        let mut bench = Bench::new(law.clone(), S::D as u32, radius);
+        let mut bench = Bench::new(law.clone(), run.dimension() as u32, radius);
         let mut out = BondEnergies {
             interface: law.name.clone(),
             broken: broken.broken,
@@ -174,7 +174,7 @@ impl Fracture {
                     && bench.fracture_energy_is_constant().unwrap_or(false);
             }
             out.compared = broken.opened;
-            if let Ok(Some([released, energy])) = broken.by_turning_pulls(law, S::D) {
+            if let Ok(Some([released, energy])) = broken.by_turning_pulls(law, run.dimension()) {
                 out.compared += released;
                 out.declared = out.declared.map(|e| e + energy);
             }
@@ -189,11 +189,11 @@ impl Fracture {
         out.critical_opening = modes.into_iter().filter_map(ends).reduce(f64::min);
         let peaks = modes.into_iter().filter_map(|m| m.peak.map(|p| p.1));
         out.peak_opening = peaks.reduce(f64::min);
-        out.slide(&s.state.network.memory[place].slides);
+        out.slide(&run.bonds_of(place).slides);
         out.step_times_frequency = sites.map(|sites| {
             let of = |n: f64, t: f64| {
                 let squared = (scale.normal.stiffness * n).max(scale.shear.stiffness * t);
-                s.options.scheme.h * squared.sqrt()
+                run.options().scheme.h * squared.sqrt()
             };
             [
                 of(sites.normal_median, sites.shear_median),
@@ -208,7 +208,7 @@ fn share(part: u64, of: u64) -> Option<f64> {
     (of > 0).then(|| part as f64 / of as f64)
 }
 
-impl<S: Space> ObserverIn<S> for Fracture {
+impl Observer for Fracture {
     fn name(&self) -> String {
         "fracture energy".to_owned()
     }
@@ -217,27 +217,28 @@ impl<S: Space> ObserverIn<S> for Fracture {
         false
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        for b in &s.state.network.bond_breaks {
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        let laws = run.laws();
+        for b in run.bond_breaks() {
             let place = usize::from(b.law);
-            if let (Some(broken), Some(law)) = (self.broken.get_mut(place), s.laws.get(place)) {
+            if let (Some(broken), Some(law)) = (self.broken.get_mut(place), laws.get(place)) {
                 broken.add(b, law);
             }
         }
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let s = end.simulation;
-        let memories = s.state.network.memory.iter().enumerate();
-        let bonded = memories.filter(|(k, m)| m.made > 0 && s.laws[*k].opens());
-        let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(s, k)).collect();
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let run = end.simulation;
+        let laws = run.laws().iter().enumerate();
+        let bonded = laws.filter(|(k, law)| run.bonds_of(*k).made > 0 && law.opens());
+        let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(run, k)).collect();
         if interfaces.is_empty() {
             found.begin(Topic::Damage, Role::Detail);
             let doc = "energy that broken bonds released, over what their laws declare; null without bonds";
             found.add("fracture", (), WORD, doc);
             return;
         }
-        FractureSummary::new(interfaces, self.jumps, &s.options).report(found);
+        FractureSummary::new(interfaces, self.jumps, run.options()).report(found);
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

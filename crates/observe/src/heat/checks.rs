@@ -6,9 +6,8 @@ use crate::quantity::unit::{METRE, ONE, WORD};
 use crate::run_state::LEDGER;
 use crate::warning::Warning;
 use fretwork_core::contact::HeatSide;
-use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// Depth of half-spaces over the distance sqrt(D t) that heat has come, below which their end may
@@ -119,10 +118,10 @@ pub(super) struct ContactShares(Vec<[f64; 2]>);
 
 impl ContactShares {
     /// Adds the contacts of the last step.
-    pub fn add<S: Space>(&mut self, s: &Simulation<S>, heat: &Heat, state: &HeatState) {
-        let driven = &s.state.bodies.driven;
+    pub fn add(&mut self, run: &dyn RunView, heat: &Heat, state: &HeatState) {
+        let driven = run.bodies().driven;
         self.0.resize(driven.len(), [0.0; 2]);
-        let h = s.options.scheme.h;
+        let h = run.options().scheme.h;
         let bounded: Vec<(usize, u32, &Pieces)> = driven
             .iter()
             .enumerate()
@@ -133,8 +132,8 @@ impl ContactShares {
                 _ => None,
             })
             .collect();
-        let begun = s.state.time - 0.5 * h >= heat.start;
-        let (Some(thermal), true) = (&s.state.network.thermal, begun && !bounded.is_empty()) else {
+        let begun = run.time() - 0.5 * h >= heat.start;
+        let (Some(thermal), true) = (run.contact_heat(), begun && !bounded.is_empty()) else {
             return;
         };
         // With a circuit conductances are known in every step, without in those in which heat
@@ -143,13 +142,15 @@ impl ContactShares {
         let span = heat.clock * h * steps as f64;
         let temperature =
             |side: HeatSide| thermal.temperature_of(side, |n| state.nodes[n].temperature);
-        let contacts = s.state.network.contacts.iter();
-        let heats = thermal
+        let mut heats = thermal
             .temperatures
             .iter()
             .zip(&thermal.conductance)
             .zip(&thermal.source);
-        for (contact, ((seen, conductance), source)) in contacts.zip(heats) {
+        run.visit_contacts(&mut |contact| {
+            let Some(((seen, conductance), source)) = heats.next() else {
+                return;
+            };
             let sides = &seen.sides;
             for (side, body) in contact.bodies.into_iter().enumerate() {
                 let Some((k, _, pieces)) = bounded.iter().find(|b| b.1 == body) else {
@@ -165,14 +166,13 @@ impl ContactShares {
                     _ => (1.0, 0.0),
                 };
                 let amount = share * source.abs() + flow;
-                let place =
-                    S::unrotate(&s.state.bodies.rotation[body as usize], &contact.arms[side]);
+                let place = run.turned_back(body as usize, contact.arms[side]);
                 self.0[*k][1] += amount;
-                if beside(pieces, place.padded()) {
+                if beside(pieces, place) {
                     self.0[*k][0] += amount;
                 }
             }
-        }
+        });
     }
 }
 
@@ -185,13 +185,13 @@ fn beside(pieces: &Pieces, place: [f64; 3]) -> bool {
 }
 
 /// The checks of the current state.
-pub(super) fn checks<S: Space>(
-    s: &Simulation<S>,
+pub(super) fn checks(
+    run: &dyn RunView,
     residual_relative: f64,
     shares: &ContactShares,
 ) -> Option<HeatChecks> {
-    let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
-    let time = heat.clock * (s.state.time - heat.start.max(0.0)).max(0.0);
+    let (heat, state) = (run.heat()?, run.heat_state()?);
+    let time = heat.clock * (run.time() - heat.start.max(0.0)).max(0.0);
     let of_body = |(k, driven): (usize, &fretwork_core::bodies::Driven)| {
         let nodes = &state.nodes[heat.nodes[driven.body as usize].range()];
         let Some(Store::HalfSpace(space)) = nodes.first().map(|n| &n.store) else {
@@ -206,7 +206,7 @@ pub(super) fn checks<S: Space>(
             outside: if beside > 0.0 { beside / all } else { 0.0 },
         })
     };
-    let driven = s.state.bodies.driven.iter().enumerate();
+    let driven = run.bodies().driven.iter().enumerate();
     Some(HeatChecks {
         residual_relative,
         half_spaces: driven.filter_map(of_body).collect(),
@@ -215,11 +215,9 @@ pub(super) fn checks<S: Space>(
 
 /// Interfaces whose transport law is not asked, since the case computes no heat: a sentence for
 /// each.
-pub fn without_heat<S: Space>(s: &Simulation<S>) -> Vec<String> {
-    let idle = s
-        .laws
-        .iter()
-        .filter(|l| l.transport().is_some() && s.heat().is_none());
+pub fn without_heat(run: &dyn RunView) -> Vec<String> {
+    let laws = run.laws().iter();
+    let idle = laws.filter(|l| l.transport().is_some() && run.heat().is_none());
     idle.map(|law| {
         format!(
             "the transport law of `{}` is not asked: the case computes no heat; `heat: ()` would",

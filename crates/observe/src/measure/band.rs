@@ -8,23 +8,23 @@
 use super::{grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
 use crate::code::{self, CodeError};
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::statistics::Column;
 use crate::strain::Strain;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Band`].
 #[derive(Clone, Debug)]
-pub struct Band<S: Space> {
+pub struct Band {
     pub(super) name: String,
-    pub(super) low: S::Vector,
-    pub(super) high: S::Vector,
+    pub(super) low: Vector3<f64>,
+    pub(super) high: Vector3<f64>,
     pub(super) above: f64,
-    pub(super) strain: Option<Strain<S>>,
+    pub(super) strain: Option<Strain>,
 }
 
 /// Smallest number of grains in a row, and of rows in a band.
@@ -71,13 +71,13 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[k] + (place - k as f64) * (next - sorted[k])
 }
 
-impl<S: Space> ObserverIn<S> for Band<S> {
+impl Observer for Band {
     fn name(&self) -> String {
         super::name_of("band", &self.name)
     }
 
-    fn begin(&mut self, s: &Simulation<S>) {
-        self.strain = Some(Strain::new(s));
+    fn begin(&mut self, run: &dyn RunView) {
+        self.strain = Some(Strain::new(run));
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -93,32 +93,28 @@ impl<S: Space> ObserverIn<S> for Band<S> {
         ]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         let Some(strain) = &self.strain else {
             return vec![f64::NAN, f64::NAN, 0.0];
         };
-        let up = S::D - 1;
-        let grain = s.state.bodies.grain_flags();
-        let balls = s.shapes.balls.iter().zip(strain.shear(s));
+        let up = run.dimension() - 1;
+        let grain = run.grain_flags();
+        let balls = run.balls().into_iter().zip(strain.shear(run));
         let sheared = balls
             .filter(|(b, shear)| grain[b.body as usize] && *shear >= self.above)
-            .map(|(b, _)| {
-                s.shapes
-                    .periodic
-                    .wrapped(fretwork_core::contact::detect::centre(b, &s.state.bodies))
-            })
-            .filter(|x| (0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])));
+            .map(|(b, _)| run.periodic().wrapped(Vector3::from(b.centre)))
+            .filter(|x| (0..run.dimension()).all(|k| (self.low[k]..self.high[k]).contains(&x[k])));
         let points: Vec<(f64, f64)> = sheared.map(|x| (x[0], x[up])).collect();
-        let all = grains(s);
+        let all = grains(run);
         let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
         let (angle, width) = shape(&points, self.low[up], 2.0 * sum / all.len() as f64)
             .unwrap_or((f64::NAN, f64::NAN));
         vec![angle, width, points.len() as f64]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         // A band grows, so its last state is reported.
-        for column in ObserverIn::<S>::columns(self) {
+        for column in Observer::columns(self) {
             let last = end.table.column(&column.name).last().copied();
             if let Some(value) = last.filter(|v| v.is_finite()) {
                 found.measure(&column.name, value, column.unit, column.doc);
@@ -139,7 +135,7 @@ impl<S: Space> ObserverIn<S> for Band<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let chart = |part: &str, y: Axis, factor: f64| {
             let value = Value {
                 factor,

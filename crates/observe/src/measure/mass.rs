@@ -3,13 +3,12 @@
 use super::{grains, line, since};
 use crate::chart::Axis;
 use crate::figures::history;
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::quantity::unit::{MASS, MASS_FLOW};
 use crate::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Mass`].
 #[derive(Clone, Debug)]
@@ -21,7 +20,7 @@ pub struct Mass {
     pub(super) inertia_scaling: f64,
 }
 
-impl<S: Space> ObserverIn<S> for Mass {
+impl Observer for Mass {
     fn name(&self) -> String {
         super::name_of("mass", &self.name)
     }
@@ -34,13 +33,13 @@ impl<S: Space> ObserverIn<S> for Mass {
         )]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let all = grains(s);
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let all = grains(run);
         let above = all.iter().filter(|g| g.at[self.axis] > self.above);
         vec![above.map(|g| g.mass).sum::<f64>() / self.inertia_scaling]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let points = since(end.table, &self.name, self.start);
         if let Some(rate) = line(points.iter().copied()) {
             let doc = "change of the mass above a level, a line through its course";
@@ -52,7 +51,7 @@ impl<S: Space> ObserverIn<S> for Mass {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let heading = format!("Mass, {}", self.name);
         let chart = history(heading, Axis::of_rows("mass m"), &[("", &self.name)]);
         vec![Output::figure(&self.name, [chart], 1)]

@@ -9,18 +9,17 @@ mod third_body;
 
 use super::observer::{Observer, Observers};
 use super::statistics::Table;
-use crate::typed::in_dimension;
-use fretwork_core::geometry::convex::{ConvexCollider, Core};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::geometry::space::{VectorLike, ball_volume};
+use fretwork_core::view::RunView;
 use fretwork_scene::measures::MeasureSpec;
+use nalgebra::Vector3;
 
-/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are
-/// too large. `heated`: whether it computes heat.
-pub fn measures<S: Space>(specs: &[MeasureSpec], inertia_scaling: f64, heated: bool) -> Observers {
+/// Measures of these words of the case of a run, and its `inertia_scaling`, by which the bodies'
+/// masses are too large.
+pub fn measures(specs: &[MeasureSpec], inertia_scaling: f64, run: &dyn RunView) -> Observers {
     let mut all = Observers::default();
     for spec in specs {
-        all.push(measure::<S>(spec.clone(), inertia_scaling, heated));
+        all.push(measure(spec.clone(), inertia_scaling, run));
     }
     all
 }
@@ -30,14 +29,14 @@ fn name_of(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }
 
-fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64, heated: bool) -> Box<dyn Observer> {
+fn measure(spec: MeasureSpec, inertia_scaling: f64, run: &dyn RunView) -> Box<dyn Observer> {
     match spec {
         MeasureSpec::Mass {
             name,
             axis,
             above,
             start,
-        } => in_dimension::<S, _>(mass::Mass {
+        } => Box::new(mass::Mass {
             name,
             axis,
             above,
@@ -49,7 +48,7 @@ fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64, heated: bool) -> B
             from,
             to,
             start,
-        } => in_dimension::<S, _>(slope::Slope {
+        } => Box::new(slope::Slope {
             name,
             from,
             to,
@@ -63,103 +62,99 @@ fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64, heated: bool) -> B
             bins,
             turned,
             start,
-        } => in_dimension::<S, _>(profile::Profile::<S>::new(
-            name, axis, &low, &high, bins, turned, start,
+        } => Box::new(profile::Profile::new(
+            run.dimension(),
+            name,
+            axis,
+            [&low, &high],
+            bins,
+            turned,
+            start,
         )),
         MeasureSpec::Band {
             name,
             low,
             high,
             above,
-        } => in_dimension::<S, _>(band::Band::<S> {
+        } => Box::new(band::Band {
             name,
-            low: S::Vector::from_slice(&low),
-            high: S::Vector::from_slice(&high),
+            low: VectorLike::from_slice(&low),
+            high: VectorLike::from_slice(&high),
             above,
             strain: None,
         }),
-        MeasureSpec::ThirdBody(spec) => in_dimension::<S, _>(third_body::ThirdBody::<S>::new(
-            spec,
-            inertia_scaling,
-            heated,
-        )),
+        MeasureSpec::ThirdBody(spec) => {
+            Box::new(third_body::ThirdBody::new(spec, inertia_scaling, run))
+        }
         MeasureSpec::Shear {
             name,
             low,
             high,
             start,
-        } => in_dimension::<S, _>(shear::Shear::<S>::new(name, low, high, start)),
+        } => Box::new(shear::Shear::new(run.dimension(), name, [low, high], start)),
     }
 }
 
 /// A grain, or one shape of a grain with several.
-struct Grain<'a, S: Space> {
+struct Grain {
     /// Centre, wrapped into the period that begins at zero (m).
-    at: S::Vector,
+    at: Vector3<f64>,
     /// Index of the body.
     body: usize,
     /// Radius of the ball (2D: disk) of the same volume (m).
     radius: f64,
     /// Its share of the body's mass, by volume (kg; kg/m in 2D).
     mass: f64,
-    /// Its convex part, unless it is a ball.
-    piece: Option<&'a ConvexCollider<S>>,
+    /// Index of its convex piece and the rounding of that (m), unless it is a ball.
+    piece: Option<(usize, f64)>,
 }
 
-impl<S: Space> Grain<'_, S> {
+impl Grain {
     /// Height of its highest point above its centre (m).
-    fn rise(&self, s: &Simulation<S>) -> f64 {
-        let Some(piece) = self.piece else {
+    fn rise(&self, run: &dyn RunView) -> f64 {
+        let Some((piece, rounding)) = self.piece else {
             return self.radius;
         };
-        let mut up = S::Vector::zero();
-        up[S::D - 1] = 1.0;
-        let up = S::unrotate(&s.state.bodies.rotation[self.body], &up);
-        let corners = piece.core.outline(0.0).concat();
-        let heights = corners.iter().map(|c| c.dot(&up));
-        heights.fold(f64::NEG_INFINITY, f64::max) + piece.rounding
+        let mut up = [0.0; 3];
+        up[run.dimension() - 1] = 1.0;
+        let up = Vector3::from(run.turned_back(self.body, up));
+        let (corners, _) = run.piece_core(piece);
+        let heights = corners.iter().map(|c| Vector3::from(*c).dot(&up));
+        heights.fold(f64::NEG_INFINITY, f64::max) + rounding
     }
 }
 
 /// The grains; shapes of driven bodies are excluded.
-fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
-    let flags = s.state.bodies.grain_flags();
+fn grains(run: &dyn RunView) -> Vec<Grain> {
+    let (flags, bodies) = (run.grain_flags(), run.bodies());
+    let grain = |at: [f64; 3], body: u32, radius, piece| Grain {
+        at: at.into(),
+        body: body as usize,
+        radius,
+        mass: 0.0,
+        piece,
+    };
     // Points of surfaces are balls without a radius.
-    let balls = s.shapes.balls.iter().filter(|b| b.radius > 0.0);
-    let balls = balls.map(|b| Grain {
-        at: fretwork_core::contact::detect::centre(b, &s.state.bodies),
-        body: b.body as usize,
-        radius: b.radius,
-        mass: 0.0,
-        piece: None,
-    });
-    let pieces = s.shapes.pieces.iter().map(|p| Grain {
-        at: crate::placement::piece_centre(s, p),
-        body: p.body as usize,
-        radius: p.size,
-        mass: 0.0,
-        piece: Some(p),
-    });
-    let bodies = &s.state.bodies;
-    let closed = s.shapes.surfaces.iter().filter(|f| f.shape.is_closed());
-    let deformable = closed.map(|f| Grain {
-        at: bodies.position[f.body as usize],
-        body: f.body as usize,
-        radius: bodies.length[f.body as usize],
-        mass: 0.0,
-        piece: None,
+    let balls = run.balls().into_iter().filter(|b| b.radius > 0.0);
+    let balls = balls.map(|b| grain(b.centre, b.body, b.radius, None));
+    let pieces = run.pieces().into_iter().enumerate();
+    let pieces = pieces.map(|(k, p)| grain(p.centre, p.body, p.size, Some((k, p.rounding))));
+    let closed = run.surfaces().into_iter().filter(|f| f.closed);
+    let deformable = closed.map(|f| {
+        let b = f.body as usize;
+        grain(bodies.position.at(b), f.body, bodies.length[b], None)
     });
     let all = balls.chain(pieces).chain(deformable);
-    let all = all.filter(|g| flags[g.body]);
-    let mut all: Vec<Grain<'_, S>> = all.collect();
-    let mut volumes = vec![0.0; s.state.bodies.len()];
+    let mut all: Vec<Grain> = all.filter(|g| flags[g.body]).collect();
+    let volume = |radius: f64| ball_volume(run.dimension(), radius);
+    let mut volumes = vec![0.0; bodies.len()];
     for g in &all {
-        volumes[g.body] += S::ball_volume(g.radius);
+        volumes[g.body] += volume(g.radius);
     }
     for g in &mut all {
-        let share = S::ball_volume(g.radius) / volumes[g.body];
-        g.mass = s.state.bodies.mass[g.body] * share;
-        g.at = s.shapes.periodic.wrapped(g.at);
+        let share = volume(g.radius) / volumes[g.body];
+        g.mass = bodies.mass[g.body] * share;
+        g.at = run.periodic().wrapped(g.at);
     }
     all
 }

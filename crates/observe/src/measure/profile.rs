@@ -6,46 +6,48 @@
 use super::grains;
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::code::{self, CodeError};
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::geometry::space::{VectorLike, ball_volume};
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Profile`].
 #[derive(Clone, Debug)]
-pub struct Profile<S: Space> {
+pub struct Profile {
+    /// Number of dimensions.
+    dimension: usize,
     name: String,
     axis: usize,
-    low: S::Vector,
-    high: S::Vector,
+    low: Vector3<f64>,
+    high: Vector3<f64>,
     turned: f64,
     start: f64,
     samples: u64,
     /// Whether grains have temperatures.
     heated: bool,
-    slices: Vec<Slice<S>>,
+    slices: Vec<Slice>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-struct Slice<S: Space> {
+struct Slice {
     mass: f64,
     volume: f64,
-    momentum: S::Vector,
+    momentum: Vector3<f64>,
     /// Sum of mass times spin: about z in 2D, its norm in 3D.
     spin: f64,
     /// Sum of mass times temperature (kg K).
     temperature: f64,
 }
 
-impl<S: Space> Profile<S> {
+impl Profile {
     pub(super) fn new(
+        dimension: usize,
         name: String,
         axis: usize,
-        low: &[f64],
-        high: &[f64],
+        [low, high]: [&[f64]; 2],
         bins: usize,
         turned: f64,
         start: f64,
@@ -53,15 +55,16 @@ impl<S: Space> Profile<S> {
         let empty = Slice {
             mass: 0.0,
             volume: 0.0,
-            momentum: S::Vector::zero(),
+            momentum: Vector3::zeros(),
             spin: 0.0,
             temperature: 0.0,
         };
         Self {
+            dimension,
             name,
             axis,
-            low: S::Vector::from_slice(low),
-            high: S::Vector::from_slice(high),
+            low: VectorLike::from_slice(low),
+            high: VectorLike::from_slice(high),
             turned,
             start,
             samples: 0,
@@ -71,7 +74,7 @@ impl<S: Space> Profile<S> {
     }
 
     /// Components of a vector along the axes of the box.
-    fn turned(&self, v: &S::Vector) -> S::Vector {
+    fn turned(&self, v: &Vector3<f64>) -> Vector3<f64> {
         let (sin, cos) = self.turned.sin_cos();
         let mut out = *v;
         (out[0], out[1]) = (cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]);
@@ -82,7 +85,7 @@ impl<S: Space> Profile<S> {
     /// grain.
     fn rows(&self) -> Vec<Vec<f64>> {
         let wide = (self.high[self.axis] - self.low[self.axis]) / self.slices.len() as f64;
-        let section: f64 = (0..S::D)
+        let section: f64 = (0..self.dimension)
             .filter(|k| *k != self.axis)
             .map(|k| self.high[k] - self.low[k])
             .product();
@@ -92,7 +95,7 @@ impl<S: Space> Profile<S> {
                 self.low[self.axis] + (k as f64 + 0.5) * wide,
                 slice.volume / whole,
             ];
-            row.extend((0..S::D).map(|k| slice.momentum[k] / slice.mass));
+            row.extend((0..self.dimension).map(|k| slice.momentum[k] / slice.mass));
             row.push(slice.spin / slice.mass);
             if self.heated {
                 row.push(slice.temperature / slice.mass);
@@ -110,7 +113,7 @@ impl<S: Space> Profile<S> {
         ];
         out.extend(
             axes.iter()
-                .take(S::D)
+                .take(self.dimension)
                 .map(|a| format!("velocity_{a} [m/s]")),
         );
         out.push("spin [rad/s]".to_owned());
@@ -121,7 +124,7 @@ impl<S: Space> Profile<S> {
     }
 }
 
-impl<S: Space> ObserverIn<S> for Profile<S> {
+impl Observer for Profile {
     fn name(&self) -> String {
         super::name_of("profile", &self.name)
     }
@@ -130,31 +133,37 @@ impl<S: Space> ObserverIn<S> for Profile<S> {
         Vec::new()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        if s.state.time < self.start {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        if run.time() < self.start {
             return Vec::new();
         }
         self.samples += 1;
-        self.heated = s.heat().is_some();
+        self.heated = run.heat().is_some();
         let bins = self.slices.len() as f64;
-        for g in grains(s) {
+        let bodies = run.bodies();
+        for g in grains(run) {
             let x = self.turned(&g.at);
-            if !(0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])) {
+            if !(0..self.dimension).all(|k| (self.low[k]..self.high[k]).contains(&x[k])) {
                 continue;
             }
             let (low, high) = (self.low[self.axis], self.high[self.axis]);
             let place = ((x[self.axis] - low) / (high - low) * bins) as usize;
-            let velocity = self.turned(&s.state.bodies.velocity[g.body]);
+            let velocity = self.turned(&bodies.velocity.at(g.body).into());
             let Some(slice) = self.slices.get_mut(place) else {
                 continue;
             };
             let mass = g.mass;
-            let spin = &s.state.bodies.spin[g.body];
+            let spin = Vector3::from(bodies.spin.at(g.body));
             slice.mass += mass;
-            slice.volume += S::ball_volume(g.radius);
+            slice.volume += ball_volume(self.dimension, g.radius);
             slice.momentum += velocity * mass;
-            slice.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
-            slice.temperature += mass * s.temperature(g.body).unwrap_or_default();
+            slice.spin += mass
+                * if self.dimension == 2 {
+                    spin[2]
+                } else {
+                    spin.norm()
+                };
+            slice.temperature += mass * run.temperature(g.body).unwrap_or_default();
         }
         Vec::new()
     }
@@ -174,7 +183,7 @@ impl<S: Space> ObserverIn<S> for Profile<S> {
             .to_vec()
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let rows = self.rows();
         let mut text = self.header().join(",") + "\n";
         for row in &rows {
@@ -190,19 +199,23 @@ impl<S: Space> ObserverIn<S> for Profile<S> {
             Chart::new(heading, Axis::new(axis, "m"), Axis::new(y, unit))
         };
         let mut velocity = chart("Velocity", "m/s", "mean velocity v");
-        for (k, a) in ["v_x", "v_y", "v_z"].iter().enumerate().take(S::D) {
+        for (k, a) in ["v_x", "v_y", "v_z"]
+            .iter()
+            .enumerate()
+            .take(self.dimension)
+        {
             velocity =
                 velocity.with_unless_zero(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
         }
         let solid = chart("Solid fraction", "", "solid fraction φ")
             .with_unless_zero(Series::new(String::new(), series(1)).style(Style::LineMarkers));
         let spin = chart("Rotation", "rad/s", "mean angular velocity ω").with_unless_zero(
-            Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers),
+            Series::new(String::new(), series(2 + self.dimension)).style(Style::LineMarkers),
         );
         let mut panels = vec![velocity, solid, spin];
         if self.heated {
             let temperature = chart("Temperature", "K", "mean temperature T");
-            let of_grains = Series::new(String::new(), series(3 + S::D));
+            let of_grains = Series::new(String::new(), series(3 + self.dimension));
             panels.push(temperature.with(of_grains.style(Style::LineMarkers)));
         }
         let file = format!("{}.csv", self.name);

@@ -2,13 +2,12 @@
 
 use super::{grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series, Value};
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::quantity::unit::RADIAN;
 use crate::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Slope`].
 #[derive(Clone, Debug)]
@@ -19,7 +18,7 @@ pub struct Slope {
     pub(super) start: f64,
 }
 
-impl<S: Space> ObserverIn<S> for Slope {
+impl Observer for Slope {
     fn name(&self) -> String {
         super::name_of("slope", &self.name)
     }
@@ -32,19 +31,17 @@ impl<S: Space> ObserverIn<S> for Slope {
         )]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         // Grains in free flight are not part of the surface.
-        let mut touched = vec![false; s.state.bodies.len()];
-        for contact in &s.state.network.contacts {
-            if contact.impulse != S::Vector::zero() {
-                contact
-                    .bodies
-                    .iter()
-                    .for_each(|b| touched[*b as usize] = true);
+        let mut touched = vec![false; run.bodies().len()];
+        run.visit_contacts(&mut |contact| {
+            if contact.impulse != [0.0; 3] {
+                let bodies = contact.bodies.iter();
+                bodies.for_each(|b| touched[*b as usize] = true);
             }
-        }
+        });
         let wide = self.to - self.from;
-        let all = grains(s);
+        let all = grains(run);
         let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
         // Columns are two mean diameters wide.
         let width = 2.0 * sum / all.len().max(1) as f64;
@@ -57,7 +54,7 @@ impl<S: Space> ObserverIn<S> for Slope {
         for g in &all {
             let k = ((g.at[0] - self.from) / wide * columns as f64).floor();
             if touched[g.body] && k >= 0.0 && (k as usize) < columns {
-                let top = g.at[S::D - 1] + g.rise(s);
+                let top = g.at[run.dimension() - 1] + g.rise(run);
                 let old = &mut tops[k as usize];
                 *old = Some(old.map_or(top, |o| o.max(top)));
             }
@@ -69,7 +66,7 @@ impl<S: Space> ObserverIn<S> for Slope {
         vec![line(points).map_or(f64::NAN, f64::atan)]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         if let Some(mean) = mean(&since(end.table, &self.name, self.start)) {
             found.measure(&self.name, mean, RADIAN, "mean angle of the free surface");
         }
@@ -79,7 +76,7 @@ impl<S: Space> ObserverIn<S> for Slope {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let value = Value {
             factor: 1f64.to_degrees(),
             ..Value::from(self.name.as_str())

@@ -1,18 +1,19 @@
 //! First bodies whose motion is prescribed or forced.
 
 use crate::figures;
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::unit::{FORCE, METRE, SPEED};
 use crate::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Observes the driven bodies: places, velocities and contact forces.
 #[derive(Clone, Debug)]
 pub struct DrivenBodies {
     /// Place among the driven bodies, and name.
     shown: Vec<(usize, String)>,
+    /// Number of dimensions.
+    dimension: usize,
     /// Body and axis of an oscillating friction test, whose loops are drawn by themselves.
     test: Option<(String, usize)>,
 }
@@ -20,18 +21,19 @@ pub struct DrivenBodies {
 impl DrivenBodies {
     /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may
     /// be left out of the figures.
-    pub fn of<S: Space>(s: &Simulation<S>, test: Option<(String, usize)>) -> Self {
-        let named = s.state.bodies.driven.iter().enumerate();
+    pub fn of(run: &dyn RunView, test: Option<(String, usize)>) -> Self {
+        let named = run.bodies().driven.iter().enumerate();
         // Walls that a scene file brought are not worth columns.
         let shown = named.filter(|(_, d)| !d.name.starts_with("wall_"));
         Self {
             shown: shown.map(|(k, d)| (k, d.name.clone())).collect(),
+            dimension: run.dimension(),
             test,
         }
     }
 }
 
-impl<S: Space> ObserverIn<S> for DrivenBodies {
+impl Observer for DrivenBodies {
     fn name(&self) -> String {
         "driven bodies".to_owned()
     }
@@ -48,30 +50,28 @@ impl<S: Space> ObserverIn<S> for DrivenBodies {
                 ("v", SPEED, "velocity of the body"),
                 ("f", FORCE, "contact force on the body"),
             ] {
-                let axes = ["x", "y", "z"].into_iter().take(S::D);
+                let axes = ["x", "y", "z"].into_iter().take(self.dimension);
                 out.extend(axes.map(|a| Column::new(format!("{name}_{what}{a}"), unit, doc)));
             }
         }
         out
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let mut row = Vec::with_capacity(self.shown.len() * 3 * S::D);
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let mut row = Vec::with_capacity(self.shown.len() * 3 * self.dimension);
+        let (bodies, received) = (run.bodies(), run.received());
+        let per_time = 1.0 / run.options().scheme.h;
         for (d, _) in &self.shown {
-            let b = s.state.bodies.driven[*d].body as usize;
-            let force = s.state.received[*d].0 * (1.0 / s.options.scheme.h);
-            for values in [
-                s.state.bodies.position[b],
-                s.state.bodies.velocity[b],
-                force,
-            ] {
-                row.extend((0..S::D).map(|k| values[k]));
+            let b = bodies.driven[*d].body as usize;
+            let force = received[*d][0].map(|impulse| impulse * per_time);
+            for values in [bodies.position.at(b), bodies.velocity.at(b), force] {
+                row.extend_from_slice(&values[..self.dimension]);
             }
         }
         row
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let test = self
             .test
             .as_ref()

@@ -1,9 +1,8 @@
 //! Steps that ended above the tolerance of the solver.
 
-use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_scene::methods::{Demands, Service};
 
 /// Steps that ended above the tolerance.
@@ -32,10 +31,10 @@ impl Missed {
 
     /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if
     /// all steps converged.
-    pub fn warning<S: Space>(&self, simulation: &Simulation<S>, of: u64) -> Option<String> {
-        let options = simulation.solver_in_force();
+    pub fn warning(&self, run: &dyn RunView, of: u64) -> Option<String> {
+        let options = run.solver_in_force();
         let seen = self.seen(of, options.tolerance)?;
-        let demands = Demands::of(simulation);
+        let demands = Demands::of(run);
         let others = [Method::Auto, Method::Newton, Method::Interior].into_iter();
         let others = others
             .filter(|m| *m != options.method)

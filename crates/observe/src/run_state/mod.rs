@@ -19,21 +19,21 @@ use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
-use crate::typed::{ObserverIn, RunEndIn};
+use crate::observer::{Observer, RunEnd};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Interface;
 use fretwork_core::momentum::Momentum;
 use fretwork_core::process::cycle::CycleClock;
-use fretwork_core::step::{ImpossibleMotions, Simulation, StepReport};
+use fretwork_core::step::{ImpossibleMotions, StepReport};
+use fretwork_core::view::RunView;
 
 /// Broken bonds over bonds made.
-pub fn damage_ratio<S: Space>(s: &Simulation<S>) -> f64 {
-    let n = &s.state.network;
-    if n.bonds_made() > 0 {
-        n.bonds_broken() as f64 / n.bonds_made() as f64
+pub fn damage_ratio(run: &dyn RunView) -> f64 {
+    let made = run.bonds_made();
+    if made > 0 {
+        run.bonds_broken() as f64 / made as f64
     } else {
         0.0
     }
@@ -56,19 +56,18 @@ struct Counts {
 
 impl Counts {
     /// Of a simulation with so many contacts.
-    fn of<S: Space>(s: &Simulation<S>, contacts: usize) -> Self {
-        let n = &s.state.network;
+    fn of(run: &dyn RunView, contacts: usize) -> Self {
         Self {
-            steps: s.state.steps,
-            time: s.state.time,
-            bodies: s.state.bodies.len(),
+            steps: run.steps(),
+            time: run.time(),
+            bodies: run.bodies().len(),
             contacts,
-            bonds: n.bonds_made(),
-            broken: n.bonds_broken(),
-            damage_ratio: damage_ratio(s),
-            step_size: n.step_size.clone(),
-            energy: s.state.energy,
-            momentum: s.state.momentum,
+            bonds: run.bonds_made(),
+            broken: run.bonds_broken(),
+            damage_ratio: damage_ratio(run),
+            step_size: run.step_size().clone(),
+            energy: *run.energies(),
+            momentum: *run.momentum(),
         }
     }
 
@@ -141,13 +140,13 @@ const NO_BONDS: &str = "no interface of the case makes bonds";
 const NO_DAMAGE: &str = "no interface of the case has a damage law";
 
 impl BondsOfCase {
-    fn of<S: Space>(s: &Simulation<S>) -> Self {
+    fn of(run: &dyn RunView) -> Self {
         let makes =
             |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
-        let any = s.laws.iter().any(makes) || s.state.network.bonds_made() > 0;
+        let any = run.laws().iter().any(makes) || run.bonds_made() > 0;
         Self {
             any,
-            damaged: any && s.laws.iter().any(Interface::damages),
+            damaged: any && run.laws().iter().any(Interface::damages),
         }
     }
 }
@@ -172,12 +171,12 @@ pub struct RunState {
 
 impl RunState {
     /// Of a run from the current state of a simulation; its friction test may have cycles.
-    pub fn new<S: Space>(s: &Simulation<S>, clock: Option<CycleClock>) -> Self {
-        let options = &s.options.solver;
+    pub fn new(run: &dyn RunView, clock: Option<CycleClock>) -> Self {
+        let options = &run.options().solver;
         Self {
             clock,
             counts: Counts::default(),
-            bonds: BondsOfCase::of(s),
+            bonds: BondsOfCase::of(run),
             solver: SolverSummary {
                 tolerance: options.tolerance,
                 error_formula: options.norm.formula().to_owned(),
@@ -192,21 +191,19 @@ impl RunState {
         }
     }
 
-    fn count_contacts<S: Space>(&self, s: &Simulation<S>) -> usize {
-        let parallel = s.options.solver.parallel;
-        let counted = || s.state.network.contact_count(parallel);
-        self.contacts.unwrap_or_else(counted)
+    fn count_contacts(&self, run: &dyn RunView) -> usize {
+        self.contacts.unwrap_or_else(|| run.counted_contacts())
     }
 
-    fn put<S: Space>(&self, counts: &Counts, s: Option<&Simulation<S>>, found: &mut Findings) {
+    fn put(&self, counts: &Counts, run: Option<&dyn RunView>, found: &mut Findings) {
         counts.report(self.bonds, found);
         let mut solver = self.solver.clone();
         let steps = counts.steps.max(1) as f64;
         solver.coupling_iterations_mean = self.couplings as f64 / steps;
         solver.iterations_mean = self.iterations as f64 / steps;
-        if let Some(s) = s {
+        if let Some(run) = run {
             let choice = &self.solver.choice;
-            solver.why = choice.why(s.options.solver.method, s.state.steps);
+            solver.why = choice.why(run.options().solver.method, run.steps());
         }
         solver.report(found);
         if !self.impossible.is_empty() {
@@ -229,8 +226,8 @@ impl RunState {
             error: solver.error_max,
         };
         found.warn(solver.warnings(counts.steps, possible));
-        let advice = match s {
-            Some(s) => missed.warning(s, s.state.steps),
+        let advice = match run {
+            Some(run) => missed.warning(run, run.steps()),
             None => missed.seen(counts.steps, solver.tolerance),
         };
         found.warn(advice.map(|text| Warning::serious("NOT CONVERGED", text)));
@@ -256,7 +253,7 @@ const IMPOSSIBLE: [Field; 7] = [
     field("overlap", METRE, "largest overlap of them"),
 ];
 
-impl<S: Space> ObserverIn<S> for RunState {
+impl Observer for RunState {
     fn name(&self) -> String {
         "run state".to_owned()
     }
@@ -265,11 +262,11 @@ impl<S: Space> ObserverIn<S> for RunState {
         false
     }
 
-    fn before_step(&mut self, s: &Simulation<S>) {
-        self.counts = Counts::of(s, self.count_contacts(s));
+    fn before_step(&mut self, run: &dyn RunView) {
+        self.counts = Counts::of(run, self.count_contacts(run));
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
+    fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
         let solver = &mut self.solver;
         self.iterations += u64::from(report.solver.iterations);
         solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
@@ -281,7 +278,8 @@ impl<S: Space> ObserverIn<S> for RunState {
         solver.several_steps += u64::from(report.solver.several);
         solver.not_searched_steps += u64::from(report.solver.not_searched);
         solver.pinched_steps += u64::from(report.solver.pinched);
-        self.impossible.add(s, report);
+        let name = |body| run.body_name(body);
+        self.impossible.add(run.time(), name, report);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         solver.laws.add(&report.agreement);
@@ -293,7 +291,7 @@ impl<S: Space> ObserverIn<S> for RunState {
         }
         if !report.solver.converged {
             if solver.unconverged_steps == 0 {
-                solver.first_unconverged = s.state.steps;
+                solver.first_unconverged = run.steps();
             }
             solver.unconverged_steps += 1;
         }
@@ -336,35 +334,34 @@ impl<S: Space> ObserverIn<S> for RunState {
         out
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let n = &s.state.network;
-        let cycle = self.clock.map_or(0, |c| c.number(s.state.time));
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let cycle = self.clock.map_or(0, |c| c.number(run.time()));
         let mut row = vec![
-            s.state.steps as f64,
-            s.state.time,
+            run.steps() as f64,
+            run.time(),
             f64::from(cycle),
-            self.count_contacts(s) as f64,
+            self.count_contacts(run) as f64,
         ];
         row.extend(self.last);
         row.extend([
-            (n.bonds_made() - n.bonds_broken()) as f64,
-            n.bonds_broken() as f64,
-            damage_ratio(s),
-            n.mean_damage(),
+            (run.bonds_made() - run.bonds_broken()) as f64,
+            run.bonds_broken() as f64,
+            damage_ratio(run),
+            run.mean_damage(),
         ]);
-        row.extend(s.state.energy.entries().map(|(_, _, value)| value));
-        row.extend(s.state.momentum.entries().map(|(_, _, value)| value));
+        row.extend(run.energies().entries().map(|(_, _, value)| value));
+        row.extend(run.momentum().entries().map(|(_, _, value)| value));
         row
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let s = end.simulation;
-        let contacts = s.state.network.contact_count(s.options.solver.parallel);
-        self.put(&Counts::of(s, contacts), Some(s), found);
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let run = end.simulation;
+        let contacts = run.counted_contacts();
+        self.put(&Counts::of(run, contacts), Some(run), found);
         found.begin(Topic::Damage, Role::Detail);
         let doc = "mean damage D over all bonds made, broken ones counting 1";
-        let mean = found.add("mean_damage", s.state.network.mean_damage(), ONE, doc);
-        if s.state.network.bonds_made() > 0 {
+        let mean = found.add("mean_damage", run.mean_damage(), ONE, doc);
+        if run.bonds_made() > 0 {
             mean.secondary("mean damage");
         }
         if !self.bonds.damaged {
@@ -373,13 +370,13 @@ impl<S: Space> ObserverIn<S> for RunState {
     }
 
     fn report_so_far(&self, found: &mut Findings) {
-        self.put::<S>(&self.counts, None, found);
+        self.put(&self.counts, None, found);
     }
 
-    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
-        let entries = end.simulation.state.energy.entries();
+    fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let entries = end.simulation.energies().entries();
         let entries = entries.into_iter().map(|(name, ..)| name);
-        let joule = ENERGY.symbol(S::D);
+        let joule = ENERGY.symbol(end.simulation.dimension());
         vec![
             figures::damage_ratio(&end.uncertainty.damage_ratio),
             figures::energy_balance(entries, &end.uncertainty.friction_energy, joule),

@@ -1,13 +1,12 @@
 //! Phases of a run.
 
+use crate::observer::{Observer, RunEnd};
 use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Topic, field, quantity};
 use crate::statistics::Column;
-use crate::typed::{ObserverIn, RunEndIn};
 use crate::warning::{NOT_REACHED, Warning};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
 use fretwork_core::step::control::Begun;
+use fretwork_core::view::RunView;
 
 /// What is said of a phase that began.
 const PHASE: [Field; 5] = [
@@ -40,14 +39,14 @@ pub struct Phases {
 
 impl Phases {
     /// Of the phases of a simulation.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
+    pub fn of(run: &dyn RunView) -> Self {
         Self {
-            any: !s.phases.is_empty(),
+            any: !run.phase_names().is_empty(),
         }
     }
 }
 
-impl<S: Space> ObserverIn<S> for Phases {
+impl Observer for Phases {
     fn name(&self) -> String {
         "phases".to_owned()
     }
@@ -61,15 +60,15 @@ impl<S: Space> ObserverIn<S> for Phases {
         self.any.then(column).into_iter().collect()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let phase = || s.state.control.phase() as f64;
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        let phase = || run.phase() as f64;
         self.any.then(phase).into_iter().collect()
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
-        let begun = end.simulation.state.control.begun();
-        let left = end.simulation.phases.iter().skip(begun.len());
-        let mut missed: Vec<&str> = left.map(|p| p.name.as_str()).collect();
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
+        let begun = end.simulation.begun();
+        let left = end.simulation.phase_names().into_iter();
+        let mut missed: Vec<&str> = left.skip(begun.len()).collect();
         missed.dedup();
         found.begin(Topic::Run, Role::Diagnostic);
         found.fields("phases", begun, &PHASE, "phases that began");

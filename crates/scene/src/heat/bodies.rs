@@ -319,7 +319,7 @@ impl Scene<'_> {
             if surface.body as usize != body {
                 continue;
             }
-            if surface.flat {
+            if surface.flat.is_some() {
                 let message = "a plane has no ends; say over which part of it the pieces are";
                 return Err(ValidationError::new(here, message).expected(
                     "`over: [(-1e-3, 1e-3)]` (m), or a period of the case along the axis",
@@ -334,8 +334,9 @@ impl Scene<'_> {
             see(ball.offset[axis] - ball.radius);
             see(ball.offset[axis] + ball.radius);
         }
-        for piece in s.pieces().iter().filter(|p| of_body(p.body)) {
-            for corner in &piece.corners {
+        let pieces = s.pieces().into_iter().enumerate();
+        for (k, piece) in pieces.filter(|(_, p)| of_body(p.body)) {
+            for corner in s.piece_core(k).0 {
                 see(piece.offset[axis] + corner[axis]);
             }
         }

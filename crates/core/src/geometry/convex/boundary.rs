@@ -1,7 +1,9 @@
 //! Convex cores as corners and faces, the form in which files store them.
 
+use super::Core;
 use super::polygon::Polygon;
 use super::polyhedron::Polyhedron;
+use crate::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use nalgebra::{Vector2, Vector3};
 
 /// Corners of a core and, in 3D, its faces. Two corners are the segment of a capsule.
@@ -11,6 +13,28 @@ pub struct Boundary<V> {
     pub corners: Vec<V>,
     /// Corner indices of each face, anticlockwise seen from outside; empty in 2D and for a segment.
     pub faces: Vec<Vec<u32>>,
+}
+
+impl Boundary<[f64; 3]> {
+    /// Returns the lines of the core in a dimension with a rounding (m), for figures: one around it
+    /// in 2D, one around each face in 3D. None of corners and faces that are no valid core.
+    pub fn outline(&self, dimension: usize, rounding: f64) -> Vec<Vec<[f64; 3]>> {
+        match dimension {
+            2 => self.outline_in::<Dim2>(rounding),
+            _ => self.outline_in::<Dim3>(rounding),
+        }
+    }
+
+    fn outline_in<S: Space>(&self, rounding: f64) -> Vec<Vec<[f64; 3]>> {
+        let corners = self.corners.iter().map(|c| S::Vector::from_slice(c));
+        let boundary = Boundary {
+            corners: corners.collect(),
+            faces: self.faces.clone(),
+        };
+        let lines = S::Core::bounded_by(boundary).map(|core| core.outline(rounding));
+        let padded = |line: Vec<S::Vector>| line.iter().map(VectorLike::padded).collect();
+        lines.unwrap_or_default().into_iter().map(padded).collect()
+    }
 }
 
 impl Polygon {

@@ -5,7 +5,7 @@ use crate::contact::events::{Break, Life};
 use crate::contact::memory::Memory;
 use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::space::Dim2;
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 /// A first body, of index 0, and two grains beside it.
 fn scene() -> Simulation<Dim2> {
@@ -53,14 +53,14 @@ fn zone(fate: EjectedFate) -> Zone {
     }
 }
 
-fn circuit(s: &Simulation<Dim2>) -> GrainCircuit<Dim2> {
+fn circuit(s: &Simulation<Dim2>) -> GrainCircuit {
     GrainCircuit::new(spec(), s)
 }
 
 /// Has the account see a step in which bonds formed and broke, these with so much work of opening
 /// and sliding and fracture energy (J/m).
 fn step(
-    circuit: &mut GrainCircuit<Dim2>,
+    circuit: &mut GrainCircuit,
     s: &mut Simulation<Dim2>,
     formed: &[[u32; 2]],
     broken: &[([u32; 2], [f64; 2], f64)],
@@ -73,7 +73,7 @@ fn step(
             key: key(*bodies),
             bodies: *bodies,
             law: 0,
-            place: Vector2::zeros(),
+            place: [0.0; 3],
             opening: [0.0; 2],
             rotation: [0.0; 2],
             area: 1.0,
@@ -112,7 +112,7 @@ fn debris_has_the_work_of_the_bonds_that_held_it() {
     assert_eq!(debris.grains, [1, 2]);
     assert_eq!((debris.mode_mix, debris.energy), (0.25, 0.75));
     // Between two equal disks.
-    assert!((debris.place - Vector2::new(1.5, 0.0)).norm() < 1e-15);
+    assert!((Vector3::from(debris.place) - Vector3::new(1.5, 0.0, 0.0)).norm() < 1e-15);
     assert_eq!(debris.mass, s.state.bodies.mass[1] + s.state.bodies.mass[2]);
 }
 
@@ -246,7 +246,7 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     s.options.scheme.h = 0.5;
     let mut account = new();
     assert_eq!(account.start(), 1.0);
-    let pass = |account: &mut CircuitProcess<Dim2>, s: &mut Simulation<Dim2>, step: u64| {
+    let pass = |account: &mut CircuitProcess, s: &mut Simulation<Dim2>, step: u64| {
         (s.state.steps, s.state.time) = (step, 0.5 * step as f64);
         account.between_steps(s)
     };
@@ -258,26 +258,26 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     let mut due = Vec::new();
     for k in 2..=9 {
         pass(&mut account, &mut s, k).unwrap();
-        due.push(account.is_up_to_date(&s));
+        due.push(account.is_up_to_date(s.state.steps));
     }
     // Begun in the first of these; then at 3, 4, 6, 8 and 9.
     assert_eq!(due[1..], [true, true, false, true, false, true, true]);
     assert_eq!(account.circuit().unwrap().tied_to(0), 1);
-    let bytes = account.save().unwrap();
+    let bytes = Process::<Dim2>::save(&account).unwrap();
     let mut again = new();
-    again.restore(&bytes).unwrap();
-    assert!(again.is_up_to_date(&s));
+    Process::<Dim2>::restore(&mut again, &bytes).unwrap();
+    assert!(again.is_up_to_date(s.state.steps));
     assert_eq!(again.circuit().unwrap().tied_to(0), 1);
-    assert_eq!(again.save().unwrap(), bytes);
+    assert_eq!(Process::<Dim2>::save(&again).unwrap(), bytes);
     // An update that is not due is made at the end, once.
     for account in [&mut account, &mut again] {
         pass(account, &mut s, 11).unwrap();
-        assert!(!account.is_up_to_date(&s));
+        assert!(!account.is_up_to_date(s.state.steps));
         account.at_end(&mut s).unwrap();
-        assert!(account.is_up_to_date(&s));
-        assert!(account.repeats());
+        assert!(account.is_up_to_date(s.state.steps));
+        assert!(Process::<Dim2>::repeats(account));
     }
-    assert!(new().restore(&bytes[..1]).is_err());
+    assert!(Process::<Dim2>::restore(&mut new(), &bytes[..1]).is_err());
 }
 
 /// A zone from 0.5 to 1.5 m, in the frame of its carrier, holds what is in it or a period away;

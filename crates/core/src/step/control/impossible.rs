@@ -49,22 +49,22 @@ impl ImpossibleMotions {
         self.squeezed_steps == 0 && self.overlapping_steps == 0
     }
 
-    /// Adds a step of a simulation, given after it.
-    pub fn add<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
+    /// Adds a step that ended at a time (s), with the names of bodies.
+    pub fn add(&mut self, time: f64, name: impl Fn(u32) -> String, report: &StepReport) {
         let Some(step) = report.impossible.as_deref() else {
             return;
         };
-        let name = |b: &u32| s.state.bodies.name(*b);
+        let name = |b: &u32| name(*b);
         if !step.squeezing.is_empty() {
             if self.squeezed_steps == 0 {
-                self.squeezed_at = s.state.time;
+                self.squeezed_at = time;
                 self.squeezing = step.squeezing.iter().map(name).collect();
             }
             self.squeezed_steps += 1;
         }
         if let Some(overlap) = step.overlap {
             if self.overlapping_steps == 0 {
-                self.overlapping_at = s.state.time;
+                self.overlapping_at = time;
             }
             self.overlapping_steps += 1;
             if overlap.depth > self.overlap {

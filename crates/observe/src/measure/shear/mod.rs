@@ -18,24 +18,26 @@ mod sums;
 use crate::chart::Axis;
 use crate::code::{self, CodeError};
 use crate::figures::history;
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::statistics::{Column, Table};
-use crate::typed::{ObserverIn, RunEndIn};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use means::Means;
 use std::f64::consts::PI;
 use sums::{Layer, Sums};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Shear`].
 #[derive(Clone, Debug)]
-pub struct Shear<S: Space> {
+pub struct Shear {
+    /// Number of dimensions.
+    dimension: usize,
     name: String,
     layer: Layer,
     start: f64,
     /// Velocities at the start of a step, by body (m/s).
-    before: Vec<S::Vector>,
+    before: Vec<[f64; 3]>,
     /// Sums since the last row.
     row: Sums,
     /// Sums that the last row was made of.
@@ -75,9 +77,10 @@ const PARTS: [(&str, &str, &str); 8] = [
     ),
 ];
 
-impl<S: Space> Shear<S> {
-    pub(super) fn new(name: String, low: f64, high: f64, start: f64) -> Self {
+impl Shear {
+    pub(super) fn new(dimension: usize, name: String, [low, high]: [f64; 2], start: f64) -> Self {
         Self {
+            dimension,
             name,
             layer: Layer { low, high },
             start,
@@ -95,7 +98,7 @@ impl<S: Space> Shear<S> {
     fn means(&self, table: &Table) -> Option<Means> {
         let column = |part: &str| table.column(&self.column(part));
         let columns = ["rate", "p", "tau", "phi"].map(column);
-        let inertial = |rate: f64, p: f64| self.whole.inertial::<S>(rate, p);
+        let inertial = |rate: f64, p: f64| self.whole.inertial(self.dimension, rate, p);
         let kinetic = ["p_kinetic", "tau_kinetic"].map(column);
         Means::new(
             &table.column("time"),
@@ -107,20 +110,21 @@ impl<S: Space> Shear<S> {
     }
 }
 
-impl<S: Space> ObserverIn<S> for Shear<S> {
+impl Observer for Shear {
     fn name(&self) -> String {
         super::name_of("shear", &self.name)
     }
 
-    fn before_step(&mut self, s: &Simulation<S>) {
-        self.before.clone_from(&s.state.bodies.velocity);
+    fn before_step(&mut self, run: &dyn RunView) {
+        self.before.clear();
+        self.before.extend(run.bodies().velocity.iter());
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        let h = s.options.scheme.h;
-        let step = self.layer.step(s, &self.before, h);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        let h = run.options().scheme.h;
+        let step = self.layer.step(run, &self.before, h);
         self.row += &step;
-        if s.state.time > self.start {
+        if run.time() > self.start {
             self.whole += &step;
         }
     }
@@ -130,7 +134,7 @@ impl<S: Space> ObserverIn<S> for Shear<S> {
         PARTS.into_iter().map(column).collect()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         // A second look at the same moment gives the same row.
         if self.row.time > 0.0 {
             self.last = std::mem::take(&mut self.row);
@@ -138,7 +142,8 @@ impl<S: Space> ObserverIn<S> for Shear<S> {
         let mut sums = self.last;
         if sums.time <= 0.0 {
             // Before the first step nothing has been carried; the weight cancels.
-            sums = self.layer.step(s, &s.state.bodies.velocity, 1.0);
+            let now: Vec<[f64; 3]> = run.bodies().velocity.iter().collect();
+            sums = self.layer.step(run, &now, 1.0);
             sums.contacts = [0.0; 2];
         }
         let [p, tau] = sums.stress();
@@ -149,14 +154,14 @@ impl<S: Space> ObserverIn<S> for Shear<S> {
             p,
             if p > 0.0 { tau.abs() / p } else { 0.0 },
             sums.solid / sums.time,
-            sums.inertial::<S>(rate, p),
+            sums.inertial(self.dimension, rate, p),
             tau,
             p_kinetic,
             tau_kinetic,
         ]
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let Some(means) = self.means(end.table) else {
             return;
         };
@@ -183,7 +188,7 @@ impl<S: Space> ObserverIn<S> for Shear<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let chart = |part: &str, heading: &str, name: &str| {
             history(heading, Axis::of_rows(name), &[("", self.column(part))])
         };

@@ -3,8 +3,9 @@
 
 use super::below;
 use crate::measure::{Grain, grains, line};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::geometry::space::ball_volume;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -55,14 +56,14 @@ impl Sums {
 
     /// Inertial number at a shear rate and a pressure: rate sqrt(m/p) in 2D, rate d sqrt(density/p)
     /// in 3D; zero without pressure.
-    pub fn inertial<S: Space>(&self, rate: f64, p: f64) -> f64 {
+    pub fn inertial(&self, dimension: usize, rate: f64, p: f64) -> f64 {
         let (mass, radius) = (self.mass / self.time, self.radius / self.time);
         if p <= 0.0 || mass <= 0.0 {
             0.0
-        } else if S::D == 2 {
+        } else if dimension == 2 {
             rate.abs() * (mass / p).sqrt()
         } else {
-            rate.abs() * 2.0 * radius * (mass / S::ball_volume(radius) / p).sqrt()
+            rate.abs() * 2.0 * radius * (mass / ball_volume(dimension, radius) / p).sqrt()
         }
     }
 }
@@ -78,22 +79,23 @@ pub(super) struct Layer {
 
 impl Layer {
     /// The last step, weighted by `weight` (s). `before` are the velocities at its start, by body.
-    pub fn step<S: Space>(self, s: &Simulation<S>, before: &[S::Vector], weight: f64) -> Sums {
-        let up = S::D - 1;
+    pub fn step(self, run: &dyn RunView, before: &[[f64; 3]], weight: f64) -> Sums {
+        let up = run.dimension() - 1;
         let section: f64 = (0..up)
-            .map(|k| s.shapes.periodic.period[k].unwrap_or(1.0))
+            .map(|k| run.periodic().period[k].unwrap_or(1.0))
             .product();
         let volume = section * (self.high - self.low);
-        let all = grains(s);
-        let theta = s.options.scheme.theta;
+        let all = grains(run);
+        let theta = run.options().scheme.theta;
         // Momentum is carried at the velocity that moves the grains, v_theta.
-        let velocity = |g: &Grain<'_, S>| {
-            let after = s.state.bodies.velocity[g.body];
-            let before = before.get(g.body).copied().unwrap_or(after);
+        let after = run.bodies().velocity;
+        let velocity = |g: &Grain| {
+            let after = Vector3::from(after.at(g.body));
+            let before = before.get(g.body).map_or(after, |v| Vector3::from(*v));
             before * (1.0 - theta) + after * theta
         };
         let inside = |z: f64| (self.low..self.high).contains(&z);
-        let within: Vec<(f64, S::Vector, f64, f64)> = all
+        let within: Vec<(f64, Vector3<f64>, f64, f64)> = all
             .iter()
             .filter(|g| inside(g.at[up]))
             .map(|g| (g.at[up], velocity(g), g.mass, g.radius))
@@ -105,13 +107,13 @@ impl Layer {
             .iter()
             .filter(|g| g.at[up] + g.radius > self.low && g.at[up] - g.radius < self.high)
             .map(|g| {
-                below(S::D, g.radius, self.high - g.at[up])
-                    - below(S::D, g.radius, self.low - g.at[up])
+                below(up + 1, g.radius, self.high - g.at[up])
+                    - below(up + 1, g.radius, self.low - g.at[up])
             })
             .sum();
         Sums {
             time: weight,
-            contacts: self.impulses(s).map(|x| x / volume),
+            contacts: self.impulses(run).map(|x| x / volume),
             motion: [motion[0] * weight / volume, -motion[1] * weight / volume],
             rate: rate * weight,
             solid: solid / volume * weight,
@@ -123,16 +125,16 @@ impl Layer {
     /// Sums of impulse times branch of the contacts, across the layers and along, each by the part
     /// of its branch that lies in the layer; the shear is the traction of the upper side on the
     /// lower.
-    fn impulses<S: Space>(self, s: &Simulation<S>) -> [f64; 2] {
-        let up = S::D - 1;
+    fn impulses(self, run: &dyn RunView) -> [f64; 2] {
+        let up = run.dimension() - 1;
         let mut sum = [0.0; 2];
-        for contact in &s.state.network.contacts {
-            let (a, b) = crate::placement::ends(s, contact);
+        run.visit_contacts(&mut |contact| {
+            let [a, b] = run.ends_of_contact(contact.place);
             // From the antagonist to the candidate, on which the impulse acts.
             let part = a[up].clamp(self.low, self.high) - b[up].clamp(self.low, self.high);
             sum[0] += contact.impulse[up] * part;
             sum[1] -= contact.impulse[0] * part;
-        }
+        });
         sum
     }
 }

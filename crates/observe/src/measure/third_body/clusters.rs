@@ -1,7 +1,7 @@
 //! Clusters: sets of at least two grains connected by intact bonds.
 
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::contact::BondState;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -52,12 +52,14 @@ pub(super) struct Clusters {
 }
 
 /// Finds the clusters of the free grains.
-pub(super) fn clusters<S: Space>(s: &Simulation<S>, grain: &[bool]) -> Clusters {
-    let n = &s.state.network;
-    let tied = n.contacts.iter().filter(|c| {
-        c.memory().is_some() && n.bond(c).is_some_and(fretwork_core::contact::Bond::intact)
+pub(super) fn clusters(run: &dyn RunView, grain: &[bool]) -> Clusters {
+    let mut tied = Vec::new();
+    run.visit_contacts(&mut |contact| {
+        if let BondState::Intact { .. } = contact.bond {
+            tied.push(contact.bodies);
+        }
     });
-    count(&s.state.bodies.mass, grain, tied.map(|c| c.bodies))
+    count(run.bodies().mass, grain, tied.into_iter())
 }
 
 fn count(mass: &[f64], grain: &[bool], ties: impl Iterator<Item = [u32; 2]>) -> Clusters {

@@ -7,29 +7,22 @@
 use super::gap::Gap;
 use crate::measure::Grain;
 use crate::measure::shear::below;
-use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::geometry::space::ball_volume;
+use fretwork_core::view::RunView;
 
 /// Distributes a grain's volume over the cells of the gap.
-pub(super) fn share<S: Space>(
-    s: &Simulation<S>,
-    gap: &Gap,
-    grain: &Grain<'_, S>,
-    take: impl FnMut(usize, f64),
-) {
-    let depth = gap.depth(&grain.at);
-    match grain.piece.filter(|_| S::D == 2) {
+pub(super) fn share(run: &dyn RunView, gap: &Gap, grain: &Grain, take: impl FnMut(usize, f64)) {
+    let depth = gap.depth(&grain.at.into());
+    match grain.piece.filter(|_| run.dimension() == 2) {
         None => {
-            let (r, whole) = (grain.radius, S::ball_volume(grain.radius));
-            let cut = |d: f64| below(S::D, r, d - depth) / whole;
+            let (r, whole) = (grain.radius, ball_volume(run.dimension(), grain.radius));
+            let cut = |d: f64| below(run.dimension(), r, d - depth) / whole;
             gap.share(depth - r, depth + r, cut, take);
         }
-        Some(piece) => {
-            let core = piece.core.turned(&s.state.bodies.rotation[grain.body]);
-            let corners = core.outline(piece.rounding).concat();
+        Some((piece, _)) => {
+            let corners = run.piece_outline(piece).concat();
             let along = 1 - gap.across;
-            let place = |c: &S::Vector| [c[along], depth + gap.side * c[gap.across]];
+            let place = |c: &[f64; 3]| [c[along], depth + gap.side * c[gap.across]];
             let corners: Vec<[f64; 2]> = corners.iter().map(place).collect();
             let low = corners.iter().map(|c| c[1]).fold(f64::INFINITY, f64::min);
             let high = corners

@@ -5,10 +5,9 @@
 //! (pi/4 of the radius for disks, 2/3 for spheres), and the highest corner of convex parts.
 
 use crate::measure::Grain;
-use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_scene::measures::Extent;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -31,7 +30,7 @@ pub(super) struct Gap {
 
 impl Gap {
     /// Depth of a point (m).
-    pub fn depth<V: VectorLike>(&self, at: &V) -> f64 {
+    pub fn depth(&self, at: &[f64; 3]) -> f64 {
         self.side * (at[self.across] - self.closest_point)
     }
 
@@ -91,15 +90,11 @@ pub(super) struct Faces {
 
 impl Faces {
     /// Starts from the current state; `None` if a body is missing.
-    pub fn new<S: Space>(
-        s: &Simulation<S>,
-        names: [&str; 2],
-        across: usize,
-        bins: usize,
-    ) -> Option<Self> {
-        let place = |name: &str| s.state.bodies.driven.iter().position(|d| d.name == name);
+    pub fn new(run: &dyn RunView, names: [&str; 2], across: usize, bins: usize) -> Option<Self> {
+        let driven = run.bodies().driven;
+        let place = |name: &str| driven.iter().position(|d| d.name == name);
         let places = [place(names[0])?, place(names[1])?];
-        let middle = places.map(|p| face(s, s.state.bodies.driven[p].body, across, 0.0));
+        let middle = places.map(|p| face(run, driven[p].body, across, 0.0));
         let side = if middle[1] < middle[0] { -1.0 } else { 1.0 };
         Some(Self {
             places,
@@ -115,28 +110,28 @@ impl Faces {
     }
 
     /// Index of one of the two bodies.
-    pub fn body<S: Space>(&self, s: &Simulation<S>, k: usize) -> usize {
-        s.state.bodies.driven[self.places[k]].body as usize
+    pub fn body(&self, run: &dyn RunView, k: usize) -> usize {
+        run.bodies().driven[self.places[k]].body as usize
     }
 
     /// Updates the faces from the surfaces of the bodies, or from the grains if these bound the
     /// layer.
-    pub fn look<S: Space>(&mut self, s: &Simulation<S>, extent: Extent, all: &[Grain<'_, S>]) {
+    pub fn look(&mut self, run: &dyn RunView, extent: Extent, all: &[Grain]) {
         let gap = &mut self.gap;
         let across = gap.across;
         for (k, towards) in [(0, gap.side), (1, -gap.side)] {
-            let body = s.state.bodies.driven[self.places[k]].body;
-            let here = s.state.bodies.position[body as usize][across];
-            self.offsets[k] = face(s, body, across, towards) - here;
+            let body = run.bodies().driven[self.places[k]].body;
+            let here = run.bodies().position.at(body as usize)[across];
+            self.offsets[k] = face(run, body, across, towards) - here;
         }
         self.grains = (extent == Extent::Grains).then(|| ends(all, across));
-        gap.section = section(s, across, all);
+        gap.section = section(run, across, all);
     }
 
     /// The layer at the current positions, with the faces of the last update.
-    pub fn gap<S: Space>(&self, s: &Simulation<S>) -> Gap {
-        let at =
-            |k: usize| s.state.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
+    pub fn gap(&self, run: &dyn RunView) -> Gap {
+        let position = run.bodies().position;
+        let at = |k: usize| position.at(self.body(run, k))[self.gap.across] + self.offsets[k];
         let ends = match self.grains {
             Some([low, high]) if self.gap.side > 0.0 => [low, high],
             Some([low, high]) => [high, low],
@@ -151,29 +146,27 @@ impl Faces {
     }
 
     /// Velocity of the first body's face, and of the second's relative to it.
-    pub fn sliding<S: Space>(&self, s: &Simulation<S>) -> (S::Vector, S::Vector) {
-        self.sliding_at::<S>(|k| {
-            let b = self.body(s, k);
-            (s.state.bodies.velocity[b], s.state.bodies.spin[b])
+    pub fn sliding(&self, run: &dyn RunView) -> (Vector3<f64>, Vector3<f64>) {
+        self.sliding_at(|k| {
+            let (bodies, b) = (run.bodies(), self.body(run, k));
+            [bodies.velocity.at(b), bodies.spin.at(b)]
         })
     }
 
     /// As [`Self::sliding`], over the last step at v_theta.
-    pub fn sliding_over_step<S: Space>(&self, s: &Simulation<S>) -> S::Vector {
-        let theta = s.options.scheme.theta;
-        let (_, before) = self.sliding_at::<S>(|k| s.state.started[self.places[k]]);
-        before * (1.0 - theta) + self.sliding(s).1 * theta
+    pub fn sliding_over_step(&self, run: &dyn RunView) -> Vector3<f64> {
+        let theta = run.options().scheme.theta;
+        let started = run.started();
+        let (_, before) = self.sliding_at(|k| started[self.places[k]]);
+        before * (1.0 - theta) + self.sliding(run).1 * theta
     }
 
-    fn sliding_at<S: Space>(
-        &self,
-        motion: impl Fn(usize) -> (S::Vector, S::Spin),
-    ) -> (S::Vector, S::Vector) {
+    fn sliding_at(&self, motion: impl Fn(usize) -> [[f64; 3]; 2]) -> (Vector3<f64>, Vector3<f64>) {
         let of = |k: usize| {
-            let (velocity, spin) = motion(k);
-            let mut arm = S::Vector::zero();
+            let [velocity, spin] = motion(k).map(Vector3::from);
+            let mut arm = Vector3::zeros();
             arm[self.gap.across] = self.offsets[k];
-            velocity + S::spin_velocity(&spin, &arm)
+            velocity + spin.cross(&arm)
         };
         (of(0), of(1) - of(0))
     }
@@ -181,25 +174,28 @@ impl Faces {
 
 /// Mean coordinate of the parts of a body that face one side along an axis, or of the whole body if
 /// `towards` is 0 (m).
-fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> f64 {
+fn face(run: &dyn RunView, body: u32, across: usize, towards: f64) -> f64 {
+    let flat = run.dimension() == 2;
     let (mut sum, mut weight) = (0.0, 0.0);
     let mut add = |w: f64, height: f64| {
         sum += w * height;
         weight += w;
     };
-    for carried in s.shapes.surfaces.iter().filter(|c| c.body == body) {
-        let b = body as usize;
-        let world = |p: &S::Vector| {
-            s.state.bodies.position[b]
-                + S::rotate(&s.state.bodies.rotation[b], &(carried.offset + *p))
+    let (bodies, b) = (run.bodies(), body as usize);
+    let surfaces = run.surfaces().into_iter().enumerate();
+    for (k, carried) in surfaces.filter(|(_, c)| c.body == body) {
+        let (centre, offset) = (bodies.position.at(b), Vector3::from(carried.offset));
+        let world = |p: &[f64; 3]| {
+            let arm = run.turned(b, (offset + Vector3::from(*p)).into());
+            Vector3::from(centre) + Vector3::from(arm)
         };
         let mut parts = Vec::new();
-        for chain in carried.shape.outline() {
-            let points: Vec<S::Vector> = chain.iter().map(world).collect();
-            if S::D == 2 {
-                parts.extend(points.windows(2).map(|p| projection(p, across)));
+        for chain in run.surface_lines(k) {
+            let points: Vec<Vector3<f64>> = chain.iter().map(world).collect();
+            if flat {
+                parts.extend(points.windows(2).map(|p| projection(p, across, flat)));
             } else {
-                parts.push(projection(&points, across));
+                parts.push(projection(&points, across, flat));
             }
         }
         // The triangles of a sheet may be oriented either way.
@@ -214,19 +210,19 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
             add(seen, height);
         }
     }
-    for ball in s.shapes.balls.iter().filter(|b| b.body == body) {
-        let centre = fretwork_core::contact::detect::centre(ball, &s.state.bodies)[across];
-        let (area, cap) = if S::D == 2 {
+    for ball in run.balls().into_iter().filter(|b| b.body == body) {
+        let centre = ball.centre[across];
+        let (area, cap) = if flat {
             (2.0 * ball.radius, PI / 4.0)
         } else {
             (PI * ball.radius * ball.radius, 2.0 / 3.0)
         };
         add(area, centre + towards * cap * ball.radius);
     }
-    for piece in s.shapes.pieces.iter().filter(|p| p.body == body) {
-        let centre = crate::placement::piece_centre(s, piece)[across];
-        let core = piece.core.turned(&s.state.bodies.rotation[body as usize]);
-        let corners = core.outline(piece.rounding).concat();
+    let pieces = run.pieces().into_iter().enumerate();
+    for (k, piece) in pieces.filter(|(_, p)| p.body == body) {
+        let centre = piece.centre[across];
+        let corners = run.piece_outline(k).concat();
         let reach = corners.iter().map(|c| towards * c[across]);
         let reach = reach.fold(0.0, f64::max);
         add(2.0 * piece.size, centre + towards * reach);
@@ -234,21 +230,21 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     if weight > 0.0 {
         sum / weight
     } else {
-        s.state.bodies.position[body as usize][across]
+        run.bodies().position.at(body as usize)[across]
     }
 }
 
 /// Signed projected area of a part of an outline along an axis, positive if it faces the positive
 /// side, and its mean coordinate (m). In 2D a segment with the solid on its right, in 3D a polygon
 /// about its outward normal.
-fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
+fn projection(points: &[Vector3<f64>], across: usize, flat: bool) -> (f64, f64) {
     let mean = points.iter().map(|p| p[across]).sum::<f64>() / points.len().max(1) as f64;
-    let (i, j) = match (V::N, across) {
-        (2, 0) => (1, 0),
-        (2, _) => (0, 1),
+    let (i, j) = match (flat, across) {
+        (true, 0) => (1, 0),
+        (true, _) => (0, 1),
         (_, k) => ((k + 1) % 3, (k + 2) % 3),
     };
-    if V::N == 2 {
+    if flat {
         let along = points[points.len() - 1][i] - points[0][i];
         return (if across == 0 { -along } else { along }, mean);
     }
@@ -261,10 +257,10 @@ fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
 }
 
 /// Heights below and above which 1 % of the grains' mass lies (m).
-fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
+fn ends(all: &[Grain], across: usize) -> [f64; 2] {
     let total: f64 = all.iter().map(|g| g.mass).sum();
     let end = |sign: f64| {
-        let reach = |g: &Grain<'_, S>| (sign * g.at[across] - g.radius, g.mass);
+        let reach = |g: &Grain| (sign * g.at[across] - g.radius, g.mass);
         let mut sorted: Vec<(f64, f64)> = all.iter().map(reach).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut mass = 0.0;
@@ -279,10 +275,10 @@ fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
 
 /// Area of a section across the layer: the period along periodic axes, otherwise the extent of the
 /// grains (m^2; m in 2D).
-fn section<S: Space>(s: &Simulation<S>, across: usize, all: &[Grain<'_, S>]) -> f64 {
-    let axes = (0..S::D).filter(|k| *k != across);
+fn section(run: &dyn RunView, across: usize, all: &[Grain]) -> f64 {
+    let axes = (0..run.dimension()).filter(|k| *k != across);
     let length = |k: usize| {
-        s.shapes.periodic.period[k].unwrap_or_else(|| {
+        run.periodic().period[k].unwrap_or_else(|| {
             let low = all.iter().map(|g| g.at[k] - g.radius);
             let high = all.iter().map(|g| g.at[k] + g.radius);
             let length = high.fold(f64::NEG_INFINITY, f64::max) - low.fold(f64::INFINITY, f64::min);
@@ -327,14 +323,13 @@ mod tests {
 
     #[test]
     fn a_segment_with_the_solid_below_looks_up() {
-        use nalgebra::{Vector2, Vector3};
-        let (a, b) = (Vector2::new(0.0, 1.0), Vector2::new(3.0, 2.0));
-        assert_eq!(projection(&[a, b], 1), (3.0, 1.5));
-        assert_eq!(projection(&[b, a], 1), (-3.0, 1.5));
+        let (a, b) = (Vector3::new(0.0, 1.0, 0.0), Vector3::new(3.0, 2.0, 0.0));
+        assert_eq!(projection(&[a, b], 1, true), (3.0, 1.5));
+        assert_eq!(projection(&[b, a], 1, true), (-3.0, 1.5));
         // Going down, the right side faces smaller x.
-        assert_eq!(projection(&[b, a], 0).0, 1.0);
+        assert_eq!(projection(&[b, a], 0, true).0, 1.0);
         let v = |x: f64, y: f64| Vector3::new(x, y, 5.0);
         let square = [v(0.0, 0.0), v(2.0, 0.0), v(2.0, 2.0), v(0.0, 2.0)];
-        assert_eq!(projection(&square, 2), (4.0, 5.0));
+        assert_eq!(projection(&square, 2, false), (4.0, 5.0));
     }
 }

@@ -14,16 +14,16 @@ mod tables;
 
 use super::{grains, mean, since};
 use crate::code::{self, CodeError};
+use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::picture::{Picture, Shows};
 use crate::quantity::unit::{ENERGY, ONE};
 use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
-use crate::typed::{ObserverIn, RunEndIn};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::RunView;
 use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
 use regime::{Flow, Regime, flow};
@@ -33,11 +33,12 @@ use spent::{Dissipation, Place};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct ThirdBody<S: Space> {
+pub struct ThirdBody {
+    /// Number of dimensions.
+    dimension: usize,
     spec: ThirdBodySpec,
     faces: Option<Faces>,
-    spent: Dissipation<S>,
+    spent: Dissipation,
     /// Number of broken bonds of each body.
     lost: Vec<f64>,
     history: History,
@@ -162,9 +163,11 @@ fn is_averaged(part: &str) -> bool {
     !(part.starts_with("slip") || ["sliding", "interior_shear", "regime"].contains(&part))
 }
 
-impl<S: Space> ThirdBody<S> {
-    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64, heated: bool) -> Self {
+impl ThirdBody {
+    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64, run: &dyn RunView) -> Self {
+        let (dimension, heated) = (run.dimension(), run.heat().is_some());
         Self {
+            dimension,
             spent: Dissipation::new(spec.bins, Vec::new()),
             seen: spec.start,
             spec,
@@ -176,7 +179,7 @@ impl<S: Space> ThirdBody<S> {
             heated,
             fastest: 0.0,
             rows: 0,
-            row: vec![f64::NAN; columns(S::D, heated).count()],
+            row: vec![f64::NAN; columns(dimension, heated).count()],
         }
     }
 
@@ -186,8 +189,8 @@ impl<S: Space> ThirdBody<S> {
 
     /// Whether the next step ends after the start: it is the first that counts, as in a friction
     /// test.
-    fn due(&self, s: &Simulation<S>) -> bool {
-        s.state.time + s.options.scheme.h > self.spec.start
+    fn due(&self, run: &dyn RunView) -> bool {
+        run.time() + run.options().scheme.h > self.spec.start
     }
 
     /// The flow at the end (over the last complete cycle of the friction test, or the second half
@@ -224,7 +227,7 @@ impl<S: Space> ThirdBody<S> {
             whole.granular_temperature(),
         ];
         row.extend(self.heated.then(|| whole.temperature()));
-        row.extend_from_slice(&stress[..if S::D == 3 { 4 } else { 3 }]);
+        row.extend_from_slice(&stress[..if self.dimension == 3 { 4 } else { 3 }]);
         row.extend([
             now.sliding,
             first,
@@ -243,61 +246,62 @@ impl<S: Space> ThirdBody<S> {
     }
 }
 
-impl<S: Space> ObserverIn<S> for ThirdBody<S> {
+impl Observer for ThirdBody {
     fn name(&self) -> String {
         super::name_of("third body", &self.spec.name)
     }
 
-    fn begin(&mut self, s: &Simulation<S>) {
+    fn begin(&mut self, run: &dyn RunView) {
         if self.faces.is_some() {
             return;
         }
         let (one, other) = &self.spec.between;
-        self.faces = Faces::new(s, [one, other], self.spec.across, self.spec.bins);
+        self.faces = Faces::new(run, [one, other], self.spec.across, self.spec.bins);
         if let Some(faces) = &mut self.faces {
-            faces.look(s, self.spec.extent, &grains(s));
+            faces.look(run, self.spec.extent, &grains(run));
         }
-        self.spent = Dissipation::new(self.spec.bins, s.state.bodies.grain_flags());
-        if self.faces.is_some() && self.due(s) {
-            self.spent.begin(s);
+        self.spent = Dissipation::new(self.spec.bins, run.grain_flags());
+        if self.faces.is_some() && self.due(run) {
+            self.spent.begin(run);
         }
-        self.lost = vec![0.0; s.state.bodies.len()];
-        self.seen = self.seen.max(s.state.time);
+        self.lost = vec![0.0; run.bodies().len()];
+        self.seen = self.seen.max(run.time());
     }
 
     fn needs_dissipation(&self) -> bool {
         true
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        for body in s.state.network.bond_breaks.iter().flat_map(|b| b.bodies) {
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        for body in run.bond_breaks().iter().flat_map(|b| b.bodies) {
             self.lost[body as usize] += 1.0;
         }
         let Some(faces) = &self.faces else { return };
         if self.spent.counts() {
-            self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
-        } else if self.due(s) {
-            self.spent.begin(s);
-            self.seen = s.state.time;
+            self.spent
+                .follow(run, faces, &faces.gap(run), self.spec.along);
+        } else if self.due(run) {
+            self.spent.begin(run);
+            self.seen = run.time();
         }
     }
 
     fn columns(&self) -> Vec<Column> {
         let column = |(part, unit, doc)| Column::new(self.column(part), unit, doc);
-        columns(S::D, self.heated).map(column).collect()
+        columns(self.dimension, self.heated).map(column).collect()
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
         self.rows += 1;
         let looks = (self.rows - 1).is_multiple_of(self.spec.every);
         let Some(faces) = self.faces.as_mut().filter(|_| looks) else {
             return self.row.clone();
         };
-        let all = grains(s);
-        faces.look(s, self.spec.extent, &all);
-        let mut now = LayerSnapshot::new(s, faces, &all, self.spec.along, &self.lost);
+        let all = grains(run);
+        faces.look(run, self.spec.extent, &all);
+        let mut now = LayerSnapshot::new(run, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
-        if self.spent.counts() && s.state.time > self.seen {
+        if self.spent.counts() && run.time() > self.seen {
             // Resistance to a reciprocating sliding keeps its sign.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
@@ -305,27 +309,27 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
                 cell.energy = energy;
             }
             self.history.add(Block {
-                time: [self.seen, s.state.time],
+                time: [self.seen, run.time()],
                 samples: 1,
                 thickness: now.gap.thickness,
                 cluster: now.clusters.mean,
                 cells: now.cells,
             });
-            self.seen = s.state.time;
+            self.seen = run.time();
         }
         self.clusters = now.clusters;
         self.row.clone()
     }
 
-    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let (flow, cluster, over) = self.flow(end.table);
         let regime = Regime::of(flow.as_ref(), cluster);
         let said = regime.describe(flow.as_ref(), cluster);
         let doc = "flow regime of the layer";
         found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
-        let means = ObserverIn::<S>::columns(self)
+        let means = Observer::columns(self)
             .into_iter()
-            .zip(columns(S::D, self.heated));
+            .zip(columns(self.dimension, self.heated));
         for (column, (part, ..)) in means.filter(|(_, c)| is_averaged(c.0)) {
             let values = since(end.table, &column.name, self.spec.start);
             if let Some(value) = mean(&values) {
@@ -413,10 +417,10 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
         }
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "chains",
-            shows: Shows::Chains(snapshot::links(s)),
+            shows: Shows::Chains(snapshot::links(run)),
         }]
     }
 
@@ -434,7 +438,7 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
         ends.map(|end| format!("{}{end}", self.spec.name)).to_vec()
     }
 
-    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let name = &self.spec.name;
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
         let text = |part: &str, text: String| Output::Text {
@@ -442,11 +446,17 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
             text,
         };
         let mut outputs = vec![
-            text("", tables::profiles(&whole, &slices, S::D, self.heated)),
-            text("_energy", tables::energies(&self.spent, &self.spec.between)),
+            text(
+                "",
+                tables::profiles(&whole, &slices, self.dimension, self.heated),
+            ),
+            text(
+                "_energy",
+                tables::energies(&self.spent, &self.spec.between, self.dimension),
+            ),
             text(
                 "_clusters",
-                tables::clusters(&self.clusters, self.inertia_scaling, S::D),
+                tables::clusters(&self.clusters, self.inertia_scaling, self.dimension),
             ),
         ];
         let figure = figure::Figure {
@@ -454,7 +464,7 @@ impl<S: Space> ObserverIn<S> for ThirdBody<S> {
             slices: &slices,
             between: &self.spec.between,
             column: &|part| self.column(part),
-            dimension: S::D,
+            dimension: self.dimension,
             heated: self.heated,
         };
         outputs.push(Output::figure(name, figure.charts(), 2));

@@ -8,8 +8,9 @@ use super::gap::{Faces, Gap};
 use crate::coordination::degrees;
 use crate::measure::Grain;
 use crate::stress::each_moment;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::contact::BondState;
+use fretwork_core::geometry::space::ball_volume;
+use fretwork_core::view::RunView;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -53,37 +54,38 @@ struct Share {
 
 impl LayerSnapshot {
     /// Evaluates the layer. `lost` is the number of broken bonds of each body.
-    pub fn new<S: Space>(
-        s: &Simulation<S>,
+    pub fn new(
+        run: &dyn RunView,
         faces: &Faces,
-        all: &[Grain<'_, S>],
+        all: &[Grain],
         along: usize,
         lost: &[f64],
     ) -> Self {
-        let gap = faces.gap(s);
-        let (floor, slide) = faces.sliding(s);
-        let flags = s.state.bodies.grain_flags();
+        let gap = faces.gap(run);
+        let (floor, slide) = faces.sliding(run);
+        let flags = run.grain_flags();
         let mut cells = vec![Cell::default(); gap.bins + 2];
         cells[1..=gap.bins]
             .iter_mut()
             .for_each(|c| c.space = gap.bin_volume());
         let mut shares = Vec::with_capacity(3 * all.len());
         for (k, grain) in all.iter().enumerate() {
-            cut::share(s, &gap, grain, |cell, share| {
+            cut::share(run, &gap, grain, |cell, share| {
                 if share > 0.0 {
                     let (grain, cell) = (k as u32, cell as u32);
                     shares.push(Share { grain, cell, share });
                 }
             });
         }
-        let degree = degrees(s);
-        let held = held(s);
-        let mut means = vec![(0.0, 0.0, S::Vector::zero()); cells.len()];
+        let (bodies, dimension) = (run.bodies(), run.dimension());
+        let degree = degrees(run);
+        let held = held(run);
+        let mut means = vec![(0.0, 0.0, Vector3::zeros()); cells.len()];
         for Share { grain, cell, share } in &shares {
             let (grain, cell) = (&all[*grain as usize], *cell as usize);
             let (b, mass) = (grain.body, share * grain.mass);
-            let velocity = s.state.bodies.velocity[b] - floor;
-            let depth = gap.depth(&grain.at) / gap.thickness;
+            let velocity = Vector3::from(bodies.velocity.at(b)) - floor;
+            let depth = gap.depth(&grain.at.into()) / gap.thickness;
             let mean = &mut means[cell];
             *mean = (
                 mean.0 + mass,
@@ -91,30 +93,30 @@ impl LayerSnapshot {
                 mean.2 + velocity * mass,
             );
             let (v, slide) = (velocity[along], slide[along]);
-            let spin = &s.state.bodies.spin[b];
+            let spin = Vector3::from(bodies.spin.at(b));
             let c = &mut cells[cell];
-            c.volume += share * S::ball_volume(grain.radius);
+            c.volume += share * ball_volume(dimension, grain.radius);
             c.mass += mass;
             c.height += mass * depth;
             c.momentum += mass * v;
             c.drive += mass * v * slide;
             c.square += mass * slide * slide;
-            c.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
+            c.spin += mass * if dimension == 2 { spin[2] } else { spin.norm() };
             c.grains += share;
             c.contacts += share * f64::from(degree[b]);
             c.bonds += share * held[b];
             c.broken += share * lost[b];
-            c.warmth += mass * s.temperature(b).unwrap_or_default();
+            c.warmth += mass * run.temperature(b).unwrap_or_default();
         }
-        granular_temperature(s, &gap, &floor, all, &shares, &means, &mut cells);
-        stress(s, &gap, along, &mut cells);
+        granular_temperature(run, &gap, &floor, all, &shares, &means, &mut cells);
+        stress(run, &gap, along, &mut cells);
         let free = || flags.iter().zip(&degree).filter(|(free, _)| **free);
         let contacts: f64 = free().map(|(_, d)| f64::from(*d)).sum();
         Self {
             coordination: contacts / free().count().max(1) as f64,
             sliding: slide[along],
-            clusters: clusters(s, &flags),
-            chains: chain_numbers(s, &gap, along, &flags),
+            clusters: clusters(run, &flags),
+            chains: chain_numbers(run, &gap, along, &flags),
             gap,
             cells,
         }
@@ -130,32 +132,33 @@ impl LayerSnapshot {
 
 /// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the
 /// mean positions and velocities of the bins, so that an affine field has zero temperature.
-fn granular_temperature<S: Space>(
-    s: &Simulation<S>,
+fn granular_temperature(
+    run: &dyn RunView,
     gap: &Gap,
-    floor: &S::Vector,
-    all: &[Grain<'_, S>],
+    floor: &Vector3<f64>,
+    all: &[Grain],
     shares: &[Share],
-    means: &[(f64, f64, S::Vector)],
+    means: &[(f64, f64, Vector3<f64>)],
     cells: &mut [Cell],
 ) {
     let full = means[1..=gap.bins].iter().filter(|m| m.0 > 0.0);
-    let points: Vec<(f64, S::Vector)> = full.map(|m| (m.1 / m.0, m.2 * (1.0 / m.0))).collect();
+    let points: Vec<(f64, Vector3<f64>)> = full.map(|m| (m.1 / m.0, m.2 * (1.0 / m.0))).collect();
+    let (velocity, dimension) = (run.bodies().velocity, run.dimension() as f64);
     for Share { grain, cell, share } in shares {
         let (grain, cell) = (&all[*grain as usize], *cell as usize);
         if !(1..=gap.bins).contains(&cell) {
             continue;
         }
-        let depth = gap.depth(&grain.at) / gap.thickness;
-        let v = s.state.bodies.velocity[grain.body] - *floor - mean_at(&points, depth);
-        cells[cell].granular += share * grain.mass * v.dot(&v) / S::D as f64;
+        let depth = gap.depth(&grain.at.into()) / gap.thickness;
+        let v = Vector3::from(velocity.at(grain.body)) - *floor - mean_at(&points, depth);
+        cells[cell].granular += share * grain.mass * v.dot(&v) / dimension;
     }
 }
 
 /// Linear interpolation between the adjacent points, or extrapolation from the last two.
-fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
+fn mean_at(points: &[(f64, Vector3<f64>)], place: f64) -> Vector3<f64> {
     if points.len() < 2 {
-        return points.first().map_or(V::zero(), |p| p.1);
+        return points.first().map_or(Vector3::zeros(), |p| p.1);
     }
     let k = points.partition_point(|p| p.0 < place);
     let k = k.clamp(1, points.len() - 1);
@@ -170,25 +173,23 @@ fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
 }
 
 /// Number of intact bonds of each body.
-fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
-    let mut held = vec![0.0; s.state.bodies.len()];
-    let n = &s.state.network;
-    for contact in n.contacts.iter().filter(|c| c.memory().is_some()) {
-        if n.bond(contact)
-            .is_some_and(fretwork_core::contact::Bond::intact)
-        {
+fn held(run: &dyn RunView) -> Vec<f64> {
+    let mut held = vec![0.0; run.bodies().len()];
+    run.visit_contacts(&mut |contact| {
+        if let BondState::Intact { .. } = contact.bond {
             contact.bodies.iter().for_each(|b| held[*b as usize] += 1.0);
         }
-    }
+    });
     held
 }
 
 /// Love-Weber stress, with each branch distributed by its length in the bins.
-fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cell]) {
+fn stress(run: &dyn RunView, gap: &Gap, along: usize, cells: &mut [Cell]) {
     let across = gap.across;
-    let lateral = (0..S::D).find(|k| *k != across && *k != along);
-    each_moment(s, |body, force, branch| {
-        let from = gap.depth(&s.state.bodies.position[body]);
+    let lateral = (0..run.dimension()).find(|k| *k != across && *k != along);
+    let position = run.bodies().position;
+    each_moment(run, |body, force, branch| {
+        let from = gap.depth(&position.at(body));
         let to = from + gap.side * branch[across];
         let moment = [
             force[across] * branch[across],
@@ -207,22 +208,17 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
 }
 
 /// Links of the force chains, as sorted pairs of bodies.
-pub(super) fn links<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
-    let (loads, pairs) = loads(s, &s.state.bodies.grain_flags());
-    let found = chains(&loads, S::D == 2, &pairs);
+pub(super) fn links(run: &dyn RunView) -> Vec<[u32; 2]> {
+    let (loads, pairs) = loads(run, &run.grain_flags());
+    let found = chains(&loads, run.dimension() == 2, &pairs);
     // Pairs are sorted.
     let ends = found.links.iter().map(|k| pairs[*k].ends);
     ends.map(|e| e.map(|b| b as u32)).collect()
 }
 
-fn chain_numbers<S: Space>(
-    s: &Simulation<S>,
-    gap: &Gap,
-    along: usize,
-    grain: &[bool],
-) -> ChainNumbers {
-    let (loads, pairs) = loads(s, grain);
-    let found = chains(&loads, S::D == 2, &pairs);
+fn chain_numbers(run: &dyn RunView, gap: &Gap, along: usize, grain: &[bool]) -> ChainNumbers {
+    let (loads, pairs) = loads(run, grain);
+    let found = chains(&loads, run.dimension() == 2, &pairs);
     let grains = grain.iter().filter(|g| **g).count().max(1) as f64;
     let all: f64 = pairs.iter().map(|p| p.force).sum();
     let (mut force, mut sin, mut cos) = (0.0, 0.0, 0.0);
@@ -247,35 +243,33 @@ fn chain_numbers<S: Space>(
 }
 
 /// Stresses of the grains, and the pairs of grains that press on each other.
-fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
-    let mut volume = vec![0.0; s.state.bodies.len()];
-    for ball in &s.shapes.balls {
-        volume[ball.body as usize] += S::ball_volume(ball.radius);
+fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+    let bodies = run.bodies();
+    let of_ball = |radius: f64| ball_volume(run.dimension(), radius);
+    let mut volume = vec![0.0; bodies.len()];
+    for ball in run.balls() {
+        volume[ball.body as usize] += of_ball(ball.radius);
     }
-    for piece in &s.shapes.pieces {
-        volume[piece.body as usize] += S::ball_volume(piece.size);
+    for piece in run.pieces() {
+        volume[piece.body as usize] += of_ball(piece.size);
     }
-    for grain in s.shapes.surfaces.iter().filter(|f| f.shape.is_closed()) {
+    for grain in run.surfaces().into_iter().filter(|f| f.closed) {
         let body = grain.body as usize;
-        volume[body] += S::ball_volume(s.state.bodies.length[body]);
+        volume[body] += of_ball(bodies.length[body]);
     }
-    let mut loads = vec![Matrix3::zeros(); s.state.bodies.len()];
-    each_moment(s, |body, force, branch| {
-        let (f, l) = (
-            Vector3::from(force.padded()),
-            Vector3::from(branch.padded()),
-        );
-        let moment = f * l.transpose();
+    let mut loads = vec![Matrix3::zeros(); bodies.len()];
+    each_moment(run, |body, force, branch| {
+        let moment = force * branch.transpose();
         loads[body] += (moment + moment.transpose()) * (0.5 / volume[body]);
     });
     let mut pressed: Vec<([u32; 2], f64)> = Vec::new();
-    for contact in &s.state.network.contacts {
-        let force = contact.normal.dot(&contact.impulse);
+    run.visit_contacts(&mut |contact| {
+        let force = Vector3::from(contact.normal).dot(&Vector3::from(contact.impulse));
         let [a, b] = contact.bodies;
         if force > 0.0 && grain[a as usize] && grain[b as usize] {
             pressed.push(([a.min(b), a.max(b)], force));
         }
-    }
+    });
     pressed.sort_by_key(|p| p.0);
     let mut pairs: Vec<Pair> = Vec::with_capacity(pressed.len());
     for (ends, force) in pressed {
@@ -284,8 +278,8 @@ fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec
             last.force += force;
             continue;
         }
-        let [a, b] = ends.map(|b| s.state.bodies.position[b]);
-        let branch = Vector3::from(s.shapes.periodic.shortest(b - a).padded());
+        let [a, b] = ends.map(|b| Vector3::from(bodies.position.at(b)));
+        let branch = run.periodic().shortest(b - a);
         pairs.push(Pair {
             ends,
             branch,

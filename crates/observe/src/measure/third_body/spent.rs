@@ -8,8 +8,7 @@ use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
 use crate::layer::{Balance, Layer};
 use fretwork_core::contact::ContactDissipation;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
 /// Energies by mechanism (J; J/m in 2D).
@@ -66,8 +65,7 @@ impl Place {
 
 /// Energies since the start of the account.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub(super) struct Dissipation<S: Space> {
+pub(super) struct Dissipation {
     /// Per bin, since the last sample.
     pub pending: Vec<Energies>,
     /// Per bin, in total.
@@ -80,11 +78,11 @@ pub(super) struct Dissipation<S: Space> {
     pub load: f64,
     /// Observer of dissipated and stored energy and of the work of all driven bodies, with its
     /// balance at the start of the account and now.
-    ledger: Option<(Layer<S>, Balance, Balance)>,
+    ledger: Option<(Layer, Balance, Balance)>,
     grain: Vec<bool>,
 }
 
-impl<S: Space> Dissipation<S> {
+impl Dissipation {
     /// An account that has not started.
     pub fn new(bins: usize, grain: Vec<bool>) -> Self {
         Self {
@@ -99,9 +97,9 @@ impl<S: Space> Dissipation<S> {
     }
 
     /// Starts the account from the current state.
-    pub fn begin(&mut self, s: &Simulation<S>) {
-        let layer = Layer::new(s);
-        let balance = layer.balance(s);
+    pub fn begin(&mut self, run: &dyn RunView) {
+        let layer = Layer::new(run);
+        let balance = layer.balance(run);
         self.ledger = Some((layer, balance, balance));
     }
 
@@ -119,15 +117,16 @@ impl<S: Space> Dissipation<S> {
     }
 
     /// Processes the last step.
-    pub fn follow(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
-        let ends = [0, 1].map(|k| faces.body(s, k) as u32);
-        let n = &s.state.network;
-        let spent = n.dissipation.iter().flatten();
-        for (contact, spent) in n.contacts.iter().zip(spent) {
+    pub fn follow(&mut self, run: &dyn RunView, faces: &Faces, gap: &Gap, along: usize) {
+        let ends = [0, 1].map(|k| faces.body(run, k) as u32);
+        let mut dissipation = run.dissipation().unwrap_or_default().iter();
+        run.visit_contacts(&mut |contact| {
+            let Some(spent) = dissipation.next() else {
+                return;
+            };
             if *spent == ContactDissipation::default() {
-                continue;
+                return;
             }
-            let at = s.state.bodies.position[contact.bodies[0] as usize] + contact.arms[0];
             let energies = [
                 spent.friction,
                 spent.impact + spent.adhesion,
@@ -135,21 +134,22 @@ impl<S: Space> Dissipation<S> {
                 spent.viscous,
                 spent.correction,
             ];
-            self.add(contact.bodies, ends, gap.bin(gap.depth(&at)), energies);
-        }
-        for torn in n.bond_breaks.iter().filter(|b| b.torn != 0.0) {
+            let bin = gap.bin(gap.depth(&contact.point));
+            self.add(contact.bodies, ends, bin, energies);
+        });
+        for torn in run.bond_breaks().iter().filter(|b| b.torn != 0.0) {
             let bin = gap.bin(gap.depth(&torn.place));
             self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0, 0.0]);
         }
-        let sliding = faces.sliding_over_step(s)[along];
-        if let Some((impulse, _)) = s.state.received.get(faces.places[1]) {
+        let sliding = faces.sliding_over_step(run)[along];
+        if let Some([impulse, _]) = run.received().get(faces.places[1]) {
             self.work -= impulse[along] * sliding;
             self.load += gap.side * impulse[gap.across] * sliding.abs();
         }
         if let Some((layer, _, end)) = &mut self.ledger {
             // The work of no body is excluded here.
-            layer.follow(s, None);
-            *end = layer.balance(s);
+            layer.follow(run, None);
+            *end = layer.balance(run);
         }
     }
 

@@ -5,7 +5,6 @@ use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
 use super::spent::{Dissipation, Place};
 use crate::quantity::unit::{ENERGY, MASS};
-use fretwork_core::geometry::space::Space;
 
 /// Columns of the profiles, in the order of [`row`].
 const PROFILE: [&str; 23] = [
@@ -91,8 +90,12 @@ pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated
 }
 
 /// The energies by pair of bodies and by bin, each with its fraction of the total.
-pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, String)) -> String {
-    let unit = ENERGY.symbol(S::D);
+pub(super) fn energies(
+    spent: &Dissipation,
+    between: &(String, String),
+    dimension: usize,
+) -> String {
+    let unit = ENERGY.symbol(dimension);
     let mut header = vec!["place".to_owned()];
     header.extend(
         MECHANISMS

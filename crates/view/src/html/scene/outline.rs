@@ -1,17 +1,16 @@
 //! Outlines of convex parts with rounded edges.
 
-use fretwork_core::geometry::convex::{Boundary, Core};
-use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use fretwork_core::geometry::convex::Boundary;
 use fretwork_store::results::shapes::ShapedPiece;
 
 /// The outline of a part in the plane, anticlockwise, about its centre.
 pub(super) fn flat(piece: &ShapedPiece) -> Vec<[f64; 3]> {
-    outline::<Dim2>(piece).concat()
+    outline(piece, 2).concat()
 }
 
 /// The faces of a part in space as triangles about its centre.
 pub(super) fn solid(piece: &ShapedPiece) -> Vec<[f64; 3]> {
-    let faces = outline::<Dim3>(piece).into_iter();
+    let faces = outline(piece, 3).into_iter();
     let triangles = |face: Vec<[f64; 3]>| {
         let corners = (2..face.len()).flat_map(|k| [face[0], face[k - 1], face[k]]);
         corners.collect::<Vec<_>>()
@@ -20,15 +19,12 @@ pub(super) fn solid(piece: &ShapedPiece) -> Vec<[f64; 3]> {
 }
 
 /// Lines around a part, or around each of its faces; none of a part that is no valid shape.
-fn outline<S: Space>(piece: &ShapedPiece) -> Vec<Vec<[f64; 3]>> {
-    let corners = piece.corners.iter().map(|c| S::Vector::from_slice(c));
+fn outline(piece: &ShapedPiece, dimension: usize) -> Vec<Vec<[f64; 3]>> {
     let boundary = Boundary {
-        corners: corners.collect(),
+        corners: piece.corners.clone(),
         faces: piece.faces.clone(),
     };
-    let lines = S::Core::bounded_by(boundary).map(|core| core.outline(piece.rounding));
-    let padded = |line: Vec<S::Vector>| line.iter().map(VectorLike::padded).collect();
-    lines.unwrap_or_default().into_iter().map(padded).collect()
+    boundary.outline(dimension, piece.rounding)
 }
 
 #[cfg(test)]

@@ -2,14 +2,13 @@
 
 use super::images;
 use crate::{Link, LinkState};
-use fretwork_core::contact::Contact;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
-use fretwork_observe::placement::{BondState, bond_state, ends};
+use fretwork_core::contact::BondState;
+use fretwork_core::view::{ContactView, RunView};
+use nalgebra::Vector3;
 
 /// State of a contact in pictures.
-pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
-    match bond_state(s, contact) {
+pub fn state(contact: &ContactView) -> LinkState {
+    match contact.bond {
         BondState::Intact { damage } => LinkState::Intact { damage },
         BondState::Broken => LinkState::Broken,
         BondState::None => LinkState::Plain,
@@ -17,19 +16,15 @@ pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
 }
 
 /// The contacts that carry force, or had a bond, with the state of their bonds.
-pub(crate) fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {
-    links_in(s, window, |contact| state(s, contact))
+pub(crate) fn links(run: &dyn RunView, window: [f64; 4]) -> Vec<Link> {
+    links_in(run, window, state)
 }
 
 /// The contacts that carry force, with those of the chains marked.
-pub(crate) fn forces<S: Space>(
-    s: &Simulation<S>,
-    window: [f64; 4],
-    chains: &[[u32; 2]],
-) -> Vec<Link> {
+pub(crate) fn forces(run: &dyn RunView, window: [f64; 4], chains: &[[u32; 2]]) -> Vec<Link> {
     let pair = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    links_in(s, window, |contact| {
-        let presses = contact.normal.dot(&contact.impulse) > 0.0;
+    links_in(run, window, |contact| {
+        let presses = Vector3::from(contact.normal).dot(&Vector3::from(contact.impulse)) > 0.0;
         if presses && chains.binary_search(&pair(contact.bodies)).is_ok() {
             LinkState::Chain
         } else {
@@ -38,30 +33,30 @@ pub(crate) fn forces<S: Space>(
     })
 }
 
-fn links_in<S: Space>(
-    s: &Simulation<S>,
+fn links_in(
+    run: &dyn RunView,
     window: [f64; 4],
-    state: impl Fn(&Contact<S>) -> LinkState,
+    state: impl Fn(&ContactView) -> LinkState,
 ) -> Vec<Link> {
-    let period = s.shapes.periodic.period[0];
-    let loaded: Vec<f64> = s
-        .state
-        .network
-        .contacts
-        .iter()
-        .map(|c| c.impulse.norm())
-        .filter(|p| *p > 0.0)
-        .collect();
+    let period = run.periodic().period[0];
+    let norm = |v: [f64; 3]| Vector3::from(v).norm();
+    let mut loaded: Vec<f64> = Vec::new();
+    run.visit_contacts(&mut |contact| {
+        let impulse = norm(contact.impulse);
+        if impulse > 0.0 {
+            loaded.push(impulse);
+        }
+    });
     let mean = loaded.iter().sum::<f64>() / loaded.len().max(1) as f64;
     let mut out = Vec::new();
-    for contact in &s.state.network.contacts {
+    run.visit_contacts(&mut |contact| {
         let state = state(contact);
-        let force = contact.impulse.norm();
+        let force = norm(contact.impulse);
         // A candidate pair without force is not drawn.
         if state == LinkState::Plain && force == 0.0 {
-            continue;
+            return;
         }
-        let (a, b) = ends(s, contact);
+        let [a, b] = run.ends_of_contact(contact.place).map(Vector3::from);
         let width = if mean > 0.0 {
             (force / mean).clamp(0.3, 3.0)
         } else {
@@ -75,6 +70,6 @@ fn links_in<S: Space>(
                 width,
             });
         }
-    }
+    });
     out
 }

@@ -3,15 +3,14 @@
 use super::images;
 use crate::{ColourScale, Outline, Paint};
 use fretwork_core::bodies::von_mises;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_observe::chart::round_top;
 use std::collections::HashMap;
 
 /// Elements in a window with their corners and stress (Pa); of grains only where asked for.
-fn seen<S: Space>(s: &Simulation<S>, window: [f64; 4], grains: bool) -> Vec<(Vec<[f64; 2]>, f64)> {
-    let period = s.shapes.periodic.period[0];
-    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+fn seen(run: &dyn RunView, window: [f64; 4], grains: bool) -> Vec<(Vec<[f64; 2]>, f64)> {
+    let period = run.periodic().period[0];
+    let systems = (0..run.system_count()).filter_map(|k| run.system(k));
     let systems = systems.filter(|system| grains || !system.is_grain());
     let mut out = Vec::new();
     for mesh in systems.filter_map(|system| system.deformed_mesh()) {
@@ -23,7 +22,11 @@ fn seen<S: Space>(s: &Simulation<S>, window: [f64; 4], grains: bool) -> Vec<(Vec
                 let x = mesh.points[*p as usize] + mesh.displacement[*p as usize];
                 [x[0] - first[0] + image, x[1]]
             };
-            for (element, stress) in mesh.elements.chunks_exact(S::D + 1).zip(&mesh.stress) {
+            for (element, stress) in mesh
+                .elements
+                .chunks_exact(run.dimension() + 1)
+                .zip(&mesh.stress)
+            {
                 let corners: Vec<[f64; 2]> = element.iter().map(at).collect();
                 let inside = (0..2).all(|k| {
                     corners.iter().any(|c| c[k] > window[2 * k])
@@ -39,29 +42,26 @@ fn seen<S: Space>(s: &Simulation<S>, window: [f64; 4], grains: bool) -> Vec<(Vec
 }
 
 /// Grains that deform, by their outlines.
-pub(crate) fn grains<S: Space>(
-    s: &Simulation<S>,
-    window: [f64; 4],
-    paints: &[Paint],
-) -> Vec<Outline> {
-    let bodies = &s.state.bodies;
+pub(crate) fn grains(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {
+    let bodies = run.bodies();
     // A grain has the colour of its points.
     let mut points: HashMap<u32, usize> = HashMap::new();
-    for (k, ball) in s.shapes.balls.iter().enumerate() {
+    for (k, ball) in run.balls().iter().enumerate() {
         points.entry(ball.body).or_insert(k);
     }
     let mut out = Vec::new();
-    for surface in s.shapes.surfaces.iter().filter(|f| f.shape.is_closed()) {
+    let surfaces = run.surfaces().into_iter().enumerate();
+    for (k, surface) in surfaces.filter(|(_, f)| f.closed) {
         let b = surface.body as usize;
-        let centre = bodies.position[b];
+        let centre = bodies.position.at(b);
         let reach = 2.0 * bodies.length[b];
-        let period = s.shapes.periodic.period[0];
-        let chain: Vec<S::Vector> = surface.shape.outline().concat();
+        let period = run.periodic().period[0];
+        let chain: Vec<[f64; 3]> = run.surface_lines(k).concat();
         let paint = points.get(&surface.body);
         let paint = paint.map_or(Paint::Grey, |k| super::paint(paints, *k));
         for image in images(centre[0], reach, window, period) {
-            let at = |p: &S::Vector| {
-                let x = S::rotate(&bodies.rotation[b], p);
+            let at = |p: &[f64; 3]| {
+                let x = run.turned(b, *p);
                 [image + x[0], centre[1] + x[1]]
             };
             out.push(Outline {
@@ -76,8 +76,8 @@ pub(crate) fn grains<S: Space>(
 }
 
 /// The scale of the stress in a window; none where nothing is stressed.
-pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<ColourScale> {
-    let most = seen(s, window, true)
+pub(crate) fn scale(run: &dyn RunView, window: [f64; 4]) -> Option<ColourScale> {
+    let most = seen(run, window, true)
         .iter()
         .map(|e| e.1)
         .fold(0.0, f64::max);
@@ -90,8 +90,8 @@ pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<Col
 }
 
 /// The elements in a window, by stress where a scale is given.
-pub(crate) fn elements<S: Space>(
-    s: &Simulation<S>,
+pub(crate) fn elements(
+    run: &dyn RunView,
     window: [f64; 4],
     scale: Option<&ColourScale>,
 ) -> Vec<Outline> {
@@ -104,7 +104,7 @@ pub(crate) fn elements<S: Space>(
         element: true,
         ..Outline::default()
     };
-    seen(s, window, scale.is_some())
+    seen(run, window, scale.is_some())
         .into_iter()
         .map(outline)
         .collect()

@@ -6,16 +6,12 @@ mod quantity;
 mod space;
 mod zones;
 
-pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
-
 use crate::{ColourScale, Disk, Frame, Link, LinkState, Outline, Paint};
-use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{InDimension, Simulation};
+use fretwork_core::view::{BallView, BodyColumns, RunView, SurfaceView};
 use fretwork_observe::picture::Shows;
-use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
+use nalgebra::Vector3;
 
 /// View of the scene for a series of pictures.
 #[derive(Clone, Debug)]
@@ -29,20 +25,10 @@ pub struct Camera {
     paints: Vec<Paint>,
 }
 
-/// Evaluates an expression with a simulation in its dimension.
-macro_rules! in_dimension {
-    ($simulation:expr, |$s:ident| $body:expr) => {
-        match $simulation {
-            InDimension::Dim2($s) => $body,
-            InDimension::Dim3($s) => $body,
-        }
-    };
-}
-
 impl Camera {
     /// A view of the whole scene in its current state, or of the window given in the case.
-    pub fn new(simulation: InDimension<'_>, output: &OutputSpec) -> Self {
-        let flat = matches!(simulation, InDimension::Dim2(_));
+    pub fn new(run: &dyn RunView, output: &OutputSpec) -> Self {
+        let flat = run.dimension() == 2;
         let mut camera = Self {
             window: output.window.unwrap_or_default(),
             fixed: output.window.is_some() && flat,
@@ -50,15 +36,15 @@ impl Camera {
             layers: output.layers,
             paints: Vec::new(),
         };
-        camera.follow(simulation);
-        camera.assign_layers(simulation);
+        camera.follow(run);
+        camera.assign_layers(run);
         camera
     }
 
     /// Colours the grains by the layers in which they are now.
-    pub fn assign_layers(&mut self, simulation: InDimension<'_>) {
+    pub fn assign_layers(&mut self, run: &dyn RunView) {
         if let Some(thickness) = self.layers {
-            self.paints = in_dimension!(simulation, |s| layers(s, thickness));
+            self.paints = layers(run, thickness);
         }
     }
 
@@ -73,14 +59,14 @@ impl Camera {
     }
 
     /// Adapts the window to the current scene, unless the case gives one.
-    pub fn follow(&mut self, simulation: InDimension<'_>) {
+    pub fn follow(&mut self, run: &dyn RunView) {
         if !self.fixed {
-            self.window = in_dimension!(simulation, |s| Self::whole(s));
+            self.window = Self::whole(run);
         }
     }
 
-    fn whole<S: Space>(simulation: &Simulation<S>) -> [f64; 4] {
-        let periodic = &simulation.shapes.periodic;
+    fn whole(run: &dyn RunView) -> [f64; 4] {
+        let periodic = run.periodic();
         let mut w = [
             f64::INFINITY,
             f64::NEG_INFINITY,
@@ -93,20 +79,18 @@ impl Camera {
                 w[2 * k + 1] = w[2 * k + 1].max(at[k] + radius);
             }
         };
-        if S::D == 3 {
-            let scene = space::scene(simulation, &[]);
+        if run.dimension() == 3 {
+            let scene = space::scene(run, &[]);
             scene.extent().for_each(|p| take(p, 0.0));
         } else {
-            let pieces = &simulation.shapes.pieces;
-            let pieces = pieces
-                .iter()
-                .map(|p| (piece_centre(simulation, p), p.bound));
-            for (centre, radius) in balls(simulation).chain(pieces) {
-                let c = periodic.wrapped(centre);
+            let pieces = run.pieces().into_iter().map(|p| (p.centre, p.bound));
+            let balls = run.balls().into_iter().map(|b| (b.centre, b.radius));
+            for (centre, radius) in balls.chain(pieces) {
+                let c = periodic.wrapped(Vector3::from(centre));
                 take([c[0], c[1]], radius);
             }
-            let systems = &simulation.state.systems;
-            let meshes = (0..systems.len()).filter_map(|k| systems.get(k)?.deformed_mesh());
+            let systems = 0..run.system_count();
+            let meshes = systems.filter_map(|k| run.system(k)?.deformed_mesh());
             for mesh in meshes {
                 mesh.points.iter().for_each(|x| take([x[0], x[1]], 0.0));
             }
@@ -114,7 +98,7 @@ impl Camera {
         if !w.iter().all(|x| x.is_finite()) {
             w = [-1.0, 1.0, -1.0, 1.0];
         }
-        if let (2, Some(period)) = (S::D, periodic.period[0]) {
+        if let (2, Some(period)) = (run.dimension(), periodic.period[0]) {
             (w[0], w[1]) = (0.0, period);
         }
         let (wide, high) = (w[1] - w[0], w[3] - w[2]);
@@ -132,38 +116,28 @@ impl Camera {
     /// and for charts, which are drawn by [`crate::draw_panels`].
     pub fn frame(
         &self,
-        simulation: InDimension<'_>,
+        run: &dyn RunView,
         shows: &Shows,
         title: &str,
         caption: Vec<String>,
     ) -> Option<Frame> {
-        let flat = matches!(simulation, InDimension::Dim2(_));
+        let flat = run.dimension() == 2;
         match shows {
             Shows::Charts(_) => return None,
             Shows::Chains(_) | Shows::Stress if !flat => return None,
             _ => {}
         }
-        Some(in_dimension!(simulation, |s| self.frame_in(s, shows, title, caption)))
-    }
-
-    fn frame_in<S: Space>(
-        &self,
-        simulation: &Simulation<S>,
-        shows: &Shows,
-        title: &str,
-        caption: Vec<String>,
-    ) -> Frame {
         let made: Vec<Paint>;
         let (paints, scale) = match shows {
             Shows::Scene if self.paints.is_empty() => {
                 let scale;
-                (made, scale) = quantity::of(simulation);
+                (made, scale) = quantity::of(run);
                 (&made[..], scale)
             }
             Shows::Scene => (&self.paints[..], None),
             Shows::Bonds | Shows::Chains(_) | Shows::Charts(_) => (&[][..], None),
             Shows::Paints(paints) => (&paints[..], None),
-            Shows::Stress => (&[][..], mesh::scale(simulation, self.window)),
+            Shows::Stress => (&[][..], mesh::scale(run, self.window)),
             Shows::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
                 let scale = ColourScale {
@@ -175,27 +149,26 @@ impl Camera {
                 (&made[..], Some(scale))
             }
         };
-        let flat = S::D == 2;
-        let scene = (!flat).then(|| space::scene(simulation, paints));
+        let scene = (!flat).then(|| space::scene(run, paints));
         let (mut disks, mut links, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
         let mut along = Vec::new();
         if flat {
-            disks = self::disks(simulation, self.window, paints);
-            links = self.lines(simulation, shows);
-            bodies = outlines(simulation, self.window);
-            bodies.extend(zones::solids(simulation, self.window));
+            disks = self::disks(run, self.window, paints);
+            links = self.lines(run, shows);
+            bodies = outlines(run, self.window);
+            bodies.extend(zones::solids(run, self.window));
             if matches!(shows, Shows::Stress) {
-                along = zones::lines(simulation, self.window);
+                along = zones::lines(run, self.window);
             }
             let shown = scale.as_ref().filter(|_| matches!(shows, Shows::Stress));
-            bodies.extend(mesh::elements(simulation, self.window, shown));
+            bodies.extend(mesh::elements(run, self.window, shown));
             if shown.is_none() {
-                bodies.extend(mesh::grains(simulation, self.window, paints));
+                bodies.extend(mesh::grains(run, self.window, paints));
             }
-            bodies.extend(pieces(simulation, self.window, paints));
-            bodies.extend(named_balls(simulation, self.window));
+            bodies.extend(pieces(run, self.window, paints));
+            bodies.extend(named_balls(run, self.window));
         }
-        Frame {
+        Some(Frame {
             title: title.to_owned(),
             caption,
             window: self.window,
@@ -206,20 +179,20 @@ impl Camera {
             scale,
             scene,
             width_px: self.width,
-        }
+        })
     }
 
     /// The contacts drawn as lines (2D).
-    fn lines<S: Space>(&self, simulation: &Simulation<S>, shows: &Shows) -> Vec<Link> {
+    fn lines(&self, run: &dyn RunView, shows: &Shows) -> Vec<Link> {
         match shows {
             // A map of the bond states only: forces would cover it.
             Shows::Bonds => {
-                let bonds = links(simulation, self.window).into_iter();
+                let bonds = links(run, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
                 bonds.map(|l| Link { width: 0.3, ..l }).collect()
             }
-            Shows::Chains(pairs) => forces(simulation, self.window, pairs),
-            Shows::Scene if self.paints.is_empty() => links(simulation, self.window),
+            Shows::Chains(pairs) => forces(run, self.window, pairs),
+            Shows::Scene if self.paints.is_empty() => links(run, self.window),
             // The colours of grains carry the information: nothing is drawn over them.
             _ => Vec::new(),
         }
@@ -227,42 +200,49 @@ impl Camera {
 }
 
 /// Colour of each ball by the layer in which it is.
-fn layers<S: Space>(s: &Simulation<S>, thickness: f64) -> Vec<Paint> {
-    let grain = s.state.bodies.grain_flags();
-    let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
+fn layers(run: &dyn RunView, thickness: f64) -> Vec<Paint> {
+    let (grain, up) = (run.grain_flags(), run.dimension() - 1);
+    let paint = |ball: BallView| {
         if grain[ball.body as usize] {
-            Paint::Layer((centre[S::D - 1] / thickness).floor() as i64)
+            Paint::Layer((ball.centre[up] / thickness).floor() as i64)
         } else {
             Paint::Grey
         }
     };
-    s.shapes.balls.iter().zip(balls(s)).map(paint).collect()
+    run.balls().into_iter().map(paint).collect()
 }
 
-fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
-    s.shapes.balls.iter().map(|b| {
-        (
-            fretwork_core::contact::detect::centre(b, &s.state.bodies),
-            b.radius,
-        )
-    })
+/// Whether a body is a first body.
+fn is_first(bodies: &BodyColumns<'_>, body: u32) -> bool {
+    bodies.driven.iter().any(|d| d.body == body)
 }
 
-fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {
-    let period = s.shapes.periodic.period[0];
-    let mut out = Vec::with_capacity(s.shapes.pieces.len());
-    for (k, piece) in s.shapes.pieces.iter().enumerate() {
-        if s.state.bodies.removed[piece.body as usize] {
+/// A point of a surface in world coordinates.
+fn placed(run: &dyn RunView, surface: &SurfaceView, p: &[f64; 3]) -> [f64; 3] {
+    let b = surface.body as usize;
+    let arm = Vector3::from(surface.offset) + Vector3::from(*p);
+    let turned = run.turned(b, arm.into());
+    (Vector3::from(run.bodies().position.at(b)) + Vector3::from(turned)).into()
+}
+
+fn pieces(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {
+    let period = run.periodic().period[0];
+    let (bodies, balls, pieces) = (run.bodies(), run.balls().len(), run.pieces());
+    let mut out = Vec::with_capacity(pieces.len());
+    for (k, piece) in pieces.iter().enumerate() {
+        if bodies.removed[piece.body as usize] {
             continue;
         }
-        let shade = (!is_first(s, piece.body)).then_some(0.25);
-        let corners = piece_outline(s, piece).concat();
-        let x = s.shapes.periodic.wrapped(piece_centre(s, piece))[0];
+        let shade = (!is_first(&bodies, piece.body)).then_some(0.25);
+        let corners = run.piece_outline(k).concat();
+        let centre = run.periodic().wrapped(Vector3::from(piece.centre));
+        let x = centre[0];
         for image in images(x, piece.bound, window, period) {
+            let at = |c: &[f64; 3]| [c[0] + centre[0] - x + image, c[1] + centre[1]];
             out.push(Outline {
-                points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
+                points: corners.iter().map(at).collect(),
                 shade,
-                paint: paint(paints, s.shapes.balls.len() + k),
+                paint: paint(paints, balls + k),
                 ..Outline::default()
             });
         }
@@ -272,26 +252,23 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
 
 /// For each first body made of balls that is large in the window, an outline of its largest ball,
 /// which is hidden under its disk and carries the name.
-pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+pub fn named_balls(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
+    let (bodies, balls, surfaces) = (run.bodies(), run.balls(), run.surfaces());
     let mut out = Vec::new();
-    for driven in &s.state.bodies.driven {
-        let surfaces = s.shapes.surfaces.iter().map(|f| f.body);
-        let labelled = surfaces.into_iter().any(|body| body == driven.body);
-        if labelled
-            || s.state.bodies.removed[driven.body as usize]
-            || driven.name.starts_with("wall_")
-        {
+    for driven in bodies.driven {
+        let labelled = surfaces.iter().any(|f| f.body == driven.body);
+        if labelled || bodies.removed[driven.body as usize] || driven.name.starts_with("wall_") {
             continue;
         }
-        let own = s.shapes.balls.iter().zip(balls(s));
-        let own = own.filter(|(ball, _)| ball.body == driven.body);
-        let largest = own.max_by(|a, b| a.1.1.total_cmp(&b.1.1));
-        let Some((_, (centre, radius))) = largest.filter(|(_, (_, r))| *r >= least) else {
+        let own = balls.iter().filter(|ball| ball.body == driven.body);
+        let largest = own.max_by(|a, b| a.radius.total_cmp(&b.radius));
+        let Some(ball) = largest.filter(|ball| ball.radius >= least) else {
             continue;
         };
-        let centre = s.shapes.periodic.wrapped(centre);
+        let radius = ball.radius;
+        let centre = run.periodic().wrapped(Vector3::from(ball.centre));
         let corner = |k: u32| {
             let angle = std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS);
             [
@@ -318,15 +295,17 @@ fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64>
         .collect()
 }
 
-fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec<Disk> {
-    let period = s.shapes.periodic.period[0];
-    let mut out = Vec::with_capacity(s.shapes.balls.len());
-    for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
-        if s.state.bodies.removed[ball.body as usize] {
+fn disks(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Disk> {
+    let period = run.periodic().period[0];
+    let (bodies, balls) = (run.bodies(), run.balls());
+    let mut out = Vec::with_capacity(balls.len());
+    for (k, ball) in balls.iter().enumerate() {
+        if bodies.removed[ball.body as usize] {
             continue;
         }
-        let angle = S::rotation_numbers(&s.state.bodies.rotation[ball.body as usize])[0];
-        let first = is_first(s, ball.body);
+        let (centre, radius) = (ball.centre, ball.radius);
+        let angle = run.motion(ball.body as usize).rotation[0];
+        let first = is_first(&bodies, ball.body);
         for x in images(centre[0], radius, window, period) {
             out.push(Disk {
                 centre: [x, centre[1]],
@@ -349,27 +328,21 @@ fn paint(paints: &[Paint], ball: usize) -> Paint {
 }
 
 /// First bodies as closed polygons that extend beyond the window.
-fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
-    let period = s.shapes.periodic.period[0];
+fn outlines(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
+    let period = run.periodic().period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
+    let bodies = run.bodies();
     // Those of deformable bodies are drawn as their elements.
-    let shown = |body: u32| {
-        !s.state.bodies.removed[body as usize] && s.state.bodies.carrier(body as usize).is_none()
-    };
-    for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
-        let b = surface.body as usize;
-        let (position, rotation) = (s.state.bodies.position[b], s.state.bodies.rotation[b]);
-        let name = s
-            .state
-            .bodies
-            .driven
-            .iter()
-            .find(|d| d.body == surface.body)
-            .map_or(String::new(), |d| d.name.clone());
-        for chain in surface.shape.outline() {
-            let world = |p: &S::Vector| {
-                let x = position + S::rotate(&rotation, &(surface.offset + *p));
+    let shown =
+        |body: u32| !bodies.removed[body as usize] && bodies.carrier(body as usize).is_none();
+    let surfaces = run.surfaces().into_iter().enumerate();
+    for (k, surface) in surfaces.filter(|(_, f)| shown(f.body)) {
+        let driven = bodies.driven.iter().find(|d| d.body == surface.body);
+        let name = driven.map_or(String::new(), |d| d.name.clone());
+        for chain in run.surface_lines(k) {
+            let world = |p: &[f64; 3]| {
+                let x = placed(run, &surface, p);
                 [x[0], x[1]]
             };
             let points: Vec<[f64; 2]> = chain.iter().map(world).collect();

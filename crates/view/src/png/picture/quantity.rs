@@ -1,13 +1,12 @@
 //! Default quantity for the colours of grains: their speed, or the damage of their bonds if there
 //! are bonds.
 
+use super::is_first;
 use crate::{ColourScale, Paint};
-use fretwork_core::contact::{BondState, ShapeIndex};
-use fretwork_core::fields::Field;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::contact::BondState;
+use fretwork_core::view::{GrainFields, RunView};
 use fretwork_observe::chart::round_top;
-use fretwork_observe::placement::is_first;
+use nalgebra::Vector3;
 
 /// Fraction of the grains whose speed is within the colour bar, so that a few fast grains do not
 /// make all others pale.
@@ -15,24 +14,25 @@ const WITHIN: f64 = 0.98;
 
 /// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In
 /// 2D bonds are drawn one by one, and the scale is theirs.
-pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<ColourScale>) {
-    let values = match (s.state.network.bonds_made() > 0, S::D) {
+pub(crate) fn of(run: &dyn RunView) -> (Vec<Paint>, Option<ColourScale>) {
+    let values = match (run.bonds_made() > 0, run.dimension()) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),
-        (true, _) => damage(s),
+        (true, _) => damage(run),
         (false, _) => {
-            let speed = |b: usize| s.state.bodies.velocity[b].norm();
-            (0..s.state.bodies.len()).map(speed).collect()
+            let velocity = run.bodies().velocity;
+            velocity.iter().map(|v| Vector3::from(v).norm()).collect()
         }
     };
-    let balls = s.shapes.balls.iter().map(|b| b.body);
+    let balls = run.balls().into_iter().map(|b| b.body);
     let of: Vec<u32> = balls
-        .chain(s.shapes.pieces.iter().map(|p| p.body))
+        .chain(run.pieces().into_iter().map(|p| p.body))
         .collect();
+    let bodies = run.bodies();
     let grain: Vec<bool> = of
         .iter()
-        .map(|b| !is_first(s, *b) && !s.state.bodies.removed[*b as usize])
+        .map(|b| !is_first(&bodies, *b) && !bodies.removed[*b as usize])
         .collect();
-    let scale = if s.state.network.bonds_made() > 0 {
+    let scale = if run.bonds_made() > 0 {
         damage_scale(false)
     } else {
         let shown = of.iter().zip(&grain).filter(|(_, grain)| **grain);
@@ -46,7 +46,7 @@ pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<ColourScale
         }
         ColourScale {
             label: "speed |v|".to_owned(),
-            unit: unit(s.fields.grains.get("velocity_x")),
+            unit: unit(run, "velocity_x"),
             top: round_top(high),
             bonds: false,
         }
@@ -58,8 +58,10 @@ pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<ColourScale
     (of.iter().zip(&grain).map(paint).collect(), Some(scale))
 }
 
-/// The unit of a field as its registry has it.
-fn unit<S: Space, T>(field: Option<&Field<S, T>>) -> String {
+/// The unit of a field of grains as its registry has it.
+fn unit(run: &dyn RunView, name: &str) -> String {
+    let fields = run.grain_fields(GrainFields::default());
+    let field = fields.iter().find(|f| f.name == name);
     field.map_or_else(String::new, |f| f.unit.to_owned())
 }
 
@@ -78,29 +80,19 @@ fn damage_scale(bonds: bool) -> ColourScale {
 }
 
 /// Mean damage of the bonds of each body, broken ones counting 1; NaN if it never had a bond.
-fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); s.state.bodies.len()];
+fn damage(run: &dyn RunView) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); run.bodies().len()];
     let mut add = |body: u32, damage: f64| {
         let (sum, count) = &mut sums[body as usize];
         (*sum, *count) = (*sum + damage, *count + 1.0);
     };
-    let field = s.fields.contacts.get("damage");
-    for contact in &s.state.network.contacts {
-        let intact = matches!(
-            s.state.network.bond_state(contact),
-            BondState::Intact { .. }
-        );
-        if let Some(field) = field.filter(|_| intact) {
-            let damage = field.get(s, contact);
+    run.visit_contacts(&mut |contact| {
+        if let BondState::Intact { damage } = contact.bond {
             contact.bodies.iter().for_each(|b| add(*b, damage));
         }
-    }
-    for &(candidate, antagonist) in &s.state.network.broken_pairs {
-        for key in [candidate, antagonist] {
-            if let Some(body) = ShapeIndex::of(key).body(&s.shapes) {
-                add(body, 1.0);
-            }
-        }
+    });
+    for body in run.broken_pairs().into_iter().flatten() {
+        add(body, 1.0);
     }
     sums.into_iter().map(|(sum, n)| sum / n).collect()
 }

@@ -1,12 +1,10 @@
 //! 3D scene of a picture: grains, and first bodies clipped to the region that grains can reach.
 
-use super::{balls, paint};
+use super::{is_first, paint};
 use crate::png::scene::clip::{Side, clip, sides_of_box};
 use crate::{Faces, Paint, SolidScene, Sphere, View};
-use fretwork_core::geometry::shape::Carried;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
-use fretwork_observe::placement::{is_first, piece_centre, piece_outline};
+use fretwork_core::view::{RunView, SurfaceView};
+use nalgebra::Vector3;
 
 type Point = [f64; 3];
 
@@ -21,33 +19,33 @@ fn view() -> View {
 }
 
 /// SolidScene of a picture. `paints` are those of the balls, then of the convex parts.
-pub(crate) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> SolidScene {
-    let shown = |body: u32| !s.state.bodies.removed[body as usize];
-    let mut spheres = Vec::with_capacity(s.shapes.balls.len());
-    for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
+pub(crate) fn scene(run: &dyn RunView, paints: &[Paint]) -> SolidScene {
+    let bodies = run.bodies();
+    let shown = |body: u32| !bodies.removed[body as usize];
+    let balls = run.balls();
+    let mut spheres = Vec::with_capacity(balls.len());
+    for (k, ball) in balls.iter().enumerate() {
         if shown(ball.body) {
             spheres.push(Sphere {
-                centre: s.shapes.periodic.wrapped(centre).padded(),
-                radius,
+                centre: run.periodic().wrapped(Vector3::from(ball.centre)).into(),
+                radius: ball.radius,
                 paint: paint(paints, k),
-                first: is_first(s, ball.body),
+                first: is_first(&bodies, ball.body),
             });
         }
     }
     let mut faces = Vec::new();
-    for (k, piece) in s.shapes.pieces.iter().enumerate() {
+    for (k, piece) in run.pieces().into_iter().enumerate() {
         if !shown(piece.body) {
             continue;
         }
-        let outline = piece_outline(s, piece);
-        let padded = |f: &Vec<S::Vector>| f.iter().map(VectorLike::padded).collect();
         faces.push(Faces {
-            polygons: outline.iter().map(padded).collect(),
-            paint: paint(paints, s.shapes.balls.len() + k),
-            first: is_first(s, piece.body),
+            polygons: placed_piece(run, k, piece.centre),
+            paint: paint(paints, balls.len() + k),
+            first: is_first(&bodies, piece.body),
         });
     }
-    faces.extend(walls(s));
+    faces.extend(walls(run));
     SolidScene {
         view: view(),
         spheres,
@@ -56,21 +54,24 @@ pub(crate) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> SolidScene
 }
 
 /// The surfaces of first bodies.
-fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
-    let surfaces = s.shapes.surfaces.iter();
-    let surfaces: Vec<&Carried<S>> = surfaces
-        .filter(|f| !s.state.bodies.removed[f.body as usize])
+fn walls(run: &dyn RunView) -> Vec<Faces> {
+    let (bodies, surfaces) = (run.bodies(), run.surfaces().into_iter().enumerate());
+    let surfaces: Vec<(usize, SurfaceView)> = surfaces
+        .filter(|(_, f)| !bodies.removed[f.body as usize])
         .collect();
-    let (low, high) = room(s, &surfaces);
+    let (low, high) = room(run, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);
     // The open sides of planes; the inside of a drum is open, and clips the planes across it.
-    let planes: Vec<Option<Side<3>>> = surfaces.iter().map(|f| solid_side(s, f)).collect();
-    let walls = surfaces.iter().enumerate().map(|(k, surface)| {
-        let polygons: Vec<Vec<Point>> = if surface.shape.bounded() {
-            placed(s, surface, surface.shape.outline())
+    let planes: Vec<Option<Side<3>>> = surfaces.iter().map(|f| solid_side(run, &f.1)).collect();
+    let faces = |(place, surface): &(usize, SurfaceView), reach: f64| {
+        placed(run, surface, &run.surface_faces(*place, reach))
+    };
+    let walls = surfaces.iter().enumerate().map(|(k, own)| {
+        let (place, surface) = own;
+        let polygons: Vec<Vec<Point>> = if surface.bounded {
+            placed(run, surface, &run.surface_lines(*place))
         } else {
-            let b = surface.body as usize;
-            let from = sub(&s.state.bodies.position[b].padded(), &low);
+            let from = sub(&bodies.position.at(surface.body as usize), &low);
             let all = 2.0 * (reach + length(&from));
             let mut sides = sides_of_box(&low, &high);
             for (other, plane) in planes.iter().enumerate() {
@@ -80,11 +81,11 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
                 }));
             }
             for (other, drum) in surfaces.iter().enumerate() {
-                if other != k && !drum.shape.bounded() && drum.shape.flat().is_none() {
-                    sides.extend(inside(&placed(s, drum, drum.shape.faces_within(reach))));
+                if other != k && !drum.1.bounded && drum.1.flat.is_none() {
+                    sides.extend(inside(&faces(drum, reach)));
                 }
             }
-            let faces = placed(s, surface, surface.shape.faces_within(all));
+            let faces = faces(own, all);
             faces.into_iter().map(|f| clip(f, &sides)).collect()
         };
         Faces {
@@ -96,58 +97,58 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
     walls.collect()
 }
 
-/// Faces of a surface in world coordinates.
-fn placed<S: Space>(
-    s: &Simulation<S>,
-    surface: &Carried<S>,
-    faces: Vec<Vec<S::Vector>>,
-) -> Vec<Vec<Point>> {
-    let b = surface.body as usize;
-    let world = |p: &S::Vector| {
-        (s.state.bodies.position[b]
-            + S::rotate(&s.state.bodies.rotation[b], &(surface.offset + *p)))
-        .padded()
-    };
+/// Faces of a piece in world coordinates, in the periodic cell.
+fn placed_piece(run: &dyn RunView, piece: usize, centre: Point) -> Vec<Vec<Point>> {
+    let centre = run.periodic().wrapped(Vector3::from(centre));
+    let place = |p: &Point| Point::from(Vector3::from(*p) + centre);
+    let faces = run.piece_outline(piece);
     faces
         .iter()
-        .map(|f| f.iter().map(world).collect())
+        .map(|f| f.iter().map(place).collect())
+        .collect()
+}
+
+/// Faces of a surface in world coordinates.
+fn placed(run: &dyn RunView, surface: &SurfaceView, faces: &[Vec<Point>]) -> Vec<Vec<Point>> {
+    faces
+        .iter()
+        .map(|f| f.iter().map(|p| super::placed(run, surface, p)).collect())
         .collect()
 }
 
 /// The open side of a plane; `None` for other surfaces.
-fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side<3>> {
-    let b = surface.body as usize;
-    let normal = S::rotate(&s.state.bodies.rotation[b], &surface.shape.flat()?).padded();
-    let at = s.state.bodies.position[b] + S::rotate(&s.state.bodies.rotation[b], &surface.offset);
+fn solid_side(run: &dyn RunView, surface: &SurfaceView) -> Option<Side<3>> {
+    let normal = run.turned(surface.body as usize, surface.flat?);
+    let at = super::placed(run, surface, &[0.0; 3]);
     Some(Side {
         normal: normal.map(|x| -x),
-        offset: -dot(&normal, &at.padded()),
+        offset: -dot(&normal, &at),
     })
 }
 
 /// The box to which planes and drums are clipped: around grains and bounded surfaces, extended to
 /// nearby planes.
-fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point) {
+fn room(run: &dyn RunView, surfaces: &[(usize, SurfaceView)]) -> (Point, Point) {
     let mut bound = Bound::default();
-    for (centre, radius) in balls(s) {
-        bound.take(&s.shapes.periodic.wrapped(centre).padded(), radius);
+    let wrapped = |p: Point| Point::from(run.periodic().wrapped(Vector3::from(p)));
+    for ball in run.balls() {
+        bound.take(&wrapped(ball.centre), ball.radius);
     }
-    for piece in &s.shapes.pieces {
-        let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
-        bound.take(&centre.padded(), piece.bound);
+    for piece in run.pieces() {
+        bound.take(&wrapped(piece.centre), piece.bound);
     }
-    for surface in surfaces {
-        let faces = match (surface.shape.bounded(), surface.shape.flat()) {
-            (true, _) => surface.shape.outline(),
-            (false, None) => surface.shape.faces_within(0.0),
+    for (place, surface) in surfaces {
+        let faces = match (surface.bounded, surface.flat) {
+            (true, _) => run.surface_lines(*place),
+            (false, None) => run.surface_faces(*place, 0.0),
             (false, Some(_)) => continue,
         };
-        let all = placed(s, surface, faces);
+        let all = placed(run, surface, &faces);
         all.iter().flatten().for_each(|p| bound.take(p, 0.0));
     }
     if !bound.known() {
-        for surface in surfaces {
-            let all = placed(s, surface, surface.shape.outline());
+        for (place, surface) in surfaces {
+            let all = placed(run, surface, &run.surface_lines(*place));
             all.iter().flatten().for_each(|p| bound.take(p, 0.0));
         }
     }
@@ -156,7 +157,7 @@ fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point)
     }
     let size = length(&sub(&bound.high, &bound.low));
     let (low, high) = (bound.low, bound.high);
-    for side in surfaces.iter().filter_map(|f| solid_side(s, f)) {
+    for side in surfaces.iter().filter_map(|f| solid_side(run, &f.1)) {
         let corners =
             (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }));
         let above = |p: &Point| -side.outside(p);
@@ -167,7 +168,7 @@ fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point)
         feet.iter().for_each(|p| bound.take(p, 0.0));
     }
     for k in 0..3 {
-        match s.shapes.periodic.period[k] {
+        match run.periodic().period[k] {
             Some(period) => (bound.low[k], bound.high[k]) = (0.0, period),
             None => {
                 bound.low[k] -= MARGIN * size;

@@ -3,20 +3,19 @@
 
 use super::images;
 use crate::{Outline, ZoneLine};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use fretwork_observe::tractions::{SurfaceState, Zone};
 
-fn surfaces<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (usize, SurfaceState<S>)> + '_ {
-    (0..s.state.systems.len()).filter_map(|k| Some((k, SurfaceState::of(s, k)?)))
+fn surfaces(run: &dyn RunView) -> impl Iterator<Item = (usize, SurfaceState)> {
+    (0..run.system_count()).filter_map(move |k| Some((k, SurfaceState::of(run, k)?)))
 }
 
 /// Along the surface of each body that touches, from the middle of one facet to that of the next:
 /// what does not slip and what slips.
-pub(crate) fn lines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<ZoneLine> {
-    let period = s.shapes.periodic.period[0];
+pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
+    let period = run.periodic().period[0];
     let mut out = Vec::new();
-    for (_, state) in surfaces(s) {
+    for (_, state) in surfaces(run) {
         for ends in state.surface.facets.as_chunks::<2>().0 {
             let [a, b] = ends.map(|k| state.place(k as usize));
             let middle = (a + b) * 0.5;
@@ -40,11 +39,11 @@ pub(crate) fn lines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<ZoneLi
 }
 
 /// The solids of half-spaces, as far as their cells reach: from the surface to beyond the window.
-pub(crate) fn solids<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+pub(crate) fn solids(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     let depth = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
-    for (k, state) in surfaces(s) {
-        let Some(system) = s.state.systems.get(k) else {
+    for (k, state) in surfaces(run) {
+        let Some(system) = run.system(k) else {
             continue;
         };
         let Some(ends) = state.surface.facets.first_chunk::<2>() else {
