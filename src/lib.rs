@@ -47,10 +47,16 @@
 //! [`experiments`] makes runs of a case in processes of their own for studies and fits,
 //! [`contact_patch`] has contact patches in closed form.
 //!
+//! # Features
+//!
+//! The program is the default; with `default-features = false` a program links what makes scenes
+//! and steps them. Features add `laws` ([`shipped`]), `results` (the run loop and its files),
+//! `view`, `experiments`, `parquet` (tables of studies) and `program` ([`cli`], [`interrupt`]): see
+//! `docs/library.md`, which lists short programs of the folder `examples` to begin with.
+//!
 //! # A scene without files
 //!
-//! A ball dropped on a plane rests there, and the plane carries its weight. The page
-//! `docs/library.md` has more.
+//! A ball dropped on a plane rests there, and the plane carries its weight.
 //!
 //! ```
 //! use fretwork::scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
@@ -77,10 +83,13 @@
 // A failed write to a terminal or pipe must not end a run: all output goes through `cli::output`.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+#[cfg(feature = "program")]
 pub mod cli;
+#[cfg(feature = "program")]
 pub mod interrupt;
 pub mod record;
 pub mod scene;
+#[cfg(feature = "laws")]
 pub mod shipped;
 
 pub use fretwork_core::in_dimension;
@@ -92,11 +101,7 @@ pub use fretwork_core::{
     process, program, solve, step, threads, wear,
 };
 pub use fretwork_elastic as elastic;
-pub use fretwork_experiments as experiments;
-pub use fretwork_experiments::contact_patch;
+#[cfg(feature = "experiments")]
+pub use fretwork_experiments::{self as experiments, contact_patch};
+#[cfg(feature = "view")]
 pub use fretwork_view as view;
-
-/// The page of the documentation on the library: its code is run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/library.md")]
-pub struct LibraryPage;

@@ -1,9 +1,8 @@
-//! Cases and materials, see [`fretwork_scene`]; in addition, cases can take grains from the results
-//! of other runs.
+//! Cases and materials, see [`fretwork_scene`]; with the feature `results`, cases can take grains
+//! from the results of other runs.
 
 pub use fretwork_scene::*;
 
-use crate::record::results::state;
 use std::io::Read;
 use std::path::Path;
 
@@ -13,7 +12,7 @@ use std::path::Path;
 /// # Errors
 /// An [`InputError`] with file, line and column.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
-    Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
+    fretwork_scene::load(path, sets).map(reading_records)
 }
 
 /// Reads a case from a text, see [`fretwork_scene::load_text`].
@@ -26,7 +25,7 @@ pub fn load_text(
     folder: &Path,
     sets: &[String],
 ) -> Result<Loaded, InputError> {
-    Ok(fretwork_scene::load_text(name, text, folder, sets)?.reading_records(state::read))
+    fretwork_scene::load_text(name, text, folder, sets).map(reading_records)
 }
 
 /// Reads a case from a stream of bytes, see [`fretwork_scene::load_reader`].
@@ -39,5 +38,15 @@ pub fn load_reader(
     folder: &Path,
     sets: &[String],
 ) -> Result<Loaded, InputError> {
-    Ok(fretwork_scene::load_reader(name, from, folder, sets)?.reading_records(state::read))
+    fretwork_scene::load_reader(name, from, folder, sets).map(reading_records)
+}
+
+#[cfg(feature = "results")]
+fn reading_records(loaded: Loaded) -> Loaded {
+    loaded.reading_records(crate::record::results::state::read)
+}
+
+#[cfg(not(feature = "results"))]
+fn reading_records(loaded: Loaded) -> Loaded {
+    loaded
 }

@@ -6,13 +6,8 @@ use std::sync::OnceLock;
 /// The shipped laws, for [`crate::laws::SearchPath::with_built_in`].
 pub fn built_in() -> BuiltInLaws {
     static LAWS: OnceLock<BuiltInLaws> = OnceLock::new();
-    LAWS.get_or_init(|| {
-        let tables = fretwork_laws::plugins();
-        // SAFETY: the crate compiles the shipped laws with `plugin_table!`, and they live as long
-        // as the program.
-        unsafe { BuiltInLaws::from_tables(tables) }
-    })
-    .clone()
+    LAWS.get_or_init(|| BuiltInLaws::new(fretwork_laws::plugins()))
+        .clone()
 }
 
 /// A search path with the shipped laws, for programs that use this library: the folders of the

@@ -1,5 +1,6 @@
-//! The run loop and its results: analysis by [`fretwork_observe`], files by [`fretwork_store`],
-//! pictures by [`fretwork_view`].
+//! Observers of a run, by [`fretwork_observe`]; with the feature `results` also the run loop and its
+//! files, by [`fretwork_store`]; with the feature `view` also pictures, by [`fretwork_view`].
+#[cfg(feature = "results")]
 pub mod run;
 
 pub use crate::RunView;
@@ -7,13 +8,17 @@ pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
     biaxial, choice, circuit, code, coordination, first_bodies, fretting, friction,
     friction_report, heat, jump, layer, loops, measure, mesh_fields, observer, output, placement,
-    quantity, scars, scatter, solving, statistics, steady, strain, stress, tractions, warning,
+    quantity, scars, scatter, series, solving, statistics, steady, strain, stress, summary,
+    tractions, warning,
 };
-pub use fretwork_store::{checkpoint, fclib, meshes, results, series, shapes, summary, views};
+#[cfg(feature = "results")]
+pub use fretwork_store::{checkpoint, fclib, meshes, results, shapes, views};
+#[cfg(feature = "view")]
 pub use fretwork_view::picture;
 
 pub use fretwork_observe::run_state::Missed;
 pub use observer::{Observer, Observers, RunEnd};
+#[cfg(feature = "results")]
 pub use run::{
     OnProgress, Progress, Run, RunError, RunOptions, check_names, run, run_observers,
     statistics_columns, stopped,

@@ -45,10 +45,8 @@ impl DamageLaw for Pressed {
 fn laws() -> SearchPath {
     fretwork_law::plugin_table!(damage Pressed);
     let mut tables = fretwork_laws::plugins();
-    tables.push(&TABLE.0);
-    // SAFETY: the tables are static.
-    let laws = unsafe { BuiltInLaws::from_tables(tables) };
-    SearchPath::new(&[]).with_built_in(laws)
+    tables.push(&TABLE);
+    SearchPath::new(&[]).with_built_in(BuiltInLaws::new(tables))
 }
 
 /// A ball (2D: disk) on a fixed one, pressed by a pressure over the area of their bond and sheared

@@ -26,6 +26,7 @@ mod holders;
 mod law_drive;
 mod law_new;
 mod layers;
+mod library_features;
 mod line_length;
 mod material_laws;
 mod plugin_loading;

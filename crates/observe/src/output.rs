@@ -3,6 +3,9 @@
 
 use crate::chart::{Chart, Figure};
 
+/// Name of the report of a run in its folder.
+pub const REPORT: &str = "report.html";
+
 /// An output of an observer.
 #[derive(Clone, Debug)]
 pub enum Output {

@@ -12,8 +12,7 @@ use fretwork_scene::load;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn path() -> SearchPath {
-    // SAFETY: tables of the shipped laws are static.
-    let laws = unsafe { BuiltInLaws::from_tables(fretwork_laws::plugins()) };
+    let laws = BuiltInLaws::new(fretwork_laws::plugins());
     SearchPath::new(&[]).with_built_in(laws)
 }
 

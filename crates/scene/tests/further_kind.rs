@@ -62,8 +62,8 @@ unsafe extern "C" fn add_work(batch: *const abi::FwBatch, _: *mut abi::FwMessage
     abi::STATUS_OK
 }
 
-/// A table of the kind, with one variable.
-fn table() -> &'static abi::FwPlugin {
+/// A law of the kind, with one variable.
+fn law() -> &'static abi::LinkedLaw {
     let text = |t: &'static std::ffi::CStr| t.as_ptr();
     let work: &'static abi::FwField = Box::leak(Box::new(abi::FwField {
         name: text(c"work"),
@@ -74,7 +74,7 @@ fn table() -> &'static abi::FwPlugin {
         maximum: f64::INFINITY,
         flags: 0,
     }));
-    Box::leak(Box::new(abi::FwPlugin {
+    let table = abi::FwPlugin {
         size: size_of::<abi::FwPlugin>(),
         abi_major: abi::ABI_MAJOR,
         abi_minor: abi::ABI_MINOR,
@@ -97,16 +97,16 @@ fn table() -> &'static abi::FwPlugin {
         commit: Some(add_work),
         energy: None,
         fracture_energy: None,
-    }))
+    };
+    // SAFETY: what the table points to is static or leaked, and its function follows the interface.
+    Box::leak(Box::new(unsafe { abi::LinkedLaw::new(table) }))
 }
 
 fn path() -> SearchPath {
     Kind::register(&RECORD).unwrap();
     let mut tables = fretwork_laws::plugins();
-    tables.push(table());
-    // SAFETY: tables of the shipped laws and the one above are static.
-    let laws = unsafe { BuiltInLaws::from_tables(tables) };
-    SearchPath::new(&[]).with_built_in(laws)
+    tables.push(law());
+    SearchPath::new(&[]).with_built_in(BuiltInLaws::new(tables))
 }
 
 /// All bits of the state after so many steps, and the largest difference between the record and the

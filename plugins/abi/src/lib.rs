@@ -370,3 +370,27 @@ pub struct FwPlugin {
 
 /// The entry function's type.
 pub type FwEntry = unsafe extern "C" fn() -> *const FwPlugin;
+
+/// The table of a law that is linked into a program, as a static: the macro `plugin_table!` of the
+/// crate `fretwork-law` makes it.
+#[derive(Debug)]
+pub struct LinkedLaw(FwPlugin);
+
+// SAFETY: the table is never written; its pointers are to static text and functions.
+unsafe impl Sync for LinkedLaw {}
+
+impl LinkedLaw {
+    /// A law by its table.
+    ///
+    /// # Safety
+    /// All pointers of the table must be valid as long as the program runs, and its functions must
+    /// follow the interface.
+    pub const unsafe fn new(table: FwPlugin) -> Self {
+        Self(table)
+    }
+
+    /// Its table.
+    pub const fn table(&self) -> &FwPlugin {
+        &self.0
+    }
+}

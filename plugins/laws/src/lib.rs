@@ -121,13 +121,13 @@ macro_rules! tables {
     ($($kind:ident: $($module:ident::$law:ident),*;)*) => {
         vec![$($({
             fretwork_law::plugin_table!($kind crate::$kind::$module::$law);
-            &TABLE.0
+            &TABLE
         }),*),*]
     };
 }
 
-/// The plugin tables of all laws.
-pub fn plugins() -> Vec<&'static fretwork_law::abi::FwPlugin> {
+/// The tables of all laws.
+pub fn plugins() -> Vec<&'static fretwork_law::abi::LinkedLaw> {
     laws!(tables)
 }
 

@@ -1,13 +1,5 @@
 //! The macros that describe parameters and export a law.
 
-use fretwork_abi::FwPlugin;
-
-/// A table that can be stored in a static.
-pub struct Table(pub FwPlugin);
-
-// SAFETY: the table is never written; its pointers are to static text and functions.
-unsafe impl Sync for Table {}
-
 /// Builds the schema of internal variables at compile time.
 pub const fn variables<const N: usize>(list: &[crate::Variable]) -> [fretwork_abi::FwField; N] {
     let blank = fretwork_abi::FwField {
@@ -96,7 +88,7 @@ macro_rules! export {
             /// The plugin's entry function.
             #[unsafe(no_mangle)]
             pub extern "C" fn fretwork_plugin() -> *const $crate::abi::FwPlugin {
-                &TABLE.0
+                TABLE.table()
             }
         };
     };
@@ -139,7 +131,8 @@ macro_rules! plugin_table {
         static VERSION: [u8; <$law>::VERSION.len() + 1] = $crate::table::terminated(<$law>::VERSION);
         static DOC: [u8; <$law>::DOC.len() + 1] = $crate::table::terminated(<$law>::DOC);
         static REFERENCE: [u8; <$law>::REFERENCE.len() + 1] = $crate::table::terminated(<$law>::REFERENCE);
-        static TABLE: $crate::table::Table = $crate::table::Table($crate::abi::FwPlugin {
+        // SAFETY: names, schemas and functions are static, and the functions are those of the wrapper.
+        static TABLE: $crate::abi::LinkedLaw = unsafe { $crate::abi::LinkedLaw::new($crate::abi::FwPlugin {
             size: core::mem::size_of::<$crate::abi::FwPlugin>(),
             abi_major: $crate::abi::ABI_MAJOR,
             abi_minor: $crate::abi::ABI_MINOR,
@@ -162,7 +155,7 @@ macro_rules! plugin_table {
             commit: $commit,
             energy: $energy,
             fracture_energy: Some($crate::border::fracture_energy::<$law>),
-        });
+        }) };
     };
 }
 

@@ -5,10 +5,11 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
 use crate::step::ProcessState;
-use crate::view::Paint;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
+use fretwork_observe::output::REPORT;
+use fretwork_observe::picture::Paint;
 use fretwork_observe::summary::TimeSpent;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -66,7 +67,7 @@ impl Recorder<'_> {
         self.write_frame(kind, state)?;
         // Remove the marker of a finished earlier run, and its page: from now on this folder holds
         // an unfinished one.
-        for path in [LAST, fretwork_view::FILE].map(|name| self.out.join(name)) {
+        for path in [LAST, REPORT].map(|name| self.out.join(name)) {
             match std::fs::remove_file(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
                     return Err(unwritable(&path, &e));

@@ -2,15 +2,18 @@
 //! figures of the program, and the pictures and files that observers name (`picture_names`,
 //! `file_names`). No other files are removed.
 
-use super::frame::PICTURES;
 use super::{RunError, unwritable};
 use fretwork_observe::Observers;
 use fretwork_observe::chart::Figure;
+use fretwork_observe::output::REPORT;
 use std::path::Path;
+
+/// Name prefixes of pictures: `frames/NAME_STEP.png`.
+const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 /// Names of the figures at the end of a run that no observer names, and its report.
 pub(super) const FIGURES: [&str; 11] = [
-    fretwork_view::FILE,
+    REPORT,
     "damage_ratio.png",
     "fretting_loops.png",
     "friction_coefficient.png",

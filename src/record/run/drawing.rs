@@ -1,8 +1,11 @@
 //! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go
 //! on.
 
-use crate::view::{Chart, DrawError, Frame, draw_panels, noted};
-use std::path::PathBuf;
+use super::RunError;
+pub(super) use crate::view::noted;
+pub(super) use crate::view::picture::Camera;
+use crate::view::{Chart, DrawError, Figure, Frame, draw_panels};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
 
@@ -19,6 +22,14 @@ pub(super) struct Picture {
 pub(super) enum Shows {
     Scene(Box<Frame>),
     Charts(Vec<Chart>),
+}
+
+/// Draws a figure whose rows are known.
+///
+/// # Errors
+/// The file cannot be written.
+pub(super) fn draw_figure(figure: &Figure, path: &Path) -> Result<(), RunError> {
+    Ok(draw_panels(&figure.headed(), figure.columns, path)?)
 }
 
 impl Picture {
@@ -41,7 +52,7 @@ impl Drawing {
     ///
     /// # Errors
     /// One of those could not be written.
-    pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), DrawError> {
+    pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), RunError> {
         self.wait()?;
         let pictures = Arc::new(pictures);
         let theirs = Arc::clone(&pictures);
@@ -58,10 +69,10 @@ impl Drawing {
     ///
     /// # Errors
     /// One could not be written.
-    pub fn wait(&mut self) -> Result<(), DrawError> {
+    pub fn wait(&mut self) -> Result<(), RunError> {
         match self.thread.take().map(JoinHandle::join) {
             None => Ok(()),
-            Some(Ok(drawn)) => drawn,
+            Some(Ok(drawn)) => Ok(drawn?),
             Some(Err(panic)) => std::panic::resume_unwind(panic),
         }
     }

@@ -1,5 +1,6 @@
 //! End of a run: summary, figures and final output.
 
+use super::drawing::{draw_figure, noted};
 use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
@@ -9,9 +10,9 @@ use crate::record::output::Output;
 use crate::record::quantity::unit::ONE;
 use crate::record::quantity::{Findings, Role, Topic};
 use crate::record::summary::Uncertainty;
-use crate::view::{Figure, TableColumns, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::accuracy::report_accuracy;
+use fretwork_observe::chart::{Figure, TableColumns};
 use fretwork_observe::statistics::Table;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -109,7 +110,7 @@ impl Recorder<'_> {
             |t| &mut t.pictures,
             |run| {
                 let figures = run.draw(wall);
-                run.drawing.wait().map_err(RunError::from).and(figures)
+                run.drawing.wait().and(figures)
             },
         );
         written.and(drawn)
@@ -169,7 +170,7 @@ pub fn write_outputs(folder: &Path, outputs: &[Output], table: &Table) -> Result
         Output::Figure(figure) => {
             let figure = figure.resolve(&TableColumns::of(table));
             let path = folder.join(format!("{}.png", figure.name));
-            Ok(draw_panels(&figure.headed(), figure.columns, &path)?)
+            draw_figure(&figure, &path)
         }
     })
 }

@@ -5,7 +5,6 @@ use crate::record::code::CodeError;
 use crate::record::results::ResultsError;
 use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
-use crate::view::DrawError;
 use fretwork_observe::accuracy::PartError;
 use fretwork_observe::observer::RowError;
 use fretwork_store::folder_lock::LockError;
@@ -66,8 +65,9 @@ pub enum RunError {
     #[error(transparent)]
     Results(#[from] ResultsError),
     /// A picture failed.
+    #[cfg(feature = "view")]
     #[error(transparent)]
-    Picture(#[from] DrawError),
+    Picture(#[from] crate::view::DrawError),
     /// A run cannot be resumed.
     #[error(transparent)]
     Resume(#[from] ResumeError),

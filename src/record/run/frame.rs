@@ -2,13 +2,10 @@
 
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
-use crate::view::quantity;
+use fretwork_observe::chart::quantity;
 use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
 use std::path::PathBuf;
-
-/// Name prefixes of pictures: `frames/NAME_STEP.png`.
-pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 impl Recorder<'_> {
     /// Starts to draw the pictures of a step, while the following steps are computed.
@@ -55,7 +52,7 @@ impl Recorder<'_> {
             notice: notice.clone(),
         });
         let pictures = pictures.collect();
-        Ok(self.drawing.begin(pictures)?)
+        self.drawing.begin(pictures)
     }
 
     fn picture_path(&self, name: &str, step: u64) -> PathBuf {

@@ -2,11 +2,16 @@
 
 mod checkpoints;
 mod clear;
+#[cfg(feature = "view")]
+mod drawing;
+#[cfg(not(feature = "view"))]
+#[path = "not_drawing.rs"]
 mod drawing;
 mod dump;
 mod emergency;
 mod end;
 mod error;
+#[cfg(feature = "view")]
 mod frame;
 mod names;
 mod notice;
@@ -18,13 +23,12 @@ pub use self::end::write_outputs;
 pub use self::error::RunError;
 pub use self::names::check_names;
 
-use self::drawing::Drawing;
+use self::drawing::{Camera, Drawing};
 use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
 use self::stamps::{density_of, stamps};
 use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
-use super::picture::Camera;
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};

@@ -4,14 +4,13 @@ use crate::certify::{Certificate, certify_apart, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
-use crate::shipped::search_path;
 
 /// The laws of a run, each listed once, and whether each passes certification with its parameters.
 /// A damage law is tested with the cohesion law beside it if that passes itself, other laws with
 /// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut known = Known {
-        path: search_path(),
+        path: partners(),
         found: Vec::new(),
     };
     let mut stamps: Vec<PluginStamp> = Vec::new();
@@ -41,6 +40,14 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
         }
     }
     stamps
+}
+
+/// Where partners for tests of laws are found.
+fn partners() -> SearchPath {
+    #[cfg(feature = "laws")]
+    return crate::shipped::search_path();
+    #[cfg(not(feature = "laws"))]
+    SearchPath::new(&[])
 }
 
 /// The libraries that a law links to, each with its SHA-256.

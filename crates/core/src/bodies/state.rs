@@ -314,9 +314,9 @@ impl<S: Space> Bodies<S> {
     }
 
     /// Iterates over the grains.
-    pub fn grains(&self) -> impl Iterator<Item = usize> {
+    pub fn grains(&self) -> impl Iterator<Item = usize> + use<S> {
         let grain = self.grain_flags();
-        (0..self.len()).filter(move |b| grain[*b])
+        (0..grain.len()).filter(move |b| grain[*b])
     }
 
     /// Returns the kinetic energy of a body (J).

@@ -1,11 +1,11 @@
-//! Laws linked into the program, for installations without the plugin libraries. The program passes
-//! their tables to the core, which refers to no law by name.
+//! Laws linked into the program, which needs no libraries for them. The program passes their tables
+//! to the core, which refers to no law by name.
 
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
 use super::linked::hex;
-use fretwork_abi::FwPlugin;
+use fretwork_abi::LinkedLaw;
 use sha2::{Digest, Sha256};
 use std::ffi::CStr;
 use std::io::Read;
@@ -13,16 +13,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// A linked-in law.
+#[derive(Clone)]
 struct Entry {
     kind: Kind,
     name: String,
-    table: &'static FwPlugin,
+    law: &'static LinkedLaw,
 }
-
-// SAFETY: tables are static and never written.
-unsafe impl Send for Entry {}
-// SAFETY: as above.
-unsafe impl Sync for Entry {}
 
 /// The laws linked into a program; empty by default.
 #[derive(Clone, Default)]
@@ -35,23 +31,25 @@ impl std::fmt::Debug for BuiltInLaws {
 }
 
 impl BuiltInLaws {
-    /// Collects the laws of these tables, leaving out those whose kind or name cannot be read.
-    ///
-    /// # Safety
-    /// Each table must have been made by `plugin_table!` of the crate `fretwork-law`, for the
-    /// interface version this program is built with: its pointers are dereferenced.
-    pub unsafe fn from_tables(tables: impl IntoIterator<Item = &'static FwPlugin>) -> Self {
-        let known = tables.into_iter().filter_map(|table| {
-            // SAFETY: the caller guarantees tables of the wrapper, whose names are NUL-terminated
-            // static text.
-            let name = unsafe { CStr::from_ptr(table.name) };
+    /// Laws of a program: the statics `TABLE` that `plugin_table!` of the crate `fretwork-law` makes.
+    /// Those whose kind or name cannot be read are left out.
+    pub fn new(laws: impl IntoIterator<Item = &'static LinkedLaw>) -> Self {
+        let known = laws.into_iter().filter_map(|law| {
+            // SAFETY: the name of a linked law is NUL-terminated static text.
+            let name = unsafe { CStr::from_ptr(law.table().name) };
             Some(Entry {
-                kind: Kind::from_code(table.kind)?,
+                kind: Kind::from_code(law.table().kind)?,
                 name: name.to_str().ok()?.to_owned(),
-                table,
+                law,
             })
         });
         Self(known.collect())
+    }
+
+    /// These laws, then others; of two of one kind and name the first is found.
+    #[must_use]
+    pub fn and(&self, others: &Self) -> Self {
+        Self(self.0.iter().chain(others.0.iter()).cloned().collect())
     }
 
     /// Iterates over the kinds and names of all laws.
@@ -64,8 +62,8 @@ impl BuiltInLaws {
     pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
         let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
         Some(executable().and_then(|(path, sha256)| {
-            // SAFETY: a static table of the wrapper, of this version, see `from_tables`.
-            unsafe { Plugin::from_table(entry.table, path, sha256, true) }
+            // SAFETY: the table of a linked law is static and follows the interface of this version.
+            unsafe { Plugin::from_table(entry.law.table(), path, sha256, true) }
         }))
     }
 }

@@ -37,7 +37,7 @@ macro_rules! sample {
         $(#[$doc])*
         pub(crate) fn $name() -> Loaded {
             plugin_table!($kind $law);
-            loaded(&TABLE.0)
+            loaded(TABLE.table())
         }
     };
 }

@@ -55,11 +55,11 @@ impl SearchPath {
         }
     }
 
-    /// Adds laws that are linked into the program.
+    /// Adds laws that are linked into the program, after those that were added before.
     #[must_use]
     pub fn with_built_in(self, laws: BuiltInLaws) -> Self {
         Self {
-            built_in: laws,
+            built_in: self.built_in.and(&laws),
             ..self
         }
     }

@@ -224,8 +224,7 @@ mod tests {
     /// 218 (2004) 467-478.
     #[test]
     fn the_map_is_that_of_the_law() {
-        // SAFETY: the crate compiles the shipped laws with `plugin_table!` of this workspace.
-        let shipped = unsafe { BuiltInLaws::from_tables(fretwork_laws::plugins()) };
+        let shipped = BuiltInLaws::new(fretwork_laws::plugins());
         let laws = SearchPath::new(&[]).with_built_in(shipped);
         for (x, regime, mass) in [
             (5.0, "mild", 26.5),

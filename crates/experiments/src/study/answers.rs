@@ -1,5 +1,6 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
+use super::files::PARQUET;
 use super::forecast::Forecast;
 use super::plan::{Plan, Point};
 use super::rows::Rows;
@@ -133,8 +134,12 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
         let _ = write!(out, ", {} not run", counts.missing);
     }
     let picture = drawn.then_some("study.png");
-    let tables = ["table.csv", "table.parquet", "settings.csv"];
-    let names = ["study.html"].into_iter().chain(picture).chain(tables);
+    let pages = ["study.html"].into_iter().chain(picture);
+    let parquet = cfg!(feature = "parquet").then_some(PARQUET);
+    let names = pages
+        .chain(["table.csv"])
+        .chain(parquet)
+        .chain(["settings.csv"]);
     let folder = plan.out.display();
     let files: Vec<String> = names.map(|name| format!("{folder}/{name}")).collect();
     let _ = write!(out, "\n{}", files.join(", "));

@@ -7,8 +7,11 @@ use super::plan::Plan;
 use super::rows::Rows;
 use super::settings::settings;
 use crate::Error;
-use crate::table::{csv, parquet};
+use crate::table::csv;
 use std::collections::BTreeSet;
+
+/// The table as a Parquet file, where the crate has the feature `parquet`.
+pub(super) const PARQUET: &str = "table.parquet";
 
 /// Writes what the runs of a study say into its folder; returns whether there is a picture.
 ///
@@ -26,7 +29,8 @@ pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
     }
     let path = |name: &str| plan.out.join(name);
     csv::write(&rows.table, &path("table.csv"), csv::Numbers::Plain)?;
-    parquet::write(&rows.table, &path("table.parquet"))?;
+    #[cfg(feature = "parquet")]
+    crate::table::parquet::write(&rows.table, &path(PARQUET))?;
     let analysis = Analysis::of(plan, &plan.design, rows);
     let settings = settings(plan, &analysis);
     csv::write(&settings, &path("settings.csv"), csv::Numbers::Plain)?;

@@ -2,6 +2,7 @@
 
 pub mod cells;
 pub mod csv;
+#[cfg(feature = "parquet")]
 pub mod parquet;
 
 /// A value of a table.

@@ -26,8 +26,7 @@ pub use sheet::{Block, Section, Sheet, SheetTable};
 use folder::RunFolder;
 use std::path::{Path, PathBuf};
 
-/// Name of the report in the folder of a run.
-pub const FILE: &str = "report.html";
+pub use fretwork_observe::output::REPORT as FILE;
 
 /// Default size of a page in bytes.
 pub const DEFAULT_BYTES: usize = 5_000_000;

@@ -1,0 +1,63 @@
+//! In place of drawing where the feature `view` is off: a run makes no pictures. Its figures stand
+//! as data in `figures.json` all the same.
+
+use super::{Recorder, RunError};
+use crate::scene::case::OutputSpec;
+use crate::step::InDimension;
+use fretwork_observe::chart::Figure;
+use fretwork_observe::picture::Paint;
+use std::path::Path;
+
+/// The colours of layers that a resumed run has from its checkpoint.
+#[derive(Debug, Default)]
+pub(super) struct Camera(Vec<Paint>);
+
+impl Camera {
+    pub fn new(_: InDimension<'_>, _: &OutputSpec) -> Self {
+        Self::default()
+    }
+
+    pub fn assign_layers(&mut self, _: InDimension<'_>) {}
+
+    pub fn paints(&self) -> &[Paint] {
+        &self.0
+    }
+
+    pub fn paint(&mut self, paints: Vec<Paint>) {
+        self.0 = paints;
+    }
+}
+
+#[derive(Debug, Default)]
+pub(super) struct Drawing;
+
+impl Drawing {
+    #[expect(
+        clippy::unused_self,
+        clippy::unnecessary_wraps,
+        reason = "as where pictures are drawn"
+    )]
+    pub fn wait(&mut self) -> Result<(), RunError> {
+        Ok(())
+    }
+}
+
+pub(super) fn noted<T>(_: Option<String>, draw: impl FnOnce() -> T) -> T {
+    draw()
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "as where figures are drawn")]
+pub(super) fn draw_figure(_: &Figure, _: &Path) -> Result<(), RunError> {
+    Ok(())
+}
+
+impl Recorder<'_> {
+    #[expect(
+        clippy::unused_self,
+        clippy::unnecessary_wraps,
+        reason = "as where pictures are drawn"
+    )]
+    pub(super) fn draw_pictures(&mut self, _: u64) -> Result<(), RunError> {
+        Ok(())
+    }
+}
