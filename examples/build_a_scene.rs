@@ -69,10 +69,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Built: laws are found and checked, grains are placed.
     let built = loaded.build(&fretwork::shipped::search_path())?;
     let (simulation, grains) = (&built.simulation, built.simulation.grains());
-    println!("{} bodies of {} materials", simulation.bodies().len(), built.materials.len());
+    println!(
+        "{} bodies of {} materials",
+        simulation.bodies().len(),
+        built.materials.len()
+    );
     assert_eq!(grains.len(), 100);
     let volume = 4.0 / 3.0 * std::f64::consts::PI * 2e-3_f64.powi(3);
-    let mass: f64 = grains.iter().map(|grain| simulation.bodies().mass[*grain]).sum();
+    let mass: f64 = grains
+        .iter()
+        .map(|grain| simulation.bodies().mass[*grain])
+        .sum();
     assert!((mass / (100.0 * 2500.0 * volume) - 1.0).abs() < 1e-12);
     Ok(())
 }

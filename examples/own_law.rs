@@ -70,11 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let speed = |t: f64| ((v_0 + mu_0 / c) * (-g * c * t).exp() - mu_0 / c).max(0.0);
     let ended = simulation.run_until(1.0, |now, _| {
         let (v, expected) = (now.motion(0).velocity[0], speed(now.time()));
-        assert!(
-            (v - expected).abs() < 1e-3 * v_0,
-            "{v} at {} s",
-            now.time()
-        );
+        assert!((v - expected).abs() < 1e-3 * v_0, "{v} at {} s", now.time());
         if v.abs() < 1e-9 {
             return ControlFlow::Break(now.time());
         }

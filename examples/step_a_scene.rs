@@ -38,12 +38,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut simulation = case.build(&fretwork::shipped::search_path())?.simulation;
 
     // Step by step to the end, or until the callback breaks: here after 2 mm of sliding.
-    let slider = simulation.bodies().driven_named("slider").ok_or("no slider")?.body as usize;
+    let slider = simulation
+        .bodies()
+        .driven_named("slider")
+        .ok_or("no slider")?
+        .body as usize;
     let start = simulation.motion(slider).position[0];
     let mut friction = Vec::new();
     let end = simulation.run_until(0.05, |now, report| {
         assert!(report.solver.converged);
-        friction.extend(now.contact_force_on("slider").map(|[force, _moment]| -force[0]));
+        friction.extend(
+            now.contact_force_on("slider")
+                .map(|[force, _moment]| -force[0]),
+        );
         if now.motion(slider).position[0] - start >= 2e-3 {
             return ControlFlow::Break("slid far enough");
         }
