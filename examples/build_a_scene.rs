@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .time(1e-5, 1e-3)
         .seed(1)
         .gravity([0.0, 0.0, -9.81])
-        .periodic([Some(0.04), Some(0.04), None]) // along x and y (m)
+        .periodic([Some(0.05), Some(0.05), None]) // along x and y (m)
         .material("glass", "glass_bead")
         .material("steel", "rail_steel_r260")
         .interface(
@@ -44,10 +44,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )
         .grains(GrainSpec::lattice(
             "glass",
-            100,
+            144,
             (2e-3, 2e-3),
             [0.0; 3],
-            [0.04, 0.04, 4e-3],
+            [0.05, 0.05, 0.02],
         ))
         .change(|case| case.output.figures = false) // all fields of a case are public
         .case();
@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(read(&[])?.case, case);
 
     // The options `--set` of the program. What is wrong is said with its line and column.
-    let loaded = read(&["interfaces.inside.contact.mu=0.5".to_owned()])?;
+    let loaded = read(&["interfaces.inside.parameters.contact.mu=0.5".to_owned()])?;
     assert_ne!(loaded.case, case);
     let Err(error) = read(&["time.stop=1.0".to_owned()]) else {
         return Err("a key that no case has was taken".into());
@@ -74,13 +74,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         simulation.bodies().len(),
         built.materials.len()
     );
-    assert_eq!(grains.len(), 100);
+    assert_eq!(grains.len(), 144);
     let volume = 4.0 / 3.0 * std::f64::consts::PI * 2e-3_f64.powi(3);
     let mass: f64 = grains
         .iter()
         .map(|grain| simulation.bodies().mass[*grain])
         .sum();
-    assert!((mass / (100.0 * 2500.0 * volume) - 1.0).abs() < 1e-12);
+    assert!((mass / (144.0 * 2500.0 * volume) - 1.0).abs() < 1e-12);
     Ok(())
 }
 

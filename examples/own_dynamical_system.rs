@@ -60,8 +60,8 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
     }
 
     fn advance(&mut self, time: f64) {
-        for k in 0..2 {
-            self.displacement[k] += time * self.velocity[k];
+        for (x, v) in self.displacement.iter_mut().zip(self.velocity) {
+            *x += time * v;
         }
     }
 
@@ -79,8 +79,8 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
     }
 
     fn solve(&self, impulse: &mut [f64]) {
-        for k in 0..2 {
-            impulse[k] *= self.inverse[k];
+        for (p, inverse) in impulse.iter_mut().zip(self.inverse) {
+            *p *= inverse;
         }
     }
 
@@ -121,9 +121,8 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
     }
 
     fn add_impulse(&self, _: u32, impulse: &Vector, generalised: &mut [f64]) {
-        for k in 0..2 {
-            generalised[k] += impulse[k];
-        }
+        generalised[0] += impulse[0];
+        generalised[1] += impulse[1];
     }
 
     fn contactors(&self) -> Vec<Contactor> {
@@ -182,8 +181,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         inverse: [0.0; 2],
     }));
 
-    // It sticks to x = mu m g/k and goes on from there with the velocity of the belt: x = mu m g/k +
-    // v/w sin(w t), w = sqrt(k/m).
+    // It sticks to x = mu m g/k and goes on from there with the velocity v of the belt:
+    // x = mu m g/k + v/w sin(w t), w = sqrt(k/m).
     let hold = mu * mass * g / stiffness;
     let omega = (stiffness / mass).sqrt();
     let mut furthest: f64 = 0.0;

@@ -30,7 +30,9 @@ impl Observer for Fastest {
 
     fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
         let doc = "highest speed of a body in the run";
-        found.add("speed.highest", self.0, SPEED, doc).headline("highest speed");
+        found
+            .add("speed.highest", self.0, SPEED, doc)
+            .headline("highest speed");
     }
 }
 
@@ -56,7 +58,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The first ball ends at sqrt(3^2 + (g t)^2), the second began with 4 m/s, less g h after the
     // first step.
     let expected = 3f64.hypot(9.81 * 0.3).max(4.0 - 9.81e-3);
-    let found = summary.found.number("speed.highest").ok_or("it is not reported")?;
+    let found = summary
+        .found
+        .number("speed.highest")
+        .ok_or("it is not reported")?;
     println!("highest speed {found:.4} m/s");
     assert!((found - expected).abs() < 1e-9 * expected);
 

@@ -28,11 +28,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{rows} rows of kinetic energy ({unit}): {doc}");
     assert_eq!((rows, unit.as_str()), (600, "J"));
     // Impacts with a coefficient of restitution of 1 lose no energy.
-    assert!(kinetic.iter().all(|energy| (energy / kinetic[0] - 1.0).abs() < 1e-9));
+    assert!(
+        kinetic
+            .iter()
+            .all(|energy| (energy / kinetic[0] - 1.0).abs() < 1e-9)
+    );
 
     // The last recorded state, with identities, radii, positions and velocities of the grains.
     let last = state::read(&path, None, 3)?;
-    let speeds: Vec<f64> = last.grains.iter().map(|grain| grain.motion.velocity[0]).collect();
+    let speeds: Vec<f64> = last
+        .grains
+        .iter()
+        .map(|grain| grain.motion.velocity[0])
+        .collect();
     println!("velocities at {} s: {speeds:.6?}", last.time);
     for (speed, expected) in speeds.iter().zip([0.0, 0.0, 0.0, 1.0, 1.0]) {
         assert!((speed - expected).abs() < 1e-9, "{speeds:?}");

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // second sticks: p = -q/w.
     for method in [Method::Nlgs, Method::Newton] {
         let limits = Limits {
-            tolerance: 1e-12,
+            tolerance: 1e-10,
             scale_free: None,
             max_iterations: 1000,
             seconds: 10.0,

@@ -1,7 +1,9 @@
 //! Pictures of the scene during a run.
 
 use super::drawing::{self, Picture};
+use super::notice::band;
 use super::{Recorder, RunError};
+use crate::record::summary::Summary;
 use fretwork_observe::chart::quantity;
 use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
@@ -58,5 +60,15 @@ impl Recorder<'_> {
     fn picture_path(&self, name: &str, step: u64) -> PathBuf {
         let frames = self.out.join("frames");
         frames.join(format!("{name}_{step:08}.png"))
+    }
+
+    /// Text of the band over a picture during the run, as far as known.
+    fn notice(&mut self) -> Option<String> {
+        self.observers.before_step(self.simulation.view());
+        let mut now = Summary {
+            run: self.summary.run.clone(),
+            found: self.observers.report_so_far(self.simulation.dimension()),
+        };
+        band(&now.check())
     }
 }

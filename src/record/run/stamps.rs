@@ -43,10 +43,13 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
 }
 
 /// Where partners for tests of laws are found.
+#[cfg(feature = "laws")]
 fn partners() -> SearchPath {
-    #[cfg(feature = "laws")]
-    return crate::shipped::search_path();
-    #[cfg(not(feature = "laws"))]
+    crate::shipped::search_path()
+}
+
+#[cfg(not(feature = "laws"))]
+fn partners() -> SearchPath {
     SearchPath::new(&[])
 }
 
