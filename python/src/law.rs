@@ -3,7 +3,7 @@
 //! Answers are JSON, which the Python side makes into its own types.
 
 use crate::search::search_path;
-use fretwork::certify::certify_apart;
+use fretwork::certify::certify_in_child;
 use fretwork::laws::search::Place;
 use fretwork::laws::{Field, Kind, LawError, Plugin, SearchPath};
 use fretwork::program;
@@ -74,7 +74,7 @@ fn certify_law(
             return Err(PyValueError::new_err(message));
         };
         let certificate =
-            certify_apart(law, &values(law, &parameters)?, None, &path).map_err(wrong)?;
+            certify_in_child(law, &values(law, &parameters)?, None, &path).map_err(wrong)?;
         serde_json::to_string(&certificate).map_err(|e| PyRuntimeError::new_err(e.to_string()))
     })
 }

@@ -25,7 +25,7 @@ pub use self::report::make as make_report;
 pub use self::run::{default_folder, place as place_of};
 pub use fretwork_view::{ReportError, compare as compare_runs};
 
-use crate::certify::{CERTIFY_APART, certify_asked};
+use crate::certify::{CERTIFY_IN_CHILD, certify_requested};
 use crate::experiments::Program;
 use crate::laws::watch::{Saved, watch};
 use crate::laws::{LawError, SearchPath, child, library, loading};
@@ -103,8 +103,8 @@ enum Command {
     #[command(name = loading::TRY_LIBRARIES, hide = true)]
     TryLibraries(ChildArgs),
     /// Internal: certifies a law in a separate process
-    #[command(name = CERTIFY_APART, hide = true)]
-    CertifyApart(ChildArgs),
+    #[command(name = CERTIFY_IN_CHILD, hide = true)]
+    CertifyInChild(ChildArgs),
 }
 
 /// Arguments of internal subcommands.
@@ -321,6 +321,6 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Fit(args) => fit::fit(&args),
         Command::Trade(args) => trade::trade(&args),
         Command::TryLibraries(args) => args.help(library::try_libraries),
-        Command::CertifyApart(args) => args.help(|| certify_asked(&built_in())),
+        Command::CertifyInChild(args) => args.help(|| certify_requested(&built_in())),
     }
 }

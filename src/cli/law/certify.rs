@@ -3,7 +3,7 @@
 use super::super::output::{answer, answer_json};
 use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
-use crate::certify::{Certificate, Outcome, certify_apart as test};
+use crate::certify::{Certificate, Outcome, certify_in_child as test};
 use crate::laws::{Plugin, SearchPath};
 use clap::Args;
 use std::fmt::Write as _;

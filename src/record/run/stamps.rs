@@ -1,6 +1,6 @@
 //! Metadata of a run: the certification of its laws, and the density of its first bodies.
 
-use crate::certify::{Certificate, certify_apart, certify_parameters};
+use crate::certify::{Certificate, certify_in_child, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
@@ -108,7 +108,7 @@ impl Known {
         let test: Test = if trusted {
             certify_parameters
         } else {
-            certify_apart
+            certify_in_child
         };
         let made = test(&law.plugin, &law.parameters, partner, &self.path);
         let certified = made.is_ok_and(|c| c.certified());

@@ -1,6 +1,6 @@
 //! Checks of laws with an opening: cohesion and damage.
 
-use super::rig::{Rig, pull, work};
+use super::rig::{Rig, pull};
 use super::{Check, Line};
 use crate::laws::bench::{Answer, Motion};
 use crate::laws::{Kind, LawError};
@@ -33,7 +33,7 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
         let motions: Vec<Motion> = (0..=N)
             .map(|k| pull(reach * k as f64 / N as f64, angle))
             .collect();
-        let (answers, _) = rig.drive(&motions, 1.0)?;
+        let answers = rig.drive(&motions, 1.0)?;
         if answers.iter().any(|a| a.damage > 0.0) {
             continue;
         }
@@ -79,17 +79,17 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
     }
     // An unbounded tail is cut where it is negligible.
     let end = rig.end.unwrap_or(1e3 * rig.onset);
-    let (mut worst, mut said) = (0.0f64, String::new());
+    let (mut worst, mut areas) = (0.0f64, String::new());
     for (angle, declared) in modes {
         // Fine steps up to three times the onset, then geometric ones until well past the end.
         let near = (1..=20_000).map(|k| 3.0 * rig.onset * f64::from(k) / 20_000.0);
         let decades = (30.0 * end / (3.0 * rig.onset)).max(1.0).ln();
         let far = (1..=20_000).map(|k| 3.0 * rig.onset * (decades * f64::from(k) / 20_000.0).exp());
         let motions: Vec<Motion> = near.chain(far).map(|u| pull(u, angle)).collect();
-        let (answers, _) = rig.drive(&motions, 1.0)?;
-        let area = area(&motions, &answers);
+        let answers = rig.drive(&motions, 1.0)?;
+        let area = increments(&motions, &answers).sum::<f64>();
         worst = worst.max((area / declared - 1.0).abs());
-        said += &format!(
+        areas += &format!(
             " {area:.6e} for {declared:.6e} at {:.0} deg,",
             angle.to_degrees()
         );
@@ -100,19 +100,22 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
         NAME,
         worst,
         2e-3,
-        format!("area under a pull{said} worst relative error"),
+        format!("area under a pull{areas} worst relative error"),
     ))
 }
 
-fn area(motions: &[Motion], answers: &[Answer]) -> f64 {
-    let start = (Motion::default(), Answer::default());
-    let mut last = (&start.0, &start.1);
-    let mut sum = 0.0;
-    for now in motions.iter().zip(answers) {
-        sum += work(last.0, now.0, last.1, now.1);
-        last = now;
-    }
-    sum
+/// Returns the work per area done on a new bond in each step, by the trapezoidal rule (J/m^2).
+fn increments(motions: &[Motion], answers: &[Answer]) -> impl Iterator<Item = f64> {
+    let mut last = (Motion::default(), Answer::default());
+    motions.iter().zip(answers).map(move |(to, b)| {
+        let (from, a) = std::mem::replace(&mut last, (*to, *b));
+        let mut sum = 0.0;
+        for k in 0..3 {
+            sum += 0.5 * (a.traction[k] + b.traction[k]) * (to.opening[k] - from.opening[k]);
+            sum += 0.5 * (a.moment[k] + b.moment[k]) * (to.rotation[k] - from.rotation[k]);
+        }
+        sum
+    })
 }
 
 /// Checks on random walks that dissipation, work minus stored energy, never decreases.
@@ -121,17 +124,14 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
     let walks = (0..24).map(|seed| rig.walk(seed, 800, 0.02));
     let paths: Vec<Vec<Motion>> = walks.chain(loops(rig)).collect();
     for motions in paths {
-        let (answers, _) = rig.drive(&motions, 1e-3)?;
-        let start = (Motion::default(), Answer::default());
-        let mut last = (&start.0, &start.1);
-        let (mut given, mut most, mut scale, mut fall) = (0.0, 0.0f64, 0.0f64, 0.0f64);
-        for now in motions.iter().zip(&answers) {
-            given += work(last.0, now.0, last.1, now.1);
-            last = now;
-            let lost = given - now.1.stored;
-            scale = scale.max(now.1.stored.abs());
-            fall = fall.max(most - lost);
-            most = most.max(lost);
+        let answers = rig.drive(&motions, 1e-3)?;
+        let (mut work, mut most, mut scale, mut fall) = (0.0, 0.0f64, 0.0f64, 0.0f64);
+        for (increment, answer) in increments(&motions, &answers).zip(&answers) {
+            work += increment;
+            let dissipated = work - answer.stored;
+            scale = scale.max(answer.stored.abs());
+            fall = fall.max(most - dissipated);
+            most = most.max(dissipated);
         }
         worst = worst.max(fall / scale.max(f64::MIN_POSITIVE));
     }
@@ -174,19 +174,17 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     }
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
-        let at = [pull(0.5 * rig.onset, angle)];
-        let whole = rig.bench.step(&mut [rig.bench.fresh()], &at, 1e-9)?[0];
-        let scale = whole
-            .traction
-            .iter()
-            .fold(f64::MIN_POSITIVE, |s, t| s.max(t.abs()));
+        let at = pull(0.5 * rig.onset, angle);
+        let fresh = rig.bench.fresh();
+        let intact = rig.bench.step_one(&mut fresh.clone(), &at, 1e-9)?.traction;
+        let scale = intact.iter().fold(f64::MIN_POSITIVE, |s, t| s.max(t.abs()));
         for damage in [0.3, 0.7, 1.0] {
-            let mut state = [rig.bench.fresh()];
-            state[0].damage = damage;
-            let hurt = rig.bench.step(&mut state, &at, 1e-9)?[0];
-            let left = (1.0f64 - damage).powf(m);
-            for (t, t0) in hurt.traction.iter().zip(whole.traction) {
-                worst = worst.max((t - left * t0).abs() / scale);
+            let mut state = fresh.clone();
+            state.damage = damage;
+            let damaged = rig.bench.step_one(&mut state, &at, 1e-9)?.traction;
+            let remaining = (1.0f64 - damage).powf(m);
+            for (t, t0) in damaged.iter().zip(intact) {
+                worst = worst.max((t - remaining * t0).abs() / scale);
             }
         }
     }
@@ -210,14 +208,12 @@ fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
     let (mut worst, mut highest, mut raw) = (0.0f64, 0.0f64, 0.0f64);
     for seed in 0..24 {
         let motions = rig.walk(100 + seed, 400, 0.3);
-        let mut state = [rig.bench.fresh()];
+        let mut state = rig.bench.fresh();
         for motion in &motions {
-            let before = state[0].damage;
-            let answer = rig
-                .bench
-                .step(&mut state, std::slice::from_ref(motion), 1e-3)?[0];
+            let before = state.damage;
+            let answer = rig.bench.step_one(&mut state, motion, 1e-3)?;
             // The host enforces that D does not decrease: the law's own value is checked.
-            raw = raw.max(before - rig.bench.said()[0]);
+            raw = raw.max(before - rig.bench.declared_damage()[0]);
             worst = worst.max(before - answer.damage);
             highest = highest.max(answer.damage);
         }
@@ -231,50 +227,27 @@ fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
 /// Checks that rotating the tangential axes rotates the result and changes nothing else.
 fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 300, 0.1);
-    let (c, s) = if rig.dimension() == 2 {
-        (-1.0, 0.0)
-    } else {
-        (0.8, 0.6)
+    let turned = motions.iter().map(|m| Motion {
+        opening: rig.turned(m.opening),
+        rotation: rig.turned(m.rotation),
+        ..*m
+    });
+    let turned: Vec<Motion> = turned.collect();
+    let plain = rig.drive(&motions, 1e-3)?;
+    let other = rig.drive(&turned, 1e-3)?;
+    let pairs = || plain.iter().zip(&other);
+    // Largest difference of a vector, relative to its largest component.
+    let difference = |of: fn(&Answer) -> [f64; 3]| {
+        let largest = plain.iter().flat_map(of);
+        let largest = largest.fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+        let vectors = pairs().flat_map(|(a, b)| rig.turned(of(a)).into_iter().zip(of(b)));
+        vectors.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs())) / largest
     };
-    let planar = rig.dimension() == 2;
-    let turned = |v: [f64; 3]| {
-        if planar {
-            [v[0], -v[1], 0.0]
-        } else {
-            [v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]]
-        }
-    };
-    let moved: Vec<Motion> = motions
-        .iter()
-        .map(|m| Motion {
-            opening: turned(m.opening),
-            rotation: turned(m.rotation),
-            ..*m
-        })
-        .collect();
-    let (plain, _) = rig.drive(&motions, 1e-3)?;
-    let (other, _) = rig.drive(&moved, 1e-3)?;
-    let (mut worst, mut scale) = (0.0f64, f64::MIN_POSITIVE);
-    for (a, b) in plain.iter().zip(&other) {
-        worst = worst.max((a.damage - b.damage).abs());
-        scale = a.traction.iter().fold(scale, |m, t| m.max(t.abs()));
-    }
-    let mut off = 0.0f64;
-    for (a, b) in plain.iter().zip(&other) {
-        for (x, y) in turned(a.traction).iter().zip(b.traction) {
-            off = off.max((x - y).abs());
-        }
-    }
-    let moment = |a: &Answer| a.moment.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let largest = plain.iter().map(moment).fold(f64::MIN_POSITIVE, f64::max);
-    for (a, b) in plain.iter().zip(&other) {
-        for (x, y) in turned(a.moment).iter().zip(b.moment) {
-            worst = worst.max((x - y).abs() / largest);
-        }
-    }
+    let damage = pairs().fold(0.0, |m: f64, (a, b)| m.max((a.damage - b.damage).abs()));
+    let worst = damage.max(difference(|a| a.traction));
     Ok(Line::below(
         "objectivity",
-        worst.max(off / scale),
+        worst.max(difference(|a| a.moment)),
         1e-8,
         "largest change of D, traction and moment when the tangential axes are rotated",
     ))
@@ -290,9 +263,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     /// Fraction of the golden ratio, whose multiples spread evenly over the places of the onset
     /// within a step.
     const SPREAD: f64 = 0.618_033_988_749_894_9;
-    let reach = rig.end.map_or(2.0 * rig.onset, |end| {
-        (2.0 * rig.onset).min(0.5 * (rig.onset + end))
-    });
+    let reach = before_failure(rig, 2.0);
     // The error of a pull depends on where within a step the onset falls, so that the order of one
     // pull is a matter of chance: that of the root mean square over several reaches is not.
     let mut squares = [0.0f64; HALVINGS as usize];
@@ -307,8 +278,8 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
             let motions: Vec<Motion> = (1..=n)
                 .map(|k| pull(reach * f64::from(k) / f64::from(n), 0.3))
                 .collect();
-            let (answers, _) = rig.drive(&motions, 1e-2 / f64::from(n))?;
-            energies.push(area(&motions, &answers));
+            let answers = rig.drive(&motions, 1e-2 / f64::from(n))?;
+            energies.push(increments(&motions, &answers).sum::<f64>());
         }
         for (sum, pair) in squares.iter_mut().zip(energies.windows(2)) {
             *sum += (pair[1] - pair[0]).powi(2) / f64::from(REACHES);
@@ -342,22 +313,21 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for (u, angle) in [(0.3, 0.0), (0.6, 0.7), (0.9, 1.4), (0.5, FRAC_PI_2)] {
         let u = u * rig.onset;
-        let mut state = [rig.bench.fresh()];
+        let mut state = rig.bench.fresh();
         let at = pull(u, angle);
-        let base = rig.bench.step(&mut state, &[at], 1e-3)?[0];
-        for (k, stiffness) in [(0, base.stiffness[0]), (1, base.stiffness[1])] {
+        let base = rig.bench.step_one(&mut state, &at, 1e-3)?;
+        for (k, stiffness) in base.stiffness.into_iter().enumerate().take(2) {
             if at.opening[k] <= 1e-9 * u {
                 continue;
             }
             let e = 1e-5 * u;
-            let mut slope = [0.0; 2];
-            for (side, out) in [(1.0, 0), (-1.0, 1)] {
+            let mut traction = |change: f64| -> Result<f64, LawError> {
                 let mut to = at;
-                to.opening[k] += side * e;
-                let mut probe = state.clone();
-                slope[out] = rig.bench.step(&mut probe, &[to], 1e-9)?[0].traction[k];
-            }
-            let slope = (slope[0] - slope[1]) / (2.0 * e);
+                to.opening[k] += change;
+                let answer = rig.bench.step_one(&mut state.clone(), &to, 1e-9)?;
+                Ok(answer.traction[k])
+            };
+            let slope = (traction(e)? - traction(-e)?) / (2.0 * e);
             let secant = base.traction[k] / at.opening[k];
             let scale = slope.abs().max(secant.abs()).max(f64::MIN_POSITIVE);
             // A softening traction has no positive tangent: zero or the secant are accepted.
@@ -382,32 +352,25 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
-        let top = rig.end.map_or(1.5 * rig.onset, |end| {
-            (1.5 * rig.onset).min(0.5 * (rig.onset + end))
-        });
-        let mut state = [rig.bench.fresh()];
+        let top = before_failure(rig, 1.5);
+        let mut state = rig.bench.fresh();
         for k in 1..=50 {
-            rig.bench
-                .step(&mut state, &[pull(top * f64::from(k) / 50.0, angle)], 1e-6)?;
+            let motion = pull(top * f64::from(k) / 50.0, angle);
+            rig.bench.step_one(&mut state, &motion, 1e-6)?;
         }
-        let go = |rig: &mut Rig, state: &mut [_; 1], u: f64| {
-            rig.bench
-                .step(state, &[pull(u, angle)], 1e-12)
-                .map(|a| a[0])
-        };
-        let up = go(rig, &mut state, top)?;
-        let half = go(rig, &mut state, 0.5 * top)?;
-        let none = go(rig, &mut state, 0.0)?;
-        let again = go(rig, &mut state, 0.5 * top)?;
-        let length = |a: &Answer| a.traction.iter().map(|t| t * t).sum::<f64>().sqrt();
+        let mut go = |u: f64| rig.bench.step_one(&mut state, &pull(u, angle), 1e-12);
+        let up = go(top)?;
+        let half = go(0.5 * top)?;
+        let none = go(0.0)?;
+        let again = go(0.5 * top)?;
         let scale = length(&up).max(f64::MIN_POSITIVE);
         let share = undamaged(rig, angle, 0.5 * top)? / undamaged(rig, angle, top)?;
         if up.damage >= 1.0 {
             continue;
         }
         // A fatigue law causes damage on the way: tractions are divided by the remaining stiffness.
-        let left = |a: &Answer| (1.0 - a.damage).max(f64::MIN_POSITIVE);
-        let same = |a: &Answer, b: &Answer| (left(a) / left(b) - 1.0).abs() < 1e-12;
+        let remaining = |a: &Answer| (1.0 - a.damage).max(f64::MIN_POSITIVE);
+        let same = |a: &Answer, b: &Answer| (remaining(a) / remaining(b) - 1.0).abs() < 1e-12;
         worst = worst.max(length(&none) / scale);
         if same(&half, &again) {
             worst = worst.max((length(&half) - length(&again)).abs() / scale);
@@ -424,16 +387,31 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// The traction of the undamaged bond at an opening, up to a factor: of other laws than cohesion
-/// the bond is linear.
+/// Returns this multiple of the onset, or half way from the onset to failure where that is less.
+fn before_failure(rig: &Rig, multiple: f64) -> f64 {
+    let reach = multiple * rig.onset;
+    rig.end
+        .map_or(reach, |end| reach.min(0.5 * (rig.onset + end)))
+}
+
+/// Returns the magnitude of the traction (Pa).
+fn length(a: &Answer) -> f64 {
+    a.traction.iter().map(|t| t * t).sum::<f64>().sqrt()
+}
+
+/// Returns the traction of the undamaged bond at an opening, up to a factor. The bond is linear
+/// where the law under test is not a cohesion.
 fn undamaged(rig: &mut Rig, angle: f64, u: f64) -> Result<f64, LawError> {
     let m = rig.tested().plugin.degradation;
     if rig.kind != Kind::COHESION || m <= 0.0 {
         return Ok(u);
     }
-    let mut state = [rig.bench.fresh()];
-    let answer = rig.bench.step(&mut state, &[pull(u, angle)], 1e-12)?[0];
-    let carried = answer.traction.iter().map(|t| t * t).sum::<f64>().sqrt();
-    let left = (1.0f64 - answer.damage).powf(m);
-    Ok(if left > 0.0 { carried / left } else { u })
+    let mut state = rig.bench.fresh();
+    let answer = rig.bench.step_one(&mut state, &pull(u, angle), 1e-12)?;
+    let remaining = (1.0f64 - answer.damage).powf(m);
+    Ok(if remaining > 0.0 {
+        length(&answer) / remaining
+    } else {
+        u
+    })
 }

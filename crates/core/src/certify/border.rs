@@ -26,7 +26,7 @@ pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
 /// Moves a batch along walks, one per contact, some of them used repeatedly; returns the bits of
 /// all outputs.
-pub fn together(
+pub fn run_batch(
     bench: &mut Bench,
     walks: &[Vec<Motion>],
     n: usize,
@@ -50,7 +50,7 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
     for scale in [1e-9, 1e-7, 1e-5, 1e-3] {
         rig.onset = scale;
         let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(60 + k, 8, 0.5)).collect();
-        let moved = together(&mut rig.strict().guarded(), &walks, 17, 0);
+        let moved = run_batch(&mut rig.strict().guarded(), &walks, 17, 0);
         rig.onset = onset;
         // Other errors are found by other checks.
         if let Err(e @ LawError::Trespass { .. }) = moved {
@@ -78,7 +78,7 @@ fn floating_point(rig: &mut Rig) -> Result<Line, LawError> {
 /// Checks that outputs are within their physical range.
 fn range(rig: &mut Rig) -> Result<Line, LawError> {
     let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(80 + k, 200, 0.3)).collect();
-    match together(&mut rig.strict(), &walks, 17, 0) {
+    match run_batch(&mut rig.strict(), &walks, 17, 0) {
         Err(e @ LawError::OutOfRange { .. }) => Err(e),
         _ => Ok(Line::judged(
             "range",
@@ -104,32 +104,34 @@ fn bits(answers: &[Answer]) -> Vec<u64> {
     numbers.map(f64::to_bits).collect()
 }
 
-fn along(bench: &mut Bench, motions: &[Motion]) -> Result<Vec<u64>, LawError> {
-    let mut state = [bench.fresh()];
+/// Moves one contact along motions; returns the bits of all outputs.
+fn run_one(bench: &mut Bench, state: &mut State, motions: &[Motion]) -> Result<Vec<u64>, LawError> {
     let mut out = Vec::new();
     for motion in motions {
-        out.extend(bits(&bench.step(
-            &mut state,
-            std::slice::from_ref(motion),
-            1e-3,
-        )?));
+        out.extend(bits(&[bench.step_one(state, motion, 1e-3)?]));
     }
     Ok(out)
+}
+
+/// Moves a new contact along motions; returns the bits of all outputs.
+fn run_new(bench: &mut Bench, motions: &[Motion]) -> Result<Vec<u64>, LawError> {
+    let mut state = bench.fresh();
+    run_one(bench, &mut state, motions)
 }
 
 /// Checks that a batch of n gives the same bits as n batches of one.
 fn batch(rig: &mut Rig) -> Result<Line, LawError> {
     const N: usize = 17;
     let walks: Vec<Vec<Motion>> = (0..N as u64).map(|k| rig.walk(40 + k, 60, 0.3)).collect();
-    let mut together: Vec<State> = (0..N).map(|_| rig.bench.fresh()).collect();
-    let mut alone = together.clone();
+    let mut batched: Vec<State> = (0..N).map(|_| rig.bench.fresh()).collect();
+    let mut alone = batched.clone();
     let mut different = 0u32;
     for step in 0..60 {
         let motions: Vec<Motion> = walks.iter().map(|w| w[step]).collect();
-        let many = rig.bench.step(&mut together, &motions, 1e-3)?;
+        let answers = rig.bench.step(&mut batched, &motions, 1e-3)?;
         for k in 0..N {
             let one = rig.bench.step(&mut alone[k..=k], &motions[k..=k], 1e-3)?;
-            different += u32::from(bits(&one) != bits(&many[k..=k]));
+            different += u32::from(bits(&one) != bits(&answers[k..=k]));
         }
     }
     Ok(Line::below(
@@ -143,13 +145,13 @@ fn batch(rig: &mut Rig) -> Result<Line, LawError> {
 /// Checks that many threads at once get the same bits, on the same contacts and on others.
 fn threads(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(3, 200, 0.3);
-    let expected = along(&mut rig.bench, &motions)?;
+    let expected = run_new(&mut rig.bench, &motions)?;
     let mut benches: Vec<Bench> = (0..8).map(|_| rig.another()).collect();
     let same: u32 = std::thread::scope(|scope| {
         let runs: Vec<_> = benches
             .iter_mut()
             .map(|bench| {
-                let run = || along(bench, &motions).is_ok_and(|b| b == expected);
+                let run = || run_new(bench, &motions).is_ok_and(|b| b == expected);
                 std::thread::Builder::new().spawn_scoped(scope, run)
             })
             .collect();
@@ -175,7 +177,7 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     let walks: Vec<Vec<Motion>> = (0..61).map(|k| rig.walk(200 + k, 2, 0.3)).collect();
     let mut alone = Vec::new();
     for turn in 0..THREADS {
-        alone.push(together(&mut rig.another(), &walks, N, turn)?);
+        alone.push(run_batch(&mut rig.another(), &walks, N, turn)?);
     }
     let start = Barrier::new(THREADS);
     let (rig, start, walks, alone) = (&*rig, &start, &walks, &alone);
@@ -185,7 +187,7 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
                 let mut bench = rig.strict().repeating();
                 scope.spawn(move || {
                     start.wait();
-                    together(&mut bench, walks, N, turn).is_ok_and(|bits| bits == alone[turn])
+                    run_batch(&mut bench, walks, N, turn).is_ok_and(|bits| bits == alone[turn])
                 })
             })
             .collect();
@@ -198,29 +200,12 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
 /// Checks that a contact saved in the middle of a path and restored elsewhere continues unchanged.
 fn restore(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(11, 200, 0.3);
-    let mut state = [rig.bench.fresh()];
+    let (before, after) = motions.split_at(100);
+    let mut state = rig.bench.fresh();
+    run_one(&mut rig.bench, &mut state, before)?;
     let mut saved = state.clone();
-    let mut rest = Vec::new();
-    for (k, motion) in motions.iter().enumerate() {
-        if k == 100 {
-            saved = state.clone();
-        }
-        let answer = rig
-            .bench
-            .step(&mut state, std::slice::from_ref(motion), 1e-3)?;
-        if k >= 100 {
-            rest.extend(bits(&answer));
-        }
-    }
-    let mut other = rig.another();
-    let mut again = Vec::new();
-    for motion in &motions[100..] {
-        again.extend(bits(&other.step(
-            &mut saved,
-            std::slice::from_ref(motion),
-            1e-3,
-        )?));
-    }
+    let rest = run_one(&mut rig.bench, &mut state, after)?;
+    let again = run_one(&mut rig.another(), &mut saved, after)?;
     let different = rest.iter().zip(&again).filter(|(a, b)| a != b).count();
     Ok(Line::below(
         "restore",
@@ -233,17 +218,12 @@ fn restore(rig: &mut Rig) -> Result<Line, LawError> {
 /// Checks that another contact's path in between has no effect.
 fn hidden(rig: &mut Rig) -> Result<Line, LawError> {
     let (mine, other) = (rig.walk(21, 150, 0.3), rig.walk(22, 150, 0.5));
-    let alone = along(&mut rig.bench, &mine)?;
-    let mut pair = [[rig.bench.fresh()], [rig.bench.fresh()]];
+    let alone = run_new(&mut rig.bench, &mine)?;
+    let mut states = [rig.bench.fresh(), rig.bench.fresh()];
     let mut between = Vec::new();
     for (a, b) in mine.iter().zip(&other) {
-        rig.bench
-            .step(&mut pair[1], std::slice::from_ref(b), 1e-3)?;
-        between.extend(bits(&rig.bench.step(
-            &mut pair[0],
-            std::slice::from_ref(a),
-            1e-3,
-        )?));
+        rig.bench.step_one(&mut states[1], b, 1e-3)?;
+        between.extend(bits(&[rig.bench.step_one(&mut states[0], a, 1e-3)?]));
     }
     let different = alone.iter().zip(&between).filter(|(a, b)| a != b).count();
     Ok(Line::below(
@@ -274,31 +254,28 @@ fn bad_numbers(rig: &mut Rig) -> Result<Line, LawError> {
             pressure: PRESSURE,
             ..Motion::default()
         };
-        let mut cases: Vec<(&str, Motion, f64, f64)> = (0..3)
-            .map(|k| {
-                let mut motion = base;
-                motion.opening[k] = value;
-                ("opening", motion, 0.0, 1e-3)
-            })
-            .collect();
-        cases.push(("gap", Motion { gap: value, ..base }, 0.0, 1e-3));
-        cases.push((
-            "impulse",
-            Motion {
-                pressure: value,
-                ..base
-            },
-            0.0,
-            1e-3,
-        ));
-        cases.push(("damage", base, value, 1e-3));
-        cases.push(("time step", base, 0.0, value));
+        let opening = |k: usize| {
+            let mut motion = base;
+            motion.opening[k] = value;
+            ("opening", motion, 0.0, 1e-3)
+        };
+        let (mut gap, mut impulse) = (base, base);
+        (gap.gap, impulse.pressure) = (value, value);
+        let cases = [
+            opening(0),
+            opening(1),
+            opening(2),
+            ("gap", gap, 0.0, 1e-3),
+            ("impulse", impulse, 0.0, 1e-3),
+            ("damage", base, value, 1e-3),
+            ("time step", base, 0.0, value),
+        ];
         for (what, motion, damage, h) in cases {
-            let mut state = [rig.bench.fresh()];
+            let mut state = rig.bench.fresh();
             if rig.opens() {
-                state[0].damage = damage;
+                state.damage = damage;
             }
-            if let Err(e) = rig.bench.step(&mut state, &[motion], h)
+            if let Err(e) = rig.bench.step_one(&mut state, &motion, h)
                 && e.is_silent()
             {
                 silent.push(format!("{what} {value:e}"));

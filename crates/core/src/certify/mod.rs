@@ -4,16 +4,16 @@
 //! paths around its characteristic opening. Each property gives a line: pass, fail or not
 //! applicable, with the number that decided.
 
-mod apart;
 mod bond;
 mod border;
+mod child;
 mod rig;
 mod spring;
 mod static_memory;
 mod surface;
 mod transport;
 
-pub use apart::{CERTIFY_APART, certify_apart, certify_asked};
+pub use child::{CERTIFY_IN_CHILD, certify_in_child, certify_requested};
 
 use crate::laws::kind::CheckSet;
 use crate::laws::{LawError, Loaded, Plugin, SearchPath};
@@ -82,7 +82,7 @@ fn null_is_infinite<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 /// Progress of a certification.
-enum Event<'a> {
+enum Progress<'a> {
     /// A check begins.
     Begins(&'a str),
     /// A check gave this line.
@@ -90,20 +90,20 @@ enum Event<'a> {
 }
 
 /// The lines of a certificate while it is written.
-struct Book<'a> {
+struct CertificateWriter<'a> {
     lines: Vec<Line>,
     /// Partner of the law under test, added to the text of each line.
     partner: String,
-    tell: &'a mut dyn FnMut(Event<'_>),
+    report: &'a mut dyn FnMut(Progress<'_>),
 }
 
 type Check = fn(&mut Rig) -> Result<Line, LawError>;
 
-impl Book<'_> {
+impl CertificateWriter<'_> {
     /// Runs checks, each regardless of the result of the previous one.
-    fn make(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
+    fn run(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
         for (name, check) in checks {
-            (self.tell)(Event::Begins(name));
+            (self.report)(Progress::Begins(name));
             let line = check(rig).unwrap_or_else(|e| Line::failed(name, &e));
             self.write(line);
         }
@@ -112,7 +112,7 @@ impl Book<'_> {
     fn write(&mut self, line: Line) {
         let text = format!("{}{}", line.text, self.partner);
         let line = Line { text, ..line };
-        (self.tell)(Event::Line(&line));
+        (self.report)(Progress::Line(&line));
         self.lines.push(line);
     }
 }
@@ -154,7 +154,7 @@ pub fn certify(
     cohesion: Option<&Loaded>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
-    certify_with_events(
+    certify_with_progress(
         plugin,
         parameters,
         cohesion,
@@ -176,48 +176,48 @@ pub fn certify_parameters(
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
     let checks = &border::OF_PARAMETERS;
-    certify_with_events(plugin, parameters, cohesion, path, checks, &mut |_| {})
+    certify_with_progress(plugin, parameters, cohesion, path, checks, &mut |_| {})
 }
 
-fn certify_with_events(
+fn certify_with_progress(
     plugin: &Plugin,
     parameters: &[f64],
     cohesion: Option<&Loaded>,
     path: &SearchPath,
     border: &[(&str, Check)],
-    tell: &mut dyn FnMut(Event<'_>),
+    report: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Certificate, LawError> {
     const SCALE: &str = "runs on the bench";
     plugin.validate(parameters)?;
-    let mut book = Book {
+    let mut writer = CertificateWriter {
         lines: Vec::new(),
         partner: String::new(),
-        tell,
+        report,
     };
     let rigs = Rig::all(plugin, parameters, cohesion, path)?;
     for (k, mut rig) in rigs.into_iter().enumerate() {
         if k == 0 && border.len() == border::CHECKS.len() {
-            book.make(&mut rig, &[border::FIRST]);
-            if book.lines.iter().any(|l| l.outcome == Outcome::Fail) {
+            writer.run(&mut rig, &[border::FIRST]);
+            if writer.lines.iter().any(|l| l.outcome == Outcome::Fail) {
                 break;
             }
         }
-        book.partner = rig.partner().to_owned();
-        (book.tell)(Event::Begins(SCALE));
+        writer.partner = rig.partner().to_owned();
+        (writer.report)(Progress::Begins(SCALE));
         match (rig.find_scale(), plugin.kind.spec().certificate.checks) {
-            (Err(e), _) => book.write(Line::failed(SCALE, &e)),
-            (Ok(()), CheckSet::Bond) if rig.opens() => book.make(&mut rig, &bond::CHECKS),
-            (Ok(()), checks) => book.make(&mut rig, surface::checks(checks)),
+            (Err(e), _) => writer.write(Line::failed(SCALE, &e)),
+            (Ok(()), CheckSet::Bond) if rig.opens() => writer.run(&mut rig, &bond::CHECKS),
+            (Ok(()), checks) => writer.run(&mut rig, surface::checks(checks)),
         }
         if rig.tested().has(fretwork_abi::FLAG_COMPLIANT) {
-            book.make(&mut rig, &spring::CHECKS);
+            writer.run(&mut rig, &spring::CHECKS);
         }
         if k == 0 {
-            book.partner.clear();
-            book.make(&mut rig, border);
+            writer.partner.clear();
+            writer.run(&mut rig, border);
         }
     }
-    Ok(Certificate::of(plugin, book.lines))
+    Ok(Certificate::of(plugin, writer.lines))
 }
 
 impl Certificate {

@@ -1,6 +1,6 @@
 //! A law with its partners on the bench, and the law's characteristic opening.
 
-use crate::laws::bench::{Answer, Bench, Motion, State};
+use crate::laws::bench::{Answer, Bench, Motion};
 use crate::laws::{Interface, Kind, LawError, Loaded, Plugin, SearchPath};
 use rand::{RngExt, SeedableRng};
 
@@ -59,11 +59,8 @@ impl Rig {
                 laws.push((partner, slots));
             }
         }
-        let dimension = if plugin.flags & fretwork_abi::FLAG_2D_ONLY != 0 {
-            2
-        } else {
-            3
-        };
+        let planar = plugin.flags & fretwork_abi::FLAG_2D_ONLY != 0;
+        let dimension = if planar { 2 } else { 3 };
         laws.into_iter()
             .map(|(partner, law)| {
                 let law = Interface::new("bench", law)?;
@@ -95,10 +92,6 @@ impl Rig {
     /// Returns whether damage can grow.
     pub fn damages(&self) -> bool {
         self.law.damages()
-    }
-
-    pub fn dimension(&self) -> u32 {
-        self.dimension
     }
 
     /// Returns the law under test.
@@ -138,10 +131,10 @@ impl Rig {
         let mut stored = None;
         for angle in [0.0, std::f64::consts::FRAC_PI_2] {
             let mut answers = Vec::new();
-            let mut state = [self.bench.fresh()];
+            let mut state = self.bench.fresh();
             for u in &openings {
-                let answer = self.bench.step(&mut state, &[pull(*u, angle)], 1.0)?;
-                answers.push((*u, answer[0]));
+                let answer = self.bench.step_one(&mut state, &pull(*u, angle), 1.0)?;
+                answers.push((*u, answer));
             }
             let first =
                 |test: &dyn Fn(&Answer) -> bool| answers.iter().find(|a| test(&a.1)).map(|a| a.0);
@@ -187,18 +180,20 @@ impl Rig {
             .collect()
     }
 
-    /// Drives one new contact along motions.
-    pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<(Vec<Answer>, State), LawError> {
-        let mut state = [self.bench.fresh()];
-        let mut out = Vec::with_capacity(motions.len());
-        for motion in motions {
-            out.push(
-                self.bench
-                    .step(&mut state, std::slice::from_ref(motion), h)?[0],
-            );
+    /// Returns a vector in tangential axes that are rotated, in 2D reversed.
+    pub fn turned(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
+        if self.dimension == 2 {
+            [n, -t1, 0.0]
+        } else {
+            [n, 0.8 * t1 - 0.6 * t2, 0.6 * t1 + 0.8 * t2]
         }
-        let [state] = state;
-        Ok((out, state))
+    }
+
+    /// Drives one new contact along motions.
+    pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<Vec<Answer>, LawError> {
+        let mut state = self.bench.fresh();
+        let step = |motion| self.bench.step_one(&mut state, motion, h);
+        motions.iter().map(step).collect()
     }
 }
 
@@ -210,14 +205,4 @@ pub fn pull(u: f64, angle: f64) -> Motion {
         gap: opening[0],
         ..Motion::default()
     }
-}
-
-/// Returns the work per area done on the bond between two openings by the trapezoidal rule (J/m^2).
-pub fn work(from: &Motion, to: &Motion, a: &Answer, b: &Answer) -> f64 {
-    let mut sum = 0.0;
-    for k in 0..3 {
-        sum += 0.5 * (a.traction[k] + b.traction[k]) * (to.opening[k] - from.opening[k]);
-        sum += 0.5 * (a.moment[k] + b.moment[k]) * (to.rotation[k] - from.rotation[k]);
-    }
-    sum
 }

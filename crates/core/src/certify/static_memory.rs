@@ -2,7 +2,7 @@
 //! would overwrite it.
 
 use super::Line;
-use super::border::together;
+use super::border::run_batch;
 use super::rig::Rig;
 use crate::laws::LawError;
 use crate::laws::static_memory::{StaticMemory, Unseen};
@@ -73,9 +73,9 @@ fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let other = other_parameters(rig, round);
     for n in sizes {
         let walks: Vec<_> = (0..37).map(|k| rig.walk(seed + k, 12, 0.3)).collect();
-        let _ = together(&mut rig.another(), &walks, *n, 0);
+        let _ = run_batch(&mut rig.another(), &walks, *n, 0);
         if plugin.validate(&other).is_ok() {
-            let _ = together(&mut rig.with_parameters(&other), &walks, *n, 1);
+            let _ = run_batch(&mut rig.with_parameters(&other), &walks, *n, 1);
         }
     }
 }

@@ -26,23 +26,13 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
         let motions = rig.walk(seed, 200, 0.3);
-        let (answers, _) = rig.drive(&motions, 1e-3)?;
+        let answers = rig.drive(&motions, 1e-3)?;
         for a in answers {
-            let least = [
-                a.mu,
-                a.strength[0],
-                a.strength[1],
-                a.rolling[0],
-                a.rolling[1],
-                a.worn,
-            ]
-            .into_iter()
-            .chain([a.restitution[0], 1.0 + a.restitution[1]])
-            .fold(f64::INFINITY, f64::min);
-            worst = worst
-                .max(-least)
-                .max(a.restitution[0] - 1.0)
-                .max(a.restitution[1] - 1.0);
+            let [normal, tangential] = a.restitution;
+            let least = [a.mu, a.worn, normal, 1.0 + tangential];
+            let least = least.into_iter().chain(a.strength).chain(a.rolling);
+            let least = least.fold(f64::INFINITY, f64::min);
+            worst = worst.max(-least).max(normal - 1.0).max(tangential - 1.0);
         }
     }
     Ok(Line::below(
@@ -56,21 +46,13 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
 /// Checks that rotating the tangential axes changes nothing.
 pub fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 200, 0.1);
-    let planar = rig.dimension() == 2;
-    let moved: Vec<Motion> = motions
-        .iter()
-        .map(|m| {
-            let [n, t1, t2] = m.opening;
-            let opening = if planar {
-                [n, -t1, 0.0]
-            } else {
-                [n, 0.8 * t1 - 0.6 * t2, 0.6 * t1 + 0.8 * t2]
-            };
-            Motion { opening, ..*m }
-        })
-        .collect();
-    let (plain, _) = rig.drive(&motions, 1e-3)?;
-    let (other, _) = rig.drive(&moved, 1e-3)?;
+    let turned = motions.iter().map(|m| Motion {
+        opening: rig.turned(m.opening),
+        ..*m
+    });
+    let turned: Vec<Motion> = turned.collect();
+    let plain = rig.drive(&motions, 1e-3)?;
+    let other = rig.drive(&turned, 1e-3)?;
     let off = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
     let numbers = |a: &Answer| {
         let single = [a.mu, a.worn];
@@ -107,7 +89,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
                 ..Motion::default()
             })
             .collect();
-        let (answers, _) = rig.drive(&motions, 1e-2 / f64::from(n))?;
+        let answers = rig.drive(&motions, 1e-2 / f64::from(n))?;
         volumes.push(answers.iter().map(|a| a.worn).sum::<f64>());
     }
     let scale = volumes[2].abs().max(f64::MIN_POSITIVE);

@@ -29,7 +29,7 @@ fn walks(rig: &Rig, seed: u64) -> Vec<Motion> {
 fn sign(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
-        let (answers, _) = rig.drive(&walks(rig, seed), 1e-3)?;
+        let answers = rig.drive(&walks(rig, seed), 1e-3)?;
         let least = answers.iter().flat_map(|a| a.conductance);
         worst = least.fold(worst, |w, g| w.max(-g));
     }
@@ -53,8 +53,8 @@ fn symmetry(rig: &mut Rig) -> Result<Line, LawError> {
                 ..*m
             })
             .collect();
-        let (one, _) = rig.drive(&motions, 1e-3)?;
-        let (other, _) = rig.drive(&turned, 1e-3)?;
+        let one = rig.drive(&motions, 1e-3)?;
+        let other = rig.drive(&turned, 1e-3)?;
         for (a, b) in one.iter().zip(&other) {
             for (x, y) in a.conductance.into_iter().zip(b.conductance) {
                 worst = worst.max((x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE));
@@ -69,55 +69,31 @@ fn symmetry(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// A contact that is closed by a share of the largest load, opened by a share of the largest gap,
-/// and so on.
-type Path = (&'static str, fn(f64) -> (Motion, f64));
-
 /// Largest pressure (Pa) and temperature (K).
 const MOST: [f64; 2] = [1e9, 3000.0];
 
-const PATHS: [Path; 5] = [
-    ("load", |x| {
-        let pressure = MOST[0] * x;
-        let motion = Motion {
-            pressure,
-            ..Motion::default()
-        };
-        (motion, 1.0)
-    }),
-    ("gap", |x| {
-        let gap = 0.1 * RADIUS * (x - 0.5);
-        let motion = Motion {
-            gap,
-            pressure: PRESSURE * (1.0 - 2.0 * x).max(0.0),
-            ..Motion::default()
-        };
-        (motion, 1.0)
-    }),
-    ("damage", |x| {
-        let motion = Motion {
-            pressure: PRESSURE,
-            ..Motion::default()
-        };
-        (motion, x)
-    }),
-    ("temperature", |x| {
-        let motion = Motion {
-            pressure: PRESSURE,
-            temperatures: [1.0 + MOST[1] * x, ROOM],
-            ..Motion::default()
-        };
-        (motion, 1.0)
-    }),
-    ("slip", |x| {
-        let motion = Motion {
-            pressure: PRESSURE,
-            opening: [0.0, 1e-3 * x, 0.0],
-            ..Motion::default()
-        };
-        (motion, 1.0)
-    }),
-];
+/// Names of the quantities along which conductances must be continuous.
+const PATHS: [&str; 5] = ["load", "gap", "damage", "temperature", "slip"];
+
+/// Returns the motion and the damage of a contact at the fraction `x` of a path.
+fn on_path(path: &str, x: f64) -> (Motion, f64) {
+    let mut motion = Motion {
+        pressure: PRESSURE,
+        ..Motion::default()
+    };
+    let mut damage = 1.0;
+    match path {
+        "load" => motion.pressure = MOST[0] * x,
+        "gap" => {
+            motion.gap = 0.1 * RADIUS * (x - 0.5);
+            motion.pressure = PRESSURE * (1.0 - 2.0 * x).max(0.0);
+        }
+        "damage" => damage = x,
+        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM],
+        _ => motion.opening[1] = 1e-3 * x,
+    }
+    (motion, damage)
+}
 
 /// Checks that conductances have no jumps: a solver that follows a contact as it closes would not
 /// settle.
@@ -125,12 +101,12 @@ fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
     const POINTS: u32 = 200;
     const HALVINGS: u32 = 40;
     let (mut worst, mut place) = (0.0f64, "load");
-    for (name, path) in PATHS {
+    for path in PATHS {
         let mut at = |x: f64| -> Result<[f64; 2], LawError> {
-            let (motion, damage) = path(x);
-            let mut state = [rig.bench.fresh()];
-            state[0].damage = damage;
-            Ok(rig.bench.step(&mut state, &[motion], 1e-3)?[0].conductance)
+            let (motion, damage) = on_path(path, x);
+            let mut state = rig.bench.fresh();
+            state.damage = damage;
+            Ok(rig.bench.step_one(&mut state, &motion, 1e-3)?.conductance)
         };
         for which in 0..2 {
             let mut points = Vec::new();
@@ -140,22 +116,19 @@ fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
             }
             let scale = points.iter().fold(0.0f64, |m, p| m.max(p.1.abs()));
             let jump = |w: &[(f64, f64)]| (w[1].1 - w[0].1).abs();
-            let largest = points
-                .windows(2)
-                .max_by(|a, b| jump(a).total_cmp(&jump(b)))
-                .map(<[_]>::to_vec);
-            let Some(mut pair) = largest.filter(|_| scale > 0.0) else {
+            let largest = points.array_windows();
+            let largest = largest.max_by(|a, b| jump(*a).total_cmp(&jump(*b)));
+            let Some(mut pair) = largest.copied().filter(|_| scale > 0.0) else {
                 continue;
             };
             for _ in 0..HALVINGS {
                 let x = 0.5 * (pair[0].0 + pair[1].0);
                 let middle = (x, at(x)?[which]);
-                let halves = [vec![pair[0], middle], vec![middle, pair[1]]];
-                let [low, high] = halves;
+                let [low, high] = [[pair[0], middle], [middle, pair[1]]];
                 pair = if jump(&low) >= jump(&high) { low } else { high };
             }
             if jump(&pair) / scale > worst {
-                (worst, place) = (jump(&pair) / scale, name);
+                (worst, place) = (jump(&pair) / scale, path);
             }
         }
     }

@@ -102,7 +102,7 @@ pub struct Bench {
     /// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair.
     material: [f64; 2],
     batch: Batch,
-    said: Vec<f64>,
+    declared_damage: Vec<f64>,
 }
 
 impl Bench {
@@ -116,7 +116,7 @@ impl Bench {
             radius,
             material: STEEL,
             batch: Batch::default(),
-            said: Vec::new(),
+            declared_damage: Vec::new(),
         }
     }
 
@@ -164,8 +164,8 @@ impl Bench {
 
     /// Returns the damage that the laws returned in the last step, before the host enforced that it
     /// does not decrease.
-    pub fn said(&self) -> &[f64] {
-        &self.said
+    pub fn declared_damage(&self) -> &[f64] {
+        &self.declared_damage
     }
 
     /// Area of its contacts (m^2).
@@ -223,6 +223,20 @@ impl Bench {
             };
         }
         Ok(answers)
+    }
+
+    /// Moves one contact by one step of `h` seconds.
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn step_one(
+        &mut self,
+        state: &mut State,
+        motion: &Motion,
+        h: f64,
+    ) -> Result<Answer, LawError> {
+        let (states, motions) = (std::slice::from_mut(state), std::slice::from_ref(motion));
+        Ok(self.step(states, motions, h)?[0])
     }
 
     /// Fills the input columns of the laws with the openings at the start or the end of the step.
@@ -314,7 +328,8 @@ impl Bench {
         if self.law.opens() {
             self.fill(states, motions, info, true);
             self.batch.update_damage(&self.law, info, &mut bond_step)?;
-            self.said.clone_from(&self.batch.columns.out.damage);
+            self.declared_damage
+                .clone_from(&self.batch.columns.out.damage);
             self.keep(states);
         }
         Ok(bond_step)

@@ -1,7 +1,7 @@
 //! Certification of a law in a child process, so that a law that crashes, ends the program or hangs
 //! only fails a line of its certificate.
 
-use super::{Certificate, Event, Line, border, certify, certify_with_events};
+use super::{Certificate, Line, Progress, border, certify, certify_with_progress};
 use crate::laws::child::{self, End};
 use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
@@ -9,14 +9,14 @@ use serde_json::json;
 use std::path::PathBuf;
 
 /// Hidden subcommand that certifies a law.
-pub const CERTIFY_APART: &str = "__certify";
+pub const CERTIFY_IN_CHILD: &str = "__certify";
 
 /// Name of the check that a crash fails.
-const COMES_BACK: &str = "comes back";
+const RETURNS: &str = "comes back";
 
 /// A law with parameters, as passed between processes.
 #[derive(Serialize, Deserialize)]
-struct Named {
+struct LawRequest {
     /// Its library and SHA-256; `None` if it is built in.
     library: Option<(PathBuf, String)>,
     kind: String,
@@ -25,7 +25,7 @@ struct Named {
     parameters: Vec<u64>,
 }
 
-impl Named {
+impl LawRequest {
     fn of(plugin: &Plugin, parameters: &[f64]) -> Self {
         Self {
             library: (!plugin.built_in).then(|| (plugin.path.clone(), plugin.sha256.clone())),
@@ -59,7 +59,7 @@ impl Named {
 ///
 /// # Errors
 /// The law cannot be prepared with its partners, or the process cannot be started.
-pub fn certify_apart(
+pub fn certify_in_child(
     plugin: &Plugin,
     parameters: &[f64],
     cohesion: Option<&Loaded>,
@@ -73,24 +73,24 @@ pub fn certify_apart(
         path: plugin.path.clone(),
         reason,
     };
-    let named = Named::of(plugin, parameters);
-    let partner = cohesion.map(|c| Named::of(&c.plugin, &c.parameters));
-    let question = serde_json::to_value((named, partner)).map_err(|e| refuse(e.to_string()))?;
-    let told = child::run_request(CERTIFY_APART, &question).map_err(refuse)?;
+    let request = LawRequest::of(plugin, parameters);
+    let partner = cohesion.map(|c| LawRequest::of(&c.plugin, &c.parameters));
+    let requests = serde_json::to_value((request, partner)).map_err(|e| refuse(e.to_string()))?;
+    let output = child::run_request(CERTIFY_IN_CHILD, &requests).map_err(refuse)?;
     let (mut lines, mut begun) = (Vec::new(), String::new());
-    for mut piece in told.messages {
-        if let Some(reason) = piece["refused"].as_str() {
+    for mut message in output.messages {
+        if let Some(reason) = message["refused"].as_str() {
             return Err(refuse(reason.to_owned()));
         }
-        if let Some(name) = piece["begins"].as_str() {
+        if let Some(name) = message["begins"].as_str() {
             name.clone_into(&mut begun);
         }
-        let line = piece.get_mut("line").map(serde_json::Value::take);
+        let line = message.get_mut("line").map(serde_json::Value::take);
         if let Some(Ok(line)) = line.map(serde_json::from_value::<Line>) {
             lines.push(line);
         }
     }
-    if told.end == End::Done && lines.is_empty() {
+    if output.end == End::Done && lines.is_empty() {
         return Err(refuse(
             "the process that certifies it gave no result".to_owned(),
         ));
@@ -100,16 +100,16 @@ pub fn certify_apart(
         name: plugin.name.clone(),
         reason,
     };
-    if let End::NoMemory(why) = told.end {
+    if let End::NoMemory(why) = output.end {
         return Err(untested(why));
     }
-    if let End::Early(why) = told.end {
+    if let End::Early(why) = output.end {
         // No check had begun: it is not the law that ended it.
         if begun.is_empty() {
             return Err(untested(why));
         }
         let text = format!("{why}, while `{begun}` was tested; nothing after it was");
-        lines.push(Line::judged(COMES_BACK, false, f64::INFINITY, text));
+        lines.push(Line::judged(RETURNS, false, f64::INFINITY, text));
     }
     Ok(Certificate::of(plugin, lines))
 }
@@ -118,27 +118,27 @@ pub fn certify_apart(
 ///
 /// # Errors
 /// The request cannot be read.
-pub fn certify_asked(built_in: &BuiltInLaws) -> Result<(), String> {
-    let question = child::read_request()?;
-    let (named, partner): (Named, Option<Named>) =
-        serde_json::from_value(question).map_err(|e| e.to_string())?;
-    let mut tell = |event: Event<'_>| match event {
-        Event::Begins(name) => child::send_message(&json!({ "begins": name })),
-        Event::Line(line) => child::send_message(&json!({ "line": line })),
+pub fn certify_requested(built_in: &BuiltInLaws) -> Result<(), String> {
+    let requests = child::read_request()?;
+    let (request, partner): (LawRequest, Option<LawRequest>) =
+        serde_json::from_value(requests).map_err(|e| e.to_string())?;
+    let mut report = |event: Progress<'_>| match event {
+        Progress::Begins(name) => child::send_message(&json!({ "begins": name })),
+        Progress::Line(line) => child::send_message(&json!({ "line": line })),
     };
-    let made = named.open(built_in).and_then(|law| {
+    let certified = request.open(built_in).and_then(|law| {
         let partner = partner.map(|p| p.open(built_in)).transpose()?;
         let path = SearchPath::new(&[]).with_built_in(built_in.clone());
-        certify_with_events(
+        certify_with_progress(
             &law.plugin,
             &law.parameters,
             partner.as_ref(),
             &path,
             &border::CHECKS,
-            &mut tell,
+            &mut report,
         )
     });
-    if let Err(e) = made {
+    if let Err(e) = certified {
         child::send_message(&json!({ "refused": e.to_string() }));
     }
     child::send_done();
