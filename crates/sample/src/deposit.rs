@@ -141,8 +141,8 @@ fn free_place<V: VectorLike>(
     None
 }
 
-/// Balls sorted by size: each level has radii within a factor of two of its largest, in cells as wide
-/// as that ball. A ball not larger than all placed ones therefore meets the balls of a level
+/// Balls sorted by size: each level has radii within a factor of two of its largest, in cells as
+/// wide as that ball. A ball not larger than all placed ones therefore meets the balls of a level
 /// in adjacent cells only.
 struct SizeLevels<V>(Vec<SizeLevel<V>>);
 

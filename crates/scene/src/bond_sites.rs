@@ -11,7 +11,7 @@ pub struct BondPair {
     pub radius: f64,
     /// Sum of the inverse masses along the normal (1/kg).
     pub normal: f64,
-    /// The same along the tangents, where the grains' rotation is included (1/kg).
+    /// Sum of the inverse masses along the tangents, where the grains' rotation is included (1/kg).
     pub shear: f64,
 }
 
@@ -27,7 +27,7 @@ pub struct BondSites {
     /// depth). A bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular
     /// frequency.
     pub normal: f64,
-    /// The same ratio along the tangents.
+    /// Ratio along the tangents.
     pub shear: f64,
     /// Median of the ratio along the normal.
     pub normal_median: f64,

@@ -1,4 +1,4 @@
-//! What messages about a scene call its bodies: as their user knows them.
+//! Names of bodies in messages about a scene.
 
 use fretwork_core::view::RunView;
 

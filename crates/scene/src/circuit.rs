@@ -37,7 +37,7 @@ fn default_interval() -> u64 {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneSpec {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Low corner (m); `-inf` where the zone is unbounded.
     pub low: Vec<f64>,

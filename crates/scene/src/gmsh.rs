@@ -11,10 +11,10 @@ use std::path::Path;
 const MAX_BYTES: u64 = 1 << 30;
 /// Gmsh's numbers of lines, triangles and tetrahedra, by their dimension.
 const SIMPLEX: [i64; 3] = [1, 2, 4];
-/// That of a single point.
+/// Gmsh's number of a single point.
 const POINT: i64 = 15;
 
-/// What a file holds, in its own unit.
+/// Content of a file, in the file's unit of length.
 #[derive(Debug, Default, PartialEq)]
 pub struct GmshMesh {
     /// Points that elements use.

@@ -1,4 +1,4 @@
-//! What holds a deformable body: its names, its own drives, and those that phases give it.
+//! Holders of deformable bodies: their names, their own drives, and those that phases give them.
 
 use super::case::Case;
 use super::phases::Redriven;
@@ -21,7 +21,7 @@ pub fn name(body: &str, part: &str) -> String {
 /// Checks the drives of a phase for a holder.
 ///
 /// # Errors
-/// What a holder cannot do, with its path in the phase.
+/// A drive that holders do not support, with its path in the phase.
 pub(super) fn check(case: &Case, holder: &str, redriven: &Redriven) -> Result<(), ValidationError> {
     let path = format!("drives.{holder}");
     let fail =
@@ -64,8 +64,8 @@ pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
         .collect()
 }
 
-/// What holds a deformable body in a scene, of a name in `drives`; none if there is no holder of
-/// this name.
+/// Returns the holder of a deformable body with a name in `drives`; `None` if there is none of this
+/// name.
 pub(crate) fn find(case: &Case, s: &dyn RunView, holder: &str, axis: usize) -> Option<HeldAxis> {
     let half_spaces = case.half_spaces.iter();
     let mut half_spaces = half_spaces.map(|b| (&b.name, b.name.clone(), HOLDER));

@@ -20,9 +20,9 @@ pub enum From {
 /// A key of a case with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// Its path, as `--set` takes it.
+    /// Path, as `--set` takes it.
     pub path: String,
-    /// Its value as in a case; empty if it is not set.
+    /// Value as in a case; empty if it is not set.
     pub value: String,
     /// SI unit, empty for pure numbers and texts.
     pub unit: &'static str,

@@ -324,7 +324,7 @@ fn build_interface(
         laws.push(load_law(case, plugin, given, (sides, spec))?);
         derived.extend(coefficient);
     }
-    // What does not fit is said of the damage law, or of `healing`.
+    // The error is reported at the damage law, or at `healing`.
     let unfit = |e: LawError| InterfaceError::from(ValidationError::new("damage", e.to_string()));
     let mut interface = Interface::new(spec.name.clone(), laws).map_err(unfit)?;
     interface.area = AreaRule {

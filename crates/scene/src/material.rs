@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub struct Sourced {
     /// Value.
     pub value: f64,
-    /// Its unit; that of the schema, in SI units, by default.
+    /// Unit; that of the schema, in SI units, by default.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// Source: paper, standard or table.
@@ -271,7 +271,7 @@ impl MaterialLibrary {
         }
     }
 
-    /// The same, with texts by name that are taken before any file.
+    /// Adds texts by name, which are used instead of files of the same names.
     #[must_use]
     pub fn with_own(mut self, texts: &BTreeMap<String, String>) -> Self {
         self.own.clone_from(texts);

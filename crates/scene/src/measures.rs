@@ -83,7 +83,7 @@ pub enum MeasureSpec {
     ThirdBody(ThirdBodySpec),
 }
 
-/// See [`MeasureSpec::ThirdBody`].
+/// Options of [`MeasureSpec::ThirdBody`].
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThirdBodySpec {

@@ -1,5 +1,5 @@
-//! What a case asks for that acts on its simulation at the moments of a step, and the friction test
-//! that cycle jumps follow.
+//! Processes that a case requests at given moments of a step, and the friction test that cycle
+//! jumps follow.
 
 use super::case::Case;
 use super::circuit;
@@ -14,10 +14,10 @@ use fretwork_core::view::{RunSetup, RunView};
 pub struct FrictionTest {
     /// The body that is rubbed.
     pub body: SlidingBody,
-    /// Its cycles.
+    /// Cycles.
     pub clock: CycleClock,
-    /// When the motion starts to count (s); where it has no period its friction counts from later
-    /// on.
+    /// Start of the measured motion (s). Where the motion has no period, friction is measured from
+    /// a later time.
     pub start: f64,
 }
 

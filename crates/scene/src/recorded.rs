@@ -10,7 +10,7 @@ pub type RecordReader = fn(&Path, Option<usize>, usize) -> Result<State, StateEr
 /// A grain other than a single ball.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedBody {
-    /// Its identity.
+    /// Identity.
     pub id: u64,
     /// Mass (kg; 2D kg/m).
     pub mass: f64,
@@ -81,9 +81,9 @@ pub struct Grain {
 pub struct ShapedGrain {
     /// Mass, inertia.
     pub body: ShapedBody,
-    /// Its balls; the first of them is its first part if there is one.
+    /// Balls; the first of them is its first part if there is one.
     pub balls: Vec<ShapedBall>,
-    /// Its convex parts; the first of them is its first part if there is no ball.
+    /// Convex parts; the first of them is its first part if there is no ball.
     pub pieces: Vec<ShapedPiece>,
     /// Position and velocity.
     pub motion: Motion,
@@ -96,9 +96,9 @@ pub struct ShapedGrain {
 pub struct Deformed {
     /// Where it is (m), beside the place of the grain where there is a period.
     pub places: Vec<[f64; 3]>,
-    /// Its displacement against the frame that moves with the grain (m).
+    /// Displacement against the frame that moves with the grain (m).
     pub deformation: Vec<[f64; 3]>,
-    /// Its velocity (m/s).
+    /// Velocity (m/s).
     pub velocity: Vec<[f64; 3]>,
     /// Von Mises stress of each element (Pa).
     pub von_mises: Vec<f64>,
@@ -109,7 +109,7 @@ pub struct Deformed {
 pub struct State {
     /// Index of the state, from 0.
     pub frame: usize,
-    /// Its time (s).
+    /// Time (s).
     pub time: f64,
     /// The balls, in the order of the file.
     pub grains: Vec<Grain>,

@@ -107,7 +107,7 @@ fn aliased(function: &TimeFunction, h: f64) -> bool {
     }
 }
 
-/// What is wrong with a function sampled with step `h` (s), if anything; `moves` if it is a
+/// Returns the fault of a function sampled with step `h` (s), if it has one; `moves` if it is a
 /// displacement.
 fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
     match function {

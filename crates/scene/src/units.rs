@@ -22,9 +22,9 @@ const HARDNESS: [&str; 8] = ["HBW", "HB", "HV", "HK", "HRA", "HRB", "HRC", "HLD"
 /// Reason why a unit does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What would be valid.
+    /// Description of valid units.
     pub expected: Option<String>,
     /// The nearest unit by name.
     pub nearest: Option<String>,
@@ -42,7 +42,7 @@ impl UnitError {
 /// A parsed unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Unit {
-    /// Its value in SI units.
+    /// Value in SI units.
     factor: f64,
     dimension: Dimension,
     /// Whether it contains an angle.

@@ -21,11 +21,11 @@ const DERIVED: [(&str, &str); 2] = [("k", "1/Pa"), ("alpha", "m^3/J")];
 pub struct WearCoefficient {
     /// Interface.
     pub interface: String,
-    /// Its wear law.
+    /// Wear law.
     pub law: String,
     /// The parameter of the law.
     pub parameter: String,
-    /// Its value in `unit`.
+    /// Value in `unit`.
     pub value: f64,
     /// `1/Pa` or `m^3/J`.
     pub unit: String,
@@ -55,12 +55,12 @@ pub fn parameter<'a>(
 /// A material of an interface: its name in the case, and its hardness if its file gives one.
 pub type Side<'a> = (&'a str, Option<&'a Sourced>);
 
-/// What the coefficient is for.
+/// Law and parameter to which the coefficient belongs.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
     /// Interface.
     pub interface: &'a str,
-    /// Its wear law.
+    /// Wear law.
     pub law: &'a str,
     /// The parameter and its unit, of [`parameter`].
     pub parameter: (&'a str, &'a str),

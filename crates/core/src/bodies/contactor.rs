@@ -1,5 +1,5 @@
-//! Contactors: the parts of a dynamical system that can touch, and the nodes on which their contacts
-//! act.
+//! Contactors: the parts of a dynamical system that can touch, and the nodes on which their
+//! contacts act.
 
 use super::nodes::Nodes;
 use crate::geometry::space::Space;
@@ -16,7 +16,7 @@ pub struct Contactor {
     /// space the radius of the disk of its area, from which contacts have their area; of other
     /// shapes a length of their size.
     pub radius: f64,
-    /// Its shape.
+    /// Shape.
     pub shape: ContactorShape,
     /// Index of the material of a ball, a point or a surface.
     pub material: u16,
@@ -44,7 +44,7 @@ pub enum ContactorShape {
 pub struct ContactorMotion<S: Space> {
     /// Origin of its frame (m).
     pub position: S::Vector,
-    /// Its orientation.
+    /// Orientation.
     pub rotation: S::Rotation,
     /// Velocity of the origin (m/s).
     pub velocity: S::Vector,

@@ -87,8 +87,8 @@ impl TimeFunction {
         self.rate_beside(t, t - rounding(t), true)
     }
 
-    /// Returns the derivative at a time from the left or from the right. `beside` is the time shifted
-    /// to that side by rounding.
+    /// Returns the derivative at a time from the left or from the right. `beside` is the time
+    /// shifted to that side by rounding.
     fn rate_beside(&self, t: f64, beside: f64, from_left: bool) -> f64 {
         match self {
             Self::Sine { start, .. } if beside < *start || (from_left && beside == *start) => 0.0,

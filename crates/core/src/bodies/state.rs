@@ -363,8 +363,8 @@ impl<S: Space> Bodies<S> {
         self.sum_kinetic_energy(false)
     }
 
-    /// Returns [`Self::kinetic_energy`] with the same bits, on several threads if `parallel` and there
-    /// are enough bodies.
+    /// Returns [`Self::kinetic_energy`] with the same bits, on several threads if `parallel` and
+    /// there are enough bodies.
     pub fn sum_kinetic_energy(&self, parallel: bool) -> f64 {
         sum(parallel, self.len(), ENERGY, |b| {
             if self.carrier(b).is_none() {

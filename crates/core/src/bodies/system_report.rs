@@ -1,5 +1,5 @@
-//! Data of a dynamical system for results, pictures and checks: its contact surface, and its size in
-//! memory.
+//! Data of a dynamical system for results, pictures and checks: its contact surface, and its size
+//! in memory.
 
 use crate::geometry::space::VectorLike;
 use nalgebra::Vector3;

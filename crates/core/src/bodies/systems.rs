@@ -18,9 +18,9 @@ use std::sync::Arc;
 pub struct TurningNode {
     /// Index of the system.
     pub system: u32,
-    /// Its id in the system.
+    /// Id in the system.
     pub node: u32,
-    /// Its velocity over its angular velocity (m).
+    /// Velocity over its angular velocity (m).
     pub length: f64,
 }
 
@@ -54,8 +54,8 @@ type SystemState = (String, Vec<u8>);
 
 /// All systems of a scene that are not rigid bodies.
 ///
-/// They are serialised as their names and states. After deserialisation there are only states, until
-/// [`Systems::resume`] restores them into systems that were built again.
+/// Systems are serialised as their names and states. After deserialisation there are only states,
+/// until [`Systems::resume`] restores them into systems that were built again.
 #[derive(Clone, Debug, Default)]
 pub struct Systems<S: Space> {
     entries: Vec<SystemEntry<S>>,

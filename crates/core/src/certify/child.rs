@@ -17,7 +17,7 @@ const RETURNS: &str = "comes back";
 /// A law with parameters, as passed between processes.
 #[derive(Serialize, Deserialize)]
 struct LawRequest {
-    /// Its library and SHA-256; `None` if it is built in.
+    /// Library and SHA-256; `None` if it is built in.
     library: Option<(PathBuf, String)>,
     kind: String,
     name: String,

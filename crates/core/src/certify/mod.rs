@@ -122,9 +122,9 @@ impl CertificateWriter<'_> {
 pub struct Certificate {
     /// Kind of the law.
     pub kind: String,
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its version.
+    /// Version.
     pub version: String,
     /// SHA-256 of the library.
     pub sha256: String,

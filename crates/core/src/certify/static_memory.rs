@@ -43,7 +43,7 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
         calls(rig, round, sizes);
         seen.push(memory.read());
     }
-    // As a run would call it.
+    // Validates the parameters like a run.
     plugin.validate(&rig.tested().parameters)?;
     let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
         return Ok(Line::skip(

@@ -28,11 +28,11 @@ pub enum ContactorKind {
 /// A part of a body that can touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactorId {
-    /// Its kind.
+    /// Kind.
     pub kind: ContactorKind,
     /// Identity of the body, [`Bodies::id`].
     pub body: u64,
-    /// Its number among the body's contactors of this kind, from 0.
+    /// Number among the body's contactors of this kind, from 0.
     pub number: u32,
 }
 

@@ -93,7 +93,7 @@ pub enum BondState {
     None,
     /// The bond is intact.
     Intact {
-        /// Its damage, 0 to 1.
+        /// Damage, 0 to 1.
         damage: f64,
     },
     /// The bond broke.

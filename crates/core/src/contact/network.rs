@@ -175,7 +175,7 @@ pub struct Contact<S: Space> {
     pub slides: bool,
     /// Energy dissipated by friction since the contact formed (J).
     pub friction_work: f64,
-    /// Its spring, where its law is compliant.
+    /// Spring, where its law is compliant.
     pub spring: Spring<S>,
 }
 
@@ -345,8 +345,8 @@ const ENERGY: f64 = 3.0;
 const COUNT: f64 = 2.0;
 
 impl<S: Space> Network<S> {
-    /// Replaces the normal of a contact and rotates its tangential memory (spring force, bond opening
-    /// and rotation) with it.
+    /// Replaces the normal of a contact and rotates its tangential memory (spring force, bond
+    /// opening and rotation) with it.
     pub(crate) fn turn(&mut self, contact: usize, normal: &S::Vector) {
         let contact = &mut self.contacts[contact];
         let from = std::mem::replace(&mut contact.normal, *normal);
@@ -509,8 +509,8 @@ impl<S: Space> Network<S> {
         self.sum_spring_energy(false)
     }
 
-    /// Returns [`Self::spring_energy`] with the same bits, on several threads if `parallel` and there
-    /// are enough contacts.
+    /// Returns [`Self::spring_energy`] with the same bits, on several threads if `parallel` and
+    /// there are enough contacts.
     pub fn sum_spring_energy(&self, parallel: bool) -> f64 {
         sum(parallel, self.contacts.len(), ENERGY, |k| {
             self.contacts[k].spring.stored()

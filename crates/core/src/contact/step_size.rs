@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 /// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as
 /// found late.
 const LATE: f64 = 0.01;
-/// Penetration, relative to the reduced radius, from which a contact of springs counts as found late.
-/// Springs overlap by that much under load; softer ones are too soft for a contact
-/// (`fretwork check`).
+/// Penetration, relative to the reduced radius, from which a contact of springs counts as found
+/// late. Springs overlap by that much under load; softer ones are too soft for a contact (`fretwork
+/// check`).
 const LATE_SPRING: f64 = 0.05;
-/// Ratio of an overlap to the relative motion of the bodies in a step, above which the overlap is not
-/// due to their speed.
+/// Ratio of an overlap to the relative motion of the bodies in a step, above which the overlap is
+/// not due to their speed.
 const NOT_BY_SPEED: f64 = 2.0;
 
 /// Time and bodies of the first occurrence of an event.
@@ -196,8 +196,8 @@ impl StepSizeDiagnostics {
         self.first_edge.get_or_insert_with(first);
     }
 
-    /// Records a body that moves farther in a step that starts at `time` (s) than the range in which
-    /// contacts are searched.
+    /// Records a body that moves farther in a step that starts at `time` (s) than the range in
+    /// which contacts are searched.
     pub(super) fn record_unwatched(&mut self, time: f64, first: impl FnOnce() -> Occurrence) {
         // A step may be examined several times.
         if self.last_unwatched == Some(time) {

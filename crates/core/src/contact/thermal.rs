@@ -37,8 +37,8 @@ pub struct ContactTemperature {
     pub pair: u32,
 }
 
-/// Temperatures that laws receive at each contact, and conductances that they return, in the order of
-/// the contacts.
+/// Temperatures that laws receive at each contact, and conductances that they return, in the order
+/// of the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHeat {
     /// All pairs of materials.

@@ -75,8 +75,8 @@ pub fn closest_points(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec
     closest_points_within(facets, centre, reach, 0.0, out);
 }
 
-/// Finds the points where the surface is locally nearest to a ball, as [`closest_points`] does. A point
-/// that is nearer to a corner than the share `at_corner` of an edge is moved to the corner.
+/// Finds the points where the surface is locally nearest to a ball, as [`closest_points`] does. A
+/// point that is nearer to a corner than the share `at_corner` of an edge is moved to the corner.
 pub fn closest_points_within(
     facets: &[Facet<V>],
     centre: &V,
@@ -89,8 +89,8 @@ pub fn closest_points_within(
     for (k, facet) in facets.iter().enumerate() {
         let [a, b, c] = facet.corners;
         let (closest_point, mut used) = nearest(*centre, a, b, c);
-        // If the centre is in line with a corner, rounding decides whether a facet finds the corner or
-        // an edge at it; all facets around the corner must agree.
+        // If the centre is in line with a corner, rounding decides whether a facet finds the corner
+        // or an edge at it; all facets around the corner must agree.
         for (k, corner) in facet.corners.iter().enumerate() {
             let edge = (facet.corners[(k + 1) % 3] - corner).norm();
             if at_corner > 0.0 && (closest_point - corner).norm() <= at_corner * edge {
@@ -122,7 +122,8 @@ pub fn closest_points_within(
     };
     // A vector of the size of rounding errors has no direction.
     let tiny = 1e-13 * (centre.norm() + reach);
-    // The nearest part determines whether the centre is inside or outside: parts behind it face away.
+    // The nearest part determines whether the centre is inside or outside: parts behind it face
+    // away.
     let inside = found
         .iter()
         .min_by(nearest)
@@ -133,8 +134,8 @@ pub fn closest_points_within(
         if (arm.dot(&up) < 0.0) != inside && length > tiny {
             continue;
         }
-        // A tangential part of the size of rounding errors is ignored too: a point that touches a seam
-        // within a plane would be pushed along the plane.
+        // A tangential part of the size of rounding errors is ignored too: a point that touches a
+        // seam within a plane would be pushed along the plane.
         let aligned = (arm - up * arm.dot(&up)).norm() <= tiny;
         let face = f.corners == 3 || aligned;
         let rises = |g: &Facet<V>| {
@@ -237,7 +238,7 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
 /// deforms any edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridge {
-    /// Its ends (m), in the direction of the side of its first facet.
+    /// Ends (m), in the direction of the side of its first facet.
     pub ends: [V; 2],
     /// Their names.
     pub names: [u64; 2],

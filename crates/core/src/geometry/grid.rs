@@ -29,7 +29,8 @@ pub struct Balls<'a, V> {
     pub periodic: &'a Periodic,
 }
 
-/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + reach, sorted by (a, b).
+/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + reach, sorted by (a,
+/// b).
 ///
 /// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is
 /// linear in the number of balls, for any sizes; memory is bounded for any extent (cells grow if

@@ -25,7 +25,7 @@ pub struct Mesh {
     pub(super) deforms: bool,
     /// Whether it encloses a grain.
     closed: bool,
-    /// Its wear, if it can recede.
+    /// Wear, if it can recede.
     pub(super) worn: Option<MeshWear>,
 }
 
@@ -128,7 +128,7 @@ impl Mesh {
     /// Creates a mesh without border, around a grain; otherwise as [`Self::new`].
     ///
     /// # Errors
-    /// Those of [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn closed(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let mesh = Self::new(points, triangles)?;
         // A closed mesh deforms from the start.
@@ -161,7 +161,8 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Returns the facets at a vertex on the border, of which one is known; `None` for a vertex inside.
+    /// Returns the facets at a vertex on the border, of which one is known; `None` for a vertex
+    /// inside.
     fn around(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
         let (mut found, mut next, mut border) = (vec![known], 0, false);
         while next < found.len() {

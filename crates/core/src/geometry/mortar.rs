@@ -1,28 +1,28 @@
-//! The place on a surface that a point of another surface faces on average over the facets at the
-//! point: the mortar method with dual shape functions. Contacts of points with their nearest place
-//! alone do not carry a uniform pressure from one mesh to another that does not match; with these
-//! weights they do. Facets are segments in the plane and triangles in space.
+//! The mortar method with dual shape functions: the position on a surface that faces a point of
+//! another surface, averaged over the facets at the point. Contacts of points with their nearest
+//! positions do not transfer a uniform pressure between meshes that do not match; contacts with
+//! these averages do. Facets are segments in the plane and triangles in space.
 //!
-//! With the coordinates t along the contact from the point, the dual function psi of the point, the
-//! shape function phi_k of a vertex of the other surface, and C the part of a facet at the point
-//! that the other surface covers, seen along the normal,
+//! Here t are the tangential coordinates relative to the point, psi is the dual function of the
+//! point, phi_k is the shape function of vertex k of the other surface, and C is the part of a
+//! facet at the point that the other surface covers, seen along the normal:
 //!
 //! ```text
 //! w_k = int_C psi phi_k dt / int_C psi dt        gap = n . (x - sum_k w_k x_k)
 //! psi = c (1 + b . t)        int_C psi t dt = 0        int_C psi dt = int_C phi dt
 //! ```
 //!
-//! psi is orthogonal to the shape functions of all other points of its surface, so that the contact
-//! acts on its point alone; these are the linear functions that vanish at the point. On a facet
-//! that is covered as a whole psi is 2 - 3 s on a segment, s = 1 at its other end, and 3 phi -
-//! phi_2 - phi_3 on a triangle with the shape functions phi_2, phi_3 of the other corners. Where
-//! the other surface ends below a facet psi is found anew on what is covered. The weights sum to 1,
-//! and sum w_k t_k is the place of the point. They may be negative.
+//! psi is orthogonal to the shape functions of all other points of its surface, which are the
+//! linear functions that vanish at the point, so that the contact acts on its own point only. On a
+//! completely covered facet psi is 2 - 3 s on a segment, with s = 1 at its other end, and 3 phi -
+//! phi_2 - phi_3 on a triangle, with the shape functions phi_2 and phi_3 of the other corners.
+//! Where the other surface covers a facet in part, psi is computed on the covered part. The weights
+//! sum to 1 and may be negative; sum w_k t_k is the position of the point.
 //!
-//! The volume worn at a point is taken from below its facets: vertex k gives the share s_k =
-//! int_C phi phi_k dt / int_C phi dt of it, with the shape function phi of the point. Shares sum to
-//! 1, and none is negative. A depth that is the same at all points, on the areas that they stand
-//! for, is the same at all vertices, since the phi of all points sum to 1.
+//! The volume worn at a point is removed from the other surface opposite its facets: vertex k
+//! receives the fraction s_k = int_C phi phi_k dt / int_C phi dt, with the shape function phi of
+//! the point. The fractions sum to 1, and none is negative. A uniform depth at all points, on their
+//! tributary areas, gives a uniform depth at all vertices, since the phi of all points sum to 1.
 //!
 //! Sources: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth,
 //! Comput. Methods Appl. Mech. Eng. 194 (2005) 3147; M. A. Puso and T. A. Laursen, Comput. Methods
@@ -31,19 +31,19 @@
 
 use super::overlap::{Along, integrate, shape_functions, signed_size};
 
-/// Share of a facet that counts for nothing: what is covered of it, or is covered twice, or by
-/// which the point lies beside the other surface.
+/// Negligible fraction of a facet, for its covered part, the part covered twice, and the distance
+/// of the point from the other surface.
 const ROUNDING: f64 = 1e-6;
-/// Weights of rounding.
+/// Weights below this fraction of their sum are rounding errors.
 const NONE: f64 = 1e-12;
-/// Largest sum of the sizes of weights of a point beside the other surface: with one facet of which
-/// half is covered it is 4.5, and 1.7 where all is.
+/// Largest sum of the magnitudes of the weights of a point beyond the border of the other surface.
+/// It is 4.5 for one facet of which half is covered, and 1.7 for one covered completely.
 const FARTHEST: f64 = 4.5;
-/// Smallest determinant of the second moments of what is covered, over the product of these, from
-/// which on it is an area.
+/// Smallest determinant of the second moments of a covered part, relative to their product, for
+/// which the part is an area rather than a line.
 const FLAT: f64 = 1e-12;
 
-/// The facets at a point, and their overlap with another surface.
+/// The facets at a point, and the integrals over their overlap with another surface.
 #[derive(Clone, Debug)]
 pub struct Star {
     facets: Vec<StarFacet>,
@@ -52,51 +52,52 @@ pub struct Star {
 }
 
 /// A facet at the point.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct StarFacet {
     /// D corners.
     corners: [Along; 3],
     count: usize,
-    /// The point among them.
+    /// Index of the point among them.
     point: usize,
     /// Length (m) or area (m^2).
     size: f64,
-    /// Over what is covered of it the integrals of 1, the coordinates, their squares, and their
-    /// product.
-    one: f64,
+    /// Size of the covered part, and the integrals over it of the coordinates, of their squares,
+    /// and of their product.
+    covered: f64,
     first: Along,
     squares: Along,
     product: f64,
-    /// Over the same the integrals of the shape functions of vertices of the other surface.
+    /// Integrals over the covered part for vertices of the other surface.
     vertices: Vec<VertexIntegral>,
-    /// Integral of the shape function of the point over the same.
-    own: f64,
+    /// Integral over the covered part of the shape function of the point.
+    of_point: f64,
 }
 
-/// Integrals of the shape function of a vertex of the other surface over what is covered of a
-/// facet.
+/// Integrals over the covered part of a facet with the shape function of a vertex of the other
+/// surface.
 #[derive(Clone, Copy, Debug, Default)]
 struct VertexIntegral {
     vertex: u32,
-    alone: f64,
-    /// With the coordinates.
-    with: Along,
-    /// With the shape function of the point.
-    own: f64,
+    /// Of the shape function.
+    plain: f64,
+    /// Of its products with the coordinates.
+    moments: Along,
+    /// Of its product with the shape function of the point.
+    with_point: f64,
 }
 
-/// The vertices of another surface that a point faces, in increasing order, with numbers that sum
-/// to 1.
+/// The vertices of another surface that a point faces, in increasing order; weights and shares each
+/// sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faced {
-    /// The weights of the mean place.
+    /// Weights of the mean position.
     pub weights: Vec<(u32, f64)>,
-    /// The shares of what is worn off; none is negative.
+    /// Fractions of the worn volume; none is negative.
     pub shares: Vec<(u32, f64)>,
 }
 
-/// Sums up the numbers of each vertex, leaves out those of rounding, and has the others sum to 1;
-/// none where they sum to nothing.
+/// Sums the numbers of each vertex, drops those of rounding, and scales the others to sum to 1;
+/// `None` if their sum is not positive.
 fn normalised(mut all: Vec<(u32, f64)>) -> Option<Vec<(u32, f64)>> {
     all.sort_by_key(|(vertex, _)| *vertex);
     let mut sums: Vec<(u32, f64)> = Vec::with_capacity(all.len());
@@ -114,7 +115,7 @@ fn normalised(mut all: Vec<(u32, f64)>) -> Option<Vec<(u32, f64)>> {
     (!sums.is_empty() && sum > 0.0).then_some(sums)
 }
 
-/// From where to where corners reach along an axis (m).
+/// Returns the range of corners along an axis (m).
 fn range(corners: &[Along], axis: usize) -> [f64; 2] {
     let along = corners.iter().map(|c| c[axis]);
     along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
@@ -127,38 +128,38 @@ impl StarFacet {
         &self.corners[..self.count]
     }
 
-    /// Adds what it has in common with a facet of the other surface; gives its size.
-    fn face(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
+    /// Adds the integrals over the overlap with a facet of the other surface; returns its size.
+    fn add_overlap(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
         let own = self.corners;
-        let (mut one, mut parts) = (0.0, [VertexIntegral::default(); 3]);
+        let (mut covered, mut parts) = (0.0, [VertexIntegral::default(); 3]);
         integrate(&own[..self.count], at, |t, weight| {
-            one += weight;
+            covered += weight;
             let of_point = weight * shape_functions(&own[..self.count], t)[self.point];
-            self.own += of_point;
+            self.of_point += of_point;
             for (axis, t) in t.iter().enumerate() {
                 self.first[axis] += weight * t;
                 self.squares[axis] += weight * t * t;
             }
             self.product += weight * t[0] * t[1];
             for (part, phi) in parts.iter_mut().zip(shape_functions(at, t)) {
-                part.alone += weight * phi;
-                part.with[0] += weight * phi * t[0];
-                part.with[1] += weight * phi * t[1];
-                part.own += of_point * phi;
+                part.plain += weight * phi;
+                part.moments[0] += weight * phi * t[0];
+                part.moments[1] += weight * phi * t[1];
+                part.with_point += of_point * phi;
             }
         });
-        self.one += one;
-        if one > 0.0 {
+        self.covered += covered;
+        if covered > 0.0 {
             let parts = vertices.iter().zip(parts);
             self.vertices
                 .extend(parts.map(|(k, part)| VertexIntegral { vertex: *k, ..part }));
         }
-        one
+        covered
     }
 
-    /// b and c of the dual function; none where nothing, or a line of no area, is covered.
+    /// Returns b and c of the dual function; `None` if no length or area is covered.
     fn dual(&self) -> Option<(Along, f64)> {
-        if self.one <= ROUNDING * self.size {
+        if self.covered <= ROUNDING * self.size {
             return None;
         }
         let ([x, y], [xx, yy], xy) = (self.first, self.squares, self.product);
@@ -175,15 +176,15 @@ impl StarFacet {
                 ]
             }
         };
-        let sum = self.one + b[0] * x + b[1] * y;
-        (sum > FLAT * self.one).then(|| (b, self.own / sum))
+        let sum = self.covered + b[0] * x + b[1] * y;
+        (sum > FLAT * self.covered).then(|| (b, self.of_point / sum))
     }
 }
 
 impl Star {
-    /// The facets at a point, each with its D corners in coordinates from the point and the place
-    /// of the point among them. None where there is no facet that faces a surface whose facets are
-    /// positive; others are left out.
+    /// Takes the facets at a point, each with its D corners relative to the point and the index of
+    /// the point among them. Facets that do not face a surface of positive facets are left out;
+    /// `None` if no facet remains.
     pub fn new(
         facets: impl IntoIterator<Item = ([Along; 3], usize)>,
         count: usize,
@@ -195,12 +196,7 @@ impl Star {
                 count,
                 point,
                 size,
-                one: 0.0,
-                first: [0.0; 2],
-                squares: [0.0; 2],
-                product: 0.0,
-                vertices: Vec::new(),
-                own: 0.0,
+                ..StarFacet::default()
             })
         };
         let facets: Vec<StarFacet> = facets.into_iter().filter_map(facet).collect();
@@ -208,7 +204,7 @@ impl Star {
         (!facets.is_empty()).then_some(Self { facets, covered })
     }
 
-    /// Whether a facet of the other surface may face it.
+    /// Returns whether a facet of the other surface may overlap those at the point.
     pub fn is_near(&self, at: &[Along]) -> bool {
         let meets = |own: &[Along]| {
             (0..2).all(|axis| {
@@ -220,32 +216,39 @@ impl Star {
         self.facets.iter().any(|f| meets(f.corners()))
     }
 
-    /// Takes a facet of the other surface, its D vertices and their coordinates; gives whether it
-    /// covers more than rounding.
-    pub fn face(&mut self, vertices: &[u32], at: &[Along]) -> bool {
+    /// Adds a facet of the other surface, by its D vertices and their coordinates; returns whether
+    /// it covers a part of a facet at the point.
+    pub fn add_facet(&mut self, vertices: &[u32], at: &[Along]) -> bool {
         let mut covers = false;
         for facet in &mut self.facets {
-            covers |= facet.face(vertices, at) > ROUNDING * facet.size;
+            covers |= facet.add_overlap(vertices, at) > ROUNDING * facet.size;
         }
         let shares = &shape_functions(at, [0.0; 2])[..at.len()];
         self.covered |= shares.iter().all(|share| *share >= -ROUNDING);
         covers
     }
 
-    /// The vertices of the other surface that the point faces. None where it faces two layers of
-    /// it, or is beside it: of one that is `beyond` its border what is covered of its facets
-    /// counts, up to about half of one.
-    pub fn faced(&self, beyond: bool) -> Option<Faced> {
-        let twice = |f: &StarFacet| f.one > (1.0 + ROUNDING) * f.size;
-        if !(self.covered || beyond) || self.facets.iter().any(twice) {
+    /// Returns the vertices of the other surface that the point faces; `None` if it faces two
+    /// layers of the surface, or is beyond its border.
+    pub fn faced(&self) -> Option<Faced> {
+        self.faced_in_part().filter(|_| self.covered)
+    }
+
+    /// Returns the vertices of the other surface that the point or the facets at it face. Beyond
+    /// the border of the surface the covered parts of the facets count, down to about half of one
+    /// facet.
+    pub fn faced_in_part(&self) -> Option<Faced> {
+        let twice = |f: &StarFacet| f.covered > (1.0 + ROUNDING) * f.size;
+        if self.facets.iter().any(twice) {
             return None;
         }
         let (mut weights, mut shares) = (Vec::new(), Vec::new());
         for facet in &self.facets {
             let terms = facet.vertices.iter();
-            shares.extend(terms.clone().map(|term| (term.vertex, term.own)));
+            shares.extend(terms.clone().map(|term| (term.vertex, term.with_point)));
             if let Some((b, c)) = facet.dual() {
-                let psi = |t: &VertexIntegral| c * (t.alone + b[0] * t.with[0] + b[1] * t.with[1]);
+                let psi =
+                    |t: &VertexIntegral| c * (t.plain + b[0] * t.moments[0] + b[1] * t.moments[1]);
                 weights.extend(terms.map(|term| (term.vertex, psi(term))));
             }
         }
@@ -254,7 +257,7 @@ impl Star {
         if !self.covered && sizes > FARTHEST {
             return None;
         }
-        // None is negative but by rounding.
+        // Rounding errors may make shares negative.
         shares
             .iter_mut()
             .for_each(|(_, share)| *share = share.max(0.0));

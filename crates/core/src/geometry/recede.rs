@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// A vertex that can recede.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vertex<V> {
-    /// Its initial position, in the surface's frame (m).
+    /// Initial position, in the surface's frame (m).
     pub at: V,
     /// Tributary length (m) or area (m^2), perpendicular to the axis of wear: the integral of the
     /// shape function that is 1 at this vertex, 0 at all others and linear between.

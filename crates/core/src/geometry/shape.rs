@@ -43,8 +43,8 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Returns the radius in contacts (m), from which laws compute their area: that of a ball; of a point of a
-    /// surface the one whose contact has the area that it stands for.
+    /// Returns the radius in contacts (m), from which laws compute their area: that of a ball; of a
+    /// point of a surface the one whose contact has the area that it stands for.
     pub fn contact_radius(&self, lengths: &[f64]) -> f64 {
         match S::D {
             2 if self.radius == 0.0 => 2.0 * self.size(lengths),
@@ -52,7 +52,7 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Its radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it,
+    /// Radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it,
     /// in the axes of its body) is known. The vertex at a corner stands for a part of either side,
     /// of which one touches.
     pub fn radius_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
@@ -103,7 +103,7 @@ pub struct Corner<V> {
     pub at: V,
     /// Unit normals of the faces before and after it; the corner is nearest to points in between.
     pub normals: [V; 2],
-    /// Its name, stable in time.
+    /// Name, stable in time.
     pub feature: u32,
 }
 

@@ -24,7 +24,7 @@ pub struct Circuit {
     pub from: u32,
     /// Body that it leaves, of potential 0.
     pub to: u32,
-    /// Its source.
+    /// Source.
     pub supply: Supply,
 }
 

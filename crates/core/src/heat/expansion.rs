@@ -25,9 +25,9 @@ struct ShapeAtRest<C, V> {
 /// A body of finite elements that expands: its points have the free strain alpha (T - T_0).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpandingSystem {
-    /// Its index among the dynamical systems.
+    /// Index among the dynamical systems.
     pub system: usize,
-    /// Its nodes of heat: one, or one for each point of its mesh.
+    /// Nodes of heat: one, or one for each point of its mesh.
     pub nodes: Range<usize>,
     /// Coefficient of linear expansion alpha (1/K).
     pub coefficient: f64,
@@ -92,8 +92,8 @@ impl<S: Space> Expansion<S> {
         1.0 + free_strain(self.coefficient[body], temperature - self.reference[body])
     }
 
-    /// Scales all shapes by the stretches of their bodies, and sets the length of bodies that are one
-    /// ball to its radius; returns the largest change of a distance from a centre (m).
+    /// Scales all shapes by the stretches of their bodies, and sets the length of bodies that are
+    /// one ball to its radius; returns the largest change of a distance from a centre (m).
     pub fn apply(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
         let mut most = 0.0f64;
         for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {

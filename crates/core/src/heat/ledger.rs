@@ -121,8 +121,8 @@ impl HeatLedger {
 mod tests {
     use super::*;
 
-    /// Supplied heat is stored, has entered bodies of fixed temperature, or is pending; the scale is
-    /// the largest of all, and does not decrease.
+    /// Supplied heat is stored, has entered bodies of fixed temperature, or is pending; the scale
+    /// is the largest of all, and does not decrease.
     #[test]
     fn heat_that_is_accounted_for_leaves_no_residual() {
         let mut ledger = HeatLedger {

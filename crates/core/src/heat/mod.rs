@@ -1,4 +1,5 @@
-//! Heat and electric current of a scene: the model given by the case, and the state changed by steps.
+//! Heat and electric current of a scene: the model given by the case, and the state changed by
+//! steps.
 //!
 //! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a
 //! half-space below each. Contacts join them by the conductances that transport laws give, and put

@@ -5,8 +5,8 @@
 //! and comparisons, [`Lane::greatest`] and [`Lane::least`] treat NaN and signed zeros in the same
 //! way.
 //!
-//! Functions of several numbers are inlined into functions that are compiled for the instructions of a
-//! machine ([`dispatch`]).
+//! Functions of several numbers are inlined into functions that are compiled for the instructions
+//! of a machine ([`dispatch`]).
 
 mod dispatch;
 #[cfg(target_arch = "aarch64")]
@@ -106,7 +106,7 @@ pub trait Lane:
     /// Writes the records of the lanes of a mask.
     ///
     /// # Safety
-    /// These records are valid, and nobody else accesses them.
+    /// The records are valid, and nobody else accesses them.
     unsafe fn scatter_where<T: Record>(
         mask: Self::Mask,
         to: Self::Each<*mut T>,

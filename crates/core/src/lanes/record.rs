@@ -7,8 +7,8 @@ use std::ops::Deref;
 
 /// A structure of numbers alone, which may be those of several contacts.
 ///
-/// Structures with an even number of numbers that are read in columns are aligned to 16 bytes, so that
-/// no pair of numbers lies in two cache lines.
+/// Structures with an even number of numbers that are read in columns are aligned to 16 bytes, so
+/// that no pair of numbers lies in two cache lines.
 ///
 /// # Safety
 /// `Self` consists of `f64` alone, and `With<L>` of as many `L`, in the same order (`repr(C)`).

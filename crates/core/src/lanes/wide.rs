@@ -171,7 +171,7 @@ unsafe fn gather_four<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *
 /// Reads the columns of two numbers.
 ///
 /// # Safety
-/// As for [`gather_four`].
+/// The conditions of [`gather_four`].
 #[inline(always)]
 unsafe fn gather_two<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
     for u in 0..U {
@@ -188,7 +188,7 @@ unsafe fn gather_two<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *m
 /// Reads the column of one number.
 ///
 /// # Safety
-/// As for [`gather_four`].
+/// The conditions of [`gather_four`].
 #[inline(always)]
 unsafe fn gather_one<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
     for u in 0..U {
@@ -221,7 +221,7 @@ unsafe fn numbers<T>([a, b, c, d]: &[*mut T; 4], at: usize) -> [*mut f64; 4] {
 /// set.
 ///
 /// # Safety
-/// These records and `from`, which has `U` groups, have as many numbers.
+/// The written records and `from`, which has `U` groups, have as many numbers.
 #[inline(always)]
 unsafe fn scatter_four<F: Four, T, const U: usize>(
     to: &[*mut T; 4],
@@ -251,7 +251,7 @@ unsafe fn scatter_four<F: Four, T, const U: usize>(
 /// Writes a column.
 ///
 /// # Safety
-/// As for [`scatter_four`].
+/// The conditions of [`scatter_four`].
 #[inline(always)]
 unsafe fn scatter_one<F: Four, T, const U: usize>(
     to: &[*mut T; 4],
@@ -423,7 +423,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
 /// Writes the records whose bits are set.
 ///
 /// # Safety
-/// These records are valid, and nobody else accesses them.
+/// The records are valid, and nobody else accesses them.
 #[inline(always)]
 unsafe fn scatter<F: Four, T: Record, const U: usize>(
     to: [[*mut T; 4]; U],

@@ -14,19 +14,19 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// What happens to a grain in an ejection zone.
+/// Fate of a grain in an ejection zone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum EjectedFate {
-    /// It stays ejected until it leaves the zone, and may return to the contact.
+    /// The grain stays ejected until it leaves the zone, and may return to the contact.
     Stays,
-    /// It is lost, and removed from the scene, after this time in the zone (s).
+    /// The grain is lost, and removed from the scene, after this time in the zone (s).
     LostAfter(f64),
 }
 
 /// An ejection zone outside the contact.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Zone {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third component
     /// is not read.
@@ -36,7 +36,7 @@ pub struct Zone {
     /// The body that carries it; its corners are then in the frame of that body, which may move but
     /// not rotate.
     pub carrier: Option<u32>,
-    /// What happens to the grains in it.
+    /// Fate of the grains in the zone.
     pub fate: EjectedFate,
 }
 

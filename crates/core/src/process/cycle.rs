@@ -71,7 +71,7 @@ pub enum SlidingPart {
 pub struct Drive {
     /// Tangential force that moves it (N; N/m in 2D).
     pub force: f64,
-    /// Its sliding over the step (m), signed.
+    /// Sliding over the step (m), signed.
     pub slide: f64,
     /// Share of the step at which the force is this; 1/2 of a mean.
     pub at: f64,
@@ -100,8 +100,8 @@ pub struct SlidingBody {
 }
 
 impl SlidingBody {
-    /// Returns force and sliding of its drive in the last step; of a deformable body those of the holder
-    /// that moves it.
+    /// Returns force and sliding of its drive in the last step; of a deformable body those of the
+    /// holder that moves it.
     pub fn drive<S: Space>(&self, s: &Simulation<S>) -> Drive {
         let h = s.options.scheme.h;
         match self.part {

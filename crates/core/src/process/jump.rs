@@ -82,7 +82,7 @@ pub struct Jumps {
     /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far
     /// (J; J/m).
     current: (u32, f64),
-    /// Its tangential force in the last step (N; N/m).
+    /// Tangential force in the last step (N; N/m).
     force: f64,
     /// Steps of a cycle, and of the whole run.
     steps: [u64; 2],
@@ -425,8 +425,8 @@ impl<S: Space> Process<S> for Jumps {
     }
 }
 
-/// Returns the accumulated quantities: volumes worn at the places of each scar, what was worn off grains, and the
-/// damage of the bonds, interface by interface.
+/// Returns the accumulated quantities: volumes worn at the places of each scar, what was worn off
+/// grains, and the damage of the bonds, interface by interface.
 fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     let mut all: Amounts = Vec::new();
     for scar in &s.state.scars {

@@ -9,7 +9,7 @@ pub struct Jump {
     pub after: u32,
     /// Number of cycles that its computed cycle represents.
     pub cycles: u32,
-    /// Its error: the maximum over volumes and damage, relative to what it added, and over
+    /// Error: the maximum over volumes and damage, relative to what it added, and over
     /// misplaced volume, relative to the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
     /// Relative difference between the work of the cycles after it and that of the cycle before it.

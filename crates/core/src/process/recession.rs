@@ -1,7 +1,7 @@
 //! Recession: worn surfaces are lowered by the depth of their scars.
 //!
-//! The volume worn in a step is removed from the scars at the closest points of its contacts, at q_m;
-//! at a contact with a mean place from all vertices below the facets of its point
+//! The volume worn in a step is removed from the scars at the closest points of its contacts, at
+//! q_m; at a contact with a mean place from all vertices below the facets of its point
 //! ([`crate::geometry::mortar`]). The surfaces recede after the motion of the step; the next
 //! detection finds the gap that opens. No work is done in between: a load that falls into the gap
 //! releases its potential energy in the next step, as over any open gap.
@@ -40,8 +40,8 @@ impl<S: Space> Process<S> for Recession {
     /// Lowers the surfaces that are due in this step, at the interval `every` of their scars.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         let steps = s.state.steps;
-        // The surface follows a step that represents several cycles at once, so that the next contacts
-        // are at protruding places.
+        // The surface follows a step that represents several cycles at once, so that the next
+        // contacts are at protruding places.
         let jumps = s.state.network.cycle_multiplier > 1.0;
         lower(s, |scar| jumps || steps.is_multiple_of(scar.every));
         Ok(())

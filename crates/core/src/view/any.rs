@@ -56,7 +56,7 @@ impl AnySimulation {
     /// [`Simulation::run_until`].
     ///
     /// # Errors
-    /// As [`Simulation::run_until`].
+    /// The errors of [`Simulation::run_until`].
     pub fn run_until<B>(
         &mut self,
         time: f64,

@@ -12,28 +12,28 @@ pub trait RunControl: RunView + Send {
     /// One step; see [`Simulation::step`].
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    /// The errors of [`Simulation::step`].
     fn step(&mut self) -> Result<StepReport, StepError>;
     /// Detects the contacts at the current positions, without an alert distance.
     fn detect(&mut self);
-    /// The processes that are due act; see [`Simulation::between_steps`].
+    /// Lets the processes act that are due; see [`Simulation::between_steps`].
     ///
     /// # Errors
-    /// As [`Simulation::between_steps`].
+    /// The errors of [`Simulation::between_steps`].
     fn between_steps(&mut self) -> Result<(), StepError>;
-    /// The processes end; see [`Simulation::end`].
+    /// Ends the processes; see [`Simulation::end`].
     ///
     /// # Errors
-    /// As [`Simulation::end`].
+    /// The errors of [`Simulation::end`].
     fn end(&mut self) -> Result<(), StepError>;
     /// Whether the current phase is repeated later.
     fn phase_recurs(&self) -> bool;
-    /// Whether a surface was worn through.
+    /// Checks that no surface is worn through.
     ///
     /// # Errors
-    /// It was.
+    /// A surface is worn through.
     fn check_worn_through(&self) -> Result<(), StepError>;
-    /// How it is computed, to be changed.
+    /// Options of the computation, to be changed.
     fn options_mut(&mut self) -> &mut Options;
     /// Continues with another time step (s); see [`Simulation::change_step`].
     fn change_step(&mut self, h: f64);
@@ -53,8 +53,9 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// The state cannot be serialised.
     fn save(&self) -> Result<Vec<u8>, CodeError>;
-    /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns the
-    /// bytes after it, or `None` if the state belongs to another case. See [`Simulation::restore`].
+    /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns
+    /// the bytes after it, or `None` if the state belongs to another case. See
+    /// [`Simulation::restore`].
     ///
     /// # Errors
     /// The bytes are not a state.
@@ -69,11 +70,11 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// The states belong to other processes.
     fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
-    /// Calls `trial`, which may make steps and change options, and restores the state before it; see
-    /// [`Simulation::repeat`].
+    /// Calls `trial`, which may make steps and change options, and restores the state before it;
+    /// see [`Simulation::repeat`].
     ///
     /// # Errors
-    /// As [`Simulation::repeat`].
+    /// The errors of [`Simulation::repeat`].
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError>;
     /// Has `trial` make steps, and restores the state before it where it returns false; see
     /// [`Simulation::attempt`]. Returns what it returned.

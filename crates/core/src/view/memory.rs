@@ -1,4 +1,4 @@
-//! What a simulation takes in memory.
+//! Memory of a simulation.
 
 use crate::bodies::Bodies;
 use crate::contact::Bond;

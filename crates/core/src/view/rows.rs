@@ -107,9 +107,9 @@ pub struct PieceView {
     pub bound: f64,
     /// Rounding radius (m).
     pub rounding: f64,
-    /// Its centre (m).
+    /// Centre (m).
     pub centre: [f64; 3],
-    /// Its centre in the frame of the body (m).
+    /// Centre in the frame of the body (m).
     pub offset: [f64; 3],
 }
 
@@ -120,7 +120,7 @@ pub struct SurfaceView {
     pub body: u32,
     /// Index of its material.
     pub material: u16,
-    /// Its origin in the frame of the body (m).
+    /// Origin in the frame of the body (m).
     pub offset: [f64; 3],
     /// Whether it is the surface of a grain that deforms.
     pub closed: bool,
@@ -135,7 +135,7 @@ pub struct SurfaceView {
 pub struct Outline {
     /// Index of the body.
     pub body: u32,
-    /// Its points (m).
+    /// Points (m).
     pub points: Vec<[f64; 3]>,
 }
 

@@ -104,7 +104,7 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
 
     /// Centres of the parts of grains and first bodies that carry fields (m).
     fn grain_centres(&self) -> Vec<[f64; 3]>;
-    /// These centres in the periodic cell (m).
+    /// Centres of the parts, moved into the periodic cell (m).
     fn grain_points(&self) -> Vec<[f64; 3]>;
     /// The fields of the parts of grains and first bodies, in the order in which they are written.
     fn grain_fields(&self, with: GrainFields) -> Vec<FieldInfo>;

@@ -1,4 +1,4 @@
-//! What a case adds to a simulation before its first step.
+//! Additions of a case to a simulation before its first step.
 
 use super::RunControl;
 use crate::bodies::Dof;
@@ -38,7 +38,7 @@ pub trait RunSetup: RunControl {
     /// Adds the pressures of a drive.
     ///
     /// # Errors
-    /// As [`RunSetup::check_pressures`].
+    /// The errors of [`RunSetup::check_pressures`].
     fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
     /// Measures the loaded areas of all pressures.
     fn measure_areas(&mut self);

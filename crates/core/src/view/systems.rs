@@ -18,15 +18,15 @@ pub trait SystemView {
     fn is_grain(&self) -> bool;
     /// A length of its size (m).
     fn length(&self) -> f64;
-    /// Its mass (kg; kg/m in 2D).
+    /// Mass (kg; kg/m in 2D).
     fn mass(&self) -> f64;
     /// Whether it can change its size with its temperature.
     fn expands(&self) -> bool;
-    /// Its mesh for the conduction of heat; `None` where it has none.
+    /// Mesh for the conduction of heat; `None` where it has none.
     fn conduction(&self) -> Option<Conduction>;
-    /// Its parts that can touch.
+    /// Parts that can touch.
     fn contactors(&self) -> Vec<Contactor>;
-    /// Its holders.
+    /// Holders.
     fn holders(&self) -> Vec<Holder>;
     /// Memory and cost of its solutions.
     fn size(&self) -> Option<SystemSize>;

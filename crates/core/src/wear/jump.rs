@@ -51,7 +51,8 @@ pub fn parabola_weights(n: u32, at: [f64; 3]) -> [f64; 3] {
     [part(0), part(1), part(2)]
 }
 
-/// Returns the error of a jump that added `jumped`, from increments with their [`parabola_weights`].
+/// Returns the error of a jump that added `jumped`, from increments with their
+/// [`parabola_weights`].
 pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
     let expected: f64 = rates.iter().zip(parts).map(|(r, p)| r * p).sum();
     (jumped - expected).abs()

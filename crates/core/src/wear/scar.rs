@@ -91,7 +91,8 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Shifts its vertices (m): the frame of a surface that deforms has its origin at one of its points.
+    /// Shifts its vertices (m): the frame of a surface that deforms has its origin at one of its
+    /// points.
     #[must_use]
     pub fn shifted(mut self, by: S::Vector) -> Self {
         self.vertices.iter_mut().for_each(|v| v.at += by);
@@ -173,8 +174,8 @@ impl<S: Space> Scar<S> {
         far
     }
 
-    /// Applies the depth of an earlier [`Self::apply_depth`] to an unworn surface; later wear remains
-    /// pending.
+    /// Applies the depth of an earlier [`Self::apply_depth`] to an unworn surface; later wear
+    /// remains pending.
     pub fn reapply_depth(&self, shapes: &mut Shapes<S>) {
         let all: Vec<usize> = (0..self.applied.len()).collect();
         let carried = shapes.surfaces.get_mut(self.surface);

@@ -1,10 +1,10 @@
 //! The shape of a scar: U or W.
 //!
 //! The scar extends from the first to the last place deeper than a twentieth of its largest depth.
-//! It is divided into twenty slices of equal width. The depth of its middle is the mean of the two
-//! central slices, that of its sides the deepest slice of each half. The scar is a W where the
-//! middle is below 0.9 of both sides, otherwise a U. Averaging over slices suppresses the dents of
-//! single contacts.
+//! The scar is divided into twenty slices of equal width. The depth of its middle is the mean of
+//! the two central slices, that of its sides the deepest slice of each half. The scar is a W where
+//! the middle is below 0.9 of both sides, otherwise a U. Averaging over slices suppresses the dents
+//! of single contacts.
 
 use serde::Serialize;
 

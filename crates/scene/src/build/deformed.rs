@@ -81,7 +81,7 @@ impl Builder<'_> {
         let largest = most(&mut recorded.iter().copied());
         let ours = stress.iter().map(von_mises);
         let off = most(&mut ours.clone().zip(recorded).map(|(a, b)| (a - b).abs()));
-        // What rounding leaves of a grain without load is no stress.
+        // Rounding errors of an unloaded grain do not count as stress.
         if off > SAME_STRESS * largest.max(1e-6 * elasticity.young) {
             let message = format!(
                 "grain {id} of the other run has a von Mises stress of up to {largest:e} Pa, where its deformation gives up to {:e} Pa here: give `{material}` \

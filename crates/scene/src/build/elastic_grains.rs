@@ -27,7 +27,8 @@ pub(super) type ElasticGrains = Vec<(AnySystem, Origin)>;
 /// elements along the radius.
 type OfMaterial<'a> = BTreeMap<u16, (String, &'a ElasticGrainSpec, Elasticity, usize)>;
 
-/// What grains of one shape share: a number for their kind, and all that their modes depend on.
+/// Key of grains that share their modes: a number for their kind, and all data on which the modes
+/// depend.
 type ShapeKey = (usize, Vec<u64>);
 
 /// The collision shapes of a grain.

@@ -18,8 +18,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     read(Source::read(path)?, path, sets)
 }
 
-/// The same from a text. `name` stands for the file in errors; the files that the case names, and
-/// `materials/`, are looked for relative to `folder` (an empty path for the working folder).
+/// Loads a case from a text. `name` stands for the file in errors; the files that the case names,
+/// and `materials/`, are looked for relative to `folder` (an empty path for the working folder).
 ///
 /// # Errors
 /// At name, line and column.
@@ -48,10 +48,10 @@ pub fn load_text(
     read(Source::from_text(name, text), &folder.join(name), sets)
 }
 
-/// The same from what gives bytes, read to its end: at most 64 MiB of UTF-8.
+/// Loads a case from a stream, which is read to its end: at most 64 MiB of UTF-8.
 ///
 /// # Errors
-/// As [`load_text`], and what cannot be read.
+/// The errors of [`load_text`], or the stream cannot be read.
 pub fn load_reader(
     name: &str,
     mut from: impl Read,
@@ -76,7 +76,7 @@ impl Loaded {
     /// [`load_text`].
     ///
     /// # Errors
-    /// What a case file with the same content would be refused for.
+    /// The errors of a case file with the same content.
     pub fn from_case(case: Case, folder: &Path) -> Result<Self, InputError> {
         let name = "case.ron (built in Rust)";
         let text = case.to_ron()?;
@@ -94,7 +94,7 @@ impl Loaded {
         })
     }
 
-    /// The same case, where grains of other runs are read by `reader`.
+    /// Reads grains of other runs by `reader`.
     #[must_use]
     pub fn reading_records(self, reader: RecordReader) -> Self {
         Self {
@@ -103,8 +103,8 @@ impl Loaded {
         }
     }
 
-    /// The same case, with a material of one's own: `materials` of the case finds it under `file`
-    /// before any file of that name.
+    /// Adds a material, which `materials` of the case finds under `file` before any file of that
+    /// name.
     ///
     /// # Errors
     /// A material that cannot be written as text.
@@ -112,8 +112,7 @@ impl Loaded {
         self.with_file(file, material)
     }
 
-    /// The same case, with parameters of laws of one's own: `parameters_from` of an interface finds
-    /// them under `file`.
+    /// Adds parameters of laws, which `parameters_from` of an interface finds under `file`.
     ///
     /// # Errors
     /// Parameters that cannot be written as text.

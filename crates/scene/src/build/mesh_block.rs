@@ -11,7 +11,7 @@ use fretwork_elastic::mesh::MeshError;
 const MAX_LINE: f64 = 1e5;
 const MAX_POINTS: usize = 1_000_000;
 
-/// What a block has besides its lines.
+/// Options of a block besides its lines.
 pub(super) struct BlockShape<'a> {
     pub(super) round: Option<&'a RoundSpec>,
     pub(super) profile: Option<&'a MeshProfileSpec>,

@@ -213,7 +213,7 @@ impl Loaded {
     }
 }
 
-/// What the files of a case's materials say.
+/// Data from the material files of a case.
 #[derive(Default)]
 struct Materials {
     /// Index in the order of the case and density (kg/m^3), by name.
@@ -236,11 +236,11 @@ struct Builder<'a> {
     /// The entry of the case that made each body: an index in `grains`, an index in its list, or an
     /// index in `bodies`.
     origins: Vec<Origin>,
-    /// See [`Built::samples`].
+    /// Descriptions of the samples, for [`Built::samples`].
     samples: Vec<String>,
     /// Grains that were deformed in a state of another run, by body, with their identity there.
     deformed: BTreeMap<u32, (u64, Deformed)>,
-    /// See [`Built::deforming`].
+    /// Grains that deform, for [`Built::deforming`].
     deforming: Vec<ShapedGrain>,
 }
 

@@ -8,9 +8,9 @@ use fretwork_core::laws::Kind;
 use fretwork_core::view::RunSetup;
 use nalgebra::Vector3;
 
-/// What a deformable body says of its wear.
+/// Wear of a deformable body, from the case.
 pub(super) struct DeformableWear {
-    /// Its place in the case.
+    /// Place in the case.
     here: String,
     name: String,
     wears: WearSpec,
@@ -141,7 +141,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What deformable bodies say of their wear, in the order of the systems.
+    /// Returns the wear of the deformable bodies, in the order of the systems.
     pub(super) fn deformable_wear(&self) -> Result<Vec<Option<DeformableWear>>, InputError> {
         let elastic = self.case.elastic.iter().enumerate();
         let elastic = elastic.map(|(k, e)| {

@@ -85,7 +85,8 @@ impl BodySpec {
         self
     }
 
-    /// Its surfaces follow their wear, down to a thickness (m) at which the run stops.
+    /// Lets the surfaces of the body recede as they wear, down to a thickness (m) at which the run
+    /// stops.
     #[must_use]
     pub fn wears(mut self, thickness: f64) -> Self {
         self.wears = Some(WearSpec {
@@ -95,7 +96,7 @@ impl BodySpec {
         self
     }
 
-    /// It moves freely: every degree of freedom under its contacts, gravity and inertia.
+    /// Lets the body move freely: every degree of freedom under its contacts, gravity and inertia.
     #[must_use]
     pub fn free(mut self) -> Self {
         self.dofs = DofSpec {

@@ -80,7 +80,7 @@ impl InterfaceSpec {
         self
     }
 
-    /// The same with another opening at which bonds begin.
+    /// Sets the opening at which bonds begin.
     #[must_use]
     pub fn bond_opening(mut self, opening: BondOpening) -> Self {
         self.bond_opening = opening;

@@ -2,7 +2,7 @@
 //!
 //! A [`CaseBuilder`] fills in a [`Case`], the type that case files are read into, so that all that
 //! a file can say can be said here, is checked by the same code and refused in the same sentences.
-//! What has no method of its own is reached by [`CaseBuilder::change`].
+//! [`CaseBuilder::change`] sets everything that has no method of its own.
 
 mod body;
 mod grains;
@@ -234,7 +234,7 @@ impl CaseBuilder {
     /// Checks the case, as if it had been read from a file.
     ///
     /// # Errors
-    /// As [`Loaded::from_case`].
+    /// The errors of [`Loaded::from_case`].
     pub fn load(self) -> Result<Loaded, InputError> {
         let mut loaded = Loaded::from_case(self.case, &self.folder)?;
         for (name, material) in &self.materials {
@@ -246,7 +246,7 @@ impl CaseBuilder {
     /// Checks the case and builds its simulation with the laws of a search path.
     ///
     /// # Errors
-    /// What a case file with the same content would be refused for: laws and materials that are not
+    /// The errors of a case file with the same content: laws and materials that are not
     /// found, parameters out of range, bodies that overlap.
     pub fn build(self, laws: &SearchPath) -> Result<Built, InputError> {
         self.load()?.build(laws)

@@ -23,12 +23,12 @@ pub(super) struct Nodes {
     pub of_bodies: Vec<BodyNodes>,
     pub columns: Vec<Columns>,
     pub elements: Vec<Edge>,
-    /// See [`fretwork_core::heat::Heat::first_bodies`].
+    /// Nodes of each first body, for [`fretwork_core::heat::Heat::first_bodies`].
     pub first_bodies: Vec<(String, Range<usize>)>,
     pub imposed: Vec<Imposed>,
 }
 
-/// What nodes of bodies are made from.
+/// Inputs from which the nodes of bodies are made.
 pub(super) struct Scene<'a> {
     pub case: &'a Case,
     pub spec: &'a HeatSpec,

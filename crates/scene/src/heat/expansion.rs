@@ -14,12 +14,12 @@ const LARGEST: f64 = 1e-3;
 struct Coefficients<'a> {
     case: &'a Case,
     properties: &'a Properties,
-    /// Those that were looked for, by index of the material.
+    /// Coefficients found so far, by index of the material.
     found: BTreeMap<usize, f64>,
 }
 
 impl Coefficients<'_> {
-    /// Whether the file of a material has one.
+    /// Returns whether the file of a material has a coefficient.
     fn are_known(&self, material: usize) -> bool {
         self.properties[material].contains_key("expansion")
     }

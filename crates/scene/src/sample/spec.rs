@@ -95,7 +95,7 @@ pub enum SizeSpec {
     },
 }
 
-/// What a distribution counts.
+/// Quantity by which a distribution weights grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Counted {
     /// By number.

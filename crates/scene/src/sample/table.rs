@@ -30,7 +30,7 @@ impl Table {
     /// are converted to metres.
     ///
     /// # Errors
-    /// As [`Table::read`], or a unit that is not a length.
+    /// The errors of [`Table::read`], or a unit that is not a length.
     pub fn read_lengths(
         path: &Path,
         required: &[&str],
@@ -182,7 +182,7 @@ pub fn number(word: &str, column: &str) -> Result<f64, String> {
     })
 }
 
-/// What is said of a number with a decimal comma.
+/// Returns the message for a number with a decimal comma.
 pub fn decimal_comma(word: &str) -> String {
     format!("`{word}` has a comma within; write numbers with a decimal point")
 }

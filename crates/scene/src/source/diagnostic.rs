@@ -29,9 +29,9 @@ pub struct InputError {
     pub line: usize,
     /// The column in characters, from 1; 0 if there is no line.
     pub column: usize,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What was expected.
+    /// Description of valid input.
     pub expected: Option<String>,
     /// A suggestion, such as "did you mean `mu`?".
     pub help: Option<String>,
@@ -53,7 +53,7 @@ impl InputError {
         Self::within(file, text.into(), span, message.into())
     }
 
-    /// As [`InputError::at`], with a shared text.
+    /// Creates an error at a range of bytes of a shared text.
     pub(super) fn within(file: &str, text: Arc<str>, span: Range<usize>, message: String) -> Self {
         let start = boundary(&text, span.start);
         let span = start..boundary(&text, span.end).max(start);
@@ -108,7 +108,7 @@ impl InputError {
         }
     }
 
-    /// As [`InputError::file`].
+    /// Creates the error of a file that cannot be read.
     pub fn unreadable(path: &Path, error: &std::io::Error) -> Self {
         Self::file(path, error)
     }
@@ -165,7 +165,7 @@ impl InputError {
         super::clean(&format!("{} {}", self.file, self.message))
     }
 
-    /// As `in_short`, with the suggestion.
+    /// Returns file, message and suggestion in one line.
     pub fn in_a_sentence(&self) -> String {
         match &self.help {
             Some(help) => format!("{}; {}", self.in_short(), super::clean(help)),

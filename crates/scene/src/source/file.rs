@@ -55,7 +55,7 @@ fn empty(path: &Path) -> InputError {
 /// Reads a whole file with the checks of [`open`].
 ///
 /// # Errors
-/// As [`open`], or the file grows beyond `most` bytes while it is read.
+/// The errors of [`open`], or the file grows beyond `most` bytes while it is read.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let (file, length) = open(path, most)?;
     let capacity = usize::try_from(length).unwrap_or(0);
@@ -82,7 +82,7 @@ fn read_at_most(
 /// Reads a text file.
 ///
 /// # Errors
-/// As [`read_bytes`], or the file is not UTF-8 or holds white space only.
+/// The errors of [`read_bytes`], or the file is not UTF-8 or holds white space only.
 pub fn read_text(path: &Path) -> Result<String, InputError> {
     decode(path, read_bytes(path, MAX_BYTES)?)
 }
@@ -90,7 +90,7 @@ pub fn read_text(path: &Path) -> Result<String, InputError> {
 /// Reads a text from a stream, to its end; errors name it by `path`.
 ///
 /// # Errors
-/// As [`read_text`].
+/// The text cannot be read, is too long, is not UTF-8, or holds white space only.
 pub fn read_text_from(path: &Path, from: &mut dyn Read) -> Result<String, InputError> {
     decode(path, read_at_most(path, from, MAX_BYTES, 0)?)
 }

@@ -58,7 +58,7 @@ impl Source {
     /// Reads a file.
     ///
     /// # Errors
-    /// See [`read_text`].
+    /// The errors of [`read_text`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, InputError> {
         let path = path.as_ref();
         Ok(Self::from_text(path, read_text(path)?))
@@ -264,9 +264,9 @@ fn further(one: &SpannedError, other: &SpannedError) -> bool {
 pub struct ValidationError {
     /// The dotted path.
     pub path: String,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What was expected.
+    /// Description of valid input.
     pub expected: Option<String>,
     /// The nearest valid name.
     pub nearest: Option<String>,

@@ -1,11 +1,11 @@
-//! What may stand at a path of a text: for completion in editors and interpreters.
+//! Names that are valid at a path of a text: for completion in editors and interpreters.
 
 use super::Source;
 use super::schema::{Level, levels};
 use super::tree::split_path;
 use serde::de::DeserializeOwned;
 
-/// What may stand at a path.
+/// Names that are valid at a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Names {
     /// A struct, or a variant with fields: all its fields, whether the text has them or not.
@@ -19,8 +19,8 @@ pub enum Names {
 }
 
 impl Source {
-    /// What may stand at a dotted path of a text of type `T`, the empty path for the text itself;
-    /// `None` if `T` has no such path.
+    /// Returns the names that are valid at a dotted path of a text of type `T`, the empty path for
+    /// the text itself; `None` if `T` has no such path.
     ///
     /// ```
     /// use fretwork_scene::source::{Names, Source};

@@ -18,7 +18,7 @@ enum Origin {
     Added(usize),
     /// A `--set` argument.
     Set {
-        /// Its index.
+        /// Index.
         set: usize,
         /// Byte range in the argument.
         argument: Range<usize>,
@@ -38,7 +38,7 @@ pub(super) struct Place {
 
 /// The text in use, as ranges of the file and of `--set` arguments.
 ///
-/// It maps positions in the modified text to positions in the file, whose line numbers are the only
+/// Maps positions in the modified text to positions in the file, whose line numbers are the only
 /// ones that the user can look up.
 #[derive(Debug, Clone)]
 pub(super) struct SourceMap(Vec<SourceRange>);

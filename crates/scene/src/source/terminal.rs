@@ -16,7 +16,7 @@ pub fn clean(text: &str) -> String {
     text.chars().map(plain).collect()
 }
 
-/// As [`clean`], but keeps line breaks and tabs.
+/// Replaces control characters except line breaks and tabs by spaces.
 pub fn clean_lines(text: &str) -> String {
     let plain = |c| match c {
         '\n' | '\t' => c,

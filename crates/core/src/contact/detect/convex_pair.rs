@@ -70,8 +70,8 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the antagonist
-    /// is a piece.
+    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the
+    /// antagonist is a piece.
     fn adjacent(&self, pair: [u32; 2]) -> Vec<Adjacent<'_, S>> {
         let (shapes, centre) = (self.placed.scene.shapes, |k| self.piece_centre(k));
         self.partners

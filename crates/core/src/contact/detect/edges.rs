@@ -1,6 +1,6 @@
 //! Detects bodies that slide over one piece into the edge of its neighbour, where overlaps of the
-//! scene are as large as the height of the edge: free bodies sink by the error of the solver, so that
-//! faces are no longer flush.
+//! scene are as large as the height of the edge: free bodies sink by the error of the solver, so
+//! that faces are no longer flush.
 
 use super::partners::Partners;
 use super::piece_centre;
@@ -33,9 +33,9 @@ pub struct Impact<S: Space> {
     pub mass: f64,
 }
 
-/// Records bodies that meet such edges in this step, of length `h` from `time` (s). `impact` returns
-/// the impact at a contact, given its index in the network; `None` for compliant ones. Velocities
-/// below the error of a solution at this `tolerance` count as zero.
+/// Records bodies that meet such edges in this step, of length `h` from `time` (s). `impact`
+/// returns the impact at a contact, given its index in the network; `None` for compliant ones.
+/// Velocities below the error of a solution at this `tolerance` count as zero.
 pub fn record_edges<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -108,8 +108,8 @@ fn slides_into<S: Space>(
     slides && closing > lands && impulse > noise && slows
 }
 
-/// Returns the impulse of the piece below on the sliding body (N s); `None` if the two first touched
-/// at `time`, the start of the step. The edge may lift the body off that piece.
+/// Returns the impulse of the piece below on the sliding body (N s); `None` if the two first
+/// touched at `time`, the start of the step. The edge may lift the body off that piece.
 fn load_on<S: Space>(
     network: &Network<S>,
     contact: &Contact<S>,
@@ -132,8 +132,8 @@ fn load_on<S: Space>(
     loads.reduce(|a, b| a + b)
 }
 
-/// Returns the low edges at a contact of two pieces that the solution may have caused: they belong to
-/// different bodies, one of which is free to move.
+/// Returns the low edges at a contact of two pieces that the solution may have caused: they belong
+/// to different bodies, one of which is free to move.
 fn edges_of<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,

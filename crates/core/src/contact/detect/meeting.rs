@@ -29,7 +29,7 @@ pub(super) struct Meeting<S: Space> {
     pub at: Option<f64>,
     /// Largest relative displacement of two of its points in the step (m).
     pub travel: f64,
-    /// Its contacts there.
+    /// Contacts there.
     pub contacts: Vec<Contact<S>>,
     /// Whether it is reported as passing.
     pub passing: bool,
@@ -85,8 +85,8 @@ impl<'a, S: Space> MeetingSearch<'a, S> {
         }
     }
 
-    /// Follows a fast pair with these contacts through the step. Returns its contacts if it meets, or
-    /// that it is to be reported.
+    /// Follows a fast pair with these contacts through the step. Returns its contacts if it meets,
+    /// or that it is to be reported.
     pub fn examine(
         &self,
         names: (u32, u32),
@@ -98,8 +98,8 @@ impl<'a, S: Space> MeetingSearch<'a, S> {
         let law = sweep.scene.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
         let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
-        // The gap at the places of detection is larger than the motion along the normal, along which
-        // the gap closes.
+        // The gap at the places of detection is larger than the motion along the normal, along
+        // which the gap closes.
         let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
         let nearest = contacts.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         if let Some(nearest) = nearest

@@ -67,7 +67,7 @@ impl LawTable {
     }
 }
 
-/// What detection reads of a scene.
+/// Input of detection.
 #[derive(Clone, Copy, Debug)]
 pub struct CollisionScene<'a, S: Space> {
     /// Collision shapes.

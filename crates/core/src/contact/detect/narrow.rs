@@ -9,7 +9,7 @@ use crate::geometry::convex::ContactPoint;
 use crate::geometry::shape::{Ball, ClosestPoint, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
-/// What the narrow phase reads. Pairs do not depend on each other.
+/// Input of the narrow phase. Pairs do not depend on each other.
 pub(super) struct Narrow<'a, S: Space> {
     pub(super) network: &'a Network<S>,
     pub(super) placed: &'a PlacedScene<'a, S>,
@@ -137,8 +137,8 @@ impl<S: Space> Narrow<'_, S> {
                 other - bodies.position[q.body as usize],
             ]
         };
-        // The area of a ball on a grain belongs to its contact with the surface of the grain, not to
-        // those with the vertices next to it.
+        // The area of a ball on a grain belongs to its contact with the surface of the grain, not
+        // to those with the vertices next to it.
         let vertex = |ball: &BallData<S>| {
             let carrier = bodies.carrier(ball.body as usize);
             ball.radius == 0.0 && carrier.is_some_and(|c| c.grain)
@@ -206,8 +206,8 @@ impl<S: Space> Narrow<'_, S> {
             }
             closest_points.truncate(nearest + kept);
         }
-        // The area of a ball or of a point of a surface, with its bonds and attraction, counts once:
-        // at the nearest point.
+        // The area of a ball or of a point of a surface, with its bonds and attraction, counts
+        // once: at the nearest point.
         let mut nearest_feature = None;
         let point_of_surface = ball.radius == 0.0 && ball.area == S::Vector::zero();
         if surface.shape.deforms() && (ball.radius > 0.0 || point_of_surface) {
@@ -296,8 +296,8 @@ impl<S: Space> Narrow<'_, S> {
         renewed.drop_others(|k| continued[k]);
     }
 
-    /// Returns the search distance (m) for a point that the errors of the solution have pressed behind
-    /// an open surface by a large part of the alert distance; 0 for other points.
+    /// Returns the search distance (m) for a point that the errors of the solution have pressed
+    /// behind an open surface by a large part of the alert distance; 0 for other points.
     fn reach_from_behind(&self, old: &[Contact<S>]) -> f64 {
         let alert = self.network.alert;
         let deepest = old.iter().fold(0.0, |d: f64, c| d.max(-c.gap));
@@ -335,14 +335,14 @@ fn is_isotropic<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
     bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
 }
 
-/// What the contact of two balls depends on, next to each other in memory.
+/// Data of a ball for its contacts with other balls, next to each other in memory.
 pub(super) struct BallData<S: Space> {
     centre: S::Vector,
     radius: f64,
     body: u32,
     material: u16,
-    /// Whether it is a whole body with isotropic response, or belongs to a body at rest: contacts of
-    /// two such balls are central.
+    /// Whether it is a whole body with isotropic response, or belongs to a body at rest: contacts
+    /// of two such balls are central.
     simple: bool,
 }
 

@@ -25,8 +25,9 @@ impl Partners {
         &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
     }
 
-    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the antagonist
-    /// is a piece. `cores` are those of the pieces in world axes, `centre` gives their centres (m).
+    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the
+    /// antagonist is a piece. `cores` are those of the pieces in world axes, `centre` gives their
+    /// centres (m).
     pub fn adjacent<'a, S: Space>(
         &self,
         pairs: &[(u32, u32)],

@@ -52,7 +52,7 @@ pub(super) struct Renewed<'c, S: Space> {
     out: TaskResult<S>,
 }
 
-/// What a task changes beside the contacts that it renews in place.
+/// Changes made by a task besides the contacts that it renews in place.
 #[derive(Default)]
 struct TaskResult<S: Space> {
     /// Number of contacts renewed in place.
@@ -104,7 +104,8 @@ impl<'c, S: Space> Renewed<'c, S> {
         &self.old
     }
 
-    /// Reads the old contact of a pair of balls, of which there is at most one, and returns its place.
+    /// Reads the old contact of a pair of balls, of which there is at most one, and returns its
+    /// place.
     #[inline]
     pub fn old_of_balls(&mut self, pair: (u32, u32)) -> Option<usize> {
         self.skip_to(pair);

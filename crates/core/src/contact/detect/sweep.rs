@@ -107,11 +107,11 @@ struct Probe<V> {
 /// Result of following a pair through the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SweepResult {
-    /// They do not meet.
+    /// The bodies do not meet.
     Separate,
-    /// They meet after this fraction of the step.
+    /// The bodies meet after this fraction of the step.
     Meets(f64),
-    /// They rotate or move too far to be followed.
+    /// The bodies rotate or move too far to be followed.
     Unresolved,
 }
 
@@ -127,8 +127,8 @@ pub(super) struct SweptPair<'a, S: Space> {
     image: S::Vector,
     /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
-    /// Penetration up to which a surface detects the other shape (m): farther behind it there may be
-    /// another part of it.
+    /// Penetration up to which a surface detects the other shape (m): farther behind it there may
+    /// be another part of it.
     pub detectable: f64,
     /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
@@ -256,8 +256,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// Distance at which contact points with a surface are searched (m). A shape that passed through a
-    /// grain is behind the surface of the grain by more than the alert distance.
+    /// Distance at which contact points with a surface are searched (m). A shape that passed
+    /// through a grain is behind the surface of the grain by more than the alert distance.
     fn reach(&self, surface: &Carried<S>, half_thickness: f64) -> f64 {
         if surface.shape.is_closed() {
             self.alert.max(half_thickness)
@@ -497,8 +497,8 @@ fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> Conta
     }
 }
 
-/// Keeps the points on the side of the nearest one: a ball near a thin part is also behind the other
-/// side of the part.
+/// Keeps the points on the side of the nearest one: a ball near a thin part is also behind the
+/// other side of the part.
 fn keep_same_side<V>(closest_points: &mut Vec<ClosestPoint<V>>) {
     let nearest = closest_points
         .iter()

@@ -78,7 +78,7 @@ fn room(least: f64, slack: f64) -> f64 {
 pub struct PairFace {
     /// Whether it is one of the candidate.
     pub of_candidate: bool,
-    /// Its index.
+    /// Index.
     pub face: usize,
 }
 
@@ -229,8 +229,8 @@ pub fn keep_apart<S: Space>(
     });
 }
 
-/// Returns the direction across the motion of the nearest points, to the side on which the candidate
-/// passes.
+/// Returns the direction across the motion of the nearest points, to the side on which the
+/// candidate passes.
 fn sideways<S: Space>(
     nearest: &ContactPoint<S::Vector>,
     thickness: f64,

@@ -236,7 +236,7 @@ fn is_nearer(
 struct OverlapEnd {
     /// Position on the other side, relative to the reference polygon's centre (m).
     at: V,
-    /// Its height above the reference side (m).
+    /// Height above the reference side (m).
     height: f64,
     /// The corner at the end.
     corner: usize,

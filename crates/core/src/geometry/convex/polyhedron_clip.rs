@@ -52,7 +52,7 @@ pub struct ClipPoint {
     pub height: f64,
     /// Outward normal of the reference face.
     pub normal: V,
-    /// Its name.
+    /// Name.
     pub feature: u64,
     /// Radius of a disk with its fraction of the common area (m).
     pub share: f64,

@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 type V = Vector3<f64>;
 
-/// Corners of the faces of a cuboid, anticlockwise seen from outside. Bit k of the number of a corner
-/// is its side along axis k.
+/// Corners of the faces of a cuboid, anticlockwise seen from outside. Bit k of the number of a
+/// corner is its side along axis k.
 pub const CUBOID_FACES: [[u32; 4]; 6] = [
     [0, 4, 6, 2],
     [1, 3, 7, 5],

@@ -1,19 +1,19 @@
 //! Seams: adjacent pieces whose faces are flush form one surface.
 //!
 //! A body that lies slightly too deep on such a surface, because contacts are springs or rigid
-//! contacts drift, overlaps the piece that it has just reached less across the seam than from above:
-//! the pair alone looks like a body that meets the side of a step. A contact point covered by a third
-//! piece is not on the surface. Where all points of a pair are covered, only those faces keep the two
-//! apart that have an edge at one of the points and do not lead into the covering piece (the seam of
-//! a step is open above the piece next to it); which of three pieces is adjacent to which need not be
-//! known. A ball touches only the nearer of two pieces.
+//! contacts drift, overlaps the piece that it has just reached less across the seam than from
+//! above: the pair alone looks like a body that meets the side of a step. A contact point covered
+//! by a third piece is not on the surface. Where all points of a pair are covered, only those faces
+//! keep the two apart that have an edge at one of the points and do not lead into the covering
+//! piece (the seam of a step is open above the piece next to it); which of three pieces is adjacent
+//! to which need not be known. A ball touches only the nearer of two pieces.
 
 use super::passing::{ALIKE, MovingPair, PairMotion, faces};
 use super::{ContactPoint, Core, CorePair};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Greatest depth below a face at which a pair still lies on it, relative to the size of the smaller
-/// piece: the ordinary overlap of springs.
+/// Greatest depth below a face at which a pair still lies on it, relative to the size of the
+/// smaller piece: the ordinary overlap of springs.
 pub const DEEPEST: f64 = 0.05;
 
 /// Cosine of the angle from which a face differs from that of a contact.
@@ -30,15 +30,15 @@ const OPEN: f64 = 4.0;
 /// A piece adjacent to one of a pair and near the other; positions are relative to the antagonist's
 /// centre.
 pub struct Adjacent<'a, S: Space> {
-    /// Its core.
+    /// Core.
     pub core: &'a S::Core,
-    /// Its centre (m).
+    /// Centre (m).
     pub at: S::Vector,
-    /// Its rounding (m).
+    /// Rounding (m).
     pub rounding: f64,
     /// Whether it is adjacent to the candidate.
     pub of_candidate: bool,
-    /// Its side of a key; of two pieces that are equally near the one with the lower number counts.
+    /// Side of a key; of two pieces that are equally near the one with the lower number counts.
     pub name: u32,
 }
 
@@ -104,8 +104,8 @@ pub fn leave_seam<'a, S: Space + 'a>(
     if !out.iter().all(covered) {
         return;
     }
-    // Of the points on the side of a piece, the upper ones are at its edge, where the adjacent piece
-    // continues.
+    // Of the points on the side of a piece, the upper ones are at its edge, where the adjacent
+    // piece continues.
     let open = |n: &S::Vector| {
         let [low, top] = moving.ends(n);
         let at_edge = |b: &Adjacent<S>, m: &ContactPoint<S::Vector>| {
@@ -134,8 +134,8 @@ pub fn leave_seam<'a, S: Space + 'a>(
     }
 }
 
-/// An edge at which two pieces meet: one of the two lies on a third piece, whose face continues that
-/// of the other one.
+/// An edge at which two pieces meet: one of the two lies on a third piece, whose face continues
+/// that of the other one.
 #[derive(Clone, Copy, Debug)]
 pub struct SeamEdge<S: Space> {
     /// Side of a key of the piece that the body lies on.
@@ -193,8 +193,8 @@ pub fn edges_at<S: Space>(
     out
 }
 
-/// Returns whether a ball, the candidate, meets a core across a seam: another piece is as near at the
-/// point of the core nearest to the ball. `name` is the side of the key of the core.
+/// Returns whether a ball, the candidate, meets a core across a seam: another piece is as near at
+/// the point of the core nearest to the ball. `name` is the side of the key of the core.
 pub fn ball_is_over_seam<'a, S: Space + 'a>(
     point: &ContactPoint<S::Vector>,
     apart: &S::Vector,

@@ -1,4 +1,4 @@
-//! Tests of the weights of mean places: what they carry, and what they leave in place.
+//! Tests of the weights of mean positions: transfer of pressure, and reproduction of positions.
 
 use super::*;
 
@@ -6,11 +6,11 @@ use super::*;
 /// against it.
 fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)>> {
     star_on_chain(points, k, vertices)?
-        .faced(false)
+        .faced()
         .map(|f| f.weights)
 }
 
-/// The facets at that point, and what they face.
+/// The facets at that point, with the overlapping facets of the other surface.
 fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     let at = |j: usize| [points[j] - points[k], 0.0];
     let before = k.checked_sub(1).map(|b| ([at(k), at(b), [0.0; 2]], 0));
@@ -18,13 +18,13 @@ fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     let mut star = Star::new(before.into_iter().chain(after), 2)?;
     for v in 0..vertices.len() - 1 {
         let at = [v, v + 1].map(|v| [vertices[v] - points[k], 0.0]);
-        star.face(&[v as u32, v as u32 + 1], &at);
+        star.add_facet(&[v as u32, v as u32 + 1], &at);
     }
     Some(star)
 }
 
-/// What is worn off by the same depth at all points, on the lengths that these stand for, is the
-/// same depth at all vertices, of meshes of any sizes.
+/// Points of equal worn depth, each for its length of the surface, give equal depths at all
+/// vertices of meshes of any sizes.
 #[test]
 fn an_even_depth_stays_even() {
     let coarse = [0.0, 0.8, 1.6];
@@ -37,7 +37,7 @@ fn an_even_depth_stays_even() {
         for k in 0..points.len() {
             let shares = star_on_chain(points, k, vertices)
                 .unwrap()
-                .faced(false)
+                .faced()
                 .unwrap()
                 .shares;
             let sum: f64 = shares.iter().map(|s| s.1).sum();
@@ -60,8 +60,8 @@ fn a_point_beyond_the_end_faces_what_its_facets_face() {
     for (beyond, faces) in [(1e-4, true), (0.1, true), (0.19, true), (0.3, false)] {
         let points = [1.0 + beyond - 0.4, 1.0 + beyond, 1.4 + beyond];
         let star = star_on_chain(&points, 1, &vertices).unwrap();
-        assert_eq!(star.faced(false), None);
-        let found = star.faced(true);
+        assert_eq!(star.faced(), None);
+        let found = star.faced_in_part();
         assert_eq!(found.is_some(), faces, "{beyond}");
         let Some(found) = found else { continue };
         let mean: f64 = found
@@ -74,14 +74,14 @@ fn a_point_beyond_the_end_faces_what_its_facets_face() {
     }
 }
 
-/// Two layers below a facet are told from one.
+/// Two layers below a facet are distinguished from one.
 #[test]
 fn two_layers_have_no_mean_place() {
     let points = [0.0, 0.4, 0.8];
     let mut star = star_on_chain(&points, 1, &[0.0, 0.5, 0.9]).unwrap();
-    assert!(star.faced(false).is_some());
-    star.face(&[7, 8], &[[-0.1, 0.0], [0.2, 0.0]]);
-    assert_eq!(star.faced(false), None);
+    assert!(star.faced().is_some());
+    star.add_facet(&[7, 8], &[[-0.1, 0.0], [0.2, 0.0]]);
+    assert_eq!(star.faced(), None);
 }
 
 /// A facet that is turned away is left out: a corner of which one side goes up.
@@ -94,9 +94,9 @@ fn a_facet_that_is_turned_away_faces_nothing() {
     let mut star = Star::new(own, 2).unwrap();
     for v in 0..10u32 {
         let at = [v, v + 1].map(|v| [0.1 * f64::from(v) - 0.5, 0.0]);
-        star.face(&[v, v + 1], &at);
+        star.add_facet(&[v, v + 1], &at);
     }
-    let weights = star.faced(false).unwrap().weights;
+    let weights = star.faced().unwrap().weights;
     let mean: f64 = weights
         .iter()
         .map(|(v, w)| w * (0.1 * f64::from(*v) - 0.5))
@@ -128,7 +128,7 @@ fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
     (at.collect(), triangles)
 }
 
-/// The weights of a point of one grid on another, and the area that its shape function stands for.
+/// The weights of a point of one grid on another, and its tributary area.
 fn on_grid(
     (points, own): &(Vec<Along>, Vec<[u32; 3]>),
     k: usize,
@@ -146,13 +146,13 @@ fn on_grid(
     let area = star.facets.iter().map(|f| f.size / 3.0).sum();
     for t in triangles {
         let at = t.map(|v| from(vertices[v as usize]));
-        assert!(star.is_near(&at) || !star.face(t, &at));
-        star.face(t, &at);
+        assert!(star.is_near(&at) || !star.add_facet(t, &at));
+        star.add_facet(t, &at);
     }
-    (star.faced(false).map(|f| f.weights), area)
+    (star.faced().map(|f| f.weights), area)
 }
 
-/// A uniform pressure p on the points, p times the length that each stands for, is a uniform
+/// A uniform pressure p on the points, p times the tributary length of each, is a uniform
 /// pressure on the vertices; and the mean place of linear coordinates is that of the point.
 #[test]
 fn a_uniform_pressure_stays_uniform() {

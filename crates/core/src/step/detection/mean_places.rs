@@ -37,7 +37,7 @@ fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
 
 /// Has a star face the facets of a surface from one of them on, of which `project` gives the
 /// coordinates along the contact. None where one that it faces is steep.
-fn face<S: Space>(
+fn add_facets<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,
     near: u32,
@@ -54,7 +54,7 @@ fn face<S: Space>(
         let across = signed_size(at);
         // A facet that is turned away is beyond an edge of what the point faces.
         let faces = across > 0.0 && star.is_near(at);
-        if faces && star.face(ids, at) && across < STEEPEST * size::<S>(&corners) {
+        if faces && star.add_facet(ids, at) && across < STEEPEST * size::<S>(&corners) {
             return None;
         }
         if faces || next == 0 {
@@ -139,24 +139,24 @@ fn reach<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> Reach<S> {
             .iter()
             .map(|(corners, place)| (corners.each_ref().map(&local), *place))
             .collect();
-        let faced = |normal: &S::Vector, beyond: bool| -> Option<Faced> {
+        let star = |normal: &S::Vector| -> Option<Star> {
             let along = along::<S>(normal);
             let project = |x: &S::Vector| along(*x - at);
             let about = about
                 .iter()
                 .map(|(corners, place)| (corners.each_ref().map(project), *place));
             let mut star = Star::new(about, S::D)?;
-            face(&mut star, surface, surface.facet_of(feature), project)?;
-            star.faced(beyond)
+            add_facets(&mut star, surface, surface.facet_of(feature), project)?;
+            Some(star)
         };
-        // Towards a point beyond the border the direction from there may be any.
+        // The contact normal of a point beyond the border may have any direction.
         let border = surface.border_normal(feature);
-        let beyond = border.and_then(|normal| Some((faced(&normal, true)?, normal)));
+        let beyond = border.and_then(|normal| Some((star(&normal)?.faced_in_part()?, normal)));
         let (faced, normal) = match beyond {
             Some((faced, normal)) => (faced, S::rotate(&rotation, &normal)),
             None => {
                 let normal = S::unrotate(&rotation, &contact.normal);
-                (faced(&normal, false)?, contact.normal)
+                (star(&normal)?.faced()?, contact.normal)
             }
         };
         let nodes = systems.vertex_nodes(carrier, &faced.weights)?;
@@ -175,14 +175,14 @@ fn reach<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> Reach<S> {
     mean().map_or(Reach::Nearest, |mean| Reach::Mean(Box::new(mean)))
 }
 
-/// Has contacts reach to the place that their point faces on average, at new places of the bodies.
+/// Finds the mean positions that the points of all contacts face, after bodies have moved.
 pub(super) fn find<S: Space>(s: &mut Simulation<S>) {
     s.workspace.means = MeanPlaces::default();
     find_of_new_contacts(s);
 }
 
-/// Has contacts that are new, or have another normal, reach to the place that their point faces on
-/// average; bodies have not moved since the others did.
+/// Finds the mean positions for contacts that are new or have another normal; bodies have not moved
+/// since those of the others were found.
 pub(super) fn find_of_new_contacts<S: Space>(s: &mut Simulation<S>) {
     if s.state.systems.is_empty() {
         return;
@@ -232,8 +232,8 @@ mod tests {
         let up = Vector2::new(0.0, 1.0);
         let along = along::<Dim2>(&up);
         let at = Vector2::new(0.05, 0.0);
-        face(&mut star, &surface, 0, |x| along(*x - at))?;
-        star.faced(false)
+        add_facets(&mut star, &surface, 0, |x| along(*x - at))?;
+        star.faced()
     }
 
     #[test]
