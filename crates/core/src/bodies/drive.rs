@@ -221,6 +221,7 @@ impl Driven {
 
 #[cfg(test)]
 mod tests {
+    use super::super::time_function::tests::examples;
     use super::*;
 
     fn pressed_then_moved() -> Dof {
@@ -243,24 +244,8 @@ mod tests {
 
     #[test]
     fn a_delayed_drive_is_the_drive_of_the_time_since() {
-        let functions = [
-            TimeFunction::Constant(2.0),
-            TimeFunction::Ramp {
-                from: 1.0,
-                to: 3.0,
-                start: 0.5,
-                end: 1.5,
-            },
-            TimeFunction::Sine {
-                amplitude: 2.0,
-                frequency: 0.3,
-                phase: 0.2,
-                offset: 1.0,
-                start: 0.1,
-            },
-            TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
-        ];
-        for f in functions {
+        let constant = [TimeFunction::Constant(2.0)];
+        for f in constant.into_iter().chain(examples()) {
             let dof = Dof::Stages(vec![
                 Stage::new(Some(0.8), Dof::Velocity(f.clone())),
                 Stage::new(None, Dof::Displacement(f)),

@@ -148,59 +148,51 @@ impl TimeFunction {
         (t + eps < *start && *start < t + h - eps).then_some(*start)
     }
 
-    /// Returns the derivative of a sine after its start.
-    pub(super) fn slope_of_sine(&self, t: f64) -> f64 {
-        let Self::Sine {
-            amplitude,
-            frequency,
-            ..
-        } = self
-        else {
-            return 0.0;
-        };
-        TAU * frequency * amplitude * self.angle(t).cos()
+    /// Returns amplitude, angular frequency (rad/s) and mean value of a sine.
+    fn sine(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Sine {
+                amplitude,
+                frequency,
+                offset,
+                ..
+            } => Some([*amplitude, TAU * frequency, *offset]),
+            _ => None,
+        }
     }
 
     /// Returns the angle of a sine (rad).
     pub(super) fn angle(&self, t: f64) -> f64 {
-        match self {
-            Self::Sine {
-                frequency,
-                phase,
-                start,
-                ..
-            } => TAU * frequency * (t - start).max(0.0) + phase,
+        match (self, self.sine()) {
+            (Self::Sine { phase, start, .. }, Some([_, omega, _])) => {
+                omega * (t - start).max(0.0) + phase
+            }
             _ => 0.0,
         }
     }
 
+    /// Returns the derivative of a sine after its start.
+    pub(super) fn slope_of_sine(&self, t: f64) -> f64 {
+        self.sine().map_or(0.0, |[amplitude, omega, _]| {
+            omega * amplitude * self.angle(t).cos()
+        })
+    }
+
     /// Returns the mean of a sine over [t, t + h].
     fn mean_of_sine(&self, t: f64, h: f64) -> f64 {
-        let Self::Sine {
-            amplitude,
-            frequency,
-            offset,
-            ..
-        } = self
-        else {
+        let Some([amplitude, omega, offset]) = self.sine() else {
             return self.value(t);
         };
-        let half = 0.5 * TAU * frequency * h;
+        let half = 0.5 * omega * h;
         let share = if half == 0.0 { 1.0 } else { half.sin() / half };
         offset + amplitude * self.angle(t + 0.5 * h).sin() * share
     }
 
     /// Returns the increase of a sine over [t, t + h].
     fn rise_of_sine(&self, t: f64, h: f64) -> f64 {
-        let Self::Sine {
-            amplitude,
-            frequency,
-            ..
-        } = self
-        else {
-            return 0.0;
-        };
-        2.0 * amplitude * self.angle(t + 0.5 * h).cos() * (0.5 * TAU * frequency * h).sin()
+        self.sine().map_or(0.0, |[amplitude, omega, _]| {
+            2.0 * amplitude * self.angle(t + 0.5 * h).cos() * (0.5 * omega * h).sin()
+        })
     }
 
     /// Calls `f` with the points between which the function is linear: those of a ramp or a table.

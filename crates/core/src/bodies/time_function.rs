@@ -141,13 +141,13 @@ impl TimeFunction {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    #[test]
-    fn rates_are_the_derivatives() {
-        let functions = [
+    /// A ramp, a sine and a table.
+    pub(in crate::bodies) fn examples() -> [TimeFunction; 3] {
+        [
             TimeFunction::Ramp {
                 from: 1.0,
                 to: 3.0,
@@ -162,8 +162,12 @@ mod tests {
                 start: 0.1,
             },
             TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
-        ];
-        for f in functions {
+        ]
+    }
+
+    #[test]
+    fn rates_are_the_derivatives() {
+        for f in examples() {
             for t in [0.6, 0.95, 1.2] {
                 let e = 1e-6;
                 let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
@@ -173,7 +177,7 @@ mod tests {
         }
     }
 
-    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on
+    /// A ramp is a table of two points, also at these points; a sine begins with its later slope
     /// with.
     #[test]
     fn rates_at_kinks_are_those_of_the_documented_side() {
