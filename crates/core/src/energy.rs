@@ -12,10 +12,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// Dynamical systems enter the entries of rigid bodies and bonds: their motion in `kinetic`, the
 /// energy of their deformation in `elastic`, their weight in `potential`, their damping in
-/// `viscous`, forces and motions imposed on them in `external_work`, and in `scheme` what the time
-/// integration takes of them. The impulses of contacts do work on a system through the velocities
-/// of its nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides
-/// of a contact together it is the friction, impact and adhesion of the contact, the change of its
+/// `viscous`, forces and motions imposed on them in `external_work`, and their numerical
+/// dissipation in `scheme`. The impulses of contacts do work on a system through the velocities of
+/// its nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides of
+/// a contact together it is the friction, impact and adhesion of the contact, the change of its
 /// bond, and the work of the correction. Energy that a system stores when it is added counts as
 /// external work, its kinetic energy as initial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -39,16 +39,16 @@ pub struct Energy {
     /// Work of removing penetrations, negative where energy is added; see `solver.correction` and
     /// `solver.projection`.
     pub correction: f64,
-    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and of dynamical systems what
-    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not
-    /// linear and for compliant contacts, whose springs are integrated by implicit Euler.
+    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and for dynamical systems
+    /// [`crate::bodies::SystemWork::scheme`]; zero at theta = 1/2 except for nonlinear systems and
+    /// for compliant contacts, whose springs are integrated by implicit Euler.
     pub scheme: f64,
     /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
     /// Work that bodies do by thermal expansion, taken from their heat.
     pub expansion: f64,
-    /// Work of imposed forces and motions, what dynamical systems stored when they were added, and
-    /// what compliant contacts stored at the start.
+    /// Work of imposed forces and motions, and the energy stored in dynamical systems when they
+    /// were added and in compliant contacts at the start.
     pub external_work: f64,
     /// Residual of the balance.
     pub residual: f64,
@@ -273,7 +273,7 @@ mod tests {
             energy.add_step(&totals, &work, 1.0, 1.0);
             assert_eq!((energy.residual, energy.scale), (0.0, all), "{work:?}");
             assert_eq!(energy.dissipated(), 4.0);
-            // The entries before expansion add up to what was supplied.
+            // The entries before expansion sum to the supplied energy.
             let sum: f64 = energy.entries()[..11].iter().map(|e| e.2).sum();
             assert_eq!(sum, energy.external_work + energy.expansion + at_start);
             // A smaller energy leaves the scale as it is, a larger one raises it.
@@ -285,8 +285,7 @@ mod tests {
         }
     }
 
-    /// Each of the energies that may stand alone is a scale by itself; without any there is nothing
-    /// that could be wrong.
+    /// Each energy alone raises the scale; without any the relative residual is zero.
     #[test]
     fn every_energy_raises_the_scale() {
         let scale = |given: Energy| {

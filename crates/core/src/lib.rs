@@ -2,9 +2,9 @@
 //! contact dynamics, with interface laws from plugins.
 //!
 //! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra,
-//! shapes, distances), [`bodies`], [`contact`] (detection and what each contact remembers),
-//! [`solve`] (the contact problem and its solvers), [`laws`] (the plugin host), [`certify`] (what a
-//! law promises, tested), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`]
+//! shapes, distances), [`bodies`], [`contact`] (detection and memory of contacts),
+//! [`solve`] (the contact problem and its solvers), [`laws`] (the plugin host), [`certify`] (tests
+//! of laws), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`]
 //! (temperatures and current), [`step`] (the time step), [`process`] (what acts on a simulation at
 //! the named moments of a step), and [`view`] (a simulation without its dimension). State goes to
 //! bytes and back by [`code`].

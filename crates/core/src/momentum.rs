@@ -3,11 +3,11 @@
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// Momentum of the free rigid bodies less what gravity and the contacts with other bodies gave
-/// them, since the start: zero but for rounding where the contacts among them act on one place of
-/// both bodies (N s and N m s; per metre of depth in 2D).
+/// Momentum gained by the free rigid bodies since the start, less the impulses of gravity and of
+/// contacts with other bodies (N s and N m s; per metre of depth in 2D). It is zero up to rounding
+/// if contacts act on the same position on both bodies.
 ///
-/// Outside are first bodies and dynamical systems. Changes between steps are not counted:
+/// First bodies and dynamical systems count as other bodies. Changes between steps are not counted:
 /// removing, adding, pushing and displacing bodies are external.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Momentum {
@@ -15,8 +15,8 @@ pub struct Momentum {
     pub linear: [f64; 3],
     /// Angular momentum, x, y, z (in 2D z), about [`Self::about`] (N m s).
     pub angular: [f64; 3],
-    /// The mean place of the free bodies at the start (m), none before the first step. In periodic
-    /// scenes there is no angular momentum.
+    /// Mean position of the free bodies at the start (m); `None` before the first step. In periodic
+    /// scenes angular momentum is not computed.
     pub about: Option<[f64; 3]>,
     /// Largest sums so far of the sizes of the bodies' linear and angular momenta (N s, N m s).
     pub scale: [f64; 2],
@@ -34,7 +34,7 @@ pub struct MomentumSum<S: Space> {
 }
 
 impl<S: Space> MomentumSum<S> {
-    /// Nothing.
+    /// Returns a sum of no bodies.
     pub fn zero() -> Self {
         Self {
             linear: S::Vector::zero(),
@@ -66,13 +66,13 @@ impl Momentum {
         self.scale = [0, 1].map(|k| self.scale[k].max(step.sizes[k]));
     }
 
-    /// Lengths of the gains, linear (N s) and angular (N m s).
+    /// Returns the magnitudes of the gains, linear (N s) and angular (N m s).
     pub fn drift(&self) -> [f64; 2] {
         [self.linear, self.angular].map(|v| v[0].hypot(v[1]).hypot(v[2]))
     }
 
-    /// The drift, linear and angular, over the largest sums of the sizes of momenta; zero where
-    /// nothing moved.
+    /// Returns the drift, linear and angular, relative to the largest sums of the magnitudes of
+    /// momenta; zero if nothing moved.
     pub fn relative(&self) -> [f64; 2] {
         let drift = self.drift();
         [0, 1].map(|k| match self.scale[k] > 0.0 {
@@ -81,7 +81,7 @@ impl Momentum {
         })
     }
 
-    /// Every entry: name, description, value (N s, N m s).
+    /// Returns every entry: name, description, value (N s, N m s).
     pub fn entries(&self) -> [(&'static str, &'static str, f64); 2] {
         let [linear, angular] = self.drift();
         [

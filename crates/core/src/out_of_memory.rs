@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 
 static HANDLER: OnceLock<fn(usize)> = OnceLock::new();
 
-/// Sets the function that is called with the size (bytes) of an allocation that the system refused, on the
-/// thread that asked for it. It must not allocate. If it returns, the allocation fails as
+/// Sets the function that is called with the size (bytes) of an allocation that the system refused,
+/// on the thread that asked for it. It must not allocate. If it returns, the allocation fails as
 /// without it. Only the first call has an effect.
 ///
 /// The function is called only if the allocator of the program is

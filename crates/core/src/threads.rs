@@ -41,7 +41,7 @@ pub fn worth_dividing(parallel: bool, items: usize, each: f64) -> bool {
         && rayon::current_num_threads() > 1
 }
 
-/// Returns what `of` gives for each chunk of `size` items, which it gets with the index of the
+/// Returns the results of `of` for each chunk of `size` items, which it gets with the index of the
 /// first; in the order of the chunks.
 pub fn map_chunks<T: Sync, R: Send>(
     divide: bool,
@@ -54,7 +54,7 @@ pub fn map_chunks<T: Sync, R: Send>(
     })
 }
 
-/// Returns what `of` gives for each range of `size` indices below `items`, in their order.
+/// Returns the results of `of` for each range of `size` indices below `items`, in their order.
 pub fn map_ranges<R: Send>(
     divide: bool,
     items: usize,
@@ -70,8 +70,8 @@ pub fn map_ranges<R: Send>(
     }
 }
 
-/// Returns what `of` gives for each chunk of `size` items, which it may change and gets with the
-/// index of the first; in the order of the chunks.
+/// Returns the results of `of` for each chunk of `size` items, which it may change and gets with
+/// the index of the first; in the order of the chunks.
 pub fn map_chunks_mut<T: Send, R: Send>(
     divide: bool,
     items: &mut [T],
@@ -87,8 +87,8 @@ pub fn map_chunks_mut<T: Send, R: Send>(
     }
 }
 
-/// Returns what `of` gives for each pair of chunks of `size` items of two lists of the same length,
-/// which it may change and gets with the index of the first; in the order of the chunks.
+/// Returns the results of `of` for each pair of chunks of `size` items of two lists of the same
+/// length, which it may change and gets with the index of the first; in the order of the chunks.
 pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     divide: bool,
     size: usize,
@@ -106,7 +106,7 @@ pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     }
 }
 
-/// Replaces the items of a list by what `of` gives for each index below `count`.
+/// Replaces the items of a list by the results of `of` for each index below `count`.
 pub fn fill<T: Send>(
     divide: bool,
     list: &mut Vec<T>,
@@ -148,9 +148,9 @@ impl<T> SharedSlots<T> {
         unsafe { self.0.add(place as usize).write(item) }
     }
 
-    /// Writes what `of` gives for each index to its place. A function of its own, so that `of` is
-    /// called from one place, where it is inlined and makes its items in the list: large ones would
-    /// be copied.
+    /// Writes the result of `of` for each index to its place. A function of its own, so that `of`
+    /// is called from one place, where it is inlined and makes its items in the list: large ones
+    /// would be copied.
     ///
     /// # Safety
     /// The places are in the allocation, and nobody else uses them.
@@ -175,8 +175,8 @@ fn empty<T>(list: &mut Vec<T>, count: usize) {
     }
 }
 
-/// Replaces the items of a list: item `places[k]` is `of(k)`. Items are computed in the order of k, so
-/// that their inputs are read in order.
+/// Replaces the items of a list: item `places[k]` is `of(k)`. Items are computed in the order of k,
+/// so that their inputs are read in order.
 ///
 /// # Safety
 /// `places` has each index below its length once.
@@ -201,7 +201,7 @@ pub unsafe fn fill_places<T: Send>(
     unsafe { list.set_len(count) };
 }
 
-/// Returns what `of` gives for each index below `count`, in their order. `of` gets memory that
+/// Returns the results of `of` for each index below `count`, in their order. `of` gets memory that
 /// `memory` made for its part of the indices: about as many as there are threads; results must not
 /// depend on its contents.
 pub fn map_with_memory<M, R: Send>(
@@ -220,7 +220,7 @@ pub fn map_with_memory<M, R: Send>(
     }
 }
 
-/// Returns what `of` gives for each of some tasks, in their order.
+/// Returns the results of `of` for each of some tasks, in their order.
 pub fn map_tasks<T: Send, R: Send>(
     divide: bool,
     tasks: Vec<T>,
@@ -236,7 +236,7 @@ pub fn map_tasks<T: Send, R: Send>(
 /// Number of items of a partial sum.
 const SUM: usize = 1024;
 
-/// Returns the sum of what `of` gives for each index below `count`, which takes about `each`
+/// Returns the sum of the results of `of` for each index below `count`, which takes about `each`
 /// nanoseconds: partial sums of a fixed number of items, added in their order.
 pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
     let parts = map_ranges(worth_dividing(parallel, count, each), count, SUM, |items| {
@@ -262,7 +262,7 @@ pub fn any(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool +
     parts.contains(&true)
 }
 
-/// Returns the largest of what `of` gives for each index below `count`, which takes about `each`
+/// Returns the largest result of `of` for each index below `count`, which takes about `each`
 /// nanoseconds; 0 if none is larger, NaN if one is.
 pub fn largest(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
     let larger = |far: f64, x: f64| if x <= far || far.is_nan() { far } else { x };

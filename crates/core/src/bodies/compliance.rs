@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use std::sync::OnceLock;
 
 /// Blocks P_a A^-1 P_b^T (1/kg) of nodes of a system, column by column: the column of a node b has
-/// the change of the velocities of all nodes a by an impulse on b. Columns are found once they are
-/// asked for.
+/// the change of the velocities of all nodes a by an impulse on b. Columns are computed when they
+/// are first requested.
 ///
 /// A column is D rows of numbers, one for each axis of the impulse, with the velocities of all
 /// nodes one after the other (see [`column_of`]).
@@ -52,7 +52,7 @@ impl<S: Space> Compliance<S> {
             .get_or_init(|| column_of::<S, F>(self.nodes.len(), find).into_boxed_slice())
     }
 
-    /// The column of the node at a place; empty where it was not asked for.
+    /// Returns the column of a node by its index; empty if it was not requested.
     pub fn column(&self, at: usize) -> &[f64] {
         self.columns[at].get().map_or(&[], |column| column)
     }

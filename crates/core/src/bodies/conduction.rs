@@ -10,11 +10,10 @@
 /// Source: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2 and 8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conduction {
-    /// V_a, the volume that each point stands for (m^3; m^2 in 2D).
+    /// V_a, the tributary volume of each point (m^3; m^2 in 2D).
     pub volumes: Vec<f64>,
     /// Pairs of points and G_ab/k (m; a number in 2D); negative across an obtuse angle.
     pub edges: Vec<([u32; 2], f64)>,
-    /// Named parts of the boundary, with their points and the area (m^2; m in 2D) that each stands
-    /// for.
+    /// Named parts of the boundary: points with their tributary areas (m^2; m in 2D).
     pub parts: Vec<(String, Vec<(u32, f64)>)>,
 }

@@ -5,16 +5,16 @@ use super::nodes::Nodes;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A part of a system that can touch: it stands as a body of its own among [`super::Bodies`], which
-/// follows the system and has no inertia of its own. Detection, laws, bonds and files treat it as
-/// any other body.
+/// A part of a system that can touch. It is represented by a body in [`super::Bodies`] that follows
+/// the system and has no inertia of its own. Detection, laws, bonds and files treat it like any
+/// other body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contactor {
     /// The nodes that carry its origin.
     pub nodes: Nodes,
-    /// Radius of a ball about the origin (m); of a point half the length that it stands for, in
-    /// space the radius of the disk of its area, from which contacts have their area; of other
-    /// shapes a length of their size.
+    /// Radius of a ball about the origin (m). For a point, half of its tributary length, in space
+    /// the radius of a disk of its tributary area, from which the area of contacts is computed; for
+    /// other shapes a characteristic length.
     pub radius: f64,
     /// Shape.
     pub shape: ContactorShape,
@@ -39,7 +39,7 @@ pub enum ContactorShape {
     Given,
 }
 
-/// Where a contactor stands and how it moves.
+/// Position and motion of a contactor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactorMotion<S: Space> {
     /// Origin of its frame (m).
@@ -52,7 +52,7 @@ pub struct ContactorMotion<S: Space> {
     pub spin: S::Spin,
 }
 
-/// Which contactor of which system a body stands for.
+/// The contactor that a body represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Carrier {
     /// Index of the system.

@@ -46,8 +46,8 @@ pub struct Bodies<S: Space> {
     pub removed: Vec<bool>,
     /// Displacement of each body lost to rounding (m); empty while there is none.
     pub lost: Vec<S::Vector>,
-    /// Which bodies stand for contactors of dynamical systems: they follow these and have no
-    /// inertia of their own. Empty where there are no systems.
+    /// Contactor of a dynamical system that each body represents: such bodies follow their system
+    /// and have no inertia of their own. Empty without systems.
     pub carriers: Vec<Option<Carrier>>,
 }
 
@@ -151,7 +151,7 @@ impl<S: Space> Bodies<S> {
         body
     }
 
-    /// The contactor that a body stands for, if it does.
+    /// Returns the contactor that a body represents, if any.
     #[inline]
     pub fn carrier(&self, body: usize) -> Option<Carrier> {
         self.carriers.get(body).copied().flatten()

@@ -41,8 +41,8 @@ pub struct TouchingSurface<V> {
     pub points: Vec<V>,
     /// The D points of each facet, one after the other, by their place among the points.
     pub facets: Vec<u32>,
-    /// Area (m^2; length in the plane, m) that each point stands for now. They sum up to that of
-    /// the surface.
+    /// Current tributary area of each point (m^2; tributary length in the plane, m). Their sum is
+    /// the area of the surface.
     pub areas: Vec<f64>,
 }
 

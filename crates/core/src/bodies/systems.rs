@@ -1,4 +1,4 @@
-//! The dynamical systems of a scene, and the bodies that stand for their contactors.
+//! The dynamical systems of a scene, and the bodies that represent their contactors.
 
 use super::compliance::Compliance;
 use super::contactor::{Carrier, Contactor, ContactorShape};
@@ -35,12 +35,12 @@ pub struct HeldAxis {
     pub axis: usize,
 }
 
-/// A system with what the step keeps of it.
+/// A system with the data that steps keep of it.
 #[derive(Clone, Debug)]
 struct SystemEntry<S: Space> {
     system: Box<dyn DynamicalSystem<S>>,
     contactors: Vec<Contactor>,
-    /// The bodies that stand for its contactors, in their order.
+    /// The bodies that represent its contactors, in order.
     bodies: Vec<u32>,
     /// The points of its surface among the balls, of a grain.
     points: Range<usize>,
@@ -49,7 +49,7 @@ struct SystemEntry<S: Space> {
     free: Vec<f64>,
 }
 
-/// The name of a system, and what it saves of itself.
+/// Name and saved state of a system.
 type SystemState = (String, Vec<u8>);
 
 /// All systems of a scene that are not rigid bodies.
@@ -93,7 +93,7 @@ impl<S: Space> Systems<S> {
         self.entries.get(system).map(|e| e.system.as_ref())
     }
 
-    /// The bodies that stand for the contactors of a system, in their order.
+    /// Returns the bodies that represent the contactors of a system, in order.
     pub fn bodies(&self, system: usize) -> &[u32] {
         self.entries.get(system).map_or(&[], |e| &e.bodies)
     }
@@ -154,8 +154,8 @@ impl<S: Space> Systems<S> {
                 bodies.rotation[b] = motion.rotation;
                 bodies.velocity[b] = motion.velocity;
                 bodies.spin[b] = motion.spin;
-                // The coordinates of the system are what moves: nothing is lost where its place
-                // rounds.
+                // The system's own coordinates move, so that rounding the position of the body
+                // loses nothing.
                 if let Some(lost) = bodies.lost.get_mut(b) {
                     *lost = S::Vector::zero();
                 }
@@ -276,7 +276,7 @@ impl<S: Space> Systems<S> {
         point.sum_of(|node| self.free_velocity_of(system, node))
     }
 
-    /// The system and the contactor that a body stands for.
+    /// Returns the system and the contactor that a body represents.
     fn contactor(&self, carrier: Carrier) -> (&dyn DynamicalSystem<S>, &Contactor) {
         let entry = &self.entries[carrier.system as usize];
         let contactor = &entry.contactors[carrier.contactor as usize];

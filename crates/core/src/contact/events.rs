@@ -38,7 +38,7 @@ pub struct Break {
 pub struct Life {
     /// Work done on the bond by normal opening, by sliding, and by rotation.
     pub work: [f64; 3],
-    /// Fracture energy released by damage, less what the bond was given.
+    /// Fracture energy released by damage, less [`Self::given`].
     pub fracture: f64,
     /// Energy of its first opening, where it began at its gap: given without work.
     pub given: f64,

@@ -306,7 +306,7 @@ pub struct Network<S: Space> {
     pub cycle_multiplier: f64,
     /// Worn volume of each surface so far, by index (m^3; m^3/m in 2D).
     pub worn: BTreeMap<usize, f64>,
-    /// Surfaces of grains that deform: what wears there is third body.
+    /// Surfaces of grains that deform: material worn there is third body.
     pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,

@@ -52,8 +52,8 @@ fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
         let b = contact.bodies[side] as usize;
         bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], &contact.arms[side])
     };
-    // Points of a system are bodies of their own, and grains nearly rigid; what is alone in its
-    // system is a surface.
+    // Points of a system are separate bodies, and grains are nearly rigid; a contactor that is
+    // alone in its system is a surface.
     let deforms = |side: usize| {
         let carrier = bodies.carrier(contact.bodies[side] as usize);
         let carrier = carrier.filter(|c| !c.grain);
@@ -108,8 +108,8 @@ pub struct StepSizeDiagnostics {
     /// Start of the last such step (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
-    /// Number of times that a body slid into the edge of a neighbour of what it lay on, no higher
-    /// than the overlaps in the scene.
+    /// Number of times that a sliding body hit the edge of a neighbour of its support, which was no
+    /// higher than the overlaps in the scene.
     pub edges: u64,
     /// The highest of them (m).
     pub highest_edge: f64,
@@ -129,7 +129,7 @@ impl StepSizeDiagnostics {
     /// Records a contact that is found for the first time, of a pair that already penetrates by
     /// `known` (m) elsewhere: a body that rests slightly too deep in a surface meets the next facet
     /// at the same depth, which is not due to its speed. `size` is the reduced radius of the bodies
-    /// (m): that of the contact is the part of a face that a point stands for, which may be much
+    /// (m): that of the contact is the tributary part of a face, which may be much
     /// smaller. Bodies that move less than the overlap in the time `h` (s) between two detections
     /// did not get there by their speed.
     pub(super) fn record_late<S: Space>(

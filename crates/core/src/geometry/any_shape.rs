@@ -1,4 +1,4 @@
-//! Shapes of either dimension, for what makes them from descriptions.
+//! Shapes of either dimension, for code that makes them from descriptions.
 
 use super::convex::ConvexPart;
 use super::drum::Drum;

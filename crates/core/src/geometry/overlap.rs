@@ -5,7 +5,7 @@
 /// is zero.
 pub type Along = [f64; 2];
 
-/// Corners of what two triangles have in common, at most; clipping by a side adds one.
+/// Maximum number of corners of the overlap of two triangles; clipping by a side adds one.
 const CORNERS: usize = 9;
 
 /// Twice the area of a triangle, positive where its corners are anticlockwise (m^2).
@@ -41,7 +41,7 @@ pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
 }
 
 /// Calls a function with places and weights (m or m^2) whose sum over a quadratic function is its
-/// integral over what two segments or two triangles have in common, whatever their directions.
+/// integral over the overlap of two segments or two triangles of any orientations.
 pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64)) {
     match (one, other) {
         ([a, b], [c, d]) => {
@@ -112,7 +112,7 @@ fn common(one: [Along; 3], other: [Along; 3]) -> ([Along; CORNERS], usize) {
 mod tests {
     use super::*;
 
-    /// Integral of 1, x, y^2 over what two of them have in common.
+    /// Returns the integrals of 1, x and y^2 over the overlap.
     fn integrals(one: &[Along], other: &[Along]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         integrate(one, other, |at, weight| {

@@ -163,8 +163,8 @@ impl Polyline {
         }
     }
 
-    /// Returns whether the chain goes on after its last segment with its first.
-    fn goes_on(&self) -> bool {
+    /// Returns whether the first segment follows the last.
+    fn continues(&self) -> bool {
         self.closed || self.period.is_some()
     }
 
@@ -199,7 +199,7 @@ impl Polyline {
     fn following(&self, segment: usize) -> Option<V> {
         let next = match segment + 1 {
             next if next < self.segments() => next,
-            _ => self.goes_on().then_some(0)?,
+            _ => self.continues().then_some(0)?,
         };
         Some(self.points[next + 1] - self.points[next])
     }
@@ -231,7 +231,7 @@ impl Surface<Dim2> for Polyline {
             // A vertex gives one contact point: from the segment that ends in it, or at the chain's
             // start.
             let at_end = s > end;
-            if !at_end && (k > 0 || self.goes_on()) {
+            if !at_end && (k > 0 || self.continues()) {
                 return true;
             }
             let vertex = if at_end { b } else { a };
@@ -315,7 +315,7 @@ impl Surface<Dim2> for Polyline {
             }
             let next = if k + 1 < self.segments() {
                 k + 1
-            } else if self.goes_on() {
+            } else if self.continues() {
                 0
             } else {
                 return true;
@@ -417,7 +417,7 @@ impl Surface<Dim2> for Polyline {
             _ => return None,
         };
         let along = self.points[segment + 1] - self.points[segment];
-        let open = self.deforms() && !self.goes_on();
+        let open = self.deforms() && !self.continues();
         open.then(|| V::new(-along.y, along.x).normalize())
     }
 

@@ -18,8 +18,8 @@ pub struct Ball<S: Space> {
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
-    /// Of a vertex of a grain that deforms the length (m) or area (m^2) that it stands for, along
-    /// its normals in the axes of the body; zero otherwise.
+    /// Tributary length (m) or area (m^2) of a vertex of a grain that deforms, along its normals in
+    /// the axes of the body; zero for other balls.
     pub area: S::Vector,
 }
 
@@ -27,9 +27,9 @@ pub struct Ball<S: Space> {
 const LEAST_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
-    /// Half of its thickness (m), of which `lengths` has that of each body: the radius; of a point
-    /// of a surface half the length that it stands for, in space the radius of the disk of its
-    /// area.
+    /// Returns half of the thickness (m): the radius, or for a point of a surface half of its
+    /// tributary length, in space the radius of a disk of its tributary area, from the length of
+    /// each body in `lengths`.
     pub fn size(&self, lengths: &[f64]) -> f64 {
         if self.radius > 0.0 {
             self.radius
@@ -43,8 +43,8 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Returns the radius in contacts (m), from which laws compute their area: that of a ball; of a
-    /// point of a surface the one whose contact has the area that it stands for.
+    /// Returns the radius in contacts (m), from which laws compute their area: that of a ball, or
+    /// for a point of a surface the one whose contact has its tributary area.
     pub fn contact_radius(&self, lengths: &[f64]) -> f64 {
         match S::D {
             2 if self.radius == 0.0 => 2.0 * self.size(lengths),
@@ -52,8 +52,8 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it,
-    /// in the axes of its body) is known. The vertex at a corner stands for a part of either side,
+    /// Returns the radius of [`Self::contact_radius`] (m) in a contact of known normal (towards the
+    /// ball, in the axes of its body). The tributary area of a vertex at a corner is on two sides,
     /// of which one touches.
     pub fn radius_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
         if self.area == S::Vector::zero() {
@@ -64,8 +64,8 @@ impl<S: Space> Ball<S> {
     }
 }
 
-/// The radius of a contact (m) that stands for a length (2D, m) or an area (3D, m^2) of a surface:
-/// that length, as it is for the sides of polygons; the radius of the disk of that area.
+/// Returns the radius of a contact (m) with a tributary length (2D, m) or area (3D, m^2): that
+/// length, as for the sides of polygons, or the radius of a disk of that area.
 pub fn point_radius(dimension: usize, area: f64) -> f64 {
     match dimension {
         2 => area,
@@ -171,7 +171,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn any_depth(&self) -> bool {
         false
     }
-    /// Returns whether it bends towards what touches it, as the inside of a drum does.
+    /// Returns whether the surface is concave, such as the inside of a drum.
     fn is_hollow(&self) -> bool {
         false
     }
@@ -196,8 +196,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
     }
-    /// Returns the index of the facet that a feature of a surface that deforms belongs to, in the
-    /// plane of a chain of segments.
+    /// Returns the index of the facet with a feature, for surfaces that deform; in the plane the
+    /// facets are a chain of segments.
     fn facet_of(&self, feature: u32) -> u32 {
         // The start of the chain has the last name.
         if feature == u32::MAX { 0 } else { feature / 2 }
@@ -221,7 +221,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
         None
     }
     /// Returns whether it encloses its body, which is then smaller than half a period: contacts are
-    /// looked for at its nearest image.
+    /// searched at the nearest image.
     fn is_closed(&self) -> bool {
         false
     }

@@ -119,7 +119,7 @@ impl Recede<Dim3> for Mesh {
             *height = next;
         }
         // The boxes of a surface that deforms are built again as it moves, before contacts are
-        // looked for.
+        // searched.
         if !self.deforms {
             self.build_boxes();
         }

@@ -1,9 +1,9 @@
 //! Heat and electric current of a scene: the model given by the case, and the state changed by
 //! steps.
 //!
-//! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a
-//! half-space below each. Contacts join them by the conductances that transport laws give, and put
-//! in the heat that the energy ledger counts as dissipated at that contact in that step:
+//! Nodes with a temperature represent bodies, or pieces of a body's surface with a half-space below
+//! each. Contacts connect them by the conductances of transport laws, and supply the heat that the
+//! energy ledger counts as dissipated at the contact in the step:
 //!
 //! ```text
 //! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i

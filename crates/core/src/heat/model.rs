@@ -131,7 +131,7 @@ pub struct Heat {
     pub first_bodies: Vec<(String, Range<usize>)>,
     /// Heat flows imposed from outside.
     pub imposed: Vec<Imposed>,
-    /// Temperature of what has no node, where nothing that it touches has one (K).
+    /// Temperature of bodies without node that touch none with a node (K).
     pub initial: f64,
     /// Shares of dissipation that become heat.
     pub shares: HeatShares,
@@ -139,8 +139,8 @@ pub struct Heat {
     pub partition: Partition,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
-    /// Thermal time over mechanical time: a step of h lets heat flow for `clock` h, while what
-    /// friction puts in stays the same.
+    /// Thermal time over mechanical time: in a step of h heat flows for `clock` h, while the
+    /// frictional heat stays the same.
     pub clock: f64,
     /// Steps of the mechanics per step of the heat.
     pub every: u64,
@@ -203,7 +203,7 @@ impl Heat {
             return 0.0;
         }
         let area = force / hardness;
-        // An insulated body takes no heat, so that it has no part in carrying it away.
+        // An insulated body takes no heat.
         let taking = bodies
             .iter()
             .filter(|b| self.nodes[**b as usize] != BodyNodes::Insulated);

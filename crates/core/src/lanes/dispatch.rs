@@ -34,7 +34,7 @@ mod compiled {
         /// The instructions that this machine has, the best last.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             let avx2 = is_x86_feature_detected!("avx2");
-            // With what the features of `avx512` imply.
+            // With the features that `avx512` implies.
             let avx512 = is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")
@@ -45,7 +45,7 @@ mod compiled {
                 .filter_map(|(with, has)| has.then_some(with))
         }
 
-        /// Runs what is compiled for these instructions.
+        /// Runs the code compiled for these instructions.
         ///
         /// # Safety
         /// The machine has them.
@@ -83,7 +83,7 @@ mod compiled {
             std::iter::once(Self::Neon)
         }
 
-        /// Runs what is compiled for these instructions.
+        /// Runs the code compiled for these instructions.
         ///
         /// # Safety
         /// The machine has them.

@@ -14,8 +14,8 @@ pub struct CycleClock {
 }
 
 impl CycleClock {
-    /// Cycles of a length (s) from `start` on; without one the second half of what remains until
-    /// `end` is one cycle (s).
+    /// Cycles of a length (s) from `start` on. Without a length, the second half of the time from
+    /// `start` to `end` (s) is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         let start = if period.is_some() {
             start
@@ -31,7 +31,7 @@ impl CycleClock {
             return 0;
         }
         match self.period {
-            // A step that ends on the border belongs to the cycle it closes.
+            // A step that ends at the end of a cycle is part of that cycle.
             Some(period) => ((time - self.start) / period - 1e-9).floor().max(0.0) as u32 + 1,
             None => 1,
         }

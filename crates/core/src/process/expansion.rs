@@ -9,11 +9,11 @@
 //! ```
 //!
 //! Contacts work on bodies by sum p.u_bodies and take sum p.u_surface (see `step::surfaces`): the
-//! difference, -sum p.w, is the work that the expansion does. It is an entry of the ledger of
-//! energy, and is taken from the heat of the body that expands.
+//! difference, -sum p.w, is the work of the expansion. It is an entry of the energy ledger, and is
+//! taken from the heat of the body that expands.
 //!
-//! A body of finite elements takes the free strain of its temperatures at the start of the step;
-//! what its stored energy gains by that is the work of its expansion.
+//! For a body of finite elements, the free strain is set from the temperatures at the start of the
+//! step; the resulting increase of the stored energy is the work of the expansion.
 
 use super::heat::has_begun;
 use super::{Process, ProcessError};

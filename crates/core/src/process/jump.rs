@@ -15,7 +15,7 @@ use crate::wear::jump::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Jumps over the cycles of a friction test: some computed cycles stand for many, see
+/// Jumps over the cycles of a friction test: a computed cycle can represent many cycles, see
 /// [`crate::wear::jump`].
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
@@ -410,7 +410,7 @@ impl<S: Space> Process<S> for Jumps {
         Ok(())
     }
 
-    /// Whether the cycles asked for are there.
+    /// Returns whether the requested cycles are complete.
     fn finished(&self) -> bool {
         self.spec.cycles.is_some_and(|n| self.represented >= n)
     }
@@ -425,8 +425,8 @@ impl<S: Space> Process<S> for Jumps {
     }
 }
 
-/// Returns the accumulated quantities: volumes worn at the places of each scar, what was worn off
-/// grains, and the damage of the bonds, interface by interface.
+/// Returns the accumulated quantities: volumes worn at the places of each scar, volume
+/// worn off grains, and the damage of the bonds, interface by interface.
 fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     let mut all: Amounts = Vec::new();
     for scar in &s.state.scars {

@@ -30,7 +30,7 @@ pub struct BodyColumns<'a> {
     pub removed: &'a [bool],
     /// The driven first bodies.
     pub driven: &'a [Driven],
-    /// Which bodies stand for contactors of dynamical systems; empty where there are no systems.
+    /// Contactors of dynamical systems that bodies represent; empty without systems.
     pub carriers: &'a [Option<Carrier>],
 }
 
@@ -45,7 +45,7 @@ impl<'a> BodyColumns<'a> {
         self.id.is_empty()
     }
 
-    /// The contactor that a body stands for, if it does.
+    /// Returns the contactor that a body represents, if any.
     pub fn carrier(&self, body: usize) -> Option<Carrier> {
         self.carriers.get(body).copied().flatten()
     }
@@ -89,8 +89,8 @@ pub struct BallView {
     pub centre: [f64; 3],
     /// Centre in the frame of the body (m).
     pub offset: [f64; 3],
-    /// The piece of a surface that a point stands for, along its outward normal (m^2; m in 2D);
-    /// zero for balls.
+    /// Tributary area of a point of a surface, along its outward normal (m^2; m in 2D); zero for
+    /// balls.
     pub area: [f64; 3],
 }
 

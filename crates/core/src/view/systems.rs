@@ -52,7 +52,7 @@ pub trait SystemView {
     fn mesh_size(&self) -> Option<[usize; 2]>;
     /// Number of points of the surface by which it touches; 0 where it has none.
     fn surface_points(&self) -> usize;
-    /// A copy of it, to try out what its solutions cost.
+    /// Returns a copy, to measure the cost of its solutions.
     fn trial(&self) -> Box<dyn SystemTrial + '_>;
 }
 
@@ -69,7 +69,7 @@ pub trait SystemTrial {
 /// A system in its dimension.
 pub(super) struct SystemReader<'a, S: Space> {
     pub system: &'a dyn DynamicalSystem<S>,
-    /// The step that comes next.
+    /// The next step.
     pub step: SystemStep<S>,
 }
 

@@ -16,8 +16,8 @@
 //! so that the errors of earlier jumps are multiplied by r'/r where increments grow.
 //!
 //! The shape of a scar does not accumulate: material misplaced by a jump is worn off where it
-//! protrudes. A single cycle between rigid bodies says nothing about it, since they touch at only
-//! some of the places; a jump is long enough. Therefore jumps check each other: with a and b the
+//! protrudes. A single cycle between rigid bodies does not show this, since they touch at only some
+//! of the places; a jump is long enough. Therefore jumps check each other: with a and b the
 //! volumes that the last jump and this one wore off at each place, A and B their sums, and e_0,
 //! e_1, e_2 the misplaced volumes before, between and after them, b - a B/A is about e_2 - (1 +
 //! B/A) e_1 + e_0 B/A. For independent errors its magnitude is sqrt(1 + (1 + B/A)^2 + (B/A)^2)

@@ -368,8 +368,7 @@ mod tests {
         assert!(!scar.apply_depth(&mut shapes, 0.0), "nothing is worn since");
     }
 
-    /// Two states have the surface at the same depths as long as what was worn since was not
-    /// applied to it.
+    /// Two states have the same surface depths until later wear is applied to the surface.
     #[test]
     fn states_of_a_scar_differ_by_the_depths_applied_to_the_surface() {
         let (mut shapes, scar) = flat(2, 1e3);

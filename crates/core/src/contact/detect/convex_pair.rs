@@ -96,7 +96,7 @@ impl<S: Space> Narrow<'_, S> {
             return false;
         };
         let apart = shapes.periodic.shortest(x - y);
-        // Beyond what counts as corner on face.
+        // Beyond the distance at which a corner counts as on a face.
         let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
         apart.dot(&apart) > limit * limit
     }
@@ -332,7 +332,8 @@ impl<S: Space> Narrow<'_, S> {
 
 /// Returns the old contact that each contact point continues: first that of the same corner, then
 /// the nearest of those whose corner is no longer found, in order of distance. If one of two old
-/// contacts is gone, a new point at the other end of the face must not take over the remaining one.
+/// contacts no longer exists, a new point at the other end of the face must not take over the
+/// remaining one.
 fn match_old_contacts<S: Space>(
     old: &[Contact<S>],
     contact_points: &[ContactPoint<S::Vector>],

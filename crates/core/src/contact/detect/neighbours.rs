@@ -204,7 +204,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
     }
 }
 
-/// The search for what is near a surface.
+/// The search for shapes near a surface.
 struct SurfaceSearch {
     /// Index of the surface.
     s: usize,

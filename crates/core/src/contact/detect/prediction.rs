@@ -66,7 +66,7 @@ pub fn is_calm<S: Space>(
         let (lever, w) = (levers[b], velocity(b).1);
         lever * lever * w.dot(&w)
     });
-    // The bound is below what requires a wider list or a check of pairs. A rotating surface always
+    // The bound is too small to require a wider list or a check of pairs. A rotating surface always
     // requires them.
     let surfaces = &scene.shapes.surfaces;
     let spin = |s: &Carried<S>| &scene.bodies.spin[s.body as usize];

@@ -1,11 +1,11 @@
 //! Convex bodies that pass each other closer than they move in a step.
 //!
-//! The direction between two corners is the normal of the gap at hand, not of the one at the end of
-//! the step: kept from closing along it, a body would be stopped by what it passes, and a box that
-//! slides over flush boxes by the side of the next one. Every plane that has the bodies on its two
-//! sides keeps them apart. Where the nearest points would close within the step, the plane of the
-//! face that leaves most room at its end takes their place: the axis along which the bodies stay
-//! separate the longest.
+//! The direction between two corners is the normal of the current gap, not of the gap at the end of
+//! the step. A constraint along it would stop a body at an obstacle that it passes, and a box that
+//! slides over flush boxes at the side of the next box. Every plane between the bodies keeps them
+//! apart. If the nearest points would close within the step, they are replaced by the plane of the
+//! face with the largest gap at the end of the step: the axis along which the bodies stay separate
+//! for the longest time.
 
 use super::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::shape::{Fan, Surface};
@@ -98,7 +98,7 @@ struct Plane<V> {
     normal: V,
     /// Gap along it (m).
     gap: f64,
-    /// The face that it belongs to.
+    /// Face of which it is the normal.
     face: Option<PairFace>,
     /// The point of the candidate that is lowest along it, from the antagonist's centre, without
     /// its rounding (m).
@@ -277,8 +277,8 @@ pub fn keep_ball_apart<S: Space>(
             room = left;
             *point = ContactPoint {
                 on_candidate: *apart - n * radius,
-                // On one line with it, so that what acts there turns the pair by nothing, even
-                // where this is beside the face.
+                // Collinear with the other point, so that impulses there exert no moment on the
+                // pair, even if this point is beside the face.
                 on_antagonist: *apart - n * (radius + gap),
                 normal: n,
                 gap,

@@ -64,7 +64,7 @@ impl<S: Space> Process<S> for HeatFlow {
     }
 }
 
-/// Whether heat flows in the current step: a step belongs to where its middle is.
+/// Returns whether heat flows in the current step: the midpoint of the step counts.
 pub(super) fn has_begun<S: Space>(heat: &Heat, s: &Simulation<S>) -> bool {
     s.state.time + 0.5 * s.options.scheme.h >= heat.start
 }

@@ -94,7 +94,7 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
     };
     let temperatures_of = |contact: &Contact<S>, first: HeatEntry, second: HeatEntry| {
         let pair = heat.pair(contact.bodies);
-        // An insulated body has the temperature of what it touches.
+        // An insulated body has the temperature of the other body.
         let [a, b] = match (first.insulated(), second.insulated()) {
             (false, false) => [first.temperature, second.temperature],
             (false, true) => [first.temperature; 2],
