@@ -3,7 +3,7 @@
 use super::super::output::{answer, answer_json};
 use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
-use crate::certify::{Certificate, Outcome, certify_in_child as test};
+use crate::certify::{Certificate, CheckOutcome, certify_in_child as test};
 use crate::laws::{Plugin, SearchPath};
 use clap::Args;
 use std::fmt::Write as _;
@@ -104,9 +104,9 @@ fn table(c: &Certificate) -> String {
     );
     for line in &c.lines {
         let word = match line.outcome {
-            Outcome::Pass => "pass",
-            Outcome::Fail => "FAIL",
-            Outcome::Skip => "-",
+            CheckOutcome::Pass => "pass",
+            CheckOutcome::Fail => "FAIL",
+            CheckOutcome::Skip => "-",
         };
         let _ = writeln!(
             out,

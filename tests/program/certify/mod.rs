@@ -1,7 +1,7 @@
 //! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere
 //! else.
 
-use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
+use fretwork::certify::{Certificate, CheckOutcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
@@ -18,7 +18,7 @@ fn certificate(plugin: &Plugin) -> Certificate {
 }
 
 fn broken(certificate: &Certificate) -> Vec<&str> {
-    let failed = |l: &&fretwork::certify::Line| l.outcome == Outcome::Fail;
+    let failed = |l: &&fretwork::certify::Line| l.outcome == CheckOutcome::Fail;
     certificate
         .lines
         .iter()

@@ -1,7 +1,7 @@
 //! Certification of a law in a child process, so that a law that crashes, ends the program or hangs
 //! only fails a line of its certificate.
 
-use super::{Certificate, Line, Progress, border, certify, certify_with_progress};
+use super::{Certificate, CertifyProgress, Line, border, certify, certify_with_progress};
 use crate::laws::child::{self, End};
 use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
@@ -122,9 +122,9 @@ pub fn certify_requested(built_in: &BuiltInLaws) -> Result<(), String> {
     let requests = child::read_request()?;
     let (request, partner): (LawRequest, Option<LawRequest>) =
         serde_json::from_value(requests).map_err(|e| e.to_string())?;
-    let mut report = |event: Progress<'_>| match event {
-        Progress::Begins(name) => child::send_message(&json!({ "begins": name })),
-        Progress::Line(line) => child::send_message(&json!({ "line": line })),
+    let mut report = |event: CertifyProgress<'_>| match event {
+        CertifyProgress::Begins(name) => child::send_message(&json!({ "begins": name })),
+        CertifyProgress::Line(line) => child::send_message(&json!({ "line": line })),
     };
     let certified = request.open(built_in).and_then(|law| {
         let partner = partner.map(|p| p.open(built_in)).transpose()?;

@@ -23,7 +23,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Result of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Outcome {
+pub enum CheckOutcome {
     /// The law has the property.
     Pass,
     /// The law lacks the property.
@@ -38,7 +38,7 @@ pub struct Line {
     /// Name of the check.
     pub check: String,
     /// Result.
-    pub outcome: Outcome,
+    pub outcome: CheckOutcome,
     /// The number that decided, described by the text. Infinity is written as null.
     #[serde(deserialize_with = "null_is_infinite")]
     pub number: f64,
@@ -48,7 +48,11 @@ pub struct Line {
 
 impl Line {
     fn judged(check: &str, kept: bool, number: f64, text: impl Into<String>) -> Self {
-        let outcome = if kept { Outcome::Pass } else { Outcome::Fail };
+        let outcome = if kept {
+            CheckOutcome::Pass
+        } else {
+            CheckOutcome::Fail
+        };
         Self {
             check: check.to_owned(),
             outcome,
@@ -66,7 +70,7 @@ impl Line {
     fn skip(check: &str, why: impl Into<String>) -> Self {
         Self {
             check: check.to_owned(),
-            outcome: Outcome::Skip,
+            outcome: CheckOutcome::Skip,
             number: 0.0,
             text: why.into(),
         }
@@ -82,7 +86,7 @@ fn null_is_infinite<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 /// Progress of a certification.
-enum Progress<'a> {
+enum CertifyProgress<'a> {
     /// A check begins.
     Begins(&'a str),
     /// A check gave this line.
@@ -94,7 +98,7 @@ struct CertificateWriter<'a> {
     lines: Vec<Line>,
     /// Partner of the law under test, added to the text of each line.
     partner: String,
-    report: &'a mut dyn FnMut(Progress<'_>),
+    report: &'a mut dyn FnMut(CertifyProgress<'_>),
 }
 
 type Check = fn(&mut Rig) -> Result<Line, LawError>;
@@ -103,7 +107,7 @@ impl CertificateWriter<'_> {
     /// Runs checks, each regardless of the result of the previous one.
     fn run(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
         for (name, check) in checks {
-            (self.report)(Progress::Begins(name));
+            (self.report)(CertifyProgress::Begins(name));
             let line = check(rig).unwrap_or_else(|e| Line::failed(name, &e));
             self.write(line);
         }
@@ -112,7 +116,7 @@ impl CertificateWriter<'_> {
     fn write(&mut self, line: Line) {
         let text = format!("{}{}", line.text, self.partner);
         let line = Line { text, ..line };
-        (self.report)(Progress::Line(&line));
+        (self.report)(CertifyProgress::Line(&line));
         self.lines.push(line);
     }
 }
@@ -137,7 +141,7 @@ pub struct Certificate {
 impl Certificate {
     /// Returns whether no check failed.
     pub fn certified(&self) -> bool {
-        self.lines.iter().all(|l| l.outcome != Outcome::Fail)
+        self.lines.iter().all(|l| l.outcome != CheckOutcome::Fail)
     }
 }
 
@@ -185,7 +189,7 @@ fn certify_with_progress(
     cohesion: Option<&Loaded>,
     path: &SearchPath,
     border: &[(&str, Check)],
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(CertifyProgress<'_>),
 ) -> Result<Certificate, LawError> {
     const SCALE: &str = "runs on the bench";
     plugin.validate(parameters)?;
@@ -198,12 +202,12 @@ fn certify_with_progress(
     for (k, mut rig) in rigs.into_iter().enumerate() {
         if k == 0 && border.len() == border::CHECKS.len() {
             writer.run(&mut rig, &[border::FIRST]);
-            if writer.lines.iter().any(|l| l.outcome == Outcome::Fail) {
+            if writer.lines.iter().any(|l| l.outcome == CheckOutcome::Fail) {
                 break;
             }
         }
         writer.partner = rig.partner().to_owned();
-        (writer.report)(Progress::Begins(SCALE));
+        (writer.report)(CertifyProgress::Begins(SCALE));
         match (rig.find_scale(), plugin.kind.spec().certificate.checks) {
             (Err(e), _) => writer.write(Line::failed(SCALE, &e)),
             (Ok(()), CheckSet::Bond) if rig.opens() => writer.run(&mut rig, &bond::CHECKS),

@@ -19,7 +19,7 @@ pub struct Facet<V> {
 }
 
 /// A part of a facet (corner, edge or face): which of its corners belong to it.
-type Part = [bool; 3];
+type FacetPart = [bool; 3];
 
 impl Facet<V> {
     /// Returns the unit normal, towards the open side.
@@ -38,7 +38,7 @@ impl Facet<V> {
     }
 
     /// Returns the names of a part, sorted, with unused entries last.
-    pub fn part(&self, part: Part) -> [u64; 3] {
+    pub fn part(&self, part: FacetPart) -> [u64; 3] {
         let mut names = [u64::MAX; 3];
         for k in 0..3 {
             if part[k] {

@@ -2,7 +2,7 @@
 
 use super::algebra::{MatrixLike, VectorLike};
 use super::space::{Dim2, Dim3};
-use crate::lanes::{Columns, Lane, LaneMatrix, LaneVector, Square};
+use crate::lanes::{Lane, LaneArray, LaneMatrix, LaneVector, Square};
 use std::fmt::Debug;
 
 /// A dimension of space, see [`Space`](super::space::Space), with vectors of which each component
@@ -38,18 +38,18 @@ pub trait LaneSpace: Copy + Debug + 'static {
 }
 
 impl LaneSpace for Dim2 {
-    type V<L: Lane> = Columns<L, 2>;
-    type T<L: Lane> = Columns<L, 1>;
+    type V<L: Lane> = LaneArray<L, 2>;
+    type T<L: Lane> = LaneArray<L, 1>;
     type M<L: Lane> = Square<L, 2>;
     type I<L: Lane> = Square<L, 1>;
 
     #[inline(always)]
     fn across<L: Lane>(n: &Self::V<L>, v: &Self::V<L>, _: L) -> Self::T<L> {
-        Columns([n[0] * v[1] - n[1] * v[0]])
+        LaneArray([n[0] * v[1] - n[1] * v[0]])
     }
     #[inline(always)]
     fn joined<L: Lane>(n: &Self::V<L>, normal: L, t: &Self::T<L>) -> Self::V<L> {
-        Columns([n[0] * normal - n[1] * t[0], n[1] * normal + n[0] * t[0]])
+        LaneArray([n[0] * normal - n[1] * t[0], n[1] * normal + n[0] * t[0]])
     }
     #[inline(always)]
     fn rolled<L: Lane>(spin: &Self::T<L>, _: &Self::V<L>) -> Self::T<L> {
@@ -61,11 +61,11 @@ impl LaneSpace for Dim2 {
     }
     #[inline(always)]
     fn turning_velocity<L: Lane>(spin: &Self::T<L>, arm: &Self::V<L>) -> Self::V<L> {
-        Columns([(-spin[0]) * arm[1], spin[0] * arm[0]])
+        LaneArray([(-spin[0]) * arm[1], spin[0] * arm[0]])
     }
     #[inline(always)]
     fn moment_of<L: Lane>(arm: &Self::V<L>, force: &Self::V<L>) -> Self::T<L> {
-        Columns([arm[0] * force[1] - arm[1] * force[0]])
+        LaneArray([arm[0] * force[1] - arm[1] * force[0]])
     }
     #[inline(always)]
     fn frame<L: Lane>(n: &Self::V<L>) -> [Self::V<L>; 2] {
@@ -77,13 +77,13 @@ impl LaneSpace for Dim2 {
     }
     #[inline(always)]
     fn from_frame<L: Lane>(_: &[Self::V<L>; 2], t: [L; 2]) -> Self::T<L> {
-        Columns([t[0]])
+        LaneArray([t[0]])
     }
 }
 
 impl LaneSpace for Dim3 {
-    type V<L: Lane> = Columns<L, 3>;
-    type T<L: Lane> = Columns<L, 3>;
+    type V<L: Lane> = LaneArray<L, 3>;
+    type T<L: Lane> = LaneArray<L, 3>;
     type M<L: Lane> = Square<L, 3>;
     type I<L: Lane> = Square<L, 3>;
 
@@ -119,8 +119,8 @@ impl LaneSpace for Dim3 {
         let a = -one / (sign + n[2]);
         let b = n[0] * n[1] * a;
         [
-            Columns([one + sign * n[0] * n[0] * a, sign * b, -sign * n[0]]),
-            Columns([b, sign + n[1] * n[1] * a, -n[1]]),
+            LaneArray([one + sign * n[0] * n[0] * a, sign * b, -sign * n[0]]),
+            LaneArray([b, sign + n[1] * n[1] * a, -n[1]]),
         ]
     }
     #[inline(always)]

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 pub enum Supply {
     /// A voltage (V).
     Voltage(f64),
-    /// A current (A; A/m in 2D), at most so that the voltage stays below a limit (V), as
-    /// laboratories measure contact resistance: where the contact is lost the voltage is the limit.
+    /// A current (A; A/m in 2D) with a limit of the voltage (V), as in laboratory measurements of
+    /// contact resistance: the voltage of an open contact is the limit.
     Current {
         /// Current (A; A/m in 2D).
         current: f64,
@@ -20,16 +20,16 @@ pub enum Supply {
 /// A supply between two bodies. Bodies conduct far better than contacts: each has one potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
-    /// Body that the current enters.
+    /// Body into which the current flows.
     pub from: u32,
-    /// Body that it leaves, of potential 0.
+    /// Body out of which the current flows, with potential 0.
     pub to: u32,
     /// Source.
     pub supply: Supply,
 }
 
 impl Circuit {
-    /// Voltage (V) where the conductance between the bodies is `conductance` (S).
+    /// Returns the voltage (V) if the conductance between the bodies is `conductance` (S).
     pub fn voltage(&self, conductance: f64) -> f64 {
         match self.supply {
             Supply::Voltage(voltage) => voltage,
@@ -49,10 +49,10 @@ pub struct CircuitState {
     pub voltage: f64,
     /// Current (A; A/m in 2D).
     pub current: f64,
-    /// Conductance between the bodies (S; S/m in 2D); 0 where no path joins them. The resistance is
+    /// Conductance between the bodies (S; S/m in 2D); 0 if no path connects them. The resistance is
     /// its inverse.
     pub conductance: f64,
-    /// Potential of each body (V); 0 where no path leads to it.
+    /// Potential of each body (V); 0 without a path to it.
     pub potential: Vec<f64>,
 }
 

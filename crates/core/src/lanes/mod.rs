@@ -28,7 +28,7 @@ mod x86;
 pub(crate) use dispatch::{Instructions, Wide, prefetch};
 pub use record::Record;
 pub(crate) use record::{Batch, BatchMut, part, part_mut, record};
-pub use vector::{Columns, LaneMatrix, LaneVector, Square};
+pub use vector::{LaneArray, LaneMatrix, LaneVector, Square};
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

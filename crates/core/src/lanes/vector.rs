@@ -100,9 +100,9 @@ pub trait LaneMatrix<L: Lane>: Copy + Debug + Send + Sync + 'static {
 /// Components of a vector, each in a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Columns<L, const N: usize>(pub [L; N]);
+pub struct LaneArray<L, const N: usize>(pub [L; N]);
 
-impl<L: Lane, const N: usize> LaneVector<L> for Columns<L, N> {
+impl<L: Lane, const N: usize> LaneVector<L> for LaneArray<L, N> {
     const N: usize = N;
     #[inline(always)]
     fn from_fn(mut component: impl FnMut(usize) -> L) -> Self {
@@ -114,7 +114,7 @@ impl<L: Lane, const N: usize> LaneVector<L> for Columns<L, N> {
     }
 }
 
-impl<L: Lane> Columns<L, 3> {
+impl<L: Lane> LaneArray<L, 3> {
     /// The vector product.
     #[inline(always)]
     pub fn cross(&self, other: &Self) -> Self {
@@ -127,7 +127,7 @@ impl<L: Lane> Columns<L, 3> {
     }
 }
 
-impl<L, const N: usize> Index<usize> for Columns<L, N> {
+impl<L, const N: usize> Index<usize> for LaneArray<L, N> {
     type Output = L;
     #[inline(always)]
     fn index(&self, k: usize) -> &L {
@@ -135,14 +135,14 @@ impl<L, const N: usize> Index<usize> for Columns<L, N> {
     }
 }
 
-impl<L, const N: usize> IndexMut<usize> for Columns<L, N> {
+impl<L, const N: usize> IndexMut<usize> for LaneArray<L, N> {
     #[inline(always)]
     fn index_mut(&mut self, k: usize) -> &mut L {
         &mut self.0[k]
     }
 }
 
-impl<L: Lane, const N: usize> Add for Columns<L, N> {
+impl<L: Lane, const N: usize> Add for LaneArray<L, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -150,7 +150,7 @@ impl<L: Lane, const N: usize> Add for Columns<L, N> {
     }
 }
 
-impl<L: Lane, const N: usize> Sub for Columns<L, N> {
+impl<L: Lane, const N: usize> Sub for LaneArray<L, N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -158,7 +158,7 @@ impl<L: Lane, const N: usize> Sub for Columns<L, N> {
     }
 }
 
-impl<L: Lane, const N: usize> Neg for Columns<L, N> {
+impl<L: Lane, const N: usize> Neg for LaneArray<L, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -166,7 +166,7 @@ impl<L: Lane, const N: usize> Neg for Columns<L, N> {
     }
 }
 
-impl<L: Lane, const N: usize> Mul<L> for Columns<L, N> {
+impl<L: Lane, const N: usize> Mul<L> for LaneArray<L, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, by: L) -> Self {
@@ -180,7 +180,7 @@ impl<L: Lane, const N: usize> Mul<L> for Columns<L, N> {
 pub struct Square<L, const N: usize>(pub [[L; N]; N]);
 
 impl<L: Lane, const N: usize> LaneMatrix<L> for Square<L, N> {
-    type V = Columns<L, N>;
+    type V = LaneArray<L, N>;
     #[inline(always)]
     fn from_fn(mut entry: impl FnMut(usize, usize) -> L) -> Self {
         let mut out = [[L::all(0.0); N]; N];

@@ -227,7 +227,7 @@ unsafe fn scatter_four<F: Four, T, const U: usize>(
     to: &[*mut T; 4],
     bits: i32,
     from: *const F,
-    _: Groups<U>,
+    _: GroupStride<U>,
     at: usize,
 ) {
     // SAFETY: guaranteed by the caller.
@@ -257,7 +257,7 @@ unsafe fn scatter_one<F: Four, T, const U: usize>(
     to: &[*mut T; 4],
     bits: i32,
     from: *const F,
-    _: Groups<U>,
+    _: GroupStride<U>,
     at: usize,
 ) {
     // SAFETY: guaranteed by the caller.
@@ -272,8 +272,8 @@ unsafe fn scatter_one<F: Four, T, const U: usize>(
     }
 }
 
-/// The distance of columns.
-struct Groups<const U: usize>;
+/// Number of groups, which is the distance of columns.
+struct GroupStride<const U: usize>;
 
 /// The bits of four numbers.
 const ALL: i32 = 15;
@@ -439,19 +439,19 @@ unsafe fn scatter<F: Four, T: Record, const U: usize>(
         unsafe {
             let from = from.add(u);
             if bits == ALL {
-                by_fours!(T::COUNT, scatter_four(to, ALL, from, Groups::<U>));
+                by_fours!(T::COUNT, scatter_four(to, ALL, from, GroupStride::<U>));
             } else {
-                by_fours!(T::COUNT, scatter_four(to, bits, from, Groups::<U>));
+                by_fours!(T::COUNT, scatter_four(to, bits, from, GroupStride::<U>));
             }
             if count % 4 >= 2 && bits == ALL {
                 let columns = [*from.add(end * U), *from.add((end + 1) * U)];
                 F::store_pairs(numbers(to, end), columns);
             } else if count % 4 >= 2 {
-                scatter_one(to, bits, from, Groups::<U>, end);
-                scatter_one(to, bits, from, Groups::<U>, end + 1);
+                scatter_one(to, bits, from, GroupStride::<U>, end);
+                scatter_one(to, bits, from, GroupStride::<U>, end + 1);
             }
             if count % 2 == 1 {
-                scatter_one(to, bits, from, Groups::<U>, count - 1);
+                scatter_one(to, bits, from, GroupStride::<U>, count - 1);
             }
         }
     }

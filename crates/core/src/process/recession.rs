@@ -33,7 +33,7 @@ impl<S: Space> Process<S> for Recession {
     }
 
     fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
-        put_losses(s);
+        apply_losses(s);
         Ok(())
     }
 
@@ -63,10 +63,10 @@ impl<S: Space> Simulation<S> {
         self.state.scars.push(scar);
     }
 
-    /// Whether no surface is worn through.
+    /// Checks that no surface is worn through.
     ///
     /// # Errors
-    /// Which is, and where.
+    /// The surface that is worn through, and where.
     pub fn check_worn_through(&self) -> Result<(), StepError> {
         match &self.state.worn_through {
             None => Ok(()),
@@ -80,7 +80,7 @@ impl<S: Space> Simulation<S> {
 }
 
 /// Removes the volumes worn in the step from the scars.
-fn put_losses<S: Space>(s: &mut Simulation<S>) {
+fn apply_losses<S: Space>(s: &mut Simulation<S>) {
     let losses = s.state.network.losses.take();
     for loss in losses.iter().flatten() {
         let contact = &s.state.network.contacts[loss.contact as usize];
@@ -94,7 +94,7 @@ fn put_losses<S: Space>(s: &mut Simulation<S>) {
             shares.collect::<Vec<_>>()
         });
         let scar = &mut s.state.scars[scar];
-        let put = match below {
+        let worn = match below {
             Some(shares) => scar.wear_vertices(shares, loss.volume),
             None => {
                 let carried = &s.shapes.surfaces[scar.surface];
@@ -103,7 +103,7 @@ fn put_losses<S: Space>(s: &mut Simulation<S>) {
                 scar.wear_at(&s.shapes, &closest_point, loss.volume)
             }
         };
-        s.state.worn_through = s.state.worn_through.take().or(put.err());
+        s.state.worn_through = s.state.worn_through.take().or(worn.err());
     }
     s.state.network.losses = losses;
 }

@@ -71,7 +71,7 @@ impl<L: Lane> Nearest<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Columns;
+    use crate::lanes::LaneArray;
     use rand::{RngExt, SeedableRng};
 
     /// Brute-force projection over a fine sampling of the set.
@@ -91,7 +91,7 @@ mod tests {
         for _ in 0..200 {
             let (n, s) = (rng.random_range(-1.5..1.5), rng.random_range(-1.5..1.5));
             let (mu, c) = (rng.random_range(0.0..1.5), rng.random_range(0.0..0.5));
-            let (pn, pt) = project(n, Columns([s]), mu, c);
+            let (pn, pt) = project(n, LaneArray([s]), mu, c);
             assert!(pn >= 0.0 && pt.norm() <= mu * pn + c + 1e-15);
             let distance = (pn - n).hypot(pt[0] - s);
             assert!(distance <= nearest_by_sampling(n, s, mu, c) + 2e-6);
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn is_the_identity_inside() {
-        let t = Columns([0.1, 0.2]);
+        let t = LaneArray([0.1, 0.2]);
         assert_eq!(project(1.0, t, 0.5, 0.0), (1.0, t));
     }
 }

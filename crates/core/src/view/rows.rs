@@ -58,7 +58,7 @@ impl<'a> BodyColumns<'a> {
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct BodyMotion {
     /// Centre of mass (m).
     pub position: [f64; 3],
     /// Orientation: an angle (rad) and zeros in the plane, a unit quaternion (w, x, y, z) in space.
@@ -69,7 +69,7 @@ pub struct Motion {
     pub spin: [f64; 3],
 }
 
-impl Motion {
+impl BodyMotion {
     /// Magnitude of the velocity (m/s).
     pub fn speed(&self) -> f64 {
         VectorLike::norm(&Vector3::from(self.velocity))

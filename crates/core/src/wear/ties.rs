@@ -43,7 +43,7 @@ impl Ties {
             bases: bases.to_vec(),
         };
         for [a, b] in bonds {
-            ties.join(a, b);
+            ties.add_bond(a, b);
         }
         for base in bases {
             ties.base[*base as usize] = *base;
@@ -79,28 +79,29 @@ impl Ties {
         piece.into_iter().collect()
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    fn add_bond(&mut self, a: u32, b: u32) {
         self.bonds[a as usize].push(b);
         self.bonds[b as usize].push(a);
     }
 
-    fn part(&mut self, a: u32, b: u32) -> bool {
-        let mut out = |x: u32, y: u32| {
+    /// Removes a bond; returns whether there was one.
+    fn remove_bond(&mut self, a: u32, b: u32) -> bool {
+        let mut remove = |x: u32, y: u32| {
             let list = &mut self.bonds[x as usize];
             let at = list.iter().position(|z| *z == y);
             at.map(|k| list.swap_remove(k)).is_some()
         };
-        out(a, b) && out(b, a)
+        remove(a, b) && remove(b, a)
     }
 
     /// Applies the bonds formed and broken since the last call, with one pair of bodies per bond.
     pub fn change(&mut self, made: &[[u32; 2]], broken: &[[u32; 2]]) -> Change {
         for [a, b] in made {
-            self.join(*a, *b);
+            self.add_bond(*a, *b);
         }
         let mut cut = Vec::new();
         for [a, b] in broken {
-            if !self.part(*a, *b) {
+            if !self.remove_bond(*a, *b) {
                 continue;
             }
             for (child, parent) in [(*a, *b), (*b, *a)] {

@@ -8,7 +8,7 @@ use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::passing::{
     PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
 };
-use crate::geometry::convex::seam::{Adjacent, DEEPEST, ball_is_over_seam, leave_seam};
+use crate::geometry::convex::seam::{AdjacentPiece, DEEPEST, ball_is_over_seam, leave_seam};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -72,7 +72,7 @@ impl<S: Space> Narrow<'_, S> {
 
     /// Returns the pieces adjacent to one of a pair that may touch the other one too; the
     /// antagonist is a piece.
-    fn adjacent(&self, pair: [u32; 2]) -> Vec<Adjacent<'_, S>> {
+    fn adjacent(&self, pair: [u32; 2]) -> Vec<AdjacentPiece<'_, S>> {
         let (shapes, centre) = (self.placed.scene.shapes, |k| self.piece_centre(k));
         self.partners
             .adjacent(self.pairs, shapes, self.cores, centre, pair)

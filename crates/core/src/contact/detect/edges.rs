@@ -7,7 +7,7 @@ use super::piece_centre;
 use crate::bodies::Bodies;
 use crate::contact::Occurrence;
 use crate::contact::network::{Contact, Key, Network};
-use crate::geometry::convex::seam::{Adjacent, SeamEdge, edges_at};
+use crate::geometry::convex::seam::{AdjacentPiece, SeamEdge, edges_at};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, CorePair};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
@@ -146,7 +146,7 @@ fn edges_of<S: Space>(
     let centre = |k: usize| piece_centre(&shapes.pieces[k], bodies);
     let (cores, pairs) = (&network.cores, &network.candidates);
     let pieces = names.map(piece);
-    let free = |b: &Adjacent<S>| {
+    let free = |b: &AdjacentPiece<S>| {
         let own = pieces[usize::from(!b.of_candidate)].body;
         let other = piece(b.name).body;
         own != other && [own, other].iter().any(|b| !bodies.immovable(*b as usize))

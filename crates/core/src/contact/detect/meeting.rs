@@ -1,7 +1,7 @@
 //! The search for a pair that meets within a step.
 
 use super::margin::{SearchStage, margin};
-use super::sweep::{Sweep, SweepResult, SweptPair};
+use super::sweep::{PairSweep, SweepResult, SweptPair};
 use crate::contact::network::{Contact, Key, Network, ShapeIndex};
 use crate::geometry::space::Space;
 
@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-9;
 /// The search for pairs that meet in the step.
 pub(super) struct MeetingSearch<'a, S: Space> {
     pub network: &'a Network<S>,
-    pub sweep: &'a Sweep<'a, S>,
+    pub sweep: &'a PairSweep<'a, S>,
     /// Displacement of each ball, piece and surface in the step (m), and the greatest of all
     /// bodies.
     pub travels: Vec<f64>,

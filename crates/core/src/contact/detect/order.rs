@@ -2,7 +2,7 @@
 //! which its later impacts were predicted.
 
 use super::margin::TOLERATED;
-use super::sweep::{Sweep, SweepResult};
+use super::sweep::{PairSweep, SweepResult};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ShapeIndex};
 use crate::geometry::space::{Space, VectorLike};
@@ -28,7 +28,7 @@ pub(super) struct PredictedMeeting {
 pub(super) fn mark_later<S: Space>(
     found: &mut [Contact<S>],
     meetings: &[PredictedMeeting],
-    sweep: &Sweep<S>,
+    sweep: &PairSweep<S>,
     candidates: &[(u32, u32)],
     fast: f64,
 ) {
@@ -66,7 +66,7 @@ pub(super) fn mark_later<S: Space>(
         let (v, w) = &mut velocities[*b as usize];
         (*v, *w) = (*v * *s, *w * *s);
     }
-    let stopped = Sweep {
+    let stopped = PairSweep {
         velocities: &velocities,
         ..*sweep
     };

@@ -1,7 +1,7 @@
 //! The pieces that each ball and piece may touch, and those adjacent to a pair.
 
 use crate::contact::network::{Key, ShapeIndex};
-use crate::geometry::convex::seam::Adjacent;
+use crate::geometry::convex::seam::AdjacentPiece;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use std::sync::OnceLock;
@@ -35,7 +35,7 @@ impl Partners {
         cores: &'a [S::Core],
         centre: impl Fn(usize) -> S::Vector,
         pair: [u32; 2],
-    ) -> Vec<Adjacent<'a, S>> {
+    ) -> Vec<AdjacentPiece<'a, S>> {
         let balls = shapes.balls.len();
         let origin = centre((pair[1] & !Key::PIECE) as usize);
         let mut out = Vec::new();
@@ -43,7 +43,7 @@ impl Partners {
             let others = self.of(pairs, balls + shapes.pieces.len(), balls, name);
             for other in others.iter().filter(|other| **other != pair[1 - side]) {
                 let k = (*other & !Key::PIECE) as usize;
-                out.push(Adjacent {
+                out.push(AdjacentPiece {
                     core: &cores[k],
                     at: shapes.periodic.shortest(centre(k) - origin),
                     rounding: shapes.pieces[k].rounding,

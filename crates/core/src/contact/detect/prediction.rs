@@ -5,7 +5,7 @@
 use super::margin::SearchStage;
 use super::meeting::{Meeting, MeetingSearch};
 use super::order::{PredictedMeeting, mark_later};
-use super::sweep::Sweep;
+use super::sweep::PairSweep;
 use super::{CollisionScene, centres, rebuild};
 use crate::contact::Occurrence;
 use crate::contact::network::{Contact, Network};
@@ -265,7 +265,7 @@ fn find_closing<S: Space>(
     }
     let extents = std::mem::take(&mut network.extents);
     let candidates = std::mem::take(&mut network.candidates);
-    let sweep = Sweep {
+    let sweep = PairSweep {
         scene,
         extents: &extents,
         velocities: motion.velocities,

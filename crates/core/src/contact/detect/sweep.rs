@@ -17,7 +17,7 @@ use crate::geometry::shape::{Ball, Carried, ClosestPoint, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
 /// The bodies, and their velocities over the step.
-pub(super) struct Sweep<'a, S: Space> {
+pub(super) struct PairSweep<'a, S: Space> {
     pub scene: &'a CollisionScene<'a, S>,
     pub extents: &'a Extents,
     pub velocities: &'a [(S::Vector, S::Spin)],
@@ -160,7 +160,7 @@ const LEAST: f64 = 0.01;
 /// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
 
-impl<'a, S: Space> Sweep<'a, S> {
+impl<'a, S: Space> PairSweep<'a, S> {
     fn shape(&self, name: u32) -> Shape<'a, S> {
         let CollisionScene { shapes, bodies, .. } = *self.scene;
         match ShapeIndex::of(name) {

@@ -91,7 +91,7 @@ enum Closest {
     /// The reference face, and the face opposite to it.
     Face,
     /// Two edges or corners.
-    Edges(Nearest),
+    Edges(NearestEdgePoints),
     /// Two edges that penetrate each other.
     Crossing(Crossing),
 }
@@ -162,7 +162,7 @@ impl CorePair<'_, Dim3> {
         if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
             let near = nearest(a, b, &self.apart);
             let distance = near.difference.norm();
-            // Adjacent the face by at most the slack.
+            // Beside the face by at most the slack.
             let beside = best > 0.0
                 && distance * distance - best * best <= tolerances.slack * tolerances.slack
                 && !points.is_empty();
@@ -232,7 +232,7 @@ impl CorePair<'_, Dim3> {
     }
 
     /// Adds the point of two nearest edges; two points where they are parallel.
-    fn edges(&self, near: &Nearest, out: &mut Vec<ContactPoint<V>>) {
+    fn edges(&self, near: &NearestEdgePoints, out: &mut Vec<ContactPoint<V>>) {
         let distance = near.difference.norm();
         let ([e, f], [a, b], slack) = (near.edges, self.cores, self.tolerances.slack);
         if let Some(ends) = side_by_side(
@@ -386,7 +386,7 @@ fn nearest_on_lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
 }
 
 /// Nearest points of the edges of two polyhedra.
-struct Nearest {
+struct NearestEdgePoints {
     edges: [usize; 2],
     /// On `a` and on `b` (m).
     points: [V; 2],
@@ -396,8 +396,8 @@ struct Nearest {
 
 /// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best
 /// distance so far.
-fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
-    let mut best = Nearest {
+fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> NearestEdgePoints {
+    let mut best = NearestEdgePoints {
         edges: [0, 0],
         points: [V::zeros(); 2],
         difference: V::repeat(f64::INFINITY),
@@ -422,7 +422,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
             if squared < least {
                 least = squared;
                 room = half + least.sqrt();
-                best = Nearest {
+                best = NearestEdgePoints {
                     edges: [e, f],
                     points,
                     difference,

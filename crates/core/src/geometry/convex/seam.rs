@@ -29,7 +29,7 @@ const OPEN: f64 = 4.0;
 
 /// A piece adjacent to one of a pair and near the other; positions are relative to the antagonist's
 /// centre.
-pub struct Adjacent<'a, S: Space> {
+pub struct AdjacentPiece<'a, S: Space> {
     /// Core.
     pub core: &'a S::Core,
     /// Centre (m).
@@ -42,7 +42,7 @@ pub struct Adjacent<'a, S: Space> {
     pub name: u32,
 }
 
-impl<S: Space> Adjacent<'_, S> {
+impl<S: Space> AdjacentPiece<'_, S> {
     fn distance(&self, place: &S::Vector) -> f64 {
         self.core.outward(&(*place - self.at)).0 - self.rounding
     }
@@ -86,7 +86,7 @@ pub fn leave_seam<'a, S: Space + 'a>(
     pair: &CorePair<S>,
     motion: &PairMotion<S>,
     deepest: f64,
-    adjacent: impl FnOnce() -> Vec<Adjacent<'a, S>>,
+    adjacent: impl FnOnce() -> Vec<AdjacentPiece<'a, S>>,
     out: &mut Vec<ContactPoint<S::Vector>>,
 ) {
     let (cores, slack) = (pair.cores, pair.tolerances.slack);
@@ -108,7 +108,7 @@ pub fn leave_seam<'a, S: Space + 'a>(
     // piece continues.
     let open = |n: &S::Vector| {
         let [low, top] = moving.ends(n);
-        let at_edge = |b: &Adjacent<S>, m: &ContactPoint<S::Vector>| {
+        let at_edge = |b: &AdjacentPiece<S>, m: &ContactPoint<S::Vector>| {
             let height = n.dot(&b.place(m));
             let below = if b.of_candidate {
                 height - low
@@ -117,7 +117,7 @@ pub fn leave_seam<'a, S: Space + 'a>(
             };
             below <= OPEN * slack
         };
-        let continues = |b: &Adjacent<S>, m: &ContactPoint<S::Vector>| {
+        let continues = |b: &AdjacentPiece<S>, m: &ContactPoint<S::Vector>| {
             b.covers(m, slack) && at_edge(b, m) && !b.blocks(m, n, slack)
         };
         out.iter().any(|m| adjacent.iter().any(|b| continues(b, m)))
@@ -155,14 +155,14 @@ pub fn edges_at<S: Space>(
     pair: &CorePair<S>,
     point: &ContactPoint<S::Vector>,
     [low, near]: [f64; 2],
-    adjacent: &[Adjacent<S>],
+    adjacent: &[AdjacentPiece<S>],
 ) -> Vec<SeamEdge<S>> {
     let at_rest = PairMotion {
         shift: S::Vector::zero(),
         turns: [S::Spin::zero(); 2],
     };
     let placed = MovingPair::new(pair, &at_rest);
-    let continues = |b: &Adjacent<S>, n: &S::Vector| {
+    let continues = |b: &AdjacentPiece<S>, n: &S::Vector| {
         let [bottom, top] = placed.ends(n);
         let (out, height) = if b.of_candidate {
             (-*n, -bottom)
@@ -201,9 +201,9 @@ pub fn ball_is_over_seam<'a, S: Space + 'a>(
     radius: f64,
     slack: f64,
     name: u32,
-    adjacent: impl FnOnce() -> Vec<Adjacent<'a, S>>,
+    adjacent: impl FnOnce() -> Vec<AdjacentPiece<'a, S>>,
 ) -> bool {
-    let nearer = |b: &Adjacent<S>| {
+    let nearer = |b: &AdjacentPiece<S>| {
         let before = b.distance(apart) - radius - point.gap;
         // Rounding may differ when the other piece is the antagonist.
         before < -ALIKE * ALIKE * slack || before <= ALIKE * ALIKE * slack && b.name < name
