@@ -197,7 +197,7 @@ fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
 }
 
 fn grains(s: &dyn RunView) -> Vec<Side> {
-    // A point of a grain that deforms is as large as what it stands for.
+    // The size of a point of a grain that deforms is that of its tributary area.
     let balls = s.balls().into_iter().map(|b| {
         let size = match b.radius > 0.0 {
             true => b.radius,

@@ -133,7 +133,7 @@ fn output_intervals(case: &Case) -> Result<(), ValidationError> {
     Err(ValidationError::new("output.checkpoint", message))
 }
 
-/// The accuracy asked for, and its bounds.
+/// Checks the requested accuracy and its bounds.
 fn accuracy(case: &Case) -> Result<(), ValidationError> {
     let Some(asked) = &case.accuracy else {
         return Ok(());

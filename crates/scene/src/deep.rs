@@ -1,14 +1,13 @@
-//! Check for bodies that stand in each other deeper than the distance within which contacts are
-//! looked for: their points would never meet the surface that they are behind, or, within a grain,
-//! would be pushed out from there.
+//! Check for bodies that overlap by more than the search distance of contacts: their points would
+//! never meet the surface that they are behind, or, within a grain, would be pushed out from there.
 
 use super::build::Origin;
 use super::called;
 use super::source::ValidationError;
 use fretwork_core::view::RunSetup;
 
-/// How far behind a surface points are looked for in space, in their sizes: searches cost the
-/// square of it there.
+/// Distance behind a surface up to which points are searched in space, relative to their sizes: the
+/// cost of a search is quadratic in it.
 const SIZES: f64 = 20.0;
 
 /// Checks the points of deformable bodies.

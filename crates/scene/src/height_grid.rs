@@ -1,5 +1,5 @@
-//! Heights over a grid: the reader of files of heights, and what tells that their lines are not the
-//! rows of the grid.
+//! Heights over a grid: the reader of files of heights, and checks that their lines are the rows of
+//! the grid.
 //!
 //! A file has numbers with a decimal point, a line for each row of the grid along x, separated by
 //! blanks, tabs, commas or semicolons. Empty lines, and lines that begin with `#`, are no rows.
@@ -151,8 +151,8 @@ fn numbers(line: &str) -> Result<Vec<f64>, String> {
     words.filter(|w| !w.is_empty()).map(number).collect()
 }
 
-/// The values of a list as it stands in a text: a row for each line of equal numbers of values;
-/// none where lines are unlike.
+/// Returns the values of a list in a text as rows, one for each line; empty if lines have different
+/// numbers of values.
 pub fn rows_of_list(text: &str, values: &[Range<usize>], heights: &[f64]) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let mut end = 0;

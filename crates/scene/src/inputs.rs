@@ -1,4 +1,4 @@
-//! All inputs of a case, one by one: what the file gives, and the defaults of the rest.
+//! Table of all inputs of a case: values from the file, and defaults of the others.
 
 use crate::case::Case;
 use crate::source::{Group, Kind, Node, Shape, Source, Tree, fields_at};

@@ -200,7 +200,7 @@ fn check_pins(case: &Case) -> Result<(), ValidationError> {
 #[derive(Default)]
 struct FromFile {
     parameters: InterfaceParameters,
-    /// The file, and where in it they stand.
+    /// The file, and the path of the parameters in it.
     place: Option<(Source, &'static str)>,
 }
 

@@ -83,8 +83,8 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Rejects drives, phases and gravity that do not repeat with every cycle: a jump skips cycles, and
-/// the simulated time stands still in it.
+/// Rejects drives, phases and gravity that do not repeat with every cycle: a jump skips cycles
+/// without advancing the simulated time.
 fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
     let (Some(test), Some(cycle)) = (&case.friction, period(case)) else {
         return Ok(());

@@ -3,14 +3,14 @@
 use super::case::Case;
 use super::source::ValidationError;
 
-/// Longest name (bytes): with what is put before and after it, it is still the name of a file.
+/// Longest name (bytes) that is still a file name with all prefixes and suffixes.
 const LONGEST: usize = 100;
 
 /// Names that are devices on some systems, with any extension.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
-/// Checks names that stand in columns and files: of bodies, materials, interfaces and phases. Those
-/// of measures and of deformable bodies are [words](word_fault).
+/// Checks names that are used in columns and files: of bodies, materials, interfaces and phases.
+/// Those of measures and of deformable bodies are [words](word_fault).
 ///
 /// # Errors
 /// The first name that cannot be one, with its path.

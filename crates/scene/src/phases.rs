@@ -1,5 +1,4 @@
-//! Phases of a case: what each changes and when it ends; checks them and converts them for the
-//! simulation.
+//! Phases of a case: their changes and ends, checks, and conversion for the simulation.
 
 pub use super::holders::name as holder_name;
 

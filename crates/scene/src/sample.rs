@@ -1,5 +1,5 @@
-//! Samples of grains: what a case says of them, tables of grains, and the generators of the layer
-//! below, `fretwork-sample`.
+//! Samples of grains: specifications in cases, tables of grains, and calls of the generators in
+//! `fretwork-sample`.
 
 pub mod spec;
 pub mod table;

@@ -142,21 +142,19 @@ impl<L, const N: usize> IndexMut<usize> for LaneArray<L, N> {
     }
 }
 
-impl<L: Lane, const N: usize> Add for LaneArray<L, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::from_fn(|k| self[k] + other[k])
-    }
+macro_rules! componentwise {
+    ($trait:ident, $name:ident) => {
+        impl<L: Lane, const N: usize> $trait for LaneArray<L, N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self::from_fn(|k| self[k].$name(other[k]))
+            }
+        }
+    };
 }
-
-impl<L: Lane, const N: usize> Sub for LaneArray<L, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self::from_fn(|k| self[k] - other[k])
-    }
-}
+componentwise!(Add, add);
+componentwise!(Sub, sub);
 
 impl<L: Lane, const N: usize> Neg for LaneArray<L, N> {
     type Output = Self;

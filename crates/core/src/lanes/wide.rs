@@ -66,42 +66,28 @@ fn by_group<F: Four, const U: usize>(mut a: [F; U], b: [F; U], of: impl Fn(F, F)
 }
 
 macro_rules! operator {
-    ($trait:ident, $name:ident) => {
-        impl<F: Four, const U: usize> $trait for Lanes<F, U> {
+    ($trait:ident for $type:ident, $name:ident, $of:ident) => {
+        impl<F: Four, const U: usize> $trait for $type<F, U> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, with: Self) -> Self {
-                Self(by_group(self.0, with.0, F::$name))
+                Self(by_group(self.0, with.0, F::$of))
             }
         }
     };
 }
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
+operator!(Add for Lanes, add, add);
+operator!(Sub for Lanes, sub, sub);
+operator!(Mul for Lanes, mul, mul);
+operator!(Div for Lanes, div, div);
+operator!(BitAnd for Conditions, bitand, and);
+operator!(BitOr for Conditions, bitor, or);
 
 impl<F: Four, const U: usize> Neg for Lanes<F, U> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self(by_group(self.0, [F::all(-0.0); U], F::xor))
-    }
-}
-
-impl<F: Four, const U: usize> BitAnd for Conditions<F, U> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, with: Self) -> Self {
-        Self(by_group(self.0, with.0, F::and))
-    }
-}
-
-impl<F: Four, const U: usize> BitOr for Conditions<F, U> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, with: Self) -> Self {
-        Self(by_group(self.0, with.0, F::or))
     }
 }
 

@@ -4,7 +4,8 @@ use crate::case::Case;
 use crate::source::{InputError, Source, ValidationError};
 use fretwork_core::laws::Interface;
 
-/// The alert distance of a case (m): the given one, or `needed` and what laws with a `range` need.
+/// Returns the alert distance of a case (m): the given one, or the largest of `needed` and the
+/// distances that laws with a `range` need.
 ///
 /// # Errors
 /// A law that attracts beyond the given one, where no contact is known: how far it acts would

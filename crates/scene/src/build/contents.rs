@@ -1,4 +1,5 @@
-//! All that a case says: its own text in one spelling, and what the files that it names hold.
+//! Complete content of a case: its own text in normal form, and the content of the files that it
+//! names.
 
 use super::Loaded;
 use crate::source::{InputError, Kind, Node, Tree};

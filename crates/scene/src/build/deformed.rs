@@ -1,5 +1,5 @@
-//! Grains that deform between two runs: what a state of another run knows of their deformation, and
-//! what is recorded of them.
+//! Grains that deform, across two runs: their deformation in a state of another run, and their
+//! records.
 
 use super::Builder;
 use super::elastic_grains::Shapes;

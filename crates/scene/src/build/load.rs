@@ -19,7 +19,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
 }
 
 /// Loads a case from a text. `name` stands for the file in errors; the files that the case names,
-/// and `materials/`, are looked for relative to `folder` (an empty path for the working folder).
+/// and `materials/`, are searched relative to `folder` (an empty path for the working folder).
 ///
 /// # Errors
 /// At name, line and column.
@@ -71,8 +71,8 @@ fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<Loaded, Inpu
 }
 
 impl Loaded {
-    /// A case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors
-    /// show their place in the text that [`Case::to_ron`] makes of it. Files are looked for as in
+    /// Checks a case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder).
+    /// Errors give positions in the text from [`Case::to_ron`]. Files are searched as in
     /// [`load_text`].
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl Loaded {
         Ok(self)
     }
 
-    /// Where material files are looked for.
+    /// Returns the library in which material files are searched.
     pub(super) fn shelf(&self) -> MaterialLibrary {
         MaterialLibrary::beside(&self.path).with_own(&self.own_files)
     }

@@ -164,8 +164,7 @@ impl Loaded {
     /// Builds the simulation alone, in the dimension of the case.
     ///
     /// # Errors
-    /// An [`InputError`] with file, line and column; it also says where the case has another
-    /// dimension.
+    /// An [`InputError`] with file, line and column, also if the case has another dimension.
     pub fn build_in<S: Space>(&self, path: &SearchPath) -> Result<Simulation<S>, InputError> {
         let simulation = self.build(path)?.simulation.into_dimension();
         simulation.map_err(|other| {

@@ -1,7 +1,7 @@
 //! A case made in Rust, without any file.
 //!
-//! A [`CaseBuilder`] fills in a [`Case`], the type that case files are read into, so that all that
-//! a file can say can be said here, is checked by the same code and refused in the same sentences.
+//! A [`CaseBuilder`] fills in a [`Case`], the type into which case files are read. It can therefore
+//! express everything that a file can, with the same checks and error messages.
 //! [`CaseBuilder::change`] sets everything that has no method of its own.
 
 mod body;
@@ -23,8 +23,8 @@ use std::path::PathBuf;
 /// Builds a [`Case`] in two or three dimensions, and from it a simulation.
 ///
 /// # Examples
-/// A ball rests on a plane, both of a material of one's own. The laws are those that the search
-/// path finds; the crate `fretwork` has one with all shipped laws,
+/// A ball rests on a plane; both have a material defined here. The laws come from the search path;
+/// the crate `fretwork` has one with all shipped laws,
 /// `fretwork::shipped::search_path()`.
 /// ```
 /// use fretwork_scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
@@ -225,8 +225,8 @@ impl CaseBuilder {
         self
     }
 
-    /// The case as it stands, unchecked. Materials of [`own_material`](Self::own_material) are not
-    /// part of it: it names them as files.
+    /// Returns the case without checks. It names materials of [`own_material`](Self::own_material)
+    /// as files.
     pub fn case(&self) -> Case {
         self.case.clone()
     }

@@ -1,4 +1,4 @@
-//! Checks of what a case says of heat.
+//! Checks of the heat of a case.
 
 use crate::case::{Case, HeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};

@@ -1,4 +1,4 @@
-//! Heat of a case: checks what it says, and gives it to the simulation.
+//! Heat of a case: checks, and conversion for the simulation.
 
 mod bodies;
 mod check;

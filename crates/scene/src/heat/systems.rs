@@ -50,7 +50,8 @@ impl Nodes {
                 let mass = system.mass() / scene.case.inertia_scaling;
                 match capacity {
                     Some(capacity) => Store::Lumped(*capacity),
-                    // The mass of a half-space is what moves with it, not that of a material.
+                    // The mass of a half-space is the moving mass, not that of a volume of
+                    // material.
                     None if system.conduction().is_some() => {
                         Store::Lumped(mass * scene.materials[material].heat_capacity)
                     }

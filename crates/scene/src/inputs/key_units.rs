@@ -1,6 +1,6 @@
 //! Units of the keys of a case, by the names on their path.
 
-/// Keys with a unit of their own wherever they stand.
+/// Keys that have the same unit on any path.
 const ANYWHERE: [(&str, &str); 29] = [
     ("step", "s"),
     ("end", "s"),
@@ -102,7 +102,7 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     find(&ANYWHERE).unwrap_or_default()
 }
 
-/// Units of what a case says of heat.
+/// Units of the keys of heat.
 fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
     match (last, dimension) {

@@ -42,7 +42,7 @@ pub struct VoronoiSpec {
 }
 
 /// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D
-/// it stands along x and z and is one block thick.
+/// it extends along x and z and is one block thick.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BlockWallSpec {

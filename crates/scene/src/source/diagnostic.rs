@@ -113,7 +113,7 @@ impl InputError {
         Self::file(path, error)
     }
 
-    /// Adds what was expected.
+    /// Adds a description of valid input.
     #[must_use]
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());

@@ -259,7 +259,7 @@ fn further(one: &SpannedError, other: &SpannedError) -> bool {
     end(one) > end(other)
 }
 
-/// A validation error: the dotted path of the value, the message, and what was expected.
+/// A validation error: dotted path of the value, message, and description of valid input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ValidationError {
     /// The dotted path.
@@ -283,7 +283,7 @@ impl ValidationError {
         }
     }
 
-    /// Adds what was expected.
+    /// Adds a description of valid input.
     #[must_use]
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());

@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 pub enum Names {
     /// A struct, or a variant with fields: all its fields, whether the text has them or not.
     Fields(Vec<String>),
-    /// A map or a list: what the text has, keys or names, indices of elements without a name.
+    /// A map or a list: the keys or names in the text, indices for elements without a name.
     Entries(Vec<String>),
     /// One of several kinds, of which the text has none that has fields.
     Kinds(Vec<String>),
@@ -38,7 +38,7 @@ impl Source {
             path => split_path(path)?,
         };
         let root = self.tree.root.as_ref();
-        // One component more, which no type has, so that a variant in the text tells its fields.
+        // An additional component, which no type has, lists the fields of a variant in the text.
         let beyond = [parts.as_slice(), &[String::new()]].concat();
         let found = levels::<T>(&self.text, root, &beyond);
         let written = || {

@@ -211,9 +211,9 @@ impl Source {
         self.sets.push(wanted.argument.to_owned());
     }
 
-    /// Position at which to insert what is missing below `parent`, and the text before and after
-    /// its value. The first `depth` components of the key are in the text; `levels` are the types
-    /// along the key, as far as the type has them.
+    /// Returns the position at which to insert the missing keys below `parent`, and the text before
+    /// and after the value. The first `depth` components of the key are in the text; `levels` are
+    /// the types along the key, as far as the type has them.
     fn insertion(
         &self,
         wanted: &Assignment<'_>,

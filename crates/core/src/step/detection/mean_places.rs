@@ -4,7 +4,7 @@
 
 use crate::bodies::Nodes;
 use crate::contact::Contact;
-use crate::geometry::mortar::{Faced, Star};
+use crate::geometry::mortar::Star;
 use crate::geometry::overlap::{Along, signed_size};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Space, VectorLike};
@@ -212,6 +212,7 @@ pub(super) fn find_of_new_contacts<S: Space>(s: &mut Simulation<S>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::mortar::Faced;
     use crate::geometry::polyline::Polyline;
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
