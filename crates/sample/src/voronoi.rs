@@ -245,7 +245,7 @@ mod tests {
     const LOW: V = V::new(-0.3, 0.7);
     const HIGH: V = V::new(0.9, 1.5);
 
-    fn made(size: f64, rounds: usize, period: Option<f64>, seed: u64) -> Tiling {
+    fn unit_tiling(size: f64, rounds: usize, period: Option<f64>, seed: u64) -> Tiling {
         let corners = Corners {
             low: LOW,
             high: HIGH,
@@ -266,7 +266,7 @@ mod tests {
         let mut merged = 0;
         for (seed, rounds) in [(1, 0), (2, 0), (3, 0), (4, 1), (5, 20)] {
             for period in [None, Some(HIGH.x - LOW.x)] {
-                let tiling = made(0.03, rounds, period, seed);
+                let tiling = unit_tiling(0.03, rounds, period, seed);
                 assert_eq!(tiling.cells.len(), (whole / 0.0009).round() as usize);
                 merged += tiling.merged;
                 for cell in &tiling.cells {
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn neighbours_share_their_sides() {
         for period in [None, Some(HIGH.x - LOW.x)] {
-            let tiling = made(0.05, 0, period, 7);
+            let tiling = unit_tiling(0.05, 0, period, 7);
             let name = |p: &V| {
                 let x = period.map_or(p.x - LOW.x, |w| {
                     let x = (p.x - LOW.x).rem_euclid(w);
@@ -320,14 +320,14 @@ mod tests {
             let square = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>();
             (square / areas.len() as f64).sqrt() / mean
         };
-        let of = |rounds: usize| spread(&made(0.04, rounds, None, 3));
+        let of = |rounds: usize| spread(&unit_tiling(0.04, rounds, None, 3));
         let (none, five, fifty) = (of(0), of(5), of(50));
         assert!(
             none > 0.2 && five < 0.7 * none && fifty < 0.7 * five,
             "{none} {five} {fifty}"
         );
-        assert_eq!(made(0.05, 2, None, 3), made(0.05, 2, None, 3));
-        assert_ne!(made(0.05, 2, None, 3), made(0.05, 2, None, 4));
+        assert_eq!(unit_tiling(0.05, 2, None, 3), unit_tiling(0.05, 2, None, 3));
+        assert_ne!(unit_tiling(0.05, 2, None, 3), unit_tiling(0.05, 2, None, 4));
     }
 
     /// A single cell is the box; a box too thin for a site has no cells.
@@ -351,7 +351,7 @@ mod tests {
     /// less d² (sum of cot of half angles).
     #[test]
     fn an_inset_takes_a_band_off() {
-        let cells = made(0.1, 0, None, 5).cells;
+        let cells = unit_tiling(0.1, 0, None, 5).cells;
         let mut checked = 0;
         for cell in &cells {
             let n = cell.len();

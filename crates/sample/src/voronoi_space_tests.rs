@@ -7,7 +7,7 @@ use fretwork_core::geometry::convex::polyhedron_mass;
 const LOW: V = V::new(-0.3, 0.7, 0.1);
 const HIGH: V = V::new(0.3, 1.1, 0.5);
 
-fn made(size: f64, rounds: usize, around: [bool; 3], seed: u64) -> SpaceTiling {
+fn unit_tiling(size: f64, rounds: usize, around: [bool; 3], seed: u64) -> SpaceTiling {
     let corners = Corners {
         low: LOW,
         high: HIGH,
@@ -43,7 +43,7 @@ fn cells_are_convex_and_fill_the_box() {
         (4, 10, [false; 3]),
         (5, 10, [true, false, true]),
     ] {
-        let tiling = made(0.05, rounds, around, seed);
+        let tiling = unit_tiling(0.05, rounds, around, seed);
         assert_eq!(
             tiling.cells.len(),
             (whole / 0.05f64.powi(3)).round() as usize
@@ -81,7 +81,7 @@ fn cells_are_convex_and_fill_the_box() {
 /// without periods, equal area, opposite normal.
 #[test]
 fn neighbours_share_their_faces() {
-    let tiling = made(0.06, 0, [false; 3], 7);
+    let tiling = unit_tiling(0.06, 0, [false; 3], 7);
     let (mut shared, mut walls) = (0, V::zeros());
     for (i, cell) in tiling.cells.iter().enumerate() {
         for (face, beyond) in cell.faces.iter().zip(&cell.beyond) {
@@ -115,7 +115,7 @@ fn neighbours_share_their_faces() {
 /// Across a period the two sides of a face differ by the period only.
 #[test]
 fn neighbours_share_their_faces_across_periods() {
-    let tiling = made(0.06, 3, [true, true, false], 8);
+    let tiling = unit_tiling(0.06, 3, [true, true, false], 8);
     for (i, cell) in tiling.cells.iter().enumerate() {
         for (face, beyond) in cell.faces.iter().zip(&cell.beyond) {
             let Some(j) = beyond else { continue };
@@ -136,7 +136,7 @@ fn neighbours_share_their_faces_across_periods() {
 #[test]
 fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
     let of = |rounds: usize| {
-        let volumes: Vec<f64> = made(0.06, rounds, [false; 3], 3)
+        let volumes: Vec<f64> = unit_tiling(0.06, rounds, [false; 3], 3)
             .cells
             .iter()
             .map(volume)
@@ -150,8 +150,14 @@ fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
         none < 0.42 && five < 0.7 * none && thirty < 0.7 * five,
         "{none} {five} {thirty}"
     );
-    assert_eq!(made(0.08, 2, [false; 3], 3), made(0.08, 2, [false; 3], 3));
-    assert_ne!(made(0.08, 2, [false; 3], 3), made(0.08, 2, [false; 3], 4));
+    assert_eq!(
+        unit_tiling(0.08, 2, [false; 3], 3),
+        unit_tiling(0.08, 2, [false; 3], 3)
+    );
+    assert_ne!(
+        unit_tiling(0.08, 2, [false; 3], 3),
+        unit_tiling(0.08, 2, [false; 3], 4)
+    );
 }
 
 /// A single cell is the box; a box too thin for a site has no cells.
@@ -203,7 +209,7 @@ fn an_inset_keeps_its_distance() {
             "{left} {expected}"
         );
     }
-    for cell in &made(0.1, 2, [false; 3], 5).cells {
+    for cell in &unit_tiling(0.1, 2, [false; 3], 5).cells {
         let (points, faces) = inset(cell, 5e-3).unwrap();
         let inner = Polyhedron::from_faces(points, faces).unwrap();
         let outer = polyhedron(cell);

@@ -135,35 +135,35 @@ fn output_intervals(case: &Case) -> Result<(), ValidationError> {
 
 /// Checks the requested accuracy and its bounds.
 fn accuracy(case: &Case) -> Result<(), ValidationError> {
-    let Some(asked) = &case.accuracy else {
+    let Some(accuracy) = &case.accuracy else {
         return Ok(());
     };
     let outside = |field: &str, value: f64, expected: &str| {
         let path = format!("accuracy.{field}");
         Err(ValidationError::new(path, format!("got {value}")).expected(expected))
     };
-    if !(asked.share > 0.0 && asked.share < 1.0) {
+    if !(accuracy.share > 0.0 && accuracy.share < 1.0) {
         let expected = "a share of the result above 0 and below 1, such as 0.03";
-        return outside("share", asked.share, expected);
+        return outside("share", accuracy.share, expected);
     }
-    if !(asked.effort > 0.0 && asked.effort <= 10.0) {
-        return outside("effort", asked.effort, "a number above 0, at most 10");
+    if !(accuracy.effort > 0.0 && accuracy.effort <= 10.0) {
+        return outside("effort", accuracy.effort, "a number above 0, at most 10");
     }
-    let step = asked.finest_step.unwrap_or(case.time.step);
+    let step = accuracy.finest_step.unwrap_or(case.time.step);
     if !(step > 0.0 && step <= case.time.step) {
         let expected = "a time above 0, at most time.step, which is the coarsest step";
         return outside("finest_step", step, expected);
     }
-    let largest = asked.largest_step.unwrap_or(case.time.step);
+    let largest = accuracy.largest_step.unwrap_or(case.time.step);
     if !(largest >= case.time.step && largest.is_finite()) {
         let expected = "a time of at least time.step, from which steps grow where nothing moves";
         return outside("largest_step", largest, expected);
     }
-    if asked.of == AccurateResult::Forces && asked.finest_step.is_some() {
+    if accuracy.of == AccurateResult::Forces && accuracy.finest_step.is_some() {
         let message = "with `of: Forces` steps only grow, and time.step is the smallest: leave out finest_step, or take a smaller time.step";
         return Err(ValidationError::new("accuracy.finest_step", message));
     }
-    if let Some(tolerance) = asked.finest_tolerance
+    if let Some(tolerance) = accuracy.finest_tolerance
         && !(tolerance > 0.0 && tolerance.is_finite())
     {
         return outside("finest_tolerance", tolerance, "a number above 0");
@@ -178,11 +178,11 @@ fn accuracy(case: &Case) -> Result<(), ValidationError> {
         return Err(ValidationError::new("accuracy", message));
     }
     let has = |kind| case.interfaces.iter().any(|i| i.law(kind).is_some());
-    if asked.of == AccurateResult::Wear && !has(Kind::WEAR) {
+    if accuracy.of == AccurateResult::Wear && !has(Kind::WEAR) {
         let message = "no interface has a wear law; name one, or another result";
         return Err(ValidationError::new("accuracy.of", message));
     }
-    if asked.of == AccurateResult::Damage && !(has(Kind::DAMAGE) || has(Kind::COHESION)) {
+    if accuracy.of == AccurateResult::Damage && !(has(Kind::DAMAGE) || has(Kind::COHESION)) {
         let message = "no interface has bonds; name a damage law, or another result";
         return Err(ValidationError::new("accuracy.of", message));
     }
@@ -243,7 +243,7 @@ fn solver(case: &Case) -> Result<(), ValidationError> {
         .find(|(_, any)| *any && s.projection > 0.0)
     {
         let message = format!(
-            "moves rigid grains and first bodies apart, not what deforms (`{field}`); set it to 0, and `solver.correction` above 0 to have overlaps removed"
+            "moves rigid grains and first bodies apart, not bodies that deform (`{field}`); set it to 0, and `solver.correction` above 0 to have overlaps removed"
         );
         return Err(ValidationError::new("solver.projection", message));
     }

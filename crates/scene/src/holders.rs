@@ -28,20 +28,20 @@ pub(super) fn check(case: &Case, holder: &str, redriven: &Redriven) -> Result<()
         |dof: &str, message: String| Err(ValidationError::new(format!("{path}.{dof}"), message));
     for (dof, _, drive) in redriven.given(case.dimension as usize) {
         let Some(axis) = ["x", "y", "z"].iter().position(|a| *a == dof) else {
-            return fail(dof, "what holds a deformable body does not turn".into());
+            return fail(dof, "the holder of a deformable body does not turn".into());
         };
         let of = own(case).filter(|(_, name, _)| name == holder);
         let of = of.filter_map(|(_, _, axes)| axes[axis].clone());
         let half_space = case.half_spaces.iter().any(|b| b.name == holder);
         let Some(own) = of.last().or_else(|| half_space.then_some(Dof::Fixed)) else {
             let message = format!(
-                "`{holder}` is not held along {dof}, and what is held cannot change within a run; give the support a drive along {dof}, `Free` for none"
+                "`{holder}` is not held along {dof}, and held axes cannot change within a run; give the support a drive along {dof}, `Free` for none"
             );
             return fail(dof, message);
         };
         if (own.imposes() && drive.yields()) || (own.yields() && drive.imposes()) {
             let message = format!(
-                "with its own drive, what holds `{holder}` along {dof} imposes motion at one time and a force at another, which cannot change within a run; give both a force (`Force`, `Pressure`, `Free`), or both a motion"
+                "with its own drive, the holder of `{holder}` along {dof} imposes motion at one time and a force at another, which cannot change within a run; give both a force (`Force`, `Pressure`, `Free`), or both a motion"
             );
             return fail(dof, message);
         }

@@ -190,7 +190,7 @@ fn check_pins(case: &Case) -> Result<(), ValidationError> {
         if pin.len() != 64 || !pin.chars().all(|c| c.is_ascii_hexdigit()) {
             let message = format!("a pin is a SHA-256 of 64 hexadecimal digits, got `{pin}`");
             return Err(ValidationError::new(path, message)
-                .expected("what `fretwork law show` prints as sha256"));
+                .expected("the sha256 that `fretwork law show` prints"));
         }
     }
     Ok(())

@@ -58,7 +58,7 @@ impl Demands {
         let mut may = None;
         for (name, demand) in &self.0 {
             // The reason of a refusal, and how certain it is.
-            let (asked, reason) = match demand {
+            let (requirement, reason) = match demand {
                 Some(demand) => {
                     let (rotation, cohesion) = (demand.rotation, demand.cohesion);
                     let turns = refusal(true, false).map_or(Requirement::Never, |_| rotation);
@@ -69,7 +69,7 @@ impl Demands {
                 None => (Requirement::Unseen, refusal(true, true)),
             };
             let Some(reason) = reason else { continue };
-            match asked {
+            match requirement {
                 Requirement::Never => {}
                 Requirement::Always => {
                     return Service::Refuses(format!("interface `{name}`: {reason}"));

@@ -28,7 +28,7 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
     let mut found: Vec<UnresolvedDrive> = Vec::new();
-    let mut say = |of: String, function: &TimeFunction, moves: bool| {
+    let mut add = |of: String, function: &TimeFunction, moves: bool| {
         if let Some(what) = fault(function, h, moves) {
             let drive = UnresolvedDrive {
                 text: format!("{of}: {what}"),
@@ -45,7 +45,7 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
             for drive in dof.drives() {
                 if let Some(function) = drive.function() {
                     let moves = matches!(drive, Dof::Displacement(_));
-                    say(
+                    add(
                         format!("`{}` along {}", body.name, names[k]),
                         function,
                         moves,
@@ -57,28 +57,28 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let supports = case.elastic.iter().flat_map(|body| {
         let supports = body.supports.iter();
         supports.map(move |s| {
-            let said = format!("`{}` {}", body.name, s.part);
-            (said, holder_name(&body.name, &s.part), [&s.x, &s.y, &s.z])
+            let name = format!("`{}` {}", body.name, s.part);
+            (name, holder_name(&body.name, &s.part), [&s.x, &s.y, &s.z])
         })
     });
     let half_spaces = case.half_spaces.iter().map(|body| {
         let dofs = &body.dofs;
-        let said = format!("`{}`", body.name);
-        (said, body.name.clone(), [&dofs.x, &dofs.y, &dofs.z])
+        let name = format!("`{}`", body.name);
+        (name, body.name.clone(), [&dofs.x, &dofs.y, &dofs.z])
     });
     for (name, holder, dofs) in supports.chain(half_spaces) {
         for (k, (axis, dof)) in ["x", "y", "z"].iter().zip(dofs).enumerate() {
             for drive in drives_of_holder(case, &holder, k, dof).flat_map(Dof::drives) {
                 if let Some(function) = drive.function() {
                     let moves = matches!(drive, Dof::Displacement(_));
-                    say(format!("{name} along {axis}"), function, moves);
+                    add(format!("{name} along {axis}"), function, moves);
                 }
             }
         }
     }
     for body in &case.half_spaces {
         if let Some(function) = &body.rolling {
-            say(format!("`{}` rolling", body.name), function, false);
+            add(format!("`{}` rolling", body.name), function, false);
         }
     }
     let phases = case.phases.iter().filter_map(|p| p.gravity_drive.as_ref());
@@ -89,7 +89,7 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
             GravityDrive::Axes(list) => list,
         };
         for function in functions {
-            say("gravity".to_owned(), function, false);
+            add("gravity".to_owned(), function, false);
         }
     }
     found
@@ -194,15 +194,15 @@ mod tests {
 
     #[test]
     fn sines_are_judged_by_their_steps_a_period() {
-        let said = |f: f64| fault(&sine(f), 1e-3, true);
-        assert_eq!((said(50.0), said(0.0)), (None, None));
+        let message = |f: f64| fault(&sine(f), 1e-3, true);
+        assert_eq!((message(50.0), message(0.0)), (None, None));
         for (frequency, word) in [
             (60.0, "only 16.7 steps a period"),
             (499.0, "only 2.0 steps a period"),
             (500.0, "ALIASES"),
             (1000.0, "1.000 steps a period and ALIASES"),
         ] {
-            let text = said(frequency).unwrap_or_default();
+            let text = message(frequency).unwrap_or_default();
             assert!(
                 text.contains(word) && text.contains("time.step = "),
                 "{text}"

@@ -200,14 +200,15 @@ mod tests {
         let hard = hardness(50.0, "HRC");
         let soft = hardness(260.0, "HBW");
         let none = [("rail", None), ("oxide", None)];
-        let said = |place, k, sides: &[Side<'_>; 2], mu| derive(place, k, sides, mu).unwrap_err();
-        assert!(said(ARCHARD, 3e-4, &none, None).contains("neither `rail` nor `oxide`"));
+        let message =
+            |place, k, sides: &[Side<'_>; 2], mu| derive(place, k, sides, mu).unwrap_err();
+        assert!(message(ARCHARD, 3e-4, &none, None).contains("neither `rail` nor `oxide`"));
         let sides = [("rail", Some(&hard)), ("oxide", Some(&soft))];
-        assert!(said(ARCHARD, 3e-4, &sides, None).contains("50 HRC, is no pressure"));
+        assert!(message(ARCHARD, 3e-4, &sides, None).contains("50 HRC, is no pressure"));
         let sides = [("rail", Some(&soft)), ("oxide", None)];
-        assert!(said(ARCHARD, 2.0, &sides, None).contains("between 0 and 1"));
-        assert!(said(ENERGY, 1e-4, &sides, None).contains("no `mu`"));
-        assert!(said(ENERGY, 1e-4, &sides, Some(0.0)).contains("no `mu`"));
+        assert!(message(ARCHARD, 2.0, &sides, None).contains("between 0 and 1"));
+        assert!(message(ENERGY, 1e-4, &sides, None).contains("no `mu`"));
+        assert!(message(ENERGY, 1e-4, &sides, Some(0.0)).contains("no `mu`"));
     }
 
     #[test]

@@ -442,7 +442,7 @@ fn wear_of_walls() {
         )
     };
     let words = &[
-        "what touches of `block` is vertical or overhangs at (",
+        "the part of `block` that touches is vertical or overhangs at (",
         "let a part touch that has one height at each place, as `Surface(\"top\")`",
     ];
     let time = "time: (step: 1e-3, end: 0.002";

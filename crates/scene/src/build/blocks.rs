@@ -99,11 +99,11 @@ impl Builder<'_> {
             high: high.xy(),
         };
         let (size, periodic) = (spec.size, self.assembly.periodic());
-        let made = voronoi::tiling(&corners, periodic, size, spec.rounds, seed);
-        let made = made.ok_or_else(|| self.no_room(here, size))?;
-        let mut out = Vec::with_capacity(made.cells.len());
+        let tiling = voronoi::tiling(&corners, periodic, size, spec.rounds, seed);
+        let tiling = tiling.ok_or_else(|| self.no_room(here, size))?;
+        let mut out = Vec::with_capacity(tiling.cells.len());
         let band = 0.5 * spec.gap + spec.rounding;
-        for cell in &made.cells {
+        for cell in &tiling.cells {
             let inner = if band > 0.0 {
                 voronoi::inset(cell, band, SHORTEST * size)
             } else {
@@ -118,7 +118,7 @@ impl Builder<'_> {
             })?;
             out.push(Block::of(part));
         }
-        let note = match made.merged {
+        let note = match tiling.merged {
             0 => String::new(),
             n => format!(
                 "; {} sides shorter than {:e} m were removed",
@@ -139,18 +139,18 @@ impl Builder<'_> {
     ) -> Result<(Vec<Block>, String), InputError> {
         let (size, periodic) = (spec.size, self.assembly.periodic());
         let corners = Corners { low, high };
-        let made = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
+        let tiling = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
         let short = || {
             let message = "cells keep edges shorter than a thousandth of their size; take another `seed`, or other `rounds`";
             self.fail(here, message)
         };
-        let made = made.map_err(|e| match e {
+        let tiling = tiling.map_err(|e| match e {
             Failure::Thin => self.no_room(here, size),
             Failure::Short => short(),
         })?;
-        let mut out = Vec::with_capacity(made.cells.len());
+        let mut out = Vec::with_capacity(tiling.cells.len());
         let band = 0.5 * spec.gap + spec.rounding;
-        for cell in made.cells {
+        for cell in tiling.cells {
             let (points, faces) = if band > 0.0 {
                 voronoi_space::inset(&cell, band).ok_or_else(|| self.nothing_left(here, spec))?
             } else {
@@ -159,7 +159,7 @@ impl Builder<'_> {
             let core = Polyhedron::from_faces(points, faces).map_err(|_| short())?;
             out.push(Block::of(self.polyhedron(here, &core, spec.rounding)?));
         }
-        let note = match made.moved {
+        let note = match tiling.moved {
             0 => String::new(),
             n => format!(
                 "; sites were moved {n} times, away from edges shorter than {:e} m",

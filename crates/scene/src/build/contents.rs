@@ -21,11 +21,11 @@ impl Loaded {
         if let Some(root) = &tree.root {
             collect(root, &case, &mut texts);
         }
-        let shelf = self.shelf();
+        let library = self.material_library();
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let mut out = Vec::new();
         for name in texts {
-            if let Ok(source) = shelf.read(&name) {
+            if let Ok(source) = library.read(&name) {
                 out.push((name.clone(), source.text().as_bytes().to_vec()));
             }
             let path = folder.join(&name);

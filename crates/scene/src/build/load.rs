@@ -131,7 +131,7 @@ impl Loaded {
     }
 
     /// Returns the library in which material files are searched.
-    pub(super) fn shelf(&self) -> MaterialLibrary {
+    pub(super) fn material_library(&self) -> MaterialLibrary {
         MaterialLibrary::beside(&self.path).with_own(&self.own_files)
     }
 }

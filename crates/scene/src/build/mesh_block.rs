@@ -111,7 +111,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Bends a side of a block, and what is behind it less and less.
+    /// Bends a side of a block, and the points behind it less with depth.
     fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<AnyMesh, InputError> {
         let up = self.dimension() - 1;
         let ends: Vec<[f64; 2]> = grid

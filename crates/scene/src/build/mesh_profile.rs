@@ -43,7 +43,7 @@ impl Heights {
 }
 
 impl Builder<'_> {
-    /// A block of which a side has a profile; what is behind it moves less and less.
+    /// Returns a block with a profile on one side; points behind the side move less with depth.
     pub(super) fn profiled(
         &self,
         here: &str,
@@ -98,8 +98,7 @@ impl Builder<'_> {
         [from, to]: [f64; 2],
     ) -> Result<Heights, InputError> {
         let plane = |what: &str| {
-            let message =
-                format!("{what} is that of a block in two dimensions; give a `Wave` in three");
+            let message = format!("{what} is for blocks in two dimensions; give a `Wave` in three");
             self.fail(here, message)
         };
         match shape {

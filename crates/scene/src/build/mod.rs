@@ -88,13 +88,13 @@ impl Loaded {
     /// # Errors
     /// An [`InputError`] with file, line and column.
     pub fn build(&self, path: &SearchPath) -> Result<Built, InputError> {
-        let shelf = self.shelf();
+        let library = self.material_library();
         let Materials {
             densities,
             properties,
             mut texts,
-        } = self.materials(&shelf)?;
-        let laws = interfaces::build(&self.case, &self.source, &shelf, &properties, path)?;
+        } = self.materials(&library)?;
+        let laws = interfaces::build(&self.case, &self.source, &library, &properties, path)?;
         texts.extend(laws.files);
         let periodic = Periodic {
             period: [
@@ -164,7 +164,8 @@ impl Loaded {
     /// Builds the simulation alone, in the dimension of the case.
     ///
     /// # Errors
-    /// An [`InputError`] with file, line and column, also if the case has another dimension.
+    /// An [`InputError`] with file, line and column; it also says where the case has another
+    /// dimension.
     pub fn build_in<S: Space>(&self, path: &SearchPath) -> Result<Simulation<S>, InputError> {
         let simulation = self.build(path)?.simulation.into_dimension();
         simulation.map_err(|other| {
@@ -180,16 +181,16 @@ impl Loaded {
 
     /// Density of a material of the case (kg/m^3), without inertia scaling.
     pub fn density(&self, name: &str) -> Option<f64> {
-        let materials = self.materials(&self.shelf()).ok()?;
+        let materials = self.materials(&self.material_library()).ok()?;
         materials.densities.get(name).map(|d| d.1)
     }
 
     /// Reads the materials.
-    fn materials(&self, shelf: &MaterialLibrary) -> Result<Materials, InputError> {
+    fn materials(&self, library: &MaterialLibrary) -> Result<Materials, InputError> {
         let mut out = Materials::default();
         for (k, (name, file)) in self.case.materials.iter().enumerate() {
             let here = format!("materials.{name}");
-            let source = shelf.read(file).map_err(|e| match e {
+            let source = library.read(file).map_err(|e| match e {
                 Err(error) => self.source.named_at(&here, error),
                 Ok(missing) => self.source.locate(
                     ValidationError::new(

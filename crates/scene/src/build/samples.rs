@@ -1,6 +1,6 @@
 //! Samples that are generated at random, and grains read from tables.
 
-use super::grains::{MAX_MADE, MAX_READ, Seed};
+use super::grains::{MAX_GENERATED, MAX_READ, Seed};
 use super::{Builder, Origin, components};
 use crate::sample::deposit::deposit_between;
 use crate::sample::sizes::Sizes;
@@ -25,11 +25,11 @@ impl Builder<'_> {
             return Err(self.fail(format!("{here}.high"), message));
         }
         let path = format!("{here}.count");
-        self.few_enough(&path, spec.count, MAX_MADE)?;
+        self.few_enough(&path, spec.count, MAX_GENERATED)?;
         let periodic = self.assembly.periodic();
         let seed = self.case.seed.wrapping_add(k as u64);
         let corners = [low.into(), high.into()];
-        let made = deposit_between(
+        let deposited = deposit_between(
             self.dimension(),
             spec.count,
             &sizes,
@@ -37,13 +37,13 @@ impl Builder<'_> {
             periodic,
             seed,
         );
-        let placed = made.grains.len();
+        let placed = deposited.grains.len();
         if placed < spec.count {
             let message = format!(
                 "only {placed} of {} grains fit: together they would take {:.0} % of the box, while grains \
                  placed at random fit up to about {} %",
                 spec.count,
-                100.0 * made.filling,
+                100.0 * deposited.filling,
                 if self.dimension() == 2 { 50 } else { 35 }
             );
             let fault = ValidationError::new(path, message);
@@ -52,9 +52,9 @@ impl Builder<'_> {
         }
         self.samples.push(format!(
             "{here}: {placed} grains placed at random without overlaps, {:.1} % of their box",
-            100.0 * made.filling
+            100.0 * deposited.filling
         ));
-        let seeds = made.grains.into_iter();
+        let seeds = deposited.grains.into_iter();
         Ok(seeds
             .map(|(at, r)| Seed::still(at.into(), r, of, Origin::Grain(k, None)))
             .collect())

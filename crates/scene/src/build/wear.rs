@@ -34,7 +34,7 @@ impl DeformableWear {
             let at = origin + place;
             let at: Vec<String> = (0..dimension).map(|k| format!("{:.4e}", at[k])).collect();
             let message = format!(
-                "what touches of `{}` is vertical or overhangs at ({}) m, where it cannot recede along {}: let a part touch that has one height at each place, as `Surface(\"top\")` or `Surface(\"bottom\")`, or leave `wears` out",
+                "the part of `{}` that touches is vertical or overhangs at ({}) m, where it cannot recede along {}: let a part touch that has one height at each place, as `Surface(\"top\")` or `Surface(\"bottom\")`, or leave `wears` out",
                 self.name,
                 at.join(", "),
                 if dimension == 2 { "y" } else { "z" }

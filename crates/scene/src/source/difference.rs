@@ -32,11 +32,11 @@ fn compare(
         return None;
     }
     let differ = |path: &[String]| {
-        let said = |k: usize| nodes[k].map(|n| short(&texts[k][n.span.clone()]));
+        let text_of = |k: usize| nodes[k].map(|n| short(&texts[k][n.span.clone()]));
         Some(Difference {
             path: join_path(path),
-            one: said(0),
-            other: said(1),
+            one: text_of(0),
+            other: text_of(1),
         })
     };
     let [Some(a), Some(b)] = nodes else {

@@ -108,23 +108,29 @@ mod tests {
 
     #[test]
     fn refusals_name_the_rule_and_the_value() {
-        let says = |error: Option<NumberError>| error.map(|e| e.to_string()).unwrap_or_default();
+        let message = |error: Option<NumberError>| error.map(|e| e.to_string()).unwrap_or_default();
         assert_eq!(
-            says(Positive::new(-1e-6).err()),
+            message(Positive::new(-1e-6).err()),
             "must be positive, got -1e-6"
         );
-        assert_eq!(says(Positive::new(0.0).err()), "must be positive, got 0.0");
-        assert_eq!(says(Finite::new(f64::NAN).err()), "is not a number (NaN)");
         assert_eq!(
-            says(Fraction::new(f64::INFINITY).err()),
+            message(Positive::new(0.0).err()),
+            "must be positive, got 0.0"
+        );
+        assert_eq!(
+            message(Finite::new(f64::NAN).err()),
+            "is not a number (NaN)"
+        );
+        assert_eq!(
+            message(Fraction::new(f64::INFINITY).err()),
             "must be finite, got inf"
         );
         assert_eq!(
-            says(Fraction::new(1.5).err()),
+            message(Fraction::new(1.5).err()),
             "must be between 0 and 1, got 1.5"
         );
         assert_eq!(
-            says(NonNegative::new(-2.0).err()),
+            message(NonNegative::new(-2.0).err()),
             "must be zero or positive, got -2.0"
         );
     }

@@ -68,7 +68,7 @@ pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'stati
         1e-3 * first,
         1e-3 * last
     );
-    let end = |field, asked: Option<f64>, own: f64| match asked.map(|x| 1e3 * x) {
+    let end = |field, given: Option<f64>, own: f64| match given.map(|x| 1e3 * x) {
         None => Ok(own),
         Some(y) if (first..=last).contains(&y) => Ok(y),
         Some(y) => Err((field, format!("{range}, not to {:e} m", 1e-3 * y))),
