@@ -3,8 +3,8 @@
 //!
 //! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a
 //! step, and is compared often. A [`ContactId`] names the same contact in another listing of the
-//! same bodies, such as a run that is resumed, a scene from which other bodies were taken, or
-//! another machine's part of it. [`ContactNames`] translates.
+//! same bodies, such as a resumed run, a scene from which other bodies were removed, or a part of the
+//! scene on another machine. [`ContactNames`] translates between them.
 
 use super::network::{Contact, Key, Network, ShapeIndex};
 use crate::bodies::Bodies;
@@ -46,7 +46,7 @@ pub struct ContactId {
     pub feature: u64,
 }
 
-/// The contactors of a scene by the places that keys have for them.
+/// The contactors of a scene by their numbers in keys.
 #[derive(Clone, Debug, Default)]
 pub struct ContactNames {
     balls: Vec<ContactorId>,
@@ -76,7 +76,7 @@ impl ContactNames {
         }
     }
 
-    /// The contactor of a part of a key.
+    /// Returns the contactor of a part of a key.
     fn contactor(&self, part: u32) -> Option<ContactorId> {
         match ShapeIndex::of(part) {
             ShapeIndex::Ball(k) => self.balls.get(k),
@@ -86,7 +86,8 @@ impl ContactNames {
         .copied()
     }
 
-    /// The contactors of a key, the candidate first; none where the scene has no such contactors.
+    /// Returns the contactors of a key, the candidate first; `None` if the scene has no such
+    /// contactors.
     pub fn sides(&self, key: &Key) -> Option<[ContactorId; 2]> {
         Some([
             self.contactor(key.candidate)?,

@@ -28,8 +28,8 @@ pub enum EjectedFate {
 pub struct Zone {
     /// Name.
     pub name: String,
-    /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third component
-    /// is not read.
+    /// Lowest corner (m); minus infinity in unbounded directions. In the plane the third number
+    /// is ignored.
     pub low: [f64; 3],
     /// Highest corner (m); infinity in unbounded directions.
     pub high: [f64; 3],
@@ -113,11 +113,12 @@ pub struct GrainCircuit {
     pub ledger: Ledger,
     /// Time since which each grain has been in its zone (s).
     since: Vec<f64>,
-    made: Vec<[u32; 2]>,
+    /// Bonds formed since the last update.
+    formed: Vec<[u32; 2]>,
     /// Bonds broken since the last update.
-    cuts: Vec<[u32; 2]>,
+    broken: Vec<[u32; 2]>,
     /// Bonds that each body lost since it was last connected, by body.
-    past: BTreeMap<u32, Vec<BrokenBond>>,
+    broken_bonds: BTreeMap<u32, Vec<BrokenBond>>,
     /// Debris detached in the last update.
     #[serde(skip)]
     pub debris: Vec<Debris>,
@@ -146,9 +147,9 @@ impl GrainCircuit {
             number,
             ties,
             grains,
-            made: Vec::new(),
-            cuts: Vec::new(),
-            past: BTreeMap::new(),
+            formed: Vec::new(),
+            broken: Vec::new(),
+            broken_bonds: BTreeMap::new(),
             debris: Vec::new(),
             cost: Duration::ZERO,
             spec,
@@ -187,7 +188,7 @@ impl GrainCircuit {
         };
         for (bodies, law) in &s.state.network.bonds_formed {
             if ties(bodies, *law) {
-                self.made.push(*bodies);
+                self.formed.push(*bodies);
             }
         }
         let breaks = s.state.network.bond_breaks.iter();
@@ -197,10 +198,10 @@ impl GrainCircuit {
                 work: [b.life.work[0], b.life.work[1]],
                 fracture: b.life.fracture,
             };
-            self.cuts.push(b.bodies);
+            self.broken.push(b.bodies);
             let is_grain = |b: &&u32| self.number[**b as usize].is_some();
             for body in b.bodies.iter().filter(is_grain) {
-                self.past.entry(*body).or_default().push(cut);
+                self.broken_bonds.entry(*body).or_default().push(cut);
             }
         }
         self.cost += clock.elapsed();
@@ -210,10 +211,10 @@ impl GrainCircuit {
     /// scene.
     pub fn update<S: Space>(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
-        let change = if self.made.is_empty() && self.cuts.is_empty() {
+        let change = if self.formed.is_empty() && self.broken.is_empty() {
             Default::default()
         } else {
-            self.ties.change(&self.made, &self.cuts)
+            self.ties.change(&self.formed, &self.broken)
         };
         self.debris.clear();
         for (base, piece) in &change.loose {
@@ -224,10 +225,10 @@ impl GrainCircuit {
         // reconnected.
         let loose = change.loose.iter().flat_map(|(_, piece)| piece);
         for body in loose.chain(change.tied.iter().map(|(body, _)| body)) {
-            self.past.remove(body);
+            self.broken_bonds.remove(body);
         }
-        self.made.clear();
-        self.cuts.clear();
+        self.formed.clear();
+        self.broken.clear();
         let before: Vec<GrainPlace> = self.ledger.places().to_vec();
         let places = self.places(s);
         self.ledger.update(&places);
@@ -284,8 +285,11 @@ impl GrainCircuit {
         // The bonds between the piece and other bodies, broken at any time since its grains were
         // connected.
         let of = |b: u32| piece.binary_search(&b).is_ok();
-        let past = piece.iter().filter_map(|b| self.past.get(b)).flatten();
-        let cuts = past.filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
+        let bonds = piece
+            .iter()
+            .filter_map(|b| self.broken_bonds.get(b))
+            .flatten();
+        let cuts = bonds.filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
         let (mut work, mut energy, mut bonds) = ([0.0; 2], 0.0, 0);
         for cut in cuts {
             energy += cut.fracture;

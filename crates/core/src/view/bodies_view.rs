@@ -1,6 +1,6 @@
 //! Reading the bodies of a simulation.
 
-use super::rows::{BodyColumns, Motion};
+use super::rows::{BodyColumns, BodyMotion};
 use super::run_view::{about_axes, from_axes};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::step::Simulation;
@@ -16,7 +16,7 @@ pub trait BodiesView {
     /// Whether each body is a grain that is still there.
     fn grain_flags(&self) -> Vec<bool>;
     /// Where a body is and how it moves.
-    fn motion(&self, body: usize) -> Motion;
+    fn motion(&self, body: usize) -> BodyMotion;
     /// A vector in the axes of a body, turned to world axes.
     fn turned(&self, body: usize, vector: [f64; 3]) -> [f64; 3];
     /// A vector in world axes, turned to the axes of a body.
@@ -65,9 +65,9 @@ impl<S: Space> BodiesView for Simulation<S> {
     fn grain_flags(&self) -> Vec<bool> {
         self.state.bodies.grain_flags()
     }
-    fn motion(&self, body: usize) -> Motion {
+    fn motion(&self, body: usize) -> BodyMotion {
         let bodies = &self.state.bodies;
-        Motion {
+        BodyMotion {
             position: bodies.position[body].padded(),
             rotation: S::rotation_numbers(&bodies.rotation[body]),
             velocity: bodies.velocity[body].padded(),

@@ -20,7 +20,7 @@ pub mod name {
         4 * (of_candidate * MAX_EDGES + of_antagonist) as u64 + 2
     }
 
-    /// The name where the antagonist is taken for the candidate.
+    /// Returns the name with candidate and antagonist exchanged.
     pub fn from_other_side(feature: u64) -> u64 {
         if feature % 4 < 2 {
             return feature ^ 1;
@@ -88,24 +88,24 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<ClipPoint> {
         let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
         let inward = normal.cross(&(to - from)).normalize();
         let depth = |c: &ClipCorner| (c.at - from).dot(&inward);
-        let mut kept = Vec::with_capacity(polygon.len() + 2);
+        let mut clipped = Vec::with_capacity(polygon.len() + 2);
         for (i, now) in polygon.iter().enumerate() {
             let next = &polygon[(i + 1) % polygon.len()];
             let (d, e) = (depth(now), depth(next));
-            let (inside, goes_on) = (d >= -slack, e >= -slack);
+            let (inside, next_inside) = (d >= -slack, e >= -slack);
             if inside {
-                kept.push(*now);
+                clipped.push(*now);
             }
-            if inside != goes_on {
+            if inside != next_inside {
                 let at = now.at + (next.at - now.at) * (d / (d - e)).clamp(0.0, 1.0);
-                kept.push(ClipCorner {
+                clipped.push(ClipCorner {
                     at,
                     feature: lead.name(now.side, k, sides),
                     side: if inside { ClipSide::Lead(k) } else { now.side },
                 });
             }
         }
-        polygon = kept;
+        polygon = clipped;
     }
     merge(&mut polygon, slack);
     let (share, facing) = (share(&polygon, &normal), lead.other.faces(&normal));
