@@ -4,6 +4,19 @@
 use crate::laws::Totals;
 use serde::{Deserialize, Serialize};
 
+/// Name, description and value of an entry of a ledger.
+pub type Entry = (&'static str, &'static str, f64);
+
+/// The entries of a ledger by its fields, without those named first. Every field is named, so that
+/// a new one does not compile until it is listed.
+macro_rules! entries {
+    ($ledger:expr, $($no_entry:ident),+; $($name:ident: $doc:literal,)+) => {{
+        let Self { $($name,)+ $($no_entry: _,)+ } = *$ledger;
+        [$((stringify!($name), $doc, $name)),+]
+    }};
+}
+pub(crate) use entries;
+
 /// Energies since the start (J; per metre of depth in 2D).
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance: kinetic +
@@ -125,89 +138,24 @@ impl Energy {
     /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry
     /// is the sum of all before expansion, minus expansion, external work and initial kinetic
     /// energy.
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 15] {
-        // Destructured field by field, so that a new entry of the ledger does not compile until it
-        // is listed here.
-        let Self {
-            kinetic,
-            potential,
-            elastic,
-            fracture,
-            friction,
-            impact,
-            adhesion,
-            viscous,
-            correction,
-            scheme,
-            carried,
-            expansion,
-            external_work,
-            initial_kinetic,
-            residual,
-            scale: _,
-            given_by_friction: _,
-        } = *self;
-        [
-            ("kinetic", "kinetic energy", kinetic),
-            ("potential", "potential energy since the start", potential),
-            (
-                "elastic",
-                "energy stored in bonds, compliant contacts and deformable bodies",
-                elastic,
-            ),
-            (
-                "fracture",
-                "energy released by damage since the start",
-                fracture,
-            ),
-            ("friction", "energy dissipated by friction", friction),
-            ("impact", "energy dissipated by impacts", impact),
-            (
-                "adhesion",
-                "energy spent against cohesion without opening",
-                adhesion,
-            ),
-            (
-                "viscous",
-                "energy dissipated by damping of bonds, compliant contacts and deformable bodies",
-                viscous,
-            ),
-            (
-                "correction",
-                "energy given by taking overlaps out, negative where it adds energy",
-                correction,
-            ),
-            (
-                "scheme",
-                "energy dissipated by the time integration; 0 at theta = 1/2 without compliant contacts",
-                scheme,
-            ),
-            (
-                "carried",
-                "kinetic energy of bodies when they were removed",
-                carried,
-            ),
-            (
-                "expansion",
-                "work of thermal expansion, taken from heat",
-                expansion,
-            ),
-            (
-                "external_work",
-                "work of imposed forces and motions",
-                external_work,
-            ),
-            (
-                "initial_kinetic",
-                "kinetic energy at the start",
-                initial_kinetic,
-            ),
-            (
-                "residual",
-                "what does not add up: all entries before expansion, less expansion, external_work and initial_kinetic",
-                residual,
-            ),
-        ]
+    pub fn entries(&self) -> [Entry; 15] {
+        entries!(self, scale, given_by_friction;
+            kinetic: "kinetic energy",
+            potential: "potential energy since the start",
+            elastic: "energy stored in bonds, compliant contacts and deformable bodies",
+            fracture: "energy released by damage since the start",
+            friction: "energy dissipated by friction",
+            impact: "energy dissipated by impacts",
+            adhesion: "energy spent against cohesion without opening",
+            viscous: "energy dissipated by damping of bonds, compliant contacts and deformable bodies",
+            correction: "energy given by taking overlaps out, negative where it adds energy",
+            scheme: "energy dissipated by the time integration; 0 at theta = 1/2 without compliant contacts",
+            carried: "kinetic energy of bodies when they were removed",
+            expansion: "work of thermal expansion, taken from heat",
+            external_work: "work of imposed forces and motions",
+            initial_kinetic: "kinetic energy at the start",
+            residual: "what does not add up: all entries before expansion, less expansion, external_work and initial_kinetic",
+        )
     }
 
     /// Raises the scale of the balance to an energy (J) that is stored and released within one

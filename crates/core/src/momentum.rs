@@ -1,5 +1,6 @@
 //! The ledger of momentum: the momentum that free rigid bodies gained without an external cause.
 
+use crate::energy::Entry;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -81,8 +82,8 @@ impl Momentum {
         })
     }
 
-    /// Returns every entry: name, description, value (N s, N m s).
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 2] {
+    /// Every entry: name, description, value (N s, N m s).
+    pub fn entries(&self) -> [Entry; 2] {
         let [linear, angular] = self.drift();
         [
             (

@@ -244,8 +244,7 @@ mod tests {
 
     #[test]
     fn a_delayed_drive_is_the_drive_of_the_time_since() {
-        let constant = [TimeFunction::Constant(2.0)];
-        for f in constant.into_iter().chain(examples()) {
+        for f in TimeFunction::samples() {
             let dof = Dof::Stages(vec![
                 Stage::new(Some(0.8), Dof::Velocity(f.clone())),
                 Stage::new(None, Dof::Displacement(f)),

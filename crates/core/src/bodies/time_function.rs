@@ -141,33 +141,35 @@ impl TimeFunction {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+impl TimeFunction {
+    /// One function of each kind.
+    pub(super) fn samples() -> [Self; 4] {
+        let ramp = Self::Ramp {
+            from: 1.0,
+            to: 3.0,
+            start: 0.5,
+            end: 1.5,
+        };
+        let sine = Self::Sine {
+            amplitude: 2.0,
+            frequency: 0.3,
+            phase: 0.2,
+            offset: 1.0,
+            start: 0.1,
+        };
+        let table = Self::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]);
+        [Self::Constant(2.0), ramp, sine, table]
+    }
+}
+
+#[cfg(test)]
+mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A ramp, a sine and a table.
-    pub(in crate::bodies) fn examples() -> [TimeFunction; 3] {
-        [
-            TimeFunction::Ramp {
-                from: 1.0,
-                to: 3.0,
-                start: 0.5,
-                end: 1.5,
-            },
-            TimeFunction::Sine {
-                amplitude: 2.0,
-                frequency: 0.3,
-                phase: 0.2,
-                offset: 1.0,
-                start: 0.1,
-            },
-            TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
-        ]
-    }
-
     #[test]
     fn rates_are_the_derivatives() {
-        for f in examples() {
+        for f in TimeFunction::samples() {
             for t in [0.6, 0.95, 1.2] {
                 let e = 1e-6;
                 let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
@@ -181,12 +183,7 @@ pub(super) mod tests {
     /// with.
     #[test]
     fn rates_at_kinks_are_those_of_the_documented_side() {
-        let ramp = TimeFunction::Ramp {
-            from: 1.0,
-            to: 3.0,
-            start: 0.5,
-            end: 1.5,
-        };
+        let [_, ramp, ..] = TimeFunction::samples();
         let table = TimeFunction::Table(vec![(0.5, 1.0), (1.5, 3.0)]);
         for f in [ramp, table] {
             let rates = [0.4, 0.5, 0.6, 1.5, 1.6].map(|t| f.rate(t));

@@ -1,5 +1,6 @@
 //! The account of heat.
 
+use crate::energy::{Entry, entries};
 use fretwork_math::diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
@@ -70,50 +71,18 @@ impl HeatLedger {
     }
 
     /// Every entry: name, description, value (J; J/m in 2D).
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 9] {
-        let Self {
-            dissipated,
-            joule,
-            imposed,
-            surroundings,
-            expansion,
-            stored,
-            fixed,
-            pending,
-            residual,
-            scale: _,
-        } = *self;
-        [
-            (
-                "dissipated",
-                "heat that mechanical dissipation put in",
-                dissipated,
-            ),
-            ("joule", "heat that electric current put in", joule),
-            ("imposed", "heat imposed on bodies", imposed),
-            (
-                "surroundings",
-                "heat taken in from surroundings, negative where they cool",
-                surroundings,
-            ),
-            (
-                "expansion",
-                "heat turned into work by thermal expansion",
-                expansion,
-            ),
-            ("stored", "heat stored in grains and first bodies", stored),
-            ("fixed", "heat gone into bodies of fixed temperature", fixed),
-            (
-                "pending",
-                "heat put in since the last step of the heat",
-                pending,
-            ),
-            (
-                "residual",
-                "what does not add up: the first four entries less expansion, stored, fixed and pending",
-                residual,
-            ),
-        ]
+    pub fn entries(&self) -> [Entry; 9] {
+        entries!(self, scale;
+            dissipated: "heat that mechanical dissipation put in",
+            joule: "heat that electric current put in",
+            imposed: "heat imposed on bodies",
+            surroundings: "heat taken in from surroundings, negative where they cool",
+            expansion: "heat turned into work by thermal expansion",
+            stored: "heat stored in grains and first bodies",
+            fixed: "heat gone into bodies of fixed temperature",
+            pending: "heat put in since the last step of the heat",
+            residual: "what does not add up: the first four entries less expansion, stored, fixed and pending",
+        )
     }
 }
 

@@ -267,7 +267,7 @@ impl Bench {
             c.area.push(self.area);
             c.radius.push(self.radius);
             c.age.push(state.time);
-            c.pressed.push(state.compression_time);
+            c.compression_time.push(state.compression_time);
             c.damage.push(state.damage);
             c.impulse[0].push(info.h * self.area * motion.pressure);
             c.impulse[1].push(0.0);

@@ -39,7 +39,7 @@ pub struct Columns {
     /// Friction work over the step (J).
     pub friction_work: Vec<f64>,
     /// Time under a compressive impulse (s).
-    pub pressed: Vec<f64>,
+    pub compression_time: Vec<f64>,
     /// Rotation of the bond (rad); empty unless the cohesion law resists rotation.
     pub rotation: Triple,
     /// Undamaged moment over the area (N m/m^2); as `rotation`.
@@ -163,7 +163,7 @@ impl Columns {
             &mut self.area,
             &mut self.radius,
             &mut self.age,
-            &mut self.pressed,
+            &mut self.compression_time,
             &mut self.damage,
             &mut self.energy_intact,
             &mut self.slip,
@@ -205,7 +205,7 @@ impl Columns {
             &mut self.area,
             &mut self.radius,
             &mut self.age,
-            &mut self.pressed,
+            &mut self.compression_time,
             &mut self.damage,
         ] {
             fit(column, n);
@@ -275,15 +275,20 @@ impl Columns {
         }
     }
 
+    /// Applies a change to each output column, given the number of its values: those of compliant
+    /// contacts have some only where the law is one, and those of transport where heat is computed.
+    fn each_output(&mut self, change: impl Fn(&mut Vec<f64>, usize)) {
+        self.out.every().for_each(|column| change(column, self.n));
+        let n = self.overlap.len();
+        self.out.springs().for_each(|column| change(column, n));
+        let n = self.temperature[0].len();
+        self.out.transport().for_each(|column| change(column, n));
+    }
+
     /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`]
     /// follows.
     pub(super) fn fit_outputs(&mut self) {
-        let (all, springs, transport) = self.out.groups();
-        all.into_iter().for_each(|column| fit(column, self.n));
-        let n = self.overlap.len();
-        springs.into_iter().for_each(|column| fit(column, n));
-        let n = self.temperature[0].len();
-        transport.into_iter().for_each(|column| fit(column, n));
+        self.each_output(fit);
     }
 
     /// Sets to zero what a call of a law writes.
@@ -293,19 +298,12 @@ impl Columns {
         }
     }
 
-    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one, and
-    /// those of transport where heat is computed.
+    /// Resizes the outputs to zeros.
     pub fn size_outputs(&mut self) {
-        let (all, springs, transport) = self.out.groups();
-        let zeros = |column: &mut Vec<f64>, n| {
+        self.each_output(|column, n| {
             column.clear();
             column.resize(n, 0.0);
-        };
-        all.into_iter().for_each(|column| zeros(column, self.n));
-        let n = self.overlap.len();
-        springs.into_iter().for_each(|column| zeros(column, n));
-        let n = self.temperature[0].len();
-        transport.into_iter().for_each(|column| zeros(column, n));
+        });
     }
 
     /// Runs `call` with the batch of these columns.
@@ -390,7 +388,7 @@ impl Columns {
             intact_t2: pointers.input_3d(&self.intact[2]),
             slip: pointers.input(&self.slip),
             friction_work: pointers.input(&self.friction_work),
-            pressed: pointers.input(&self.pressed),
+            pressed: pointers.input(&self.compression_time),
             rotation_n: pointers.input_3d(&self.rotation[0]),
             rotation_t1: pointers.input(&self.rotation[1]),
             rotation_t2: pointers.input_3d(&self.rotation[2]),
@@ -457,13 +455,9 @@ mod tests {
                 (columns.n, columns.overlap, columns.temperature[0]) =
                     (2, vec![0.0; 2], vec![0.0; 2]);
                 columns.size_outputs();
-                let (all, springs, transport) = columns.out.groups();
-                let each = all.into_iter().chain(springs).chain(transport);
-                each.for_each(|column| column.fill(7.0));
+                columns.out.all().for_each(|column| column.fill(7.0));
                 let sum = |columns: &mut Columns| -> f64 {
-                    let (all, springs, transport) = columns.out.groups();
-                    let each = all.into_iter().chain(springs).chain(transport);
-                    each.flat_map(|column| column.iter()).sum()
+                    columns.out.all().flat_map(|column| column.iter()).sum()
                 };
                 let before = sum(&mut columns);
                 columns.clear_outputs(kind, call);

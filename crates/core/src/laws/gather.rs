@@ -231,9 +231,9 @@ impl Batch {
             &mut columns.area[..n],
             &mut columns.radius[..n],
         );
-        let (age, pressed, damage) = (
+        let (age, compression_time, damage) = (
             &mut columns.age[..n],
-            &mut columns.pressed[..n],
+            &mut columns.compression_time[..n],
             &mut columns.damage[..n],
         );
         let [opening_n, opening_t1, opening_t2] = &mut columns.opening;
@@ -265,7 +265,7 @@ impl Batch {
             };
             radius[k] = contact.radius;
             age[k] = info.time - contact.formed_at;
-            pressed[k] = contact.compression_time;
+            compression_time[k] = contact.compression_time;
             let values = of(*at, contact, bond, rotation);
             let n = &contact.normal;
             damage[k] = values.damage;

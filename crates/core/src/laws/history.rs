@@ -82,10 +82,7 @@ impl DeferredWork {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Key;
-    use crate::contact::network::ContactGeometry;
-    use crate::geometry::space::Dim2;
-    use nalgebra::Vector2;
+    use crate::laws::sample_laws::contact;
 
     #[test]
     fn negative_work_of_a_pair_is_taken_from_its_next_work() {
@@ -117,18 +114,7 @@ mod tests {
     /// Of pairs (0, 1) to (0, 6) only (0, 2) touches: six are more than twice one, two are not.
     #[test]
     fn work_of_separated_pairs_is_dropped_once_they_are_many() {
-        let key = Key {
-            candidate: 0,
-            antagonist: 2,
-            feature: 0,
-        };
-        let geometry = ContactGeometry {
-            gap: 0.0,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [Vector2::zeros(); 2],
-            radius: 1.0,
-        };
-        let contact = Contact::<Dim2>::new(key, [0, 2], 0, geometry, 0.0);
+        let contact = contact([0, 2]);
         for (pairs, left) in [(6, vec![2]), (2, vec![1, 2])] {
             let mut history = LawHistory {
                 negative_friction_work: DeferredWork((1..=pairs).map(|b| ((0, b), -1.0)).collect()),

@@ -5,94 +5,54 @@ use std::fmt;
 /// Vectors in the local frame, one column per component.
 pub type Triple = [Vec<f64>; 3];
 
-/// Columns written by plugins, named as in the ABI.
-#[derive(Debug, Default)]
-#[allow(missing_docs)]
-pub struct Outputs {
-    pub friction: Vec<f64>,
-    pub restitution_n: Vec<f64>,
-    pub restitution_t: Vec<f64>,
-    pub tension_strength: Vec<f64>,
-    pub shear_cohesion: Vec<f64>,
-    pub rolling: Vec<f64>,
-    pub spinning: Vec<f64>,
-    pub traction: Triple,
-    pub stiffness_n: Vec<f64>,
-    pub stiffness_t: Vec<f64>,
-    pub damping_n: Vec<f64>,
-    pub damping_t: Vec<f64>,
-    pub energy: Vec<f64>,
-    pub damage: Vec<f64>,
-    pub volume: Vec<f64>,
-    pub moment: Triple,
-    pub stiffness_twist: Vec<f64>,
-    pub stiffness_bend: Vec<f64>,
-    pub contact_force: Triple,
-    pub contact_stiffness_n: Vec<f64>,
-    pub contact_stiffness_t: Vec<f64>,
-    pub contact_unloading_t: Vec<f64>,
-    /// Energy that the tangential spring of a contact holds, where the law tells it (J);
-    /// `out_energy` of contact laws.
-    pub contact_energy_t: Vec<f64>,
-    pub contact_damping_n: Vec<f64>,
-    pub contact_damping_t: Vec<f64>,
-    pub conductance: Vec<f64>,
-    pub electric_conductance: Vec<f64>,
+/// Declares the columns in groups of one size: single ones, then those with one column per
+/// component.
+macro_rules! columns {
+    ($($(#[$about:meta])* $group:ident {
+        $($(#[$doc:meta])* $column:ident,)* $(; $($triple:ident,)*)?
+    })*) => {
+        /// Columns written by plugins, named as in the ABI.
+        #[derive(Debug, Default)]
+        #[allow(missing_docs)]
+        pub struct Outputs {
+            $($($(#[$doc])* pub $column: Vec<f64>,)* $($(pub $triple: Triple,)*)?)*
+        }
+
+        impl Outputs {
+            $($(#[$about])*
+            pub(super) fn $group(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+                let single = [$(&mut self.$column),*].into_iter();
+                single$($(.chain(&mut self.$triple))*)?
+            })*
+
+            /// Iterates over all columns.
+            pub(super) fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+                let single = [$($(&mut self.$column),*),*].into_iter();
+                single$($($(.chain(&mut self.$triple))*)?)*
+            }
+        }
+    };
 }
 
-/// Columns that have one size.
-pub(super) type Group<'a, const N: usize> = [&'a mut Vec<f64>; N];
-
-impl Outputs {
-    /// The columns of every call, those of compliant contacts, and those of transport.
-    pub(super) fn groups(&mut self) -> (Group<'_, 22>, Group<'_, 9>, Group<'_, 2>) {
-        let [tn, t1, t2] = &mut self.traction;
-        let [mn, m1, m2] = &mut self.moment;
-        let [force_n, f1, f2] = &mut self.contact_force;
-        let all = [
-            &mut self.friction,
-            &mut self.restitution_n,
-            &mut self.restitution_t,
-            &mut self.tension_strength,
-            &mut self.shear_cohesion,
-            &mut self.rolling,
-            &mut self.spinning,
-            &mut self.stiffness_n,
-            &mut self.stiffness_t,
-            &mut self.damping_n,
-            &mut self.damping_t,
-            &mut self.energy,
-            &mut self.damage,
-            &mut self.volume,
-            &mut self.stiffness_twist,
-            &mut self.stiffness_bend,
-            tn,
-            t1,
-            t2,
-            mn,
-            m1,
-            m2,
-        ];
-        let springs = [
-            &mut self.contact_stiffness_n,
-            &mut self.contact_stiffness_t,
-            &mut self.contact_unloading_t,
-            &mut self.contact_energy_t,
-            &mut self.contact_damping_n,
-            &mut self.contact_damping_t,
-            force_n,
-            f1,
-            f2,
-        ];
-        let transport = [&mut self.conductance, &mut self.electric_conductance];
-        (all, springs, transport)
+columns! {
+    /// Iterates over the columns of every call.
+    every {
+        friction, restitution_n, restitution_t, tension_strength, shear_cohesion, rolling,
+        spinning, stiffness_n, stiffness_t, damping_n, damping_t, energy, damage, volume,
+        stiffness_twist, stiffness_bend,
+        ; traction, moment,
     }
-
-    /// Iterates over all columns.
-    pub(super) fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let (all, springs, transport) = self.groups();
-        all.into_iter().chain(springs).chain(transport)
+    /// Iterates over the columns of compliant contacts.
+    springs {
+        contact_stiffness_n, contact_stiffness_t, contact_unloading_t,
+        /// Energy that the tangential spring of a contact holds, where the law reports it (J);
+        /// `out_energy` of contact laws.
+        contact_energy_t,
+        contact_damping_n, contact_damping_t,
+        ; contact_force,
     }
+    /// Iterates over the columns of transport.
+    transport { conductance, electric_conductance, }
 }
 
 /// A column that a call of a law writes.

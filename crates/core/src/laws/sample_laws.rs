@@ -2,10 +2,14 @@
 
 use super::interface::{Interface, Loaded};
 use super::library::Plugin;
+use crate::contact::Contact;
+use crate::contact::network::{ContactGeometry, Key};
+use crate::geometry::space::Dim2;
 use fretwork_law::{
     CohesionLaw, Conductance, ContactLaw, Friction, Law, Site, Spring, Traction, TransportLaw,
     Variable, abi, parameters, plugin_table,
 };
+use nalgebra::Vector2;
 use std::path::Path;
 
 /// The law of a table of the wrapper, with the defaults of its parameters.
@@ -167,4 +171,21 @@ impl TransportLaw for Constant {
 pub(crate) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
     let laws = std::iter::once(coulomb()).chain(laws);
     Interface::new("test", laws).unwrap()
+}
+
+/// A closed contact of two bodies by the first interface, along y, without lever arms.
+pub(crate) fn contact(bodies: [u32; 2]) -> Contact<Dim2> {
+    let [candidate, antagonist] = bodies;
+    let key = Key {
+        candidate,
+        antagonist,
+        feature: 0,
+    };
+    let geometry = ContactGeometry {
+        gap: 0.0,
+        normal: Vector2::new(0.0, 1.0),
+        arms: [Vector2::zeros(); 2],
+        radius: 1.0,
+    };
+    Contact::new(key, bodies, 0, geometry, 0.0)
 }

@@ -82,25 +82,14 @@ impl BodyAnderson {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Dim2;
     use crate::solve::form::ContactForm;
-    use nalgebra::{Matrix1, Vector1, Vector2};
+    use nalgebra::Vector2;
 
     /// It begins with the second call, is patient for ten tests without progress, and then rests
     /// for six.
     #[test]
     fn it_rests_where_it_does_not_help() {
-        let mut problem = Problem::<Dim2>::default();
-        for _ in 0..2 {
-            let mobility = (Vector2::repeat(1.0), Matrix1::new(1.0));
-            problem.push_body(
-                Vector2::zeros(),
-                Vector1::new(0.0),
-                mobility.0,
-                mobility.1,
-                1.0,
-            );
-        }
+        let mut problem = Problem::of_unit_bodies(2);
         let normal = Vector2::new(0.0, 1.0);
         problem.push(&ContactForm {
             normal,

@@ -478,9 +478,8 @@ fn sweep_extrapolated<S: Space>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Dim2;
     use crate::solve::form::ContactForm;
-    use nalgebra::{Matrix1, Vector1, Vector2};
+    use nalgebra::Vector2;
 
     /// Over-relaxation is halved where the residual grows to more than four times the least, or
     /// does not fall by a hundredth in twenty tests, and given up below 0.05.
@@ -502,17 +501,7 @@ mod tests {
     /// A contact with a bond is pushed first, then a plain one, which comes first in an iteration.
     #[test]
     fn contacts_are_found_as_they_were_pushed() {
-        let mut problem = Problem::<Dim2>::default();
-        for _ in 0..3 {
-            let mobility = (Vector2::repeat(1.0), Matrix1::new(1.0));
-            problem.push_body(
-                Vector2::zeros(),
-                Vector1::new(0.0),
-                mobility.0,
-                mobility.1,
-                1.0,
-            );
-        }
+        let mut problem = Problem::of_unit_bodies(3);
         let normal = Vector2::new(0.0, 1.0);
         let plain = ContactForm {
             normal,

@@ -102,23 +102,12 @@ impl<S: Space> Problem<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Dim2;
-    use nalgebra::{Matrix1, Vector1, Vector2};
+    use nalgebra::Vector2;
 
     /// A grain between two bodies that push it along these directions (degrees), with this
     /// friction; the loads are of 1 N s.
     fn between(directions: [f64; 2], friction: f64, controlled: &[u32]) -> Vec<usize> {
-        let mut problem = Problem::<Dim2>::default();
-        for _ in 0..3 {
-            let mobility = (Vector2::repeat(1.0), Matrix1::new(1.0));
-            problem.push_body(
-                Vector2::zeros(),
-                Vector1::new(0.0),
-                mobility.0,
-                mobility.1,
-                1.0,
-            );
-        }
+        let mut problem = Problem::of_unit_bodies(3);
         let form = |k: usize| {
             let (y, x) = directions[k].to_radians().sin_cos();
             // The grain is the candidate of the first contact, and the antagonist of the second.

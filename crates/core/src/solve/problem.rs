@@ -234,3 +234,17 @@ impl<S: Space> Problem<S> {
         freedoms
     }
 }
+
+#[cfg(test)]
+impl Problem<crate::geometry::space::Dim2> {
+    /// Bodies at rest of unit mass, inertia and length.
+    pub(super) fn of_unit_bodies(count: usize) -> Self {
+        use nalgebra::{Matrix1, Vector1, Vector2};
+        let mut problem = Self::default();
+        for _ in 0..count {
+            let (mass, inertia) = (Vector2::repeat(1.0), Matrix1::new(1.0));
+            problem.push_body(Vector2::zeros(), Vector1::zeros(), mass, inertia, 1.0);
+        }
+        problem
+    }
+}

@@ -1,9 +1,8 @@
 //! The energies of a bond over a step whose motion and impulses are given.
 
 use super::*;
-use crate::contact::network::{ContactGeometry, Key};
 use crate::geometry::space::Dim2;
-use crate::laws::sample_laws::{bond, interface};
+use crate::laws::sample_laws::{bond, contact, interface};
 use crate::laws::step_result::ContactStep;
 use crate::solve::MomentSolution;
 use crate::solve::form::ContactSolution;
@@ -29,18 +28,7 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     let mut network = Network::<Dim2>::new(1.0, 1.0, &[0]);
     network.memory[0].rotates = true;
     network.dissipation = Some(Vec::new());
-    let key = Key {
-        candidate: 0,
-        antagonist: 1,
-        feature: 0,
-    };
-    let geometry = ContactGeometry {
-        gap: 0.0,
-        normal: Vector2::new(0.0, 1.0),
-        arms: [Vector2::zeros(); 2],
-        radius: 1.0,
-    };
-    let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+    let contact = contact([0, 1]);
     let slot = network.memory[0].allocate(true, 0.0, area, &[]);
     network.contacts.push(Contact { slot, ..contact });
 
@@ -114,19 +102,8 @@ fn damage_of_a_step_counts_for_all_its_cycles() {
         let law = interface([bond()]);
         let mut network = Network::<Dim2>::new(1.0, 1.0, &[0]);
         network.cycle_multiplier = cycles;
-        let key = Key {
-            candidate: 0,
-            antagonist: 1,
-            feature: 0,
-        };
-        let geometry = ContactGeometry {
-            gap: 0.0,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [Vector2::zeros(); 2],
-            radius: 1.0,
-        };
         let slot = network.memory[0].allocate(true, 0.0, 1.0, &[]);
-        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+        let contact = contact([0, 1]);
         network.contacts.push(Contact { slot, ..contact });
         // From 1/8 to 1/4 in a cycle.
         let memory = &mut network.memory[0];

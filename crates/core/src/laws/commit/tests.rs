@@ -1,11 +1,10 @@
 //! What laws remember at the end of a step.
 
 use super::*;
-use crate::contact::network::{ContactGeometry, Key};
 use crate::contact::{ContactHeat, ContactTemperature, MaterialPair};
 use crate::geometry::space::Dim2;
 use crate::laws::StepInfo;
-use crate::laws::sample_laws::{constant, growing, interface};
+use crate::laws::sample_laws::{constant, contact, growing, interface};
 use crate::solve::form::ContactSolution;
 use nalgebra::{Vector1, Vector2};
 
@@ -25,18 +24,7 @@ const PAIR: [MaterialPair; 1] = [MaterialPair {
 /// A contact at rest, of an interface with this number of internal variables.
 fn network(variables: usize) -> Network<Dim2> {
     let mut network = Network::new(1.0, 1.0, &[variables]);
-    let key = Key {
-        candidate: 0,
-        antagonist: 1,
-        feature: 0,
-    };
-    let geometry = ContactGeometry {
-        gap: 0.0,
-        normal: Vector2::new(0.0, 1.0),
-        arms: [Vector2::zeros(); 2],
-        radius: 1.0,
-    };
-    let mut contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+    let mut contact = contact([0, 1]);
     if variables > 0 {
         contact.slot = network.memory[0].allocate(false, 0.0, 1.0, &vec![0.0; variables]);
     }

@@ -137,7 +137,8 @@ pub(in crate::step) fn overlap<S: Space>(
     -c.gap / least
 }
 
-/// Books the work of displacements against gravity and imposed forces; returns the latter (J).
+/// Adds the work of displacements against gravity and imposed forces to the ledger; returns the
+/// latter (J).
 fn record_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
     let bodies = &s.state.bodies;
     let Scheme { h, theta } = s.options.scheme;

@@ -50,22 +50,8 @@ fn find_overflow<S: Space>(s: &Simulation<S>) -> Result<(), StepError> {
         let quantity = format!("the kinetic energy of {}", bodies.name(b as u32));
         return Err(overflow(quantity, bodies.energy_of(b)));
     }
-    let ledger = [
-        ("the kinetic energy of all bodies", e.kinetic),
-        ("the energy entry `potential`", e.potential),
-        ("the energy entry `elastic`", e.elastic),
-        ("the energy entry `fracture`", e.fracture),
-        ("the energy entry `friction`", e.friction),
-        ("the energy entry `impact`", e.impact),
-        ("the energy entry `adhesion`", e.adhesion),
-        ("the energy entry `viscous`", e.viscous),
-        ("the energy entry `correction`", e.correction),
-        ("the energy entry `scheme`", e.scheme),
-        ("the energy entry `external_work`", e.external_work),
-        ("the residual of the energies", e.residual),
-    ];
-    match ledger.into_iter().find(|(_, x)| !x.is_finite()) {
-        Some((quantity, value)) => Err(overflow(quantity.to_owned(), value)),
+    match e.entries().into_iter().find(|(_, _, x)| !x.is_finite()) {
+        Some((name, _, value)) => Err(overflow(format!("the energy entry `{name}`"), value)),
         None => Ok(()),
     }
 }
