@@ -5,7 +5,7 @@ use crate::laws::Totals;
 use serde::{Deserialize, Serialize};
 
 /// Name, description and value of an entry of a ledger.
-pub type Entry = (&'static str, &'static str, f64);
+pub type LedgerEntry = (&'static str, &'static str, f64);
 
 /// The entries of a ledger by its fields, without those named first. Every field is named, so that
 /// a new one does not compile until it is listed.
@@ -138,7 +138,7 @@ impl Energy {
     /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry
     /// is the sum of all before expansion, minus expansion, external work and initial kinetic
     /// energy.
-    pub fn entries(&self) -> [Entry; 15] {
+    pub fn entries(&self) -> [LedgerEntry; 15] {
         entries!(self, scale, given_by_friction;
             kinetic: "kinetic energy",
             potential: "potential energy since the start",

@@ -1,6 +1,6 @@
 //! The ledger of momentum: the momentum that free rigid bodies gained without an external cause.
 
-use crate::energy::Entry;
+use crate::energy::LedgerEntry;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -83,7 +83,7 @@ impl Momentum {
     }
 
     /// Every entry: name, description, value (N s, N m s).
-    pub fn entries(&self) -> [Entry; 2] {
+    pub fn entries(&self) -> [LedgerEntry; 2] {
         let [linear, angular] = self.drift();
         [
             (

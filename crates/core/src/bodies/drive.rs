@@ -221,7 +221,6 @@ impl Driven {
 
 #[cfg(test)]
 mod tests {
-    use super::super::time_function::tests::examples;
     use super::*;
 
     fn pressed_then_moved() -> Dof {

@@ -1,6 +1,6 @@
 //! The account of heat.
 
-use crate::energy::{Entry, entries};
+use crate::energy::{LedgerEntry, entries};
 use fretwork_math::diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +71,7 @@ impl HeatLedger {
     }
 
     /// Every entry: name, description, value (J; J/m in 2D).
-    pub fn entries(&self) -> [Entry; 9] {
+    pub fn entries(&self) -> [LedgerEntry; 9] {
         entries!(self, scale;
             dissipated: "heat that mechanical dissipation put in",
             joule: "heat that electric current put in",

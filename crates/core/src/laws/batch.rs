@@ -2,7 +2,7 @@
 //! return.
 
 use super::bond_step::BondStep;
-use super::columns::Columns;
+use super::columns::BatchColumns;
 use super::error::LawError;
 use super::function::Call;
 use super::guarded::{self, Guarded};
@@ -24,8 +24,8 @@ const TASKS_PER_THREAD: usize = 4;
 
 /// The working memory of a batch; nothing in it outlasts the batch.
 #[derive(Debug, Default)]
-pub(super) struct Batch {
-    pub columns: Columns,
+pub(super) struct LawBatch {
+    pub columns: BatchColumns,
     /// Gaps less what intact bonds fill, as contacts and as springs see them (m).
     pub open_gap: Vec<f64>,
     pub spring_gap: Vec<f64>,
@@ -52,7 +52,7 @@ pub(super) enum CallChecks {
     Repeated,
 }
 
-impl Batch {
+impl LawBatch {
     /// Calls a function of a law with the columns, and checks what it wrote.
     pub fn run(
         &mut self,
@@ -178,11 +178,11 @@ pub(super) fn locate<S: Space>(
 
 /// Working memory for as many batches as are evaluated at the same time.
 #[derive(Debug, Default)]
-pub(super) struct BatchPool(Mutex<Vec<Batch>>);
+pub(super) struct BatchPool(Mutex<Vec<LawBatch>>);
 
 impl BatchPool {
     /// Lends out the memory of a batch.
-    pub fn with<R>(&self, of: impl FnOnce(&mut Batch) -> R) -> R {
+    pub fn with<R>(&self, of: impl FnOnce(&mut LawBatch) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let free = lock().pop();
         let mut batch = free.unwrap_or_default();
@@ -207,7 +207,7 @@ impl BatchPool {
         largest: &mut Largest,
         shared: &mut X,
         mut tasks: Vec<T>,
-        of: impl Fn(&X, &mut Batch, &mut T) -> Result<R, LawError> + Send + Sync,
+        of: impl Fn(&X, &mut LawBatch, &mut T) -> Result<R, LawError> + Send + Sync,
         mut take: impl FnMut(&mut X, &T, R),
     ) -> Result<(), LawError> {
         let one = |shared: &X, task: &mut T, mut largest: Largest| {
@@ -262,7 +262,7 @@ mod tests {
     /// of threads.
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
-        let check = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {
+        let check = |(): &(), batch: &mut LawBatch, column: &mut Vec<f64>| {
             let ranges = [ColumnRange::of(column)];
             let mut outputs = [Output::ranged(("strength", column, Range::NotNegative))];
             match settle(&mut outputs, &ranges, Kind::CONTACT, &mut batch.largest) {

@@ -5,7 +5,7 @@ pub mod fracture;
 pub mod scale;
 pub mod spring;
 
-use super::batch::{Batch, CallChecks};
+use super::batch::{CallChecks, LawBatch};
 use super::bond_step::BondStep;
 use super::error::LawError;
 use super::function::Call;
@@ -101,7 +101,7 @@ pub struct Bench {
     radius: f64,
     /// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair.
     material: [f64; 2],
-    batch: Batch,
+    batch: LawBatch,
     declared_damage: Vec<f64>,
 }
 
@@ -115,7 +115,7 @@ impl Bench {
             area,
             radius,
             material: STEEL,
-            batch: Batch::default(),
+            batch: LawBatch::default(),
             declared_damage: Vec::new(),
         }
     }

@@ -1,11 +1,11 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::{BATCH, LawBatch, locate};
 use super::bond_step::{BondStep, degradation_factor};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
-use super::gather::{BondAfter, Motion, Source, store_states};
+use super::gather::{BondAfter, MotionSource, Source, store_states};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::step_info::StepInfo;
@@ -39,14 +39,14 @@ struct BondEnd<S: Space> {
 }
 
 /// The bonds of an interface, and what their contacts do.
-struct Opening<'a, S: Space> {
+struct BondOpenings<'a, S: Space> {
     source: Source<'a, S>,
-    motion: Motion<'a, S>,
+    motion: MotionSource<'a, S>,
     /// Places of the moments of contacts, where the step is solved and bonds resist rotation.
     moment_places: &'a [u32],
 }
 
-impl<S: Space> Opening<'_, S> {
+impl<S: Space> BondOpenings<'_, S> {
     /// The laws that act on bonds.
     fn laws(&self) -> Vec<&Loaded> {
         let law = self.source.law;
@@ -56,16 +56,16 @@ impl<S: Space> Opening<'_, S> {
     /// What a contact that resists rotation did.
     fn moment(&self, at: usize) -> Option<&MomentStep<S>> {
         match &self.motion {
-            Motion::Continued(_) => None,
-            Motion::Solved(step) => step.moments.get(*self.moment_places.get(at)? as usize),
+            MotionSource::Continued(_) => None,
+            MotionSource::Solved(step) => step.moments.get(*self.moment_places.get(at)? as usize),
         }
     }
 
     /// The spin of a contact that resists rotation, averaged over the step (rad/s).
     fn spin(&self, at: usize) -> Option<S::Spin> {
         match &self.motion {
-            Motion::Continued(before) => before.turning.get(at).copied(),
-            Motion::Solved(_) => self.moment(at).map(|m| m.spin),
+            MotionSource::Continued(before) => before.turning.get(at).copied(),
+            MotionSource::Solved(_) => self.moment(at).map(|m| m.spin),
         }
     }
 
@@ -159,16 +159,16 @@ impl LawEvaluator {
         let members = &self.members[index].bonded;
         let divide = self.divides(members.len(), BOND);
         let batches = members.chunks(chunk_size(BATCH)).collect();
-        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+        let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source {
                 law,
                 index,
                 network,
                 info: step.info,
             };
-            let opening = Opening {
+            let opening = BondOpenings {
                 source,
-                motion: Motion::Solved(step),
+                motion: MotionSource::Solved(step),
                 moment_places,
             };
             let mut ends = Vec::with_capacity(members.len());
@@ -211,16 +211,16 @@ impl LawEvaluator {
             let members = &self.members[index].bonded;
             let divide = self.divides(members.len(), BOND);
             let trials = &mut self.trials;
-            let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+            let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
                 let source = Source {
                     law,
                     index,
                     network,
                     info: step.info,
                 };
-                let opening = Opening {
+                let opening = BondOpenings {
                     source,
-                    motion: Motion::Solved(step),
+                    motion: MotionSource::Solved(step),
                     moment_places,
                 };
                 batch.try_damage(&opening, members)
@@ -247,7 +247,7 @@ impl LawEvaluator {
         }
     }
 
-    /// Finds the moments of each contact, for [`Opening`].
+    /// Finds the moments of each contact, for [`BondOpenings`].
     fn place_moments<S: Space>(
         &mut self,
         index: usize,
@@ -265,7 +265,7 @@ impl LawEvaluator {
     }
 }
 
-impl Batch {
+impl LawBatch {
     /// The increase from the damage used in a step to the one that laws give for the bonds of a
     /// batch if the motion at the start of the step goes on through it, by the place in memory.
     pub(super) fn predict_damage<S: Space>(
@@ -274,9 +274,9 @@ impl Batch {
         members: &[usize],
         before: &Velocities<S>,
     ) -> Result<Vec<(u32, f64)>, LawError> {
-        let opening = Opening {
+        let opening = BondOpenings {
             source: *source,
-            motion: Motion::Continued(before),
+            motion: MotionSource::Continued(before),
             moment_places: &[],
         };
         self.try_damage(&opening, members)
@@ -287,7 +287,7 @@ impl Batch {
     /// iteration is monotonic and ends.
     fn try_damage<S: Space>(
         &mut self,
-        opening: &Opening<'_, S>,
+        opening: &BondOpenings<'_, S>,
         members: &[usize],
     ) -> Result<Vec<(u32, f64)>, LawError> {
         let mut tried = Vec::with_capacity(members.len());
@@ -305,7 +305,7 @@ impl Batch {
     /// is given the contact, its normal and its bond before and after.
     fn open_bonds<S: Space>(
         &mut self,
-        opening: &Opening<'_, S>,
+        opening: &BondOpenings<'_, S>,
         members: &[usize],
         mut each: impl FnMut(usize, &S::Vector, &Bond<S>, &BondAfter<S>),
     ) -> Result<(), LawError> {

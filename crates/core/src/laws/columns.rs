@@ -11,7 +11,7 @@ use std::ptr::{null, null_mut};
 
 /// The columns of one batch; the buffers are reused from step to step.
 #[derive(Debug, Default)]
-pub struct Columns {
+pub struct BatchColumns {
     /// Number of contacts.
     pub n: usize,
     /// Gap (m).
@@ -156,7 +156,7 @@ impl Pointers {
     }
 }
 
-impl Columns {
+impl BatchColumns {
     fn inputs(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let single = [
             &mut self.gap,
@@ -451,12 +451,12 @@ mod tests {
     fn what_a_call_writes_is_cleared() {
         for kind in Kind::BUILT_IN {
             for call in [Call::Prepare, Call::Commit, Call::Energy] {
-                let mut columns = Columns::default();
+                let mut columns = BatchColumns::default();
                 (columns.n, columns.overlap, columns.temperature[0]) =
                     (2, vec![0.0; 2], vec![0.0; 2]);
                 columns.size_outputs();
                 columns.out.all().for_each(|column| column.fill(7.0));
-                let sum = |columns: &mut Columns| -> f64 {
+                let sum = |columns: &mut BatchColumns| -> f64 {
                     columns.out.all().flat_map(|column| column.iter()).sum()
                 };
                 let before = sum(&mut columns);

@@ -1,10 +1,10 @@
 //! Commit: the laws' update at the end of a solved step.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::{BATCH, LawBatch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
-use super::gather::{Motion, Source, store_states};
+use super::gather::{MotionSource, Source, store_states};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::{Domain, Kind};
@@ -86,7 +86,7 @@ impl LawEvaluator {
             if members.is_empty() || slots.is_empty() {
                 return Ok(());
             }
-            let group = Group {
+            let group = SlotGroup {
                 law,
                 index,
                 slots: &slots,
@@ -101,7 +101,7 @@ impl LawEvaluator {
     /// Calls laws that act on the same contacts.
     fn commit_group<S: Space>(
         &mut self,
-        group: &Group<'_>,
+        group: &SlotGroup<'_>,
         history: &mut LawHistory,
         network: &mut Network<S>,
         step: &SolvedStep<'_, S>,
@@ -121,14 +121,14 @@ impl LawEvaluator {
             }
         }
         let size = chunk_size(BATCH);
-        let of = |network: &_, batch: &mut Batch, (first, members): &mut (usize, &[usize])| {
+        let of = |network: &_, batch: &mut LawBatch, (first, members): &mut (usize, &[usize])| {
             let source = Source {
                 law,
                 index,
                 network,
                 info: step.info,
             };
-            batch.gather_after(&source, members, &Motion::Solved(step), slots);
+            batch.gather_after(&source, members, &MotionSource::Solved(step), slots);
             let here = *first..*first + members.len();
             let mut answers = Vec::with_capacity(slots.len());
             for loaded in slots {
@@ -195,7 +195,7 @@ impl LawEvaluator {
 }
 
 /// Laws of an interface that act on the same contacts.
-struct Group<'a> {
+struct SlotGroup<'a> {
     law: &'a Interface,
     index: usize,
     slots: &'a [&'a Loaded],

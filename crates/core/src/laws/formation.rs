@@ -1,6 +1,6 @@
 //! Formation of bonds, and memory for the internal variables of new contacts.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::{BATCH, LawBatch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
@@ -166,7 +166,7 @@ impl LawEvaluator {
         };
         let still = Velocities::still(&network.contacts);
         let batches = stretched.chunks(chunk_size(BATCH)).collect();
-        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+        let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source {
                 law,
                 index,
@@ -213,7 +213,7 @@ impl LawEvaluator {
         let still = Velocities::still(&network.contacts);
         let laws: Vec<&Loaded> = law.loaded().collect();
         let batches = new.chunks(chunk_size(BATCH)).collect();
-        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+        let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source {
                 law,
                 index,

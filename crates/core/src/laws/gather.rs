@@ -1,6 +1,6 @@
 //! Fills the columns of a batch from the network.
 
-use super::batch::Batch;
+use super::batch::LawBatch;
 use super::columns::Contents;
 use super::interface::{Interface, Loaded};
 use super::step_info::StepInfo;
@@ -20,7 +20,7 @@ pub(super) struct Source<'a, S: Space> {
 
 /// What contacts do in a step.
 #[derive(Debug)]
-pub(super) enum Motion<'a, S: Space> {
+pub(super) enum MotionSource<'a, S: Space> {
     /// The motion at the start of the step goes on through it, under the impulses and springs of
     /// the last step: what is known of the load before the step is solved. Contacts that begin in
     /// this step carry nothing yet.
@@ -29,7 +29,7 @@ pub(super) enum Motion<'a, S: Space> {
     Solved(&'a SolvedStep<'a, S>),
 }
 
-impl<S: Space> Motion<'_, S> {
+impl<S: Space> MotionSource<'_, S> {
     /// Theta-averaged relative velocity of a contact (m/s).
     #[inline]
     pub fn average(&self, at: usize) -> S::Vector {
@@ -129,7 +129,7 @@ pub(super) fn prefetch_bond<S: Space>(memory: &Memory<S>, contact: &Contact<S>) 
     let _ = (memory, contact);
 }
 
-impl Batch {
+impl LawBatch {
     /// Fills the columns with the state at the start of the step: the damage is that of the step's
     /// impulses.
     pub(super) fn gather_before<S: Space>(
@@ -172,7 +172,7 @@ impl Batch {
         &mut self,
         source: &Source<'_, S>,
         members: &[usize],
-        motion: &Motion<'_, S>,
+        motion: &MotionSource<'_, S>,
         laws: &[&Loaded],
     ) {
         self.fill(
@@ -332,7 +332,7 @@ impl Batch {
 }
 
 /// Stores the new internal variables of some laws for contacts of one interface, as
-/// [`Batch::new_states`] gives them.
+/// [`LawBatch::new_states`] gives them.
 pub(super) fn store_states<S: Space>(
     network: &mut Network<S>,
     index: usize,

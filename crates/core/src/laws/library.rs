@@ -4,7 +4,7 @@ use super::child::{read_request, send_done, send_message};
 use super::error::LawError;
 use super::function::Call;
 use super::kind::Kind;
-use super::linked::{LawCode, Opening};
+use super::linked::{LawCode, LibraryOpening};
 use super::loading::{self, Library};
 use super::names::name_is_valid;
 use super::outside::{self, Disturbed};
@@ -105,7 +105,7 @@ impl Plugin {
         let disturbed = Disturbed::default();
         // A name without a folder would be searched for where the system has its libraries.
         let absolute = std::path::absolute(path).map_err(|e| refuse(e.to_string()))?;
-        let opening = Opening::begin();
+        let opening = LibraryOpening::begin();
         let load = || {
             // SAFETY: opening runs the library's initialisers; the user put it on the search path.
             let library = unsafe { open_local(&absolute) }.map_err(|e| {
@@ -117,12 +117,14 @@ impl Plugin {
             // SAFETY: the ABI defines the type of this symbol, of which it is known in addition
             // that it may unwind; a library with another type violates it.
             let table = unsafe {
-                let entry = library.get::<Entry>(abi::ENTRY_SYMBOL).map_err(|_| {
-                    refuse(format!(
-                        "it does not export `{}`; it is not a Fretwork plugin",
-                        abi::ENTRY_SYMBOL
-                    ))
-                })?;
+                let entry = library
+                    .get::<EntryFunction>(abi::ENTRY_SYMBOL)
+                    .map_err(|_| {
+                        refuse(format!(
+                            "it does not export `{}`; it is not a Fretwork plugin",
+                            abi::ENTRY_SYMBOL
+                        ))
+                    })?;
                 entry()
             };
             // Never unloaded: threads may be running its code or hold its thread-local data.
@@ -291,7 +293,7 @@ impl Plugin {
 }
 
 /// The entry of a library, which may unwind.
-type Entry = unsafe extern "C-unwind" fn() -> *const abi::FwPlugin;
+type EntryFunction = unsafe extern "C-unwind" fn() -> *const abi::FwPlugin;
 
 /// An error with what the system says of it.
 fn with_cause(error: &dyn std::error::Error) -> String {

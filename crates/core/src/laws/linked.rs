@@ -77,12 +77,12 @@ pub(super) fn libraries(library: &Path) -> Result<Vec<PathBuf>, String> {
 }
 
 /// The libraries of the process before a law is opened.
-pub(super) struct Opening {
+pub(super) struct LibraryOpening {
     #[cfg(target_os = "linux")]
     before: Vec<PathBuf>,
 }
 
-impl Opening {
+impl LibraryOpening {
     /// Notes them.
     pub fn begin() -> Self {
         Self {

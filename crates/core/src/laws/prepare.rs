@@ -1,7 +1,7 @@
 //! Prepare: the laws write friction, cohesion and the linearised bond of every contact into its
 //! standard local form.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::{BATCH, LawBatch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
@@ -98,20 +98,20 @@ fn tasks<'a, S: Space>(
     task.collect()
 }
 
-/// What the laws of an interface are asked for.
-struct Asked<'a, S: Space> {
+/// What the laws of an interface are called for.
+struct Request<'a, S: Space> {
     law: &'a Interface,
     index: usize,
     info: &'a StepInfo,
     before: &'a Velocities<S>,
-    contact: ContactAsked,
+    contact: ContactRequest,
     cohesion: Option<&'a Loaded>,
     /// Whether the damage at the middle of the step is predicted.
     predicts: bool,
 }
 
 /// Where friction and restitution come from.
-enum ContactAsked {
+enum ContactRequest {
     /// They are in the forms.
     Done,
     /// One answer for all contacts.
@@ -171,36 +171,36 @@ impl LawEvaluator {
                 true => (&members.bonded[..], &members.loose[..]),
                 false => (members.near(), &members.beyond[..]),
             };
-            let mut asked = Asked {
+            let mut request = Request {
                 law,
                 index,
                 info,
                 before,
-                contact: ContactAsked::Each,
+                contact: ContactRequest::Each,
                 cohesion: law.cohesion(),
                 predicts: predicts && law.opens() && law.damages(),
             };
             if law.constant_contact() {
                 // One answer for all contacts, and then cohesion adds to it.
                 let friction = self.constant_friction(law, info, history)?;
-                asked.contact = if law.rotates() || friction.rotates() {
-                    ContactAsked::Constant(friction)
+                request.contact = if law.rotates() || friction.rotates() {
+                    ContactRequest::Constant(friction)
                 } else {
                     let held_back =
-                        apply_constant(&asked, network, &friction, forms, self.parallel);
+                        apply_constant(&request, network, &friction, forms, self.parallel);
                     self.held_back.extend(held_back);
-                    ContactAsked::Done
+                    ContactRequest::Done
                 };
             }
             let largest = &mut history.largest;
             for members in [cohesive, others] {
-                if asked.idle() {
+                if request.idle() {
                     continue;
                 }
                 let divide = self.divides(members.len(), PREPARE);
                 let tasks = tasks(members, forms, springs);
-                let of = |network: &_, batch: &mut Batch, task: &mut Task<S>| {
-                    batch.prepare(&asked, network, task)
+                let of = |network: &_, batch: &mut LawBatch, task: &mut Task<S>| {
+                    batch.prepare(&request, network, task)
                 };
                 let held_back = &mut self.held_back;
                 let take = |network: &mut Network<S>, _: &_, mut part: Prepared<S>| {
@@ -212,7 +212,7 @@ impl LawEvaluator {
                 };
                 self.pool
                     .evaluate(divide, largest, network, tasks, of, take)?;
-                (asked.cohesion, asked.predicts) = (None, false);
+                (request.cohesion, request.predicts) = (None, false);
             }
         }
         Ok(())
@@ -225,7 +225,7 @@ impl LawEvaluator {
         info: &StepInfo,
         history: &mut LawHistory,
     ) -> Result<Friction, LawError> {
-        let of = |_: &Friction, batch: &mut Batch, (): &mut ()| {
+        let of = |_: &Friction, batch: &mut LawBatch, (): &mut ()| {
             batch.columns.clear();
             batch.columns.n = 1;
             let run = batch.run_afresh(law.contact(), info, 0.0, Call::Prepare);
@@ -255,15 +255,15 @@ impl LawEvaluator {
 /// Applies friction and restitution that are the same for all contacts of an interface; returns
 /// those held back.
 fn apply_constant<S: Space>(
-    asked: &Asked<'_, S>,
+    request: &Request<'_, S>,
     network: &Network<S>,
     friction: &Friction,
     forms: &mut [ContactForm<S>],
     parallel: bool,
 ) -> Vec<usize> {
-    let Asked {
+    let Request {
         law, index, info, ..
-    } = *asked;
+    } = *request;
     let divide = worth_dividing(parallel, network.contacts.len(), APPLY);
     let held_back = map_chunks_mut(divide, forms, CHUNK, |first, forms| {
         let mut held_back = Vec::new();
@@ -273,7 +273,7 @@ fn apply_constant<S: Space>(
                 continue;
             }
             let area = contact_area(law, network, contact);
-            let (gap, before) = (network.open_gap(contact), &asked.before.relative[at]);
+            let (gap, before) = (network.open_gap(contact), &request.before.relative[at]);
             if apply_friction(form, friction, contact, gap, before, area, info) {
                 held_back.push(at);
             }
@@ -283,29 +283,29 @@ fn apply_constant<S: Space>(
     held_back.into_iter().flatten().collect()
 }
 
-impl<S: Space> Asked<'_, S> {
+impl<S: Space> Request<'_, S> {
     /// Whether there is nothing to ask for.
     fn idle(&self) -> bool {
-        matches!(self.contact, ContactAsked::Done) && self.cohesion.is_none()
+        matches!(self.contact, ContactRequest::Done) && self.cohesion.is_none()
     }
 }
 
-impl Batch {
+impl LawBatch {
     /// Applies the laws of an interface to the forms of a batch.
     fn prepare<S: Space>(
         &mut self,
-        asked: &Asked<'_, S>,
+        request: &Request<'_, S>,
         network: &Network<S>,
         task: &mut Task<'_, S>,
     ) -> Result<Prepared<S>, LawError> {
-        let Asked {
+        let Request {
             law,
             index,
             info,
             before,
             cohesion,
             ..
-        } = *asked;
+        } = *request;
         let source = Source {
             law,
             index,
@@ -317,7 +317,7 @@ impl Batch {
             held_back: Vec::new(),
             predicted: Vec::new(),
         };
-        if asked.predicts {
+        if request.predicts {
             prepared.predicted = self.predict_damage(&source, task.members, before)?;
             let memory = &network.memory[index];
             for (slot, damage) in &mut prepared.predicted {
@@ -326,7 +326,7 @@ impl Batch {
             }
         }
         let mut acting: Vec<&Loaded> = Vec::with_capacity(2);
-        if let ContactAsked::Each = asked.contact {
+        if let ContactRequest::Each = request.contact {
             acting.push(law.contact());
         }
         acting.extend(cohesion);
@@ -336,21 +336,21 @@ impl Batch {
             let columns = self.columns.damage.iter_mut();
             columns.zip(predicted).for_each(|(x, damage)| *x = damage);
         }
-        match &asked.contact {
-            ContactAsked::Done => {}
-            ContactAsked::Constant(friction) => {
-                self.apply_contact(asked, network, Some(friction), task, &mut prepared);
+        match &request.contact {
+            ContactRequest::Done => {}
+            ContactRequest::Constant(friction) => {
+                self.apply_contact(request, network, Some(friction), task, &mut prepared);
             }
-            ContactAsked::Each => {
+            ContactRequest::Each => {
                 self.run_afresh(law.contact(), info, 0.0, Call::Prepare)
                     .map_err(|e| locate(law, network, task.members, e))?;
-                self.apply_contact(asked, network, None, task, &mut prepared);
+                self.apply_contact(request, network, None, task, &mut prepared);
             }
         }
         if let Some(cohesion) = cohesion {
             self.run_afresh(cohesion, info, 0.0, Call::Prepare)
                 .map_err(|e| locate(law, network, task.members, e))?;
-            self.apply_cohesions(asked, network, task, &mut prepared);
+            self.apply_cohesions(request, network, task, &mut prepared);
         }
         if law.compliant() {
             // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s
@@ -366,14 +366,14 @@ impl Batch {
     /// Applies what the cohesion law gave to the forms of a batch.
     fn apply_cohesions<S: Space>(
         &self,
-        asked: &Asked<'_, S>,
+        request: &Request<'_, S>,
         network: &Network<S>,
         task: &mut Task<'_, S>,
         prepared: &mut Prepared<S>,
     ) {
-        let Asked {
+        let Request {
             law, info, before, ..
-        } = *asked;
+        } = *request;
         for (k, at) in task.members.iter().enumerate() {
             let form = &mut task.forms[at - task.first];
             self.apply_cohesion(law, k, &before.relative[*at], info, form);
@@ -390,15 +390,15 @@ impl Batch {
     /// Applies what the contact law gave, or the same to all, to the forms of a batch.
     fn apply_contact<S: Space>(
         &self,
-        asked: &Asked<'_, S>,
+        request: &Request<'_, S>,
         network: &Network<S>,
         constant: Option<&Friction>,
         task: &mut Task<'_, S>,
         prepared: &mut Prepared<S>,
     ) {
-        let Asked { law, info, .. } = *asked;
+        let Request { law, info, .. } = *request;
         let (rotates, compliant) = (law.rotates(), law.compliant());
-        let gathered = constant.is_none() || asked.cohesion.is_some();
+        let gathered = constant.is_none() || request.cohesion.is_some();
         for (k, at) in task.members.iter().enumerate() {
             let (contact, form) = (&network.contacts[*at], &mut task.forms[at - task.first]);
             let mut friction = match constant {
@@ -419,7 +419,7 @@ impl Batch {
                 (friction.e_n, friction.e_t) = (0.0, 0.0);
                 task.springs[at - task.first] = Some(spring);
             }
-            let before = &asked.before.relative[*at];
+            let before = &request.before.relative[*at];
             if apply_friction(form, &friction, contact, gap, before, area, info) {
                 prepared.held_back.push(*at);
             }

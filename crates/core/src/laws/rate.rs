@@ -1,12 +1,12 @@
 //! Friction at a velocity of sliding other than that at the start of the step, by another call of
 //! the contact law.
 
-use super::batch::{Batch, locate};
+use super::batch::{LawBatch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::Source;
-use super::trial::{Asked, Step};
+use super::trial::{Step, TrialRequest};
 use crate::geometry::space::Space;
 
 /// About what the two calls take for a contact (ns).
@@ -62,9 +62,9 @@ impl LawEvaluator {
                 let each = t1.chunks_exact_mut(TRIED.len());
                 each.for_each(|of_contact| of_contact.copy_from_slice(&TRIED));
                 t2.fill(0.0);
-                let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
+                let called = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
                 let mut friction = batch.columns.out.friction.chunks(TRIED.len());
-                asked.is_err() || friction.any(|mu| mu.iter().any(|x| *x != mu[0]))
+                called.is_err() || friction.any(|mu| mu.iter().any(|x| *x != mu[0]))
             });
             if depends {
                 found.push((index, self.members[index].all.clone()));
@@ -84,24 +84,24 @@ impl LawEvaluator {
         members: &[usize],
         velocities: &[S::Tangent],
     ) -> Result<Vec<FrictionAt>, LawError> {
-        self.ask(step, index, members, velocities, EACH, |batch, asked| {
-            let Asked { source, before, .. } = *asked;
-            batch.gather_before(&source, asked.members, before, &[source.law.contact()]);
-            for (k, at) in asked.members.iter().enumerate() {
+        self.ask(step, index, members, velocities, EACH, |batch, request| {
+            let TrialRequest { source, before, .. } = *request;
+            batch.gather_before(&source, request.members, before, &[source.law.contact()]);
+            for (k, at) in request.members.iter().enumerate() {
                 let normal = &source.network.contacts[*at].normal;
-                let [v1, v2] = S::components(normal, &asked.given[k]);
+                let [v1, v2] = S::components(normal, &request.given[k]);
                 let [_, t1, t2] = &mut batch.columns.velocity;
                 t1[k] = v1;
                 if S::D == 3 {
                     t2[k] = v2;
                 }
             }
-            batch.friction_and_slope(&source, asked.members)
+            batch.friction_and_slope(&source, request.members)
         })
     }
 }
 
-impl Batch {
+impl LawBatch {
     /// Friction at the velocities in the columns, and its slope from another call at velocities a
     /// little above.
     fn friction_and_slope<S: Space>(

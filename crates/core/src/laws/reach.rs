@@ -7,7 +7,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::Source;
 use super::interface::Interface;
-use super::trial::{Asked, Step};
+use super::trial::{Step, TrialRequest};
 use crate::geometry::space::Space;
 
 /// About what a call takes for a contact (ns).
@@ -44,13 +44,13 @@ impl LawEvaluator {
         let Some(cohesion) = step.laws[index].cohesion() else {
             return Ok(vec![0.0; members.len()]);
         };
-        self.ask(step, index, members, gaps, EACH, |batch, asked| {
-            let Asked {
+        self.ask(step, index, members, gaps, EACH, |batch, request| {
+            let TrialRequest {
                 source,
                 before,
                 members,
                 given: gaps,
-            } = *asked;
+            } = *request;
             let Source {
                 law, network, info, ..
             } = source;

@@ -1,7 +1,7 @@
 //! Calls of laws beside those of the step, with some of their inputs replaced: nothing is
 //! remembered of them.
 
-use super::batch::{BATCH, Batch};
+use super::batch::{BATCH, LawBatch};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::gather::Source;
@@ -13,7 +13,7 @@ use crate::geometry::space::Space;
 use crate::laws::StepInfo;
 use crate::threads::chunk_size;
 
-/// Where laws are asked: the contacts of the step, and what is known of them at its start.
+/// Where laws are called: the contacts of the step, and what is known of them at its start.
 #[derive(Debug)]
 pub struct Step<'a, S: Space> {
     /// The interfaces.
@@ -30,7 +30,7 @@ pub struct Step<'a, S: Space> {
 
 /// Contacts of one interface that a batch asks for, each with a value that takes the place of an
 /// input.
-pub(super) struct Asked<'a, S: Space, T> {
+pub(super) struct TrialRequest<'a, S: Space, T> {
     pub source: Source<'a, S>,
     pub before: &'a Velocities<S>,
     pub members: &'a [usize],
@@ -47,29 +47,30 @@ impl LawEvaluator {
         members: &[usize],
         given: &[T],
         each: f64,
-        call: impl Fn(&mut Batch, &Asked<'_, S, T>) -> Result<Vec<R>, LawError> + Sync,
+        call: impl Fn(&mut LawBatch, &TrialRequest<'_, S, T>) -> Result<Vec<R>, LawError> + Sync,
     ) -> Result<Vec<R>, LawError> {
         let (law, before, info) = (&step.laws[index], step.before, step.info);
         let size = chunk_size(BATCH);
         let tasks: Vec<_> = members.chunks(size).zip(given.chunks(size)).collect();
-        let of =
-            |network: &Network<S>, batch: &mut Batch, (members, given): &mut (&[usize], &[T])| {
-                let source = Source {
-                    law,
-                    index,
-                    network,
-                    info,
-                };
-                call(
-                    batch,
-                    &Asked {
-                        source,
-                        before,
-                        members,
-                        given,
-                    },
-                )
+        let of = |network: &Network<S>,
+                  batch: &mut LawBatch,
+                  (members, given): &mut (&[usize], &[T])| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info,
             };
+            call(
+                batch,
+                &TrialRequest {
+                    source,
+                    before,
+                    members,
+                    given,
+                },
+            )
+        };
         let mut all = Vec::with_capacity(members.len());
         let divide = self.divides(members.len(), each);
         self.pool.evaluate(

@@ -4,7 +4,7 @@
 
 use super::body_anderson::{BodyAnderson, MEMORY};
 use super::kinds::of_kind;
-use super::momentum::Momentum;
+use super::momentum::MomentumIteration;
 use super::problem::Problem;
 use crate::geometry::space::Space;
 
@@ -29,7 +29,7 @@ pub(super) struct Acceleration<S: Space> {
     /// steps need no more.
     first: u32,
     patience: u32,
-    momentum: Option<Momentum<S>>,
+    momentum: Option<MomentumIteration<S>>,
     anderson: BodyAnderson,
     /// Squared residual at the last test.
     last: f64,
@@ -61,9 +61,13 @@ impl<S: Space> Acceleration<S> {
     }
 
     /// The momentum of the next iteration, after `done` iterations.
-    pub fn momentum(&mut self, problem: &Problem<S>, done: u32) -> Option<&mut Momentum<S>> {
+    pub fn momentum(
+        &mut self,
+        problem: &Problem<S>,
+        done: u32,
+    ) -> Option<&mut MomentumIteration<S>> {
         if self.with_momentum && done >= self.first && self.momentum.is_none() {
-            self.momentum = Some(Momentum::new(problem, self.parallel));
+            self.momentum = Some(MomentumIteration::new(problem, self.parallel));
         }
         self.momentum.as_mut()
     }

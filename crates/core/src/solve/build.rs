@@ -1,6 +1,6 @@
 //! Building a contact problem: bodies, then contacts, each as a row of the kind that it needs.
 
-use super::form::{ContactForm, Mobility, Place};
+use super::form::{ContactForm, Mobility, RowPlace};
 
 use super::kinds::{KINDS, RowsOfKind, of_kind};
 use super::problem::Problem;
@@ -79,7 +79,7 @@ impl<S: Space> Problem<S> {
         };
         let row = of_kind!(&mut self.rows[kind], rows => rows.push(contact, &bodies));
         let kind = kind as u8;
-        self.places.push(Place::Row { kind, row });
+        self.places.push(RowPlace::Row { kind, row });
         self.compliant |= contact.compliance != [0.0; 2];
     }
 
@@ -106,7 +106,7 @@ impl<S: Space> Problem<S> {
             self.compliant |= compliant;
             let before = self.of_kind.each_ref().map(|list| list.len() as u32);
             self.places
-                .extend(places.iter().map(|(kind, k)| Place::Row {
+                .extend(places.iter().map(|(kind, k)| RowPlace::Row {
                     kind: *kind as u8,
                     row: before[*kind] + k,
                 }));
@@ -148,7 +148,7 @@ impl<S: Space> Problem<S> {
         let divide = worth_dividing(parallel, self.places.len(), SORT);
         for_chunks(divide, &mut self.places, CHUNK, |_, places| {
             for place in places {
-                if let Place::Row { kind, row } = place {
+                if let RowPlace::Row { kind, row } = place {
                     *row = in_order[*kind as usize][*row as usize];
                 }
             }

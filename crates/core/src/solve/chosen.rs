@@ -1,6 +1,6 @@
 //! The choices of `auto` in a step, and the hyperstaticity of a contact set.
 
-use super::form::{ContactForm, Place};
+use super::form::{ContactForm, RowPlace};
 
 use super::nodal::NodalSystem;
 use super::problem::Problem;
@@ -75,7 +75,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
         let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::zero();
         let moves = |b: &u32| problem.masses[*b as usize].moves();
         let terms = match problem.places[k] {
-            Place::System(r) => problem.of_systems[r as usize].terms(),
+            RowPlace::System(r) => problem.of_systems[r as usize].terms(),
             _ => &[],
         };
         if !carries || (!form.bodies.iter().any(moves) && terms.is_empty()) {

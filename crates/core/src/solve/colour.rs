@@ -40,7 +40,7 @@ struct Seen {
 
 /// The order of contacts, reused from step to step and recomputed when the contacts change.
 #[derive(Clone, Debug, Default)]
-pub struct Order {
+pub struct ContactOrder {
     bodies: Vec<[u32; 2]>,
     movable: Vec<bool>,
     sequence: Vec<u32>,
@@ -51,7 +51,7 @@ pub struct Order {
     changes: u64,
 }
 
-impl Order {
+impl ContactOrder {
     /// A number that changes with the contacts, their bodies or which of these move.
     pub fn changes(&self) -> u64 {
         self.changes
@@ -125,7 +125,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
         schedule: Schedule::default(),
     };
     if bodies.len() <= SMALL {
-        let (mut seen, mut groups) = (sorting.seen, Groups::default());
+        let (mut seen, mut groups) = (sorting.seen, ColourGroups::default());
         groups.add(bodies, movable, &mut seen, 0..bodies.len(), 1);
         return (groups.order, Schedule::of_groups(groups.ends).cut(PART));
     }
@@ -237,7 +237,7 @@ impl Sorting<'_> {
         let grouped = map_with_memory(divide, blocks.len(), memory, |(seen, mark), k| {
             let first = blocks[k].1 as usize * span;
             let end = bodies.len().min(first + span);
-            let mut groups = Groups::default();
+            let mut groups = ColourGroups::default();
             for from in (first..end).step_by(PART) {
                 *mark += 1;
                 let part = from..end.min(from + PART);
@@ -278,13 +278,13 @@ impl Sorting<'_> {
 
 /// Contacts grouped by colour, part by part.
 #[derive(Default)]
-struct Groups {
+struct ColourGroups {
     order: Vec<u32>,
     /// Where each group ends in the order.
     ends: Vec<u32>,
 }
 
-impl Groups {
+impl ColourGroups {
     /// Appends the contacts of a part. `seen` is of all bodies; `mark` differs from part to part.
     fn add(
         &mut self,

@@ -7,7 +7,7 @@ use crate::lanes::{Lane, LaneVector};
 #[inline(always)]
 pub fn project<L: Lane, T: LaneVector<L>>(normal: L, tangent: T, mu: L, c: L) -> (L, T) {
     let length = tangent.norm();
-    let nearest = Nearest::new(normal, length, mu, c);
+    let nearest = NearestImpulse::new(normal, length, mu, c);
     let t = if T::N == 1 {
         let on = T::from_fn(|k| nearest.bound.with_sign_of(tangent[k]));
         T::select(nearest.inside, tangent, on)
@@ -21,7 +21,7 @@ pub fn project<L: Lane, T: LaneVector<L>>(normal: L, tangent: T, mu: L, c: L) ->
 #[inline(always)]
 pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
     if D == 2 {
-        let nearest = Nearest::new(z[0], z[1].abs(), mu, c);
+        let nearest = NearestImpulse::new(z[0], z[1].abs(), mu, c);
         let on = nearest.bound.copysign(z[1]);
         let t = f64::select(nearest.inside, z[1], on);
         return std::array::from_fn(|k| if k == 0 { nearest.normal } else { t });
@@ -31,20 +31,20 @@ pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] 
         squared += x * x;
     }
     let length = squared.sqrt();
-    let nearest = Nearest::new(z[0], length, mu, c);
+    let nearest = NearestImpulse::new(z[0], length, mu, c);
     let share = nearest.share(length);
     std::array::from_fn(|k| if k == 0 { nearest.normal } else { z[k] * share })
 }
 
 /// A projected point: whether it was inside, its P, and |t| where it was not. All cases are
 /// computed and one is selected, because branches would be mispredicted too often.
-struct Nearest<L: Lane> {
+struct NearestImpulse<L: Lane> {
     inside: L::Mask,
     normal: L,
     bound: L,
 }
 
-impl<L: Lane> Nearest<L> {
+impl<L: Lane> NearestImpulse<L> {
     #[inline(always)]
     fn new(normal: L, length: L, mu: L, c: L) -> Self {
         let (zero, one) = (L::all(0.0), L::all(1.0));

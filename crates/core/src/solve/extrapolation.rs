@@ -7,24 +7,24 @@ use pulp::{Arch, Simd, WithSimd};
 const MAX_DIFFERENCES: usize = 8;
 
 /// One number per stored difference, zero for unused ones.
-type Lanes = [f64; MAX_DIFFERENCES];
+type DifferenceLanes = [f64; MAX_DIFFERENCES];
 
 /// The last differences of the map, stored side by side for each unknown, and their Gram matrix.
 #[derive(Debug)]
-struct Memory {
+struct DifferenceMemory {
     /// Changes of g(p).
-    dg: Vec<Lanes>,
+    dg: Vec<DifferenceLanes>,
     /// Changes of f = g(p) - p.
-    df: Vec<Lanes>,
-    gram: [Lanes; MAX_DIFFERENCES],
+    df: Vec<DifferenceLanes>,
+    gram: [DifferenceLanes; MAX_DIFFERENCES],
     /// df . f.
-    along: Lanes,
+    along: DifferenceLanes,
     next: usize,
     size: usize,
     most: usize,
 }
 
-impl Memory {
+impl DifferenceMemory {
     fn new(most: usize, n: usize) -> Self {
         Self {
             dg: vec![[0.0; MAX_DIFFERENCES]; n],
@@ -79,7 +79,7 @@ impl Memory {
     }
 
     /// Returns gamma that minimises |f - sum gamma_k df_k|; `None` if the system is singular.
-    fn weights(&self) -> Option<Lanes> {
+    fn weights(&self) -> Option<DifferenceLanes> {
         /// Regularisation of the least-squares system.
         const RIDGE: f64 = 1e-10;
         let n = self.size;
@@ -112,9 +112,9 @@ impl Memory {
 
     /// p = g - sum gamma_k dg_k.
     #[inline(always)]
-    fn extrapolate(&self, gamma: &Lanes, g: &[f64], p: &mut [f64]) {
+    fn extrapolate(&self, gamma: &DifferenceLanes, g: &[f64], p: &mut [f64]) {
         for ((p, g), dg) in p.iter_mut().zip(g).zip(&self.dg) {
-            let mut x: Lanes = std::array::from_fn(|k| gamma[k] * dg[k]);
+            let mut x: DifferenceLanes = std::array::from_fn(|k| gamma[k] * dg[k]);
             for half in [4, 2, 1] {
                 for k in 0..half {
                     x[k] += x[k + half];
@@ -154,7 +154,7 @@ pub enum Safeguard {
 /// The sequence of points at which the map is applied.
 #[derive(Debug)]
 pub struct Extrapolation {
-    memory: Memory,
+    memory: DifferenceMemory,
     safeguard: Safeguard,
     /// The point of the next iteration.
     pub start: Vec<f64>,
@@ -182,7 +182,7 @@ impl Extrapolation {
     pub fn new(memory: usize, safeguard: Safeguard, start: &[f64]) -> Self {
         let zero = vec![0.0; start.len()];
         Self {
-            memory: Memory::new(memory, start.len()),
+            memory: DifferenceMemory::new(memory, start.len()),
             safeguard,
             start: start.to_vec(),
             f: zero.clone(),

@@ -215,7 +215,7 @@ impl<S: Space> Mobility<S> {
 
 /// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum RowPlace {
     /// Of a kind of rows, see [`super::kinds`].
     Row {
         kind: u8,

@@ -2,7 +2,7 @@
 //! in [`row`](super::row) and a line here.
 
 use super::form::ContactForm;
-use super::row::{Bonded, Full, Kind, Plain, Row, Unbonded};
+use super::row::{Bonded, Full, Plain, Row, RowKind, Unbonded};
 use super::rows::Rows;
 use crate::geometry::space::Space;
 
@@ -28,7 +28,7 @@ macro_rules! kinds {
             /// The kind of a contact: the first that it can be of.
             #[inline]
             pub fn kind(contact: &ContactForm<S>) -> usize {
-                let serves = [$(<$law as Kind<S>>::serves(contact)),+];
+                let serves = [$(<$law as RowKind<S>>::serves(contact)),+];
                 serves.iter().position(|serves| *serves).unwrap_or(KINDS - 1)
             }
 

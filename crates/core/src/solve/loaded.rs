@@ -129,7 +129,7 @@ impl Points {
 /// The loaded points of a system. `column` gives the compliance of all nodes for an impulse on the
 /// node at a place, see [`crate::bodies::Compliance`].
 #[derive(Clone, Debug)]
-pub(super) struct Loaded<S: Space> {
+pub(super) struct LoadedPoints<S: Space> {
     points: Vec<u32>,
     /// The place of each point of the system among the loaded ones, as far as one was loaded.
     index: Vec<u32>,
@@ -145,7 +145,7 @@ pub(super) struct Loaded<S: Space> {
     response: Vec<f64>,
 }
 
-impl<S: Space> Loaded<S> {
+impl<S: Space> LoadedPoints<S> {
     /// No loaded point.
     pub fn new() -> Self {
         Self {

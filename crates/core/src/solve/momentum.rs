@@ -38,7 +38,7 @@ struct BodyIncrement<S: Space> {
 
 /// The state of the momentum iteration.
 #[derive(Debug)]
-pub(super) struct Momentum<S: Space> {
+pub(super) struct MomentumIteration<S: Space> {
     /// t_k of the module.
     t: f64,
     /// beta_k.
@@ -53,7 +53,7 @@ pub(super) struct Momentum<S: Space> {
     pub moments: Vec<S::Spin>,
 }
 
-impl<S: Space> Momentum<S> {
+impl<S: Space> MomentumIteration<S> {
     /// Starts from the impulses and velocities of a problem.
     pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
         let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };

@@ -4,12 +4,12 @@
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
 use super::error::{ErrorParts, Norm};
-use super::form::Place;
+use super::form::RowPlace;
 
 use super::kinds::{RowsOfKind, of_kind};
 use super::local::solver::Method;
 use super::measure::{error, free_velocity, measure, scale};
-use super::momentum::Momentum;
+use super::momentum::MomentumIteration;
 use super::nodal::NodalSystem;
 use super::problem::Problem;
 use super::row::{self, SolverBodies};
@@ -324,35 +324,35 @@ impl<S: Space> Problem<S> {
     }
 
     /// Sets the impulse of a contact; the caller updates the velocities.
-    fn set(&mut self, place: Place, impulse: &S::Vector) {
+    fn set(&mut self, place: RowPlace, impulse: &S::Vector) {
         match place {
-            Place::Row { kind, row } => {
+            RowPlace::Row { kind, row } => {
                 of_kind!(&mut self.rows[kind as usize], rows => rows.row_mut(row).set(impulse));
             }
-            Place::System(r) => self.of_systems[r as usize].set(impulse),
+            RowPlace::System(r) => self.of_systems[r as usize].set(impulse),
         }
     }
 
     /// Solves a contact that moves nothing for the current velocities.
-    fn solve_at_rest(&mut self, place: Place) {
+    fn solve_at_rest(&mut self, place: RowPlace) {
         let bodies = &mut self.solver_bodies;
         match place {
-            Place::Row { kind, row } => {
+            RowPlace::Row { kind, row } => {
                 of_kind!(&mut self.rows[kind as usize], rows => rows.solve_at(row, bodies));
             }
-            Place::System(r) => {
+            RowPlace::System(r) => {
                 self.of_systems[r as usize].update(bodies, &mut self.systems, 1.0);
             }
         }
     }
 
     /// rho of the natural map; 0 for a contact that moves nothing.
-    fn rho(&self, place: Place) -> f64 {
+    fn rho(&self, place: RowPlace) -> f64 {
         match place {
-            Place::Row { kind, row } => {
+            RowPlace::Row { kind, row } => {
                 of_kind!(&self.rows[kind as usize], rows => rows.row(row).rho())
             }
-            Place::System(r) => self.of_systems[r as usize].rho(),
+            RowPlace::System(r) => self.of_systems[r as usize].rho(),
         }
     }
 
@@ -405,11 +405,11 @@ impl<S: Space> Problem<S> {
             let count = of_kind!(rows, rows => rows.len());
             if place.is_none() && at < first + count {
                 let (kind, row) = (kind as u8, (at - first) as u32);
-                place = Some(Place::Row { kind, row });
+                place = Some(RowPlace::Row { kind, row });
             }
             first += count;
         }
-        let place = place.unwrap_or_else(|| Place::System((at - first) as u32));
+        let place = place.unwrap_or_else(|| RowPlace::System((at - first) as u32));
         self.places.iter().position(|p| *p == place)
     }
 }
@@ -434,7 +434,7 @@ fn sweep<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
     parallel: bool,
-    momentum: Option<&mut Momentum<S>>,
+    momentum: Option<&mut MomentumIteration<S>>,
 ) {
     match momentum {
         None => {
@@ -460,7 +460,7 @@ fn sweep_extrapolated<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
     parallel: bool,
-    momentum: &mut Momentum<S>,
+    momentum: &mut MomentumIteration<S>,
 ) {
     let factor = momentum.advance(&mut problem.solver_bodies, parallel);
     for (row, before) in problem.moments.iter_mut().zip(&mut momentum.moments) {

@@ -1,7 +1,7 @@
 //! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and
 //! their compliance.
 
-use super::loaded::{Loaded, Points, add_response, vector};
+use super::loaded::{LoadedPoints, Points, add_response, vector};
 use crate::bodies::{Compliance, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
@@ -18,14 +18,14 @@ pub struct NodalSystem<S: Space> {
     pub nodes: Vec<u32>,
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
-    compliance: Columns<S>,
+    compliance: ComplianceColumns<S>,
     /// Velocities of all nodes, one after the other (m/s); of a large system those at the last
     /// [`Self::settle`].
     pub(super) velocity: Vec<f64>,
     /// What contacts act on.
     points: Points,
     /// What sweeps follow of a large system.
-    pub(super) loaded: Option<Loaded<S>>,
+    pub(super) loaded: Option<LoadedPoints<S>>,
 }
 
 /// Fewest nodes of a large system, of which sweeps follow loaded points alone. Below that all
@@ -35,14 +35,14 @@ const LARGE: usize = 64;
 /// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an
 /// impulse on one are read in a row in each update of a contact.
 #[derive(Clone, Debug)]
-enum Columns<S: Space> {
+enum ComplianceColumns<S: Space> {
     /// Of the step, one after the other.
     Own(Arc<Vec<f64>>),
     /// That the system keeps, with the columns of touched nodes.
     Retained(Arc<Compliance<S>>),
 }
 
-impl<S: Space> Columns<S> {
+impl<S: Space> ComplianceColumns<S> {
     fn column(&self, at: usize, count: usize) -> &[f64] {
         let size = S::D * S::D * count;
         match self {
@@ -57,7 +57,7 @@ impl<S: Space> NodalSystem<S> {
     /// Contacts act on nodes whose columns are there.
     pub fn kept(compliance: Arc<Compliance<S>>, free: Vec<S::Vector>) -> Self {
         let nodes = compliance.nodes().to_vec();
-        Self::with(nodes, free, Columns::Retained(compliance))
+        Self::with(nodes, free, ComplianceColumns::Retained(compliance))
     }
 
     /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by
@@ -75,12 +75,12 @@ impl<S: Space> NodalSystem<S> {
                 }
             }
         }
-        Self::with(nodes, free, Columns::Own(Arc::new(columns)))
+        Self::with(nodes, free, ComplianceColumns::Own(Arc::new(columns)))
     }
 
-    fn with(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: Columns<S>) -> Self {
+    fn with(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: ComplianceColumns<S>) -> Self {
         let mut system = Self {
-            loaded: (nodes.len() >= LARGE).then(Loaded::new),
+            loaded: (nodes.len() >= LARGE).then(LoadedPoints::new),
             points: Points::new(nodes.len()),
             velocity: Vec::with_capacity(S::D * nodes.len()),
             nodes,

@@ -1,9 +1,9 @@
 //! The contact problem of a step: bodies as velocity records, contacts as rows.
 
 use super::connected::Connected;
-use super::form::{ContactForm, ContactSolution, Mobility, Place};
+use super::form::{ContactForm, ContactSolution, Mobility, RowPlace};
 use super::kinds::{KINDS, RowsOfKind, of_kind};
-use super::loaded::Loaded;
+use super::loaded::LoadedPoints;
 use super::nodal::NodalSystem;
 use super::row::{MomentForm, MomentRow, MomentSolution, Parts, SolverBody, SystemRow};
 use super::traction::Tractions;
@@ -53,10 +53,10 @@ pub struct Problem<S: Space> {
     /// The dynamical systems, as far as contacts see them.
     pub(super) systems: Vec<NodalSystem<S>>,
     /// Memory of large systems that were solved before.
-    pub(super) loaded: Vec<Loaded<S>>,
+    pub(super) loaded: Vec<LoadedPoints<S>>,
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<RowPlace>,
     /// Connected sets of the contacts that it had when these were asked for last.
     pub(super) connected: Connected,
     /// Whether a contact has a compliance.
@@ -103,7 +103,7 @@ impl<S: Space> Problem<S> {
     /// Bytes per contact for the order of the iteration: its index as pushed, bodies, sequence and
     /// places.
     pub const BYTES_TO_SORT: usize =
-        size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
+        size_of::<RowPlace>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
 
     /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {
@@ -154,17 +154,17 @@ impl<S: Space> Problem<S> {
     }
 
     /// Returns the normal impulse of a contact (N s).
-    pub(super) fn normal(&self, place: Place) -> f64 {
+    pub(super) fn normal(&self, place: RowPlace) -> f64 {
         self.local_impulse(place).n
     }
 
     /// Returns the normal and the tangential impulse of a contact (N s).
-    pub(super) fn local_impulse(&self, place: Place) -> Parts<S> {
+    pub(super) fn local_impulse(&self, place: RowPlace) -> Parts<S> {
         match place {
-            Place::Row { kind, row } => {
+            RowPlace::Row { kind, row } => {
                 of_kind!(&self.rows[kind as usize], rows => rows.row(row).local_impulse())
             }
-            Place::System(r) => self.of_systems[r as usize].impulse(),
+            RowPlace::System(r) => self.of_systems[r as usize].impulse(),
         }
     }
 
@@ -177,10 +177,10 @@ impl<S: Space> Problem<S> {
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
         let bodies = &self.solver_bodies;
         match self.places[k] {
-            Place::Row { kind, row } => {
+            RowPlace::Row { kind, row } => {
                 of_kind!(&self.rows[kind as usize], rows => rows.solution(row, bodies))
             }
-            Place::System(r) => self.of_systems[r as usize].solution(bodies, &self.systems),
+            RowPlace::System(r) => self.of_systems[r as usize].solution(bodies, &self.systems),
         }
     }
 

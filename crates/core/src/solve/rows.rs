@@ -1,11 +1,11 @@
 //! Rows of one kind, in the order of the iteration.
 
-use super::colour::Order;
+use super::colour::ContactOrder;
 use super::error::{Scale, Sums};
 use super::form::{ContactForm, ContactSolution};
 use super::row::{
-    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, SolverBody, Update,
-    Visit, visit,
+    self, Free, Load, MeasureErrors, Parts, RigidBodies, Row, RowKind, SolverBodies, SolverBody,
+    Update, Visit, visit,
 };
 use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, worth_dividing};
@@ -22,27 +22,27 @@ const ORDERED: f64 = 14.0;
 
 /// The contacts of one kind. Rows are added in any order and sorted once.
 #[derive(Debug)]
-pub(in crate::solve) struct Rows<S: Space, K: Kind<S>> {
+pub(in crate::solve) struct Rows<S: Space, K: RowKind<S>> {
     rows: Vec<Row<S, K>>,
     /// Their bodies, until they are sorted.
     pushed: Vec<[u32; 2]>,
-    order: Order,
+    order: ContactOrder,
     /// Whether the rows are in that order.
     sorted: bool,
 }
 
-impl<S: Space, K: Kind<S>> Default for Rows<S, K> {
+impl<S: Space, K: RowKind<S>> Default for Rows<S, K> {
     fn default() -> Self {
         Self {
             rows: Vec::new(),
             pushed: Vec::new(),
-            order: Order::default(),
+            order: ContactOrder::default(),
             sorted: true,
         }
     }
 }
 
-impl<S: Space, K: Kind<S>> Rows<S, K> {
+impl<S: Space, K: RowKind<S>> Rows<S, K> {
     /// Removes all, and keeps the memory and the last order.
     pub fn clear(&mut self) {
         self.rows.clear();
@@ -119,7 +119,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         self.order.places()
     }
 
-    /// A number that changes with the order of the rows ([`Order::changes`]).
+    /// A number that changes with the order of the rows ([`ContactOrder::changes`]).
     pub fn changes(&self) -> u64 {
         self.order.changes()
     }
@@ -251,7 +251,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         parallel: bool,
         sums: &mut Sums,
     ) {
-        let parts = self.read(solver_bodies, parallel, Measure::default, |m, at| {
+        let parts = self.read(solver_bodies, parallel, MeasureErrors::default, |m, at| {
             m.sums(first + at)
         });
         parts.iter().for_each(|part| sums.merge(part));

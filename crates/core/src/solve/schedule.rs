@@ -68,7 +68,7 @@ impl Schedule {
                     colour += 1;
                 }
                 await_count(&done, self.colours[colour] as usize);
-                let _done = Done(&done);
+                let _done = BlockDone(&done);
                 block(ticket);
             }
         };
@@ -151,9 +151,9 @@ fn await_count(done: &AtomicUsize, count: usize) {
 }
 
 /// Counts a block as complete on drop, even after a panic, since other threads wait for it.
-struct Done<'a>(&'a AtomicUsize);
+struct BlockDone<'a>(&'a AtomicUsize);
 
-impl Drop for Done<'_> {
+impl Drop for BlockDone<'_> {
     fn drop(&mut self) {
         self.0.fetch_add(1, Ordering::Release);
     }

@@ -1,6 +1,6 @@
 //! Dynamical systems in the contact problem.
 
-use super::form::{ContactForm, Mobility, Place};
+use super::form::{ContactForm, Mobility, RowPlace};
 use super::nodal::NodalSystem;
 use super::problem::Problem;
 use super::row::{MomentForm, SystemRow, Term};
@@ -71,7 +71,7 @@ impl<S: Space> Problem<S> {
         }
         self.compliant |= contact.compliance != [0.0; 2];
         self.places
-            .push(Place::System(self.of_systems.len() as u32));
+            .push(RowPlace::System(self.of_systems.len() as u32));
         let bodies = rigid.map(|side| {
             side.map(|(body, arm)| {
                 (

@@ -120,9 +120,9 @@ impl Bench {
         to: &Direction,
         speed: f64,
         pressure: f64,
-    ) -> Result<Pull, LawError> {
+    ) -> Result<BondPull, LawError> {
         let mut state = [self.fresh()];
-        let mut pull = Pull::default();
+        let mut pull = BondPull::default();
         let (mut before, mut carried) = (0.0, 0.0);
         for u in openings {
             let ([n, t], [twist, bend]) = (to.opening, to.rotation);
@@ -180,7 +180,7 @@ impl Direction {
 
 /// A pull.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pull {
+struct BondPull {
     /// Work (J/m^2).
     work: f64,
     /// Largest traction (Pa), and its opening (m).

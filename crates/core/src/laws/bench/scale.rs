@@ -37,14 +37,14 @@ pub struct BondScale {
 
 /// Direction of opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Direction {
+enum OpeningDirection {
     /// Along the normal.
     Normal,
     /// Along a tangent.
     Shear,
 }
 
-impl Direction {
+impl OpeningDirection {
     fn motion(self, opening: f64) -> Motion {
         let k = usize::from(self == Self::Shear);
         let mut motion = Motion::default();
@@ -55,7 +55,7 @@ impl Direction {
 }
 
 /// A point of a path: opening (m), traction in its direction (Pa), damage.
-type Point = (f64, f64, f64);
+type PathPoint = (f64, f64, f64);
 
 impl Bench {
     /// Returns the scales of a bond that is opened at a given speed (m/s); `None` if the law makes
@@ -68,14 +68,14 @@ impl Bench {
             return Ok(None);
         }
         Ok(Some(BondScale {
-            normal: Mode::find(self, Direction::Normal, speed)?,
-            shear: Mode::find(self, Direction::Shear, speed)?,
+            normal: Mode::find(self, OpeningDirection::Normal, speed)?,
+            shear: Mode::find(self, OpeningDirection::Shear, speed)?,
         }))
     }
 }
 
 impl Mode {
-    fn find(bench: &mut Bench, direction: Direction, speed: f64) -> Result<Self, LawError> {
+    fn find(bench: &mut Bench, direction: OpeningDirection, speed: f64) -> Result<Self, LawError> {
         // First a coarse search over all scales, then a fine one around the peak and on to failure.
         let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
         let coarse = (0..=steps).map(|k| FIRST * 1.05f64.powi(k));
@@ -118,17 +118,17 @@ impl Mode {
 /// Drives a new bond through a list of openings, optionally stopping at failure.
 fn path(
     bench: &mut Bench,
-    direction: Direction,
+    direction: OpeningDirection,
     speed: f64,
     openings: impl Iterator<Item = f64>,
     to_break: bool,
-) -> Result<Vec<Point>, LawError> {
+) -> Result<Vec<PathPoint>, LawError> {
     let mut state = [bench.fresh()];
-    let mut points: Vec<Point> = Vec::new();
+    let mut points: Vec<PathPoint> = Vec::new();
     let (mut before, mut most) = (0.0, 0.0f64);
     for u in openings {
         let answer = bench.step(&mut state, &[direction.motion(u)], (u - before) / speed)?[0];
-        let traction = answer.traction[usize::from(direction == Direction::Shear)];
+        let traction = answer.traction[usize::from(direction == OpeningDirection::Shear)];
         points.push((u, traction, answer.damage));
         most = most.max(traction);
         let done = answer.damage >= 1.0 || (most > 0.0 && traction < LITTLE * most);
@@ -140,13 +140,13 @@ fn path(
     Ok(points)
 }
 
-fn peak(points: &[Point]) -> Option<Point> {
+fn peak(points: &[PathPoint]) -> Option<PathPoint> {
     let carried = points.iter().filter(|p| p.1 > 0.0);
     carried.copied().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Returns the opening at which a path ended in failure.
-fn broken(points: &[Point]) -> Option<f64> {
+fn broken(points: &[PathPoint]) -> Option<f64> {
     let (most, last) = (peak(points)?.1, points.last()?);
     (last.2 >= 1.0 || last.1 < LITTLE * most).then_some(last.0)
 }
@@ -166,7 +166,7 @@ pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, La
     let mut most = bench.step(&mut state, &[touch], 1.0)?[0].strength[0];
     let mut gap = FIRST;
     while gap < LAST {
-        let motion = Direction::Normal.motion(gap);
+        let motion = OpeningDirection::Normal.motion(gap);
         let pull = bench.step(&mut state, &[motion], 0.05 * gap / speed)?[0].strength[0];
         most = most.max(pull);
         if pull < LITTLE * most {

@@ -7,14 +7,14 @@
 
 use super::form::{Form, largest};
 use super::law::slip;
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Accelerated;
 
 impl<const D: usize> Solver<D> for Accelerated {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         let n = form.len();
         let size: Vec<f64> = (0..n).map(|c| largest(form.w.diagonal(c))).collect();
         // Contacts between immovable bodies keep their impulse.

@@ -1,8 +1,8 @@
 //! Gauss-Seidel iterations with Anderson acceleration; see [`crate::solve::extrapolation`].
 
 use super::form::Form;
-use super::nlgs::{Sweep, Tests};
-use super::state::{Best, Budget, Solver, State};
+use super::nlgs::{LocalSweep, Tests};
+use super::state::{Best, Budget, Iteration, Solver};
 use crate::solve::extrapolation::{Extrapolation, Safeguard};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -104,8 +104,8 @@ impl<const D: usize> WithSimd for Adopt<'_, D> {
 }
 
 impl<const D: usize> Solver<D> for Anderson {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        let Some(mut sweep) = Sweep::new(form) else {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
+        let Some(mut sweep) = LocalSweep::new(form) else {
             return;
         };
         let mut sequence: Option<Extrapolation> = None;
@@ -185,7 +185,7 @@ mod tests {
         let form = Form::new(&w, &q, &laws, Norm::Field);
         let mut ends = Vec::new();
         for patience in [Some(50), Some(200), None] {
-            let mut state = State::new(&form, vec![[0.0; 2]; 2]);
+            let mut state = Iteration::new(&form, vec![[0.0; 2]; 2]);
             let mut budget = Budget::new(1e-8, 3000, 10.0);
             budget.history = Some(Vec::new());
             let anderson = Anderson {

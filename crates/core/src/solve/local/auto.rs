@@ -11,7 +11,7 @@ use super::form::Form;
 use super::interior::Interior;
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 
 /// The method; [`Auto::names`] returns the methods it used.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ impl Auto {
         name: &'static str,
         solver: &dyn Solver<D>,
         form: &Form<D>,
-        state: &mut State<D>,
+        state: &mut Iteration<D>,
         budget: &mut Budget,
         iterations: u32,
     ) -> bool {
@@ -66,7 +66,7 @@ impl Auto {
 }
 
 impl<const D: usize> Solver<D> for Auto {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         self.used.borrow_mut().clear();
         let Some(w) = form.w.matrix() else {
             return;

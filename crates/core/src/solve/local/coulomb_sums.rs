@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 const LANES: usize = 4;
 
 /// One number per contact.
-type Lanes = [f64; LANES];
+type FourContacts = [f64; LANES];
 
 /// Returns the squared residuals, velocities and impulses; `None` if a block has another law.
 pub fn sums<const D: usize>(p: &[[f64; D]], u: &[[f64; D]], laws: &[Law]) -> Option<Sums> {
@@ -25,7 +25,7 @@ impl<const D: usize> WithSimd for Pass<'_, D> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Self::Output {
         let Self(p, u, laws) = self;
-        let mut parts = Parts::default();
+        let mut parts = PartialSums::default();
         let (ps, us, all) = (p.as_chunks(), u.as_chunks(), laws.as_chunks());
         for ((p, u), laws) in ps.0.iter().zip(us.0).zip(all.0) {
             parts.add(p, u, laws)?;
@@ -48,13 +48,13 @@ impl<const D: usize> WithSimd for Pass<'_, D> {
 
 /// Partial sums.
 #[derive(Default)]
-struct Parts {
-    residual: Lanes,
-    velocity: Lanes,
-    impulse: Lanes,
+struct PartialSums {
+    residual: FourContacts,
+    velocity: FourContacts,
+    impulse: FourContacts,
 }
 
-impl Parts {
+impl PartialSums {
     #[inline(always)]
     fn add<const D: usize>(
         &mut self,

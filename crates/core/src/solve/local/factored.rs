@@ -1,7 +1,7 @@
 //! Factorisation of N W N + S for a matrix W and diagonal blocks S.
 
 use super::block::{Block, BlockMatrix};
-use super::linear::{Factor, Rows};
+use super::linear::{Factor, SparseRows};
 
 /// Matrix added to W, and the scaling of the system.
 #[derive(Clone, Copy, Debug)]
@@ -37,19 +37,19 @@ pub fn factor<'a, const D: usize>(
     for size in sizes {
         starts.push(starts[starts.len() - 1] + size);
     }
-    let mut a = Rows::default();
+    let mut a = SparseRows::default();
     a.starts.push(0);
     for c in 0..s.len() {
         for i in 0..sizes[c] {
             let left = if i == 0 { normal[c] } else { 1.0 };
-            let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
+            let push = |a: &mut SparseRows, e: usize, row: &[f64; D]| {
                 for (j, x) in row.iter().take(sizes[e]).enumerate() {
                     a.columns.push(starts[e] + j);
                     a.values
                         .push(left * x * if j == 0 { normal[e] } else { 1.0 });
                 }
             };
-            let own = |a: &mut Rows| {
+            let own = |a: &mut SparseRows| {
                 for j in 0..sizes[c] {
                     let right = if j == 0 { normal[c] } else { 1.0 };
                     a.columns.push(starts[c] + j);

@@ -3,8 +3,8 @@
 //! friction bounds s = mu p_n are updated in every iteration (the diagonalised Tresca fixed point).
 //!
 //! The predicted point is projected onto C^k; gradient and last direction are projected onto the
-//! tangent cone of C^k at the iterate. [`Kind::Plain`] uses the gradient, [`Kind::Conjugate`]
-//! conjugate directions, and [`Kind::Preconditioned`] conjugate directions in the metric of the
+//! tangent cone of C^k at the iterate. [`GradientKind::Plain`] uses the gradient, [`GradientKind::Conjugate`]
+//! conjugate directions, and [`GradientKind::Preconditioned`] conjugate directions in the metric of the
 //! diagonal of W.
 //!
 //! A contact that slips at the end of an iteration is moved to its new friction bound. If it stayed
@@ -18,11 +18,11 @@
 
 use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 
 /// Variant of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum GradientKind {
     /// Projected gradient, PG.
     Plain,
     /// Conjugate projected gradient, CPG.
@@ -35,7 +35,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub struct Gradient {
     /// Variant.
-    pub kind: Kind,
+    pub kind: GradientKind,
 }
 
 /// Fraction of the friction bound from which a contact counts as slipping.
@@ -213,7 +213,7 @@ fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
 /// one.
 struct Descent<'a, const D: usize> {
     form: &'a Form<'a, D>,
-    kind: Kind,
+    kind: GradientKind,
     /// Metric of the gradient, as diagonal blocks.
     metric: Vec<[f64; D]>,
     /// Admissible sets at the current bounds.
@@ -236,7 +236,7 @@ struct Descent<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Descent<'a, D> {
-    fn new(form: &'a Form<'a, D>, kind: Kind) -> Self {
+    fn new(form: &'a Form<'a, D>, kind: GradientKind) -> Self {
         let n = form.len();
         let zero = vec![[0.0; D]; n];
         Self {
@@ -257,7 +257,7 @@ impl<'a, const D: usize> Descent<'a, D> {
     }
 
     /// Projects the gradient and the last direction onto the tangent cones at the iterate.
-    fn project_gradient(&mut self, state: &State<D>) {
+    fn project_gradient(&mut self, state: &Iteration<D>) {
         for c in 0..self.sets.len() {
             let set = Set::of(&self.form.laws[c], &state.p[c], &state.p);
             self.gradient[c] = std::array::from_fn(|k| -self.metric[c][k] * state.u[c][k]);
@@ -269,10 +269,10 @@ impl<'a, const D: usize> Descent<'a, D> {
     }
 
     /// Chooses the direction; returns the slope along it.
-    fn choose_direction(&mut self, state: &State<D>) -> f64 {
+    fn choose_direction(&mut self, state: &Iteration<D>) -> f64 {
         // `w_direction` and the curvature still belong to the last direction.
         let curvature = dot(&self.direction, &self.w_direction);
-        let beta = if self.restarts || self.kind == Kind::Plain || curvature <= 0.0 {
+        let beta = if self.restarts || self.kind == GradientKind::Plain || curvature <= 0.0 {
             0.0
         } else {
             -dot(&self.gradient, &self.w_direction) / curvature
@@ -299,7 +299,7 @@ impl<'a, const D: usize> Descent<'a, D> {
 
     /// Moves to the minimum along the direction, projected; returns by how much that raised the
     /// energy.
-    fn step(&mut self, state: &mut State<D>, alpha: f64, energy: f64) -> f64 {
+    fn step(&mut self, state: &mut Iteration<D>, alpha: f64, energy: f64) -> f64 {
         for (p, d) in state.p.iter_mut().zip(&self.direction) {
             for k in 0..D {
                 p[k] += alpha * d[k];
@@ -313,7 +313,7 @@ impl<'a, const D: usize> Descent<'a, D> {
     }
 
     /// Replaces the step by one of the safe length along the gradient.
-    fn step_safely(&mut self, state: &mut State<D>) {
+    fn step_safely(&mut self, state: &mut Iteration<D>) {
         let (form, metric) = (self.form, &self.metric);
         let step = *self.safe.get_or_insert_with(|| safe_step(form, metric));
         for c in 0..state.p.len() {
@@ -326,20 +326,20 @@ impl<'a, const D: usize> Descent<'a, D> {
     }
 
     /// Returns p.W p / 2 + q.p.
-    fn energy(&self, state: &State<D>) -> f64 {
+    fn energy(&self, state: &Iteration<D>) -> f64 {
         0.5 * (dot(&state.p, &state.u) + dot(&state.p, self.form.q))
     }
 }
 
 /// Returns the metric of the gradient, isotropic in the tangents, so that discs stay discs.
-fn metric<const D: usize>(form: &Form<D>, kind: Kind) -> Vec<[f64; D]> {
+fn metric<const D: usize>(form: &Form<D>, kind: GradientKind) -> Vec<[f64; D]> {
     let of = |c: usize| {
         let w = form.w.diagonal(c);
         if largest(w) == 0.0 {
             // Contacts between immovable bodies keep their impulse.
             return [0.0; D];
         }
-        if kind != Kind::Preconditioned {
+        if kind != GradientKind::Preconditioned {
             return [1.0; D];
         }
         let tangential = (1..D).map(|k| w[k][k]).sum::<f64>() / (D - 1) as f64;
@@ -352,7 +352,7 @@ fn metric<const D: usize>(form: &Form<D>, kind: Kind) -> Vec<[f64; D]> {
 }
 
 impl<const D: usize> Solver<D> for Gradient {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         let mut descent = Descent::new(form, self.kind);
         let mut best = Best::of(state);
         while !budget.ends(state) {

@@ -15,7 +15,7 @@ use super::factored::{Shift, Shifted};
 use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::lorentz::{Scaling, divide, longest_step, product};
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 
 /// Smoothing of |v_t| relative to the value of v_t on the central path of a sticking contact.
 const SMOOTH: f64 = 0.01;
@@ -59,7 +59,7 @@ impl Inwards {
 pub struct Interior;
 
 /// Increments of r and of v.
-type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+type Increments<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
 
 /// Fraction of the slope of |u_t| that is linearised: it is reduced, or set to zero, where it makes
 /// steps short.
@@ -100,7 +100,7 @@ impl Slope {
 /// A block in the method: its first components lie in a Lorentz cone, the others are free with zero
 /// velocity.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct ConeBlock {
     /// Components in the cone: all for a contact with friction, one without friction or for a
     /// tension-only bond.
     cone: usize,
@@ -111,7 +111,7 @@ struct Part {
     over: f64,
 }
 
-impl Part {
+impl ConeBlock {
     fn new<const D: usize>(law: &Law) -> Self {
         let (cone, size, over) = match law {
             Law::Free => (0, D, 1.0),
@@ -154,7 +154,7 @@ impl Interior {
 
 /// The cones of the blocks of a problem.
 struct Cones {
-    parts: Vec<Part>,
+    parts: Vec<ConeBlock>,
     /// Components of each block with a row in the system.
     sizes: Vec<usize>,
     /// Factor from the axis of each cone to the normal.
@@ -165,7 +165,7 @@ struct Cones {
 
 impl Cones {
     fn new<const D: usize>(laws: &[Law]) -> Self {
-        let parts: Vec<Part> = laws.iter().map(Part::new::<D>).collect();
+        let parts: Vec<ConeBlock> = laws.iter().map(ConeBlock::new::<D>).collect();
         Self {
             sizes: parts.iter().map(|part| part.size).collect(),
             over: parts.iter().map(|part| part.over).collect(),
@@ -231,7 +231,7 @@ impl<const D: usize> Iterate<D> {
         }
     }
 
-    fn advance(&mut self, t: f64, (dr, dv): &Pair<D>) {
+    fn advance(&mut self, t: f64, (dr, dv): &Increments<D>) {
         for c in 0..self.r.len() {
             for k in 0..D {
                 self.r[c][k] += t * dr[c][k];
@@ -319,7 +319,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
 
     /// Solves (W + A P^2) dr = A P d + residual, dv = P d - P^2 dr; `None` if the solution is not
     /// finite.
-    fn direction(&self, factor: &dyn Shifted<D>, d: &[[f64; D]]) -> Option<Pair<D>> {
+    fn direction(&self, factor: &dyn Shifted<D>, d: &[[f64; D]]) -> Option<Increments<D>> {
         let (n, parts) = (d.len(), &self.cones.parts);
         let (scalings, residual, tau) = (&self.scalings, &self.residual, &self.tau);
         let pd: Vec<[f64; D]> = (0..n)
@@ -351,7 +351,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
     }
 
     /// Returns the largest steps for which r and v stay in their cones.
-    fn longest_steps(&self, (dr, dv): &Pair<D>) -> (f64, f64) {
+    fn longest_steps(&self, (dr, dv): &Increments<D>) -> (f64, f64) {
         let Iterate { r, v } = self.at;
         let ends = |c: &usize| {
             let part = |x: &[f64; D]| self.cones.parts[*c].of(x);
@@ -365,7 +365,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
 
     /// Returns the centring parameter that the predictor suggests: the cube of the fraction of r.v
     /// that would be left at the end of its longest step.
-    fn centring(&self, predictor: &Pair<D>) -> f64 {
+    fn centring(&self, predictor: &Increments<D>) -> f64 {
         let (a, b) = self.longest_steps(predictor);
         let (a, b) = (a.min(1.0), b.min(1.0));
         let t = a.min(b);
@@ -383,7 +383,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
 
     /// Returns the right-hand side of the corrector: centring, and the second-order term of the
     /// predictor.
-    fn corrected(&self, lambda: &[[f64; D]], predictor: &Pair<D>) -> Vec<[f64; D]> {
+    fn corrected(&self, lambda: &[[f64; D]], predictor: &Increments<D>) -> Vec<[f64; D]> {
         let sigma = self.centring(predictor);
         let ((dr, dv), parts) = (predictor, &self.cones.parts);
         (0..lambda.len())
@@ -404,7 +404,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
     }
 
     /// Returns a predictor-corrector step and its length; `None` if a system cannot be solved.
-    fn step(&self, form: &Form<D>, [size_r, size_v]: [f64; 2]) -> Option<(f64, Pair<D>)> {
+    fn step(&self, form: &Form<D>, [size_r, size_v]: [f64; 2]) -> Option<(f64, Increments<D>)> {
         let factor = form.w.shifted(&Shift {
             s: &self.diagonal,
             sizes: &self.cones.sizes,
@@ -424,7 +424,7 @@ impl<'a, const D: usize> Linearised<'a, D> {
 }
 
 impl<const D: usize> Solver<D> for Interior {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         let cones = Cones::new::<D>(form.laws);
         let Some(magnitudes) = cones.magnitudes(form) else {
             return;

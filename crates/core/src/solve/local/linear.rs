@@ -7,7 +7,7 @@ use faer::{Conj, Mat, MatMut};
 
 /// A matrix in compressed rows with increasing columns.
 #[derive(Clone, Debug, Default)]
-pub struct Rows {
+pub struct SparseRows {
     /// Start of each row, and the end of the last.
     pub starts: Vec<usize>,
     /// Columns.
@@ -32,7 +32,7 @@ pub enum Factor {
 impl Factor {
     /// Computes an LU factorisation with partial pivoting; `None` where the matrix is singular or
     /// not finite.
-    pub fn new(a: &Rows) -> Option<Self> {
+    pub fn new(a: &SparseRows) -> Option<Self> {
         let n = a.starts.len() - 1;
         if a.values.iter().any(|x| !x.is_finite()) {
             return None;
@@ -76,9 +76,9 @@ mod tests {
     fn solves_dense_and_sparse() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
         for n in [3usize, 50, 700] {
-            let mut a = Rows {
+            let mut a = SparseRows {
                 starts: vec![0],
-                ..Rows::default()
+                ..SparseRows::default()
             };
             for r in 0..n {
                 for c in 0..n {

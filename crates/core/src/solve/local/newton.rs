@@ -9,7 +9,7 @@
 use super::form::{Form, largest, squared};
 use super::law::{Law, slip};
 use super::linear::{Factor, Rows};
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 use std::time::Instant;
 
 /// The method and its parameters.
@@ -227,14 +227,14 @@ fn push<const D: usize>(a: &mut Rows, block: usize, row: &[f64; D]) {
 
 /// An iterate of Newton's method with its residual.
 #[derive(Clone)]
-struct Point<const D: usize> {
+struct NewtonIterate<const D: usize> {
     p: Vec<[f64; D]>,
     u: Vec<[f64; D]>,
     f: Vec<[f64; D]>,
     merit: f64,
 }
 
-impl<const D: usize> Point<D> {
+impl<const D: usize> NewtonIterate<D> {
     fn new(n: usize) -> Self {
         let zero = vec![[0.0; D]; n];
         Self {
@@ -273,9 +273,9 @@ const SHORT: f64 = 0.1;
 fn inner<const D: usize>(
     prox: &Prox<D>,
     mean: f64,
-    at: &mut Point<D>,
-    trial: &mut Point<D>,
-    state: &mut State<D>,
+    at: &mut NewtonIterate<D>,
+    trial: &mut NewtonIterate<D>,
+    state: &mut Iteration<D>,
     budget: &Budget,
 ) -> bool {
     at.p.copy_from_slice(&prox.centre);
@@ -342,7 +342,7 @@ impl Newton {
 }
 
 impl<const D: usize> Solver<D> for Newton {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         const FALL: f64 = 0.3;
         const RISE: f64 = 3.0;
         const HOLD: u32 = 4;
@@ -361,7 +361,7 @@ impl<const D: usize> Solver<D> for Newton {
             alpha: self.alpha * mean,
             centre: state.p.clone(),
         };
-        let (mut at, mut trial) = (Point::new(n), Point::new(n));
+        let (mut at, mut trial) = (NewtonIterate::new(n), NewtonIterate::new(n));
         let mut best = Best::of(state);
         let mut hold = 0u32;
         let mut failures = 0;

@@ -4,7 +4,7 @@ use super::block::BlockMatrix;
 use super::contact::Local;
 use super::form::{Form, largest};
 use super::law::Law;
-use super::state::{Best, Budget, Solver, State};
+use super::state::{Best, Budget, Iteration, Solver};
 use crate::solve::error::Norm;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -43,7 +43,7 @@ impl Default for Nlgs {
 }
 
 /// Working memory of the Gauss-Seidel iteration.
-pub struct Sweep<'a, const D: usize> {
+pub struct LocalSweep<'a, const D: usize> {
     w: &'a BlockMatrix<D>,
     q: &'a [[f64; D]],
     laws: &'a [Law],
@@ -54,7 +54,7 @@ pub struct Sweep<'a, const D: usize> {
     pub change: f64,
 }
 
-impl<'a, const D: usize> Sweep<'a, D> {
+impl<'a, const D: usize> LocalSweep<'a, D> {
     /// Forms the inverses of the diagonal; none where W cannot be had as a matrix.
     pub fn new(form: &Form<'a, D>) -> Option<Self> {
         let w = form.w.matrix()?;
@@ -128,8 +128,8 @@ impl<'a, const D: usize> Sweep<'a, D> {
     }
 }
 
-/// [`Sweep::forward`] for the vector instructions of this machine.
-struct Forward<'s, 'a, const D: usize>(&'s mut Sweep<'a, D>, &'s mut [[f64; D]], f64);
+/// [`LocalSweep::forward`] for the vector instructions of this machine.
+struct Forward<'s, 'a, const D: usize>(&'s mut LocalSweep<'a, D>, &'s mut [[f64; D]], f64);
 
 impl<const D: usize> WithSimd for Forward<'_, '_, D> {
     type Output = ();
@@ -150,7 +150,7 @@ impl<const D: usize> WithSimd for Forward<'_, '_, D> {
 pub struct Tests {
     done: u32,
     since: u32,
-    /// [`Sweep::change`] at the last test.
+    /// [`LocalSweep::change`] at the last test.
     change: f64,
 }
 
@@ -165,8 +165,8 @@ impl Tests {
     /// converges.
     pub fn due<const D: usize>(
         &mut self,
-        sweep: &Sweep<D>,
-        state: &State<D>,
+        sweep: &LocalSweep<D>,
+        state: &Iteration<D>,
         budget: &Budget,
     ) -> bool {
         self.done += 1;
@@ -184,7 +184,7 @@ impl Tests {
 
     /// Returns the squared error expected after an iteration; 0 where nothing changes any more, so
     /// that it is evaluated.
-    pub fn expected<const D: usize>(&self, sweep: &Sweep<D>, state: &State<D>) -> f64 {
+    pub fn expected<const D: usize>(&self, sweep: &LocalSweep<D>, state: &Iteration<D>) -> f64 {
         if sweep.change == 0.0 {
             return 0.0;
         }
@@ -201,10 +201,10 @@ fn shuffled(seed: u64, count: usize) -> Vec<u32> {
 }
 
 impl<const D: usize> Solver<D> for Nlgs {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         /// Evaluations without a smaller error after which the relaxation is reduced.
         const PATIENCE: u32 = 20;
-        let Some(mut sweep) = Sweep::new(form) else {
+        let Some(mut sweep) = LocalSweep::new(form) else {
             return;
         };
         let order = match self.order {

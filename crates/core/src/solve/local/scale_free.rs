@@ -14,7 +14,7 @@
 use super::LocalProblem;
 use super::block::BlockMatrix;
 use super::form::{Form, coulomb, magnitude};
-use super::state::{Budget, Limits, State};
+use super::state::{Budget, Iteration, Limits};
 use crate::solve::error::Norm;
 
 /// The formula, for reports.
@@ -62,10 +62,10 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
 pub(super) fn meet<'a, const D: usize>(
     field: &Form<'a, D>,
     velocity: &Form<'a, D>,
-    state: &mut State<D>,
+    state: &mut Iteration<D>,
     limits: &Limits,
     budget: &mut Budget,
-    mut solve: impl FnMut(&Form<'a, D>, &mut State<D>, &mut Budget),
+    mut solve: impl FnMut(&Form<'a, D>, &mut Iteration<D>, &mut Budget),
 ) {
     solve(field, state, budget);
     let Some(limit) = limits.scale_free else {

@@ -6,14 +6,14 @@ use super::anderson::Anderson;
 use super::auto::Auto;
 use super::block::BlockMatrix;
 use super::form::{Form, coulomb, magnitude};
-use super::gradient::{Gradient, Kind};
+use super::gradient::{Gradient, GradientKind};
 use super::interior::Interior;
 use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::scale_free;
 pub use super::state::Limits;
-use super::state::{Budget, Solver, State};
+use super::state::{Budget, Iteration, Solver};
 use crate::solve::error::{Norm, lost, unbounded};
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
@@ -69,9 +69,9 @@ impl Method {
         laws: &[Law],
         norm: Norm,
         budget: &mut Budget,
-    ) -> State<D> {
+    ) -> Iteration<D> {
         let form = Form::new(w, q, laws, norm);
-        let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
+        let mut state = Iteration::new(&form, vec![[0.0; D]; q.len()]);
         self.solver().solve(&form, &mut state, budget);
         state
     }
@@ -131,9 +131,9 @@ impl Method {
                 ..Nlgs::default()
             }),
             Self::Anderson => Box::new(Anderson::default()),
-            Self::Pg => gradient(Kind::Plain),
-            Self::Cpg => gradient(Kind::Conjugate),
-            Self::Pcpg => gradient(Kind::Preconditioned),
+            Self::Pg => gradient(GradientKind::Plain),
+            Self::Cpg => gradient(GradientKind::Conjugate),
+            Self::Pcpg => gradient(GradientKind::Preconditioned),
             Self::Apgd => Box::new(Accelerated),
             Self::Newton => Box::new(Newton::default()),
             Self::Interior => Box::new(Interior),
@@ -230,12 +230,12 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         let clock = Instant::now();
         let form = Form::new(&w, &q, &laws, Norm::Field);
         solver.used.clear();
-        let mut now = State::new(&form, vec![[0.0; D]; laws.len()]);
+        let mut now = Iteration::new(&form, vec![[0.0; D]; laws.len()]);
         // Slightly below the tolerance, so that the error recomputed in another order of summation
         // is still within it.
         let tolerance = limits.tolerance * (1.0 - 1e-9);
         let mut budget = Budget::new(tolerance, limits.max_iterations, limits.seconds);
-        let step = |f: &Form<D>, s: &mut State<D>, b: &mut Budget| solver.solve(f, s, b);
+        let step = |f: &Form<D>, s: &mut Iteration<D>, b: &mut Budget| solver.solve(f, s, b);
         scale_free::meet(&form, &velocity, &mut now, limits, &mut budget, step);
         let seconds = clock.elapsed().as_secs_f64();
         best = best.min(seconds);
@@ -290,7 +290,7 @@ impl<const D: usize> Choice<D> {
         }
     }
 
-    fn solve(&mut self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+    fn solve(&mut self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget) {
         match &self.kind {
             Kinds::Auto(auto) => {
                 auto.solve(form, state, budget);

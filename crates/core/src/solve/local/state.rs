@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 /// The iterate: impulses p and velocities u = W p + q.
 #[derive(Clone, Debug)]
-pub struct State<const D: usize> {
+pub struct Iteration<const D: usize> {
     /// Impulses; the initial value of a solve.
     pub p: Vec<[f64; D]>,
     /// Velocities of these impulses.
@@ -18,7 +18,7 @@ pub struct State<const D: usize> {
     pub iterations: u32,
 }
 
-impl<const D: usize> State<D> {
+impl<const D: usize> Iteration<D> {
     /// Creates a state from impulses.
     pub fn new(form: &Form<D>, p: Vec<[f64; D]>) -> Self {
         let mut state = Self {
@@ -64,7 +64,7 @@ pub struct Best<const D: usize> {
 
 impl<const D: usize> Best<D> {
     /// Starts with the current state.
-    pub fn of(state: &State<D>) -> Self {
+    pub fn of(state: &Iteration<D>) -> Self {
         Self {
             error: state.error,
             p: state.p.clone(),
@@ -72,7 +72,7 @@ impl<const D: usize> Best<D> {
     }
 
     /// Stores the state if it is better.
-    pub fn keep(&mut self, state: &State<D>) {
+    pub fn keep(&mut self, state: &Iteration<D>) {
         if state.error < self.error {
             self.error = state.error;
             self.p.copy_from_slice(&state.p);
@@ -80,7 +80,7 @@ impl<const D: usize> Best<D> {
     }
 
     /// Copies the best iterate back to the state.
-    pub fn restore(&self, form: &Form<D>, state: &mut State<D>) {
+    pub fn restore(&self, form: &Form<D>, state: &mut Iteration<D>) {
         if state.error > self.error || !state.error.is_finite() {
             state.p.copy_from_slice(&self.p);
             state.measure(form);
@@ -127,7 +127,7 @@ impl Budget {
     }
 
     /// Returns whether to stop at this state; records the error if requested.
-    pub fn ends<const D: usize>(&mut self, state: &State<D>) -> bool {
+    pub fn ends<const D: usize>(&mut self, state: &Iteration<D>) -> bool {
         if let Some(history) = &mut self.history {
             history.push((state.iterations, state.error));
         }
@@ -150,5 +150,5 @@ impl Budget {
 /// A solution method.
 pub trait Solver<const D: usize> {
     /// Improves the state until the budget ends; leaves the best state found, with its error.
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget);
+    fn solve(&self, form: &Form<D>, state: &mut Iteration<D>, budget: &mut Budget);
 }

@@ -1,11 +1,11 @@
 //! The law of a contact on a full block of W: without a bond, and with one.
 
 use super::cone::{Axes, Cone, compliant, in_frame};
-use super::kind::Kind;
-use super::law::{Law, Limits};
+use super::kind::RowKind;
+use super::law::{LawLimits, RowLaw};
 use super::motion::Levers;
 use super::rigid_bodies::RigidBodies;
-use super::state::{Parts, State};
+use super::state::{Parts, RowState};
 use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
 use crate::geometry::space::{MatrixLike, Space};
 use crate::lanes::{Batch, BatchMut, Lane, LaneMatrix, LaneVector, Mask, part, part_mut, record};
@@ -13,7 +13,11 @@ use crate::solve::form::{ContactForm, Elastic};
 
 /// Goes `relaxation` times as far as to the impulse `p`; gives the change.
 #[inline(always)]
-fn go_to<S: Space, L: Lane>(state: &mut State<S, L>, p: Parts<S, L>, relaxation: L) -> Parts<S, L> {
+fn go_to<S: Space, L: Lane>(
+    state: &mut RowState<S, L>,
+    p: Parts<S, L>,
+    relaxation: L,
+) -> Parts<S, L> {
     let change = (p - state.p) * relaxation;
     state.p = state.p + change;
     change
@@ -23,7 +27,7 @@ fn go_to<S: Space, L: Lane>(state: &mut State<S, L>, p: Parts<S, L>, relaxation:
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Unbonded<S: Space> {
-    limits: Limits<S>,
+    limits: LawLimits<S>,
     cone: Cone<S>,
 }
 
@@ -33,16 +37,16 @@ impl<S: Space> Unbonded<S> {
         let w = in_frame::<S>(&contact.normal, block);
         Self {
             cone: Cone::new(w, contact),
-            limits: Limits::on_block(contact, &compliant::<S>(&w, contact.compliance)),
+            limits: LawLimits::on_block(contact, &compliant::<S>(&w, contact.compliance)),
         }
     }
 }
 
-impl<S: Space> Law<S> for Unbonded<S> {
+impl<S: Space> RowLaw<S> for Unbonded<S> {
     #[inline(always)]
     fn solve<L: Lane>(
         mut law: BatchMut<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         u: Parts<S, L>,
         relaxation: L,
     ) -> Parts<S, L> {
@@ -57,12 +61,12 @@ impl<S: Space> Law<S> for Unbonded<S> {
     }
 
     #[inline(always)]
-    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+    fn limits<L: Lane>(law: Batch<Self, L>) -> LawLimits<S, L> {
         part!(law, limits).read()
     }
 }
 
-impl<S: Space> Kind<S> for Unbonded<S> {
+impl<S: Space> RowKind<S> for Unbonded<S> {
     type Motion = Levers<S>;
     const BONDS: bool = false;
 
@@ -80,14 +84,14 @@ impl<S: Space> Kind<S> for Unbonded<S> {
 /// f - k, with m = (1 + W B)^-1 and k = m W a, and its block m W.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct Adjacent<S: Space, L: Lane = f64> {
+struct UnilateralPart<S: Space, L: Lane = f64> {
     m: S::M<L>,
     k: S::V<L>,
     cone: Cone<S, L>,
 }
-record!(Adjacent);
+record!(UnilateralPart);
 
-impl<S: Space> Adjacent<S> {
+impl<S: Space> UnilateralPart<S> {
     /// Gives the block m W, too.
     fn new(
         w: &S::Matrix,
@@ -121,7 +125,7 @@ impl<S: Space> Adjacent<S> {
     fn solve<L: Lane>(
         mut stored: BatchMut<Self, L>,
         f: &S::V<L>,
-        limits: &Limits<S, L>,
+        limits: &LawLimits<S, L>,
         active: L::Mask,
         start: &S::V<L>,
     ) -> [S::V<L>; 2] {
@@ -136,7 +140,7 @@ impl<S: Space> Adjacent<S> {
 /// W_cc, and the impulse of a bond, in the frame.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct Bond<S: Space, L: Lane = f64> {
+struct ElasticPart<S: Space, L: Lane = f64> {
     w: S::M<L>,
     /// At u = 0 (N s).
     a: S::V<L>,
@@ -145,9 +149,9 @@ struct Bond<S: Space, L: Lane = f64> {
     /// Above it the bond's normal part does not act: 0 for a tension-only bond, otherwise infinity.
     limit: L,
 }
-record!(Bond);
+record!(ElasticPart);
 
-impl<S: Space, L: Lane> Bond<S, L> {
+impl<S: Space, L: Lane> ElasticPart<S, L> {
     /// Its impulse, pulling or not.
     #[inline(always)]
     fn pull(&self, u: &S::V<L>) -> S::V<L> {
@@ -159,11 +163,11 @@ impl<S: Space, L: Lane> Bond<S, L> {
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Bonded<S: Space> {
-    limits: Limits<S>,
-    pulled: Adjacent<S>,
+    limits: LawLimits<S>,
+    pulled: UnilateralPart<S>,
     /// Where the bond's normal part does not act.
-    slack: Adjacent<S>,
-    bond: Bond<S>,
+    slack: UnilateralPart<S>,
+    bond: ElasticPart<S>,
 }
 
 impl<S: Space> Bonded<S> {
@@ -177,16 +181,16 @@ impl<S: Space> Bonded<S> {
             axes.vector(&Parts { n, t })
         };
         let a = pull(e.a_n);
-        let (pulled, rigid) = Adjacent::new(&w, &a, [e.b_n, e.b_t], contact);
+        let (pulled, rigid) = UnilateralPart::new(&w, &a, [e.b_n, e.b_t], contact);
         let slack = if e.tension_only {
-            Adjacent::new(&w, &pull(0.0), [0.0, e.b_t], contact).0
+            UnilateralPart::new(&w, &pull(0.0), [0.0, e.b_t], contact).0
         } else {
-            Adjacent::none()
+            UnilateralPart::none()
         };
         Self {
-            limits: Limits::on_block(contact, &compliant::<S>(&rigid, contact.compliance)),
+            limits: LawLimits::on_block(contact, &compliant::<S>(&rigid, contact.compliance)),
             pulled,
-            bond: Bond {
+            bond: ElasticPart {
                 w: matrix_lanes_of(&w),
                 a,
                 b: [e.b_n, e.b_t],
@@ -198,16 +202,16 @@ impl<S: Space> Bonded<S> {
 
     /// Whether a bond acts on it, which is a second block of unknowns in W.
     pub fn is_bonded(&self) -> bool {
-        let Bond { a, b, .. } = &self.bond;
+        let ElasticPart { a, b, .. } = &self.bond;
         b[0] > 0.0 || b[1] > 0.0 || (0..S::D).any(|k| a[k] != 0.0)
     }
 }
 
-impl<S: Space> Law<S> for Bonded<S> {
+impl<S: Space> RowLaw<S> for Bonded<S> {
     #[inline(always)]
     fn solve<L: Lane>(
         mut law: BatchMut<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         u: Parts<S, L>,
         relaxation: L,
     ) -> Parts<S, L> {
@@ -219,13 +223,13 @@ impl<S: Space> Law<S> for Bonded<S> {
         let zero = L::all(0.0);
         let every = zero.at_most(zero);
         let pulled = part_mut!(law, pulled);
-        let [mut s, with] = Adjacent::solve(pulled, &f, &limits, every, &start);
+        let [mut s, with] = UnilateralPart::solve(pulled, &f, &limits, every, &start);
         let mut e = bond.pull(&with);
         let slack = e[0].above(bond.limit);
         if slack.any() {
             let [without, with] = {
                 let stored = part_mut!(law, slack);
-                Adjacent::solve(stored, &f, &limits, slack, &start)
+                UnilateralPart::solve(stored, &f, &limits, slack, &start)
             };
             let mut aside = bond.pull(&with);
             aside[0] = zero;
@@ -236,7 +240,7 @@ impl<S: Space> Law<S> for Bonded<S> {
     }
 
     #[inline(always)]
-    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+    fn limits<L: Lane>(law: Batch<Self, L>) -> LawLimits<S, L> {
         part!(law, limits).read()
     }
 
@@ -252,7 +256,7 @@ impl<S: Space> Law<S> for Bonded<S> {
     }
 }
 
-impl<S: Space> Kind<S> for Bonded<S> {
+impl<S: Space> RowKind<S> for Bonded<S> {
     type Motion = Levers<S>;
     const BONDS: bool = true;
 
@@ -277,7 +281,7 @@ mod tests {
 
     /// Restitution lets an open contact close freely: nothing acts on it, along whatever axis its
     /// normal is.
-    fn open_contact_is_free<S: Space, C: Law<S>>(of: Made<S, C>) {
+    fn open_contact_is_free<S: Space, C: RowLaw<S>>(of: Made<S, C>) {
         for axis in 0..S::D {
             let (mut normal, mut u) = (S::Vector::zero(), S::Vector::zero());
             (normal[axis], u[axis], u[0]) = (1.0, -2.0, -1.0);
@@ -288,7 +292,7 @@ mod tests {
                 ..form()
             };
             let mut law = of(&form, &S::Matrix::uniform(1.0));
-            let mut state = State::new(&normal, &form.impulse);
+            let mut state = RowState::new(&normal, &form.impulse);
             let u = Parts::of(&state.n, &lanes_of(&u));
             let change = C::solve(BatchMut::one(&mut law), &mut state, u, 1.0);
             assert!(change.dot(&change) == 0.0);
@@ -318,7 +322,7 @@ mod tests {
     /// The impulse of one update solves the law of the natural map, with and without a bond,
     /// tension, cohesion, compliance and shifts: in the plane at once, in space with cohesion after
     /// some.
-    fn solves<S: Space, C: Law<S>>(of: Made<S, C>, bonded: bool) {
+    fn solves<S: Space, C: RowLaw<S>>(of: Made<S, C>, bonded: bool) {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
         let mut worst = 0.0f64;
         let mut kinds = [0; 3];
@@ -367,7 +371,7 @@ mod tests {
             };
             let free = u - w.apply(&form.impulse);
             let mut law = of(&form, &w);
-            let mut state = State::new(&normal, &form.impulse);
+            let mut state = RowState::new(&normal, &form.impulse);
             let n = state.n;
             let relative = |p: &S::Vector| Parts::of(&n, &lanes_of(&(free + w.apply(p))));
             let mut p = form.impulse;

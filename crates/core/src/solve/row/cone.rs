@@ -2,7 +2,7 @@
 //! Coulomb's friction with tensile strength and shear cohesion. In the plane it is solved in closed
 //! form, in space by Newton's method where it slides.
 
-use super::law::Limits;
+use super::law::LawLimits;
 use super::response::{answer_to_slip, inverse, inverse_along, shift_along};
 use super::state::Parts;
 use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
@@ -12,7 +12,7 @@ use crate::solve::form::ContactForm;
 use crate::solve::local::contact::Local;
 use crate::solve::slide::slide;
 
-impl<S: Space> Limits<S> {
+impl<S: Space> LawLimits<S> {
     /// Of a form whose block, with a bond that acts and the compliance, is `compliant` in the frame
     /// of the contact.
     pub(super) fn on_block(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
@@ -163,7 +163,7 @@ impl<S: Space> Cone<S> {
         block: &Cone<S, L>,
         stored: BatchMut<Self, L>,
         f: &S::V<L>,
-        limits: &Limits<S, L>,
+        limits: &LawLimits<S, L>,
         active: L::Mask,
         start: &S::V<L>,
     ) -> S::V<L> {
@@ -195,7 +195,7 @@ impl<S: Space, L: Lane> Cone<S, L> {
     /// slip with p_t = -s (mu P + c), where s is the sign of the slip that sticking would have to
     /// prevent, and an open contact, which holds |p_t| <= c.
     #[inline(always)]
-    fn solve_plane(&self, f: &S::V<L>, limits: &Limits<S, L>) -> S::V<L> {
+    fn solve_plane(&self, f: &S::V<L>, limits: &LawLimits<S, L>) -> S::V<L> {
         let (mu, c, w_nt) = (limits.mu, limits.cohesion, self.w.entry(0, 1));
         let ([forth, back, open], zero) = (self.answers, L::all(0.0));
         let stick = self.inverse.times(f);
@@ -220,7 +220,7 @@ impl<S: Space, L: Lane> Cone<S, L> {
         &self,
         mut stored: BatchMut<Cone<S>, L>,
         f: &S::V<L>,
-        limits: &Limits<S, L>,
+        limits: &LawLimits<S, L>,
         active: L::Mask,
     ) -> S::V<L> {
         let (mu, zero) = (limits.mu, L::all(0.0));
@@ -253,7 +253,7 @@ impl<S: Space, L: Lane> Cone<S, L> {
     /// The normal and the tangential part in turns, in space with cohesion. Two rounds: the sweeps
     /// that follow do the rest, since each begins where the last one ended.
     #[inline(always)]
-    fn alternate(&self, f: &S::V<L>, limits: &Limits<S, L>, start: &S::V<L>) -> S::V<L> {
+    fn alternate(&self, f: &S::V<L>, limits: &LawLimits<S, L>, start: &S::V<L>) -> S::V<L> {
         const ALTERNATIONS: usize = 2;
         /// Change, relative to an impulse, below which it is found.
         const EXACT: f64 = 1e-14;

@@ -1,12 +1,12 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed
 //! form.
 
-use super::kind::Kind;
-use super::law::{Law, Limits};
-use super::motion::Reach;
+use super::kind::RowKind;
+use super::law::{LawLimits, RowLaw};
+use super::motion::BallLevers;
 use super::response::{answer_to_slip, shift_along};
 use super::rigid_bodies::RigidBodies;
-use super::state::{Parts, State};
+use super::state::{Parts, RowState};
 use crate::geometry::lane_space::lanes_of;
 use crate::geometry::space::{Space, least};
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, part, record};
@@ -18,7 +18,7 @@ use crate::solve::form::{ContactForm, Elastic};
 /// 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw, k = a/(1 + w b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
-struct Answer<S: Space, L: Lane = f64> {
+struct Response<S: Space, L: Lane = f64> {
     w: [L; 2],
     iw: [L; 2],
     c: [L; 2],
@@ -35,13 +35,13 @@ struct Answer<S: Space, L: Lane = f64> {
     /// Friction bound at zero normal impulse, mu h c_n + h c_t.
     grip: L,
 }
-record!(Answer);
+record!(Response);
 
 /// What the convergence test needs beside it: the bond's impulse at u = 0 and what it adds by
-/// velocity, and other fields of [`Limits`].
+/// velocity, and other fields of [`LawLimits`].
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
-struct Test<S: Space, L: Lane = f64> {
+struct TestTerms<S: Space, L: Lane = f64> {
     a: Parts<S, L>,
     b: [L; 2],
     cohesion: L,
@@ -50,21 +50,21 @@ struct Test<S: Space, L: Lane = f64> {
     shift: Parts<S, L>,
     compliance: [L; 2],
 }
-record!(Test);
+record!(TestTerms);
 
 /// The law of a contact of two balls with all that can act on it.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Full<S: Space> {
-    answer: Answer<S>,
-    test: Test<S>,
+    answer: Response<S>,
+    test: TestTerms<S>,
 }
 
-impl<S: Space> Law<S> for Full<S> {
+impl<S: Space> RowLaw<S> for Full<S> {
     #[inline(always)]
     fn solve<L: Lane>(
         law: BatchMut<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         u: Parts<S, L>,
         relaxation: L,
     ) -> Parts<S, L> {
@@ -90,9 +90,9 @@ impl<S: Space> Law<S> for Full<S> {
     }
 
     #[inline(always)]
-    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+    fn limits<L: Lane>(law: Batch<Self, L>) -> LawLimits<S, L> {
         let (answer, test) = (part!(law, answer).read(), part!(law, test).read());
-        Limits {
+        LawLimits {
             mu: answer.mu,
             tension: answer.tension,
             cohesion: test.cohesion,
@@ -113,8 +113,8 @@ impl<S: Space> Law<S> for Full<S> {
     }
 }
 
-impl<S: Space> Kind<S> for Full<S> {
-    type Motion = Reach;
+impl<S: Space> RowKind<S> for Full<S> {
+    type Motion = BallLevers;
     const EIGHT: bool = true;
     const BONDS: bool = true;
 
@@ -122,10 +122,10 @@ impl<S: Space> Kind<S> for Full<S> {
         contact.central
     }
 
-    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Reach) {
+    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, BallLevers) {
         let reach = bodies.reach(contact);
         let [w_n, w_t] = bodies.of_balls(contact, reach);
-        (Self::of(contact, w_n, w_t), Reach(reach))
+        (Self::of(contact, w_n, w_t), BallLevers(reach))
     }
 }
 
@@ -170,7 +170,7 @@ impl<S: Space> Full<S> {
         let shared = |w: f64| if w > 0.0 { 1.0 } else { 0.0 };
         let q_t = (e.a_t * shared(w_t) - contact.shift_t * (dt * iwt)) * share_t;
         Self {
-            answer: Answer {
+            answer: Response {
                 w: [w_n, w_t],
                 iw: [iwn * share_n, iwt * share_t],
                 c: [e.b_n / dn, e.b_t / dt],
@@ -189,7 +189,7 @@ impl<S: Space> Full<S> {
                 tension: contact.tension,
                 grip: contact.friction * contact.tension + contact.cohesion,
             },
-            test: Test {
+            test: TestTerms {
                 a: Parts {
                     n: e.a_n,
                     t: lanes_of(&e.a_t),

@@ -1,10 +1,10 @@
 //! One contact between two rigid bodies in the solver: a law and a motion, over lanes.
 
-use super::law::Law;
-use super::motion::Motion;
+use super::law::RowLaw;
+use super::motion::RowMotion;
 use super::rigid_bodies::RigidBodies;
 use super::solver_bodies::SolverBody;
-use super::state::{Moving, Parts, State};
+use super::state::{Moving, Parts, RowState};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::lanes::{Batch, BatchMut, Lane, part, part_mut};
 use crate::solve::error::Residual;
@@ -12,8 +12,8 @@ use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 
 /// A kind of contacts between two rigid bodies: a law that is solved in closed form, and how the
 /// bodies move.
-pub(in crate::solve) trait Kind<S: Space>: Law<S> {
-    type Motion: Motion<S>;
+pub(in crate::solve) trait RowKind<S: Space>: RowLaw<S> {
+    type Motion: RowMotion<S>;
     /// Whether in space eight contacts at a time are quicker than four, because registers suffice.
     const EIGHT: bool = false;
     /// Whether bonds may act on its contacts.
@@ -32,7 +32,7 @@ pub(in crate::solve) trait Kind<S: Space>: Law<S> {
     #[inline(always)]
     fn without_friction<L: Lane>(
         _law: Batch<Self, L>,
-        _state: &mut State<S, L>,
+        _state: &mut RowState<S, L>,
         _difference: &S::V<L>,
         _relaxation: L,
     ) -> Option<S::V<L>> {
@@ -43,18 +43,18 @@ pub(in crate::solve) trait Kind<S: Space>: Law<S> {
 /// A contact in the solver. What an update reads stands together.
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub(in crate::solve) struct Row<S: Space, K: Kind<S>> {
-    pub(super) state: State<S>,
+pub(in crate::solve) struct Row<S: Space, K: RowKind<S>> {
+    pub(super) state: RowState<S>,
     motion: K::Motion,
     law: K,
 }
 
-impl<S: Space, K: Kind<S>> Row<S, K> {
+impl<S: Space, K: RowKind<S>> Row<S, K> {
     #[inline]
     pub fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> Self {
         let (law, motion) = K::new(contact, bodies);
         let mut row = Self {
-            state: State::new(&contact.normal, &contact.impulse),
+            state: RowState::new(&contact.normal, &contact.impulse),
             law,
             motion,
         };
@@ -158,7 +158,7 @@ impl<S: Space, K: Kind<S>> Row<S, K> {
         b: &Moving<S, L>,
     ) -> Residual<L> {
         let u = Self::relative(rows, a, b);
-        <K as Law<S>>::residual(part!(rows, law), &part!(rows, state).read(), &u)
+        <K as RowLaw<S>>::residual(part!(rows, law), &part!(rows, state).read(), &u)
     }
 
     /// |u|^2, rho of the natural map and friction.

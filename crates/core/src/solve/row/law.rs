@@ -1,6 +1,6 @@
 //! The law of a contact as a row solves it, and its residual.
 
-use super::state::{Parts, State};
+use super::state::{Parts, RowState};
 use crate::geometry::lane_space::vector_of;
 use crate::geometry::space::Space;
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, record};
@@ -12,7 +12,7 @@ use std::fmt::Debug;
 /// Strengths and friction of a contact, and the data of the convergence test.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
-pub(in crate::solve) struct Limits<S: Space, L: Lane = f64> {
+pub(in crate::solve) struct LawLimits<S: Space, L: Lane = f64> {
     pub mu: L,
     /// Tensile strength (N s): the law holds for P = p_n + tension.
     pub tension: L,
@@ -26,22 +26,22 @@ pub(in crate::solve) struct Limits<S: Space, L: Lane = f64> {
     /// Compliance of the unilateral part (1/kg), normal and tangential.
     pub compliance: [L; 2],
 }
-record!(Limits);
+record!(LawLimits);
 
 /// A contact law in closed form, over lanes.
-pub(in crate::solve) trait Law<S: Space>:
+pub(in crate::solve) trait RowLaw<S: Space>:
     Clone + Debug + Send + Sync + 'static
 {
     /// Solves contacts at a relative velocity `u`, takes their impulses in `state` `relaxation`
     /// times as far; gives the changes.
     fn solve<L: Lane>(
         law: BatchMut<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         u: Parts<S, L>,
         relaxation: L,
     ) -> Parts<S, L>;
 
-    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L>;
+    fn limits<L: Lane>(law: Batch<Self, L>) -> LawLimits<S, L>;
 
     /// The impulses of bonds at relative velocities.
     #[inline(always)]
@@ -51,13 +51,17 @@ pub(in crate::solve) trait Law<S: Space>:
 
     /// The contributions to the convergence test, at relative velocities.
     #[inline(always)]
-    fn residual<L: Lane>(law: Batch<Self, L>, state: &State<S, L>, u: &Parts<S, L>) -> Residual<L> {
+    fn residual<L: Lane>(
+        law: Batch<Self, L>,
+        state: &RowState<S, L>,
+        u: &Parts<S, L>,
+    ) -> Residual<L> {
         let unilateral = state.p - Self::bond(law, &state.n, u);
         natural_map(&Self::limits(law), unilateral, u)
     }
 
     /// The work on the compliance of the unilateral part, c |p|^2 (J), at a relative velocity.
-    fn work_on_compliance(&self, state: &State<S>, u: &Parts<S>) -> f64 {
+    fn work_on_compliance(&self, state: &RowState<S>, u: &Parts<S>) -> f64 {
         let law = Batch::one(self);
         let p = state.p - Self::bond(law, &state.n, u);
         let [c_n, c_t] = Self::limits(law).compliance;
@@ -66,7 +70,7 @@ pub(in crate::solve) trait Law<S: Space>:
 
     /// The solution at a relative velocity: the bond's part follows from it, the unilateral part is
     /// the rest.
-    fn solution(&self, state: &State<S>, u: &Parts<S>) -> ContactSolution<S> {
+    fn solution(&self, state: &RowState<S>, u: &Parts<S>) -> ContactSolution<S> {
         let unilateral = state.p - Self::bond(Batch::one(self), &state.n, u);
         ContactSolution {
             impulse: state.impulse(),
@@ -80,12 +84,12 @@ pub(in crate::solve) trait Law<S: Space>:
 /// velocities; zero where rho is 0.
 #[inline(always)]
 fn natural_map<S: Space, L: Lane>(
-    limits: &Limits<S, L>,
+    limits: &LawLimits<S, L>,
     unilateral: Parts<S, L>,
     u: &Parts<S, L>,
 ) -> Residual<L> {
     let (zero, one) = (L::all(0.0), L::all(1.0));
-    let &Limits { mu, rho, .. } = limits;
+    let &LawLimits { mu, rho, .. } = limits;
     let [c_n, c_t] = limits.compliance;
     let u_n = u.n + (limits.shift.n + unilateral.n * c_n);
     let slide = u.t + (limits.shift.t + unilateral.t * c_t);

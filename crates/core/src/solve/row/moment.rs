@@ -8,7 +8,7 @@ use super::solver_bodies::SolverBody;
 use super::system::Term;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::error::Residual;
-use crate::solve::form::{Mobility, Place};
+use crate::solve::form::{Mobility, RowPlace};
 use crate::solve::nodal::NodalSystem;
 
 /// Resistance of a contact to rotation. Moments over the step are in N m s.
@@ -51,7 +51,7 @@ pub struct MomentSolution<S: Space> {
 pub(in crate::solve) struct MomentRow<S: Space> {
     pub form: MomentForm<S>,
     /// Location of the contact's normal impulse; set when the rows are sorted.
-    pub place: Place,
+    pub place: RowPlace,
     pub bodies: [u32; 2],
     n: S::Vector,
     /// Inverse lengths of the bodies (1/m); 0 of the body of a dynamical system.
@@ -71,7 +71,7 @@ pub(in crate::solve) struct MomentRow<S: Space> {
 impl<S: Space> MomentRow<S> {
     pub fn new(
         form: &MomentForm<S>,
-        place: Place,
+        place: RowPlace,
         bodies: [u32; 2],
         n: S::Vector,
         mobilities: [&Mobility<S>; 2],
@@ -352,7 +352,7 @@ mod tests {
         let normal = Vector2::new(0.0, 1.0);
         let row = MomentRow::<Dim2>::new(
             &form,
-            Place::Row { kind: 0, row: 0 },
+            RowPlace::Row { kind: 0, row: 0 },
             [0, 1],
             normal,
             [&a, &b],

@@ -8,7 +8,7 @@ use crate::solve::form::{ContactForm, Mobility};
 use std::fmt::Debug;
 
 /// How the two bodies of a contact move at it, over lanes.
-pub(in crate::solve) trait Motion<S: Space>:
+pub(in crate::solve) trait RowMotion<S: Space>:
     Record + Debug + Send + Sync + 'static
 {
     /// The relative velocity at contacts.
@@ -30,14 +30,14 @@ pub(in crate::solve) trait Motion<S: Space>:
 
 /// The contact acts on the surfaces of two balls, whose radii are their lengths.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solve) struct Surfaces;
+pub(in crate::solve) struct BallSurfaces;
 
 // SAFETY: no numbers.
-unsafe impl Record for Surfaces {
+unsafe impl Record for BallSurfaces {
     type With<L: Lane> = Self;
 }
 
-impl<S: Space> Motion<S> for Surfaces {
+impl<S: Space> RowMotion<S> for BallSurfaces {
     #[inline(always)]
     fn relative<L: Lane>(_: &Self, n: &S::V<L>, a: &Moving<S, L>, b: &Moving<S, L>) -> Parts<S, L> {
         let mut u = Parts::of(n, &(a.v - b.v));
@@ -65,17 +65,17 @@ impl<S: Space> Motion<S> for Surfaces {
 /// lengths.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
-pub(in crate::solve) struct Reach<L = f64>(pub [L; 2]);
+pub(in crate::solve) struct BallLevers<L = f64>(pub [L; 2]);
 
 // SAFETY: an array of numbers.
-unsafe impl Record for Reach {
-    type With<L: Lane> = Reach<L>;
+unsafe impl Record for BallLevers {
+    type With<L: Lane> = BallLevers<L>;
 }
 
-impl<S: Space> Motion<S> for Reach {
+impl<S: Space> RowMotion<S> for BallLevers {
     #[inline(always)]
     fn relative<L: Lane>(
-        Reach([i, j]): &Reach<L>,
+        BallLevers([i, j]): &BallLevers<L>,
         n: &S::V<L>,
         a: &Moving<S, L>,
         b: &Moving<S, L>,
@@ -87,7 +87,7 @@ impl<S: Space> Motion<S> for Reach {
 
     #[inline(always)]
     fn push<L: Lane>(
-        Reach([i, j]): &Reach<L>,
+        BallLevers([i, j]): &BallLevers<L>,
         n: &S::V<L>,
         p: &Parts<S, L>,
         a: &mut Moving<S, L>,
@@ -132,7 +132,7 @@ impl<S: Space> Levers<S> {
     }
 }
 
-impl<S: Space> Motion<S> for Levers<S> {
+impl<S: Space> RowMotion<S> for Levers<S> {
     #[inline(always)]
     fn relative<L: Lane>(
         levers: &Levers<S, L>,

@@ -1,12 +1,12 @@
 //! Contact of two balls without a bond, solved in closed form: first the normal part, then the
 //! tangential part within the cone.
 
-use super::kind::Kind;
-use super::law::{Law, Limits};
-use super::motion::Surfaces;
+use super::kind::RowKind;
+use super::law::{LawLimits, RowLaw};
+use super::motion::BallSurfaces;
 use super::response::{inverse, inverse_along, shift_along};
 use super::rigid_bodies::RigidBodies;
-use super::state::{Parts, State};
+use super::state::{Parts, RowState};
 use crate::geometry::space::{Space, VectorLike};
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, Mask, Record};
 use crate::solve::form::ContactForm;
@@ -26,11 +26,11 @@ unsafe impl Record for Plain {
     type With<L: Lane> = Plain<L>;
 }
 
-impl<S: Space> Law<S> for Plain {
+impl<S: Space> RowLaw<S> for Plain {
     #[inline(always)]
     fn solve<L: Lane>(
         law: BatchMut<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         u: Parts<S, L>,
         relaxation: L,
     ) -> Parts<S, L> {
@@ -42,9 +42,9 @@ impl<S: Space> Law<S> for Plain {
     }
 
     #[inline(always)]
-    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+    fn limits<L: Lane>(law: Batch<Self, L>) -> LawLimits<S, L> {
         let (law, zero) = (law.read(), L::all(0.0));
-        Limits {
+        LawLimits {
             mu: law.mu,
             tension: zero,
             cohesion: zero,
@@ -67,8 +67,8 @@ impl<L: Lane> Plain<L> {
     }
 }
 
-impl<S: Space> Kind<S> for Plain {
-    type Motion = Surfaces;
+impl<S: Space> RowKind<S> for Plain {
+    type Motion = BallSurfaces;
     const EIGHT: bool = true;
     const BONDS: bool = false;
 
@@ -83,7 +83,7 @@ impl<S: Space> Kind<S> for Plain {
     }
 
     #[inline]
-    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Surfaces) {
+    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, BallSurfaces) {
         let [w_n, w_t] = bodies.of_balls(contact, [1.0; 2]);
         let law = Self {
             shift: shift_along(contact, w_n),
@@ -95,7 +95,7 @@ impl<S: Space> Kind<S> for Plain {
             iwt: inverse_along(w_t, w_n),
             mu: contact.friction,
         };
-        (law, Surfaces)
+        (law, BallSurfaces)
     }
 
     /// A frictionless contact never has a tangential impulse.
@@ -107,7 +107,7 @@ impl<S: Space> Kind<S> for Plain {
     #[inline(always)]
     fn without_friction<L: Lane>(
         law: Batch<Self, L>,
-        state: &mut State<S, L>,
+        state: &mut RowState<S, L>,
         difference: &S::V<L>,
         relaxation: L,
     ) -> Option<S::V<L>> {

@@ -98,13 +98,13 @@ pub(in crate::solve) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
 /// Normal and impulse of a contact.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(in crate::solve) struct State<S: Space, L: Lane = f64> {
+pub(in crate::solve) struct RowState<S: Space, L: Lane = f64> {
     pub n: S::V<L>,
     pub p: Parts<S, L>,
 }
-record!(State);
+record!(RowState);
 
-impl<S: Space> State<S> {
+impl<S: Space> RowState<S> {
     /// With an impulse in world axes.
     pub fn new(normal: &S::Vector, impulse: &S::Vector) -> Self {
         let mut state = Self {

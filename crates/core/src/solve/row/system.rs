@@ -2,9 +2,9 @@
 //! velocities of all nodes of the system that are touched.
 
 use super::block::Bonded;
-use super::law::{Law, Limits};
+use super::law::{LawLimits, RowLaw};
 use super::solver_bodies::SolverBody;
-use super::state::{Parts, State};
+use super::state::{Parts, RowState};
 use crate::geometry::lane_space::{lanes_of, vector_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::lanes::{Batch, BatchMut};
@@ -43,7 +43,7 @@ pub(in crate::solve) struct SystemRow<S: Space> {
     terms: Vec<Term>,
     /// W_cc in world axes (1/kg).
     block: S::Matrix,
-    state: State<S>,
+    state: RowState<S>,
     law: Bonded<S>,
 }
 
@@ -71,7 +71,7 @@ impl<S: Space> SystemRow<S> {
             rigid,
             points,
             terms,
-            state: State::new(&contact.normal, &contact.impulse),
+            state: RowState::new(&contact.normal, &contact.impulse),
             law: Bonded::of(contact, &block),
             block,
         }
@@ -106,7 +106,7 @@ impl<S: Space> SystemRow<S> {
         Parts::of(&self.state.n, &lanes_of(&u))
     }
 
-    fn limits(&self) -> Limits<S> {
+    fn limits(&self) -> LawLimits<S> {
         Bonded::limits(Batch::one(&self.law))
     }
 
@@ -166,7 +166,7 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
-    /// rho of the natural map, see [`Limits::rho`].
+    /// rho of the natural map, see [`LawLimits::rho`].
     pub fn rho(&self) -> f64 {
         self.limits().rho
     }

@@ -1,8 +1,8 @@
 //! Several contacts at a time, with all vector instructions of this machine, give the bits of one
 //! after the other.
 
-use super::visit::{Free, Load, Measure, Update, Visit, visit_one_by_one, visit_with};
-use super::{Bonded, Full, Kind, Plain, RigidBodies, Row, SolverBodies, SolverBody, Unbonded};
+use super::visit::{Free, Load, MeasureErrors, Update, Visit, visit_one_by_one, visit_with};
+use super::{Bonded, Full, Plain, RigidBodies, Row, RowKind, SolverBodies, SolverBody, Unbonded};
 use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use crate::lanes::Instructions;
 use crate::solve::form::{ContactForm, Elastic, Mobility};
@@ -156,13 +156,13 @@ fn masses<S: Space>(bodies: &[SolverBody<S>]) -> Vec<Mobility<S>> {
 }
 
 #[derive(Clone)]
-struct Contacts<S: Space, K: Kind<S>> {
+struct Contacts<S: Space, K: RowKind<S>> {
     rows: Vec<Row<S, K>>,
     pairs: Vec<[u32; 2]>,
     solver_bodies: Vec<SolverBody<S>>,
 }
 
-impl<S: Space, K: Kind<S>> Contacts<S, K> {
+impl<S: Space, K: RowKind<S>> Contacts<S, K> {
     fn bits(&self) -> Vec<u64> {
         let mut out = Vec::new();
         for row in &self.rows {
@@ -191,7 +191,7 @@ impl<S: Space, K: Kind<S>> Contacts<S, K> {
 }
 
 /// The contacts of this kind that `form` gives are solved alike.
-fn same<S: Space, K: Kind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
+fn same<S: Space, K: RowKind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
     let solver_bodies = solver_bodies::<S>(290);
     let bodies = RigidBodies {
         masses: &masses(&solver_bodies),
@@ -213,7 +213,7 @@ fn same<S: Space, K: Kind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
             one.visit(None, &groups, &mut Update(relaxation));
             several.visit(Some(with), &groups, &mut Update(relaxation));
             assert!(one.bits() == several.bits(), "{with:?}");
-            let mut sums = [Measure::default(), Measure::default()];
+            let mut sums = [MeasureErrors::default(), MeasureErrors::default()];
             one.visit(None, &all, &mut sums[0]);
             several.visit(Some(with), &all, &mut sums[1]);
             let [a, b] = sums.map(|s| s.sums(3));

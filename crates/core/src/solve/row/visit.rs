@@ -1,7 +1,7 @@
 //! Operations applied to every row in turn: several contacts at a time with vector instructions
 //! where available, otherwise one by one, with bitwise identical results.
 
-use super::kind::{Kind, Row};
+use super::kind::{Row, RowKind};
 use super::solver_bodies::{SolverBodies, SolverBody};
 use super::state::Moving;
 use crate::geometry::space::Space;
@@ -15,7 +15,7 @@ pub trait Visit {
 
     /// Processes rows with the bodies of either side, from the `at`-th on. The bodies that move
     /// differ, or are only read.
-    fn visit<S: Space, K: Kind<S>, L: Lane>(
+    fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
         a: BatchMut<SolverBody<S>, L>,
@@ -26,7 +26,7 @@ pub trait Visit {
 
 /// Visits a block of rows, given with the bodies of each, the starts of its groups and the end of
 /// the last; contacts of a group share no movable body.
-pub fn visit<S: Space, K: Kind<S>>(
+pub fn visit<S: Space, K: RowKind<S>>(
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,
@@ -43,7 +43,7 @@ pub fn visit<S: Space, K: Kind<S>>(
 }
 
 /// Visits rows in turn.
-pub(super) fn visit_one_by_one<S: Space, K: Kind<S>>(
+pub(super) fn visit_one_by_one<S: Space, K: RowKind<S>>(
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
@@ -61,7 +61,7 @@ pub(super) fn visit_one_by_one<S: Space, K: Kind<S>>(
 ///
 /// # Safety
 /// The machine has the instructions.
-pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
+pub(super) unsafe fn visit_with<S: Space, K: RowKind<S>>(
     with: Instructions,
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
@@ -81,7 +81,7 @@ pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
 }
 
 /// Rows that are visited by groups.
-struct ByGroups<'a, S: Space, K: Kind<S>, V> {
+struct ByGroups<'a, S: Space, K: RowKind<S>, V> {
     rows: *mut Row<S, K>,
     pairs: &'a [[u32; 2]],
     groups: &'a [u32],
@@ -89,7 +89,7 @@ struct ByGroups<'a, S: Space, K: Kind<S>, V> {
     what: &'a mut V,
 }
 
-impl<S: Space, K: Kind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
+impl<S: Space, K: RowKind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
     #[inline(always)]
     fn run<L4: Lane, L8: Lane>(mut self) {
         let (row, body) = Row::between_immovable_bodies();
@@ -110,7 +110,7 @@ impl<S: Space, K: Kind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
 }
 
 /// Fills the lanes without a contact.
-struct Idle<S: Space, K: Kind<S>> {
+struct Idle<S: Space, K: RowKind<S>> {
     row: Row<S, K>,
     body: SolverBody<S>,
 }
@@ -118,7 +118,7 @@ struct Idle<S: Space, K: Kind<S>> {
 /// Prefetch distance in contacts.
 const AHEAD: usize = 16;
 
-impl<S: Space, K: Kind<S>, V: Visit> ByGroups<'_, S, K, V> {
+impl<S: Space, K: RowKind<S>, V: Visit> ByGroups<'_, S, K, V> {
     /// Visits the rows from the `at`-th on, up to at most `end`, the end of the group.
     #[inline(always)]
     fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut Idle<S, K>) {
@@ -161,7 +161,7 @@ impl Visit for Update {
     const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn visit<S: Space, K: Kind<S>, L: Lane>(
+    fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
         mut a: BatchMut<SolverBody<S>, L>,
@@ -182,7 +182,7 @@ impl Visit for Load {
     const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn visit<S: Space, K: Kind<S>, L: Lane>(
+    fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
         mut a: BatchMut<SolverBody<S>, L>,
@@ -198,7 +198,7 @@ impl Visit for Load {
 
 /// Sums the contributions of contacts to the convergence test.
 #[derive(Default)]
-pub struct Measure {
+pub struct MeasureErrors {
     residual: [f64; SUMS],
     velocity: [f64; SUMS],
     impulse: [f64; SUMS],
@@ -209,7 +209,7 @@ pub struct Measure {
     worst_at: [f64; SUMS],
 }
 
-impl Measure {
+impl MeasureErrors {
     /// Returns the sums; contacts are counted from `first`.
     pub fn sums(&self, first: usize) -> Sums {
         let mut out = Sums::default();
@@ -230,11 +230,11 @@ impl Measure {
     }
 }
 
-impl Visit for Measure {
+impl Visit for MeasureErrors {
     const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn visit<S: Space, K: Kind<S>, L: Lane>(
+    fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
         a: BatchMut<SolverBody<S>, L>,
@@ -290,7 +290,7 @@ impl Visit for Free {
     const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn visit<S: Space, K: Kind<S>, L: Lane>(
+    fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
         a: BatchMut<SolverBody<S>, L>,
@@ -313,12 +313,12 @@ mod tests {
     /// Sums of all lanes; the worst contact is counted from the first one.
     #[test]
     fn sums_of_lanes_are_merged() {
-        let measure = Measure {
+        let measure = MeasureErrors {
             residual: [1.0, 2.0, 4.0, 8.0],
             slip: [16.0, 32.0, 64.0, 128.0],
             worst: [0.5, 0.75, 3.0, 1.0],
             worst_at: [0.0, 1.0, 6.0, 3.0],
-            ..Measure::default()
+            ..MeasureErrors::default()
         };
         let sums = measure.sums(10);
         assert_eq!((sums.residual, sums.slip), (15.0, 240.0));

@@ -75,13 +75,13 @@ impl<S: Space, const D: usize> Unknown<'_, S, D> {
 }
 
 /// Impulse and moment of a body, or its velocity and spin.
-pub type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+pub type BodyMotion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Impulses on all bodies and on the nodes of all systems, or their velocities.
 #[derive(Clone, Debug)]
 pub struct Motions<S: Space> {
     /// By body.
-    pub bodies: Vec<Motion<S>>,
+    pub bodies: Vec<BodyMotion<S>>,
     /// By system, in the order of its nodes.
     pub nodes: Vec<Vec<S::Vector>>,
 }
@@ -101,7 +101,7 @@ impl<S: Space> Motions<S> {
 }
 
 /// W of a step, computed from its bodies and systems.
-pub struct Bodies<'a, S: Space, const D: usize> {
+pub struct BodyOperator<'a, S: Space, const D: usize> {
     /// Response to impulses, by body.
     pub masses: &'a [Mobility<S>],
     /// The dynamical systems, as far as contacts see them.
@@ -115,7 +115,7 @@ pub struct Bodies<'a, S: Space, const D: usize> {
     pattern: OnceCell<Pattern>,
 }
 
-impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
+impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
     /// Creates an operator for bodies with these inverse masses and inertias and for systems,
     /// without unknowns.
     pub fn new(masses: &'a [Mobility<S>], systems: &'a [NodalSystem<S>]) -> Self {
@@ -141,7 +141,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
     }
 
     /// Returns M^-1 of an impulse and moment on a body.
-    pub fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
+    pub fn mobility(&self, body: u32, (p, m): BodyMotion<S>) -> BodyMotion<S> {
         self.masses[body as usize].apply(&p, &m)
     }
 
@@ -278,7 +278,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
     }
 }
 
-impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
+impl<S: Space, const D: usize> Delassus<D> for BodyOperator<'_, S, D> {
     fn len(&self) -> usize {
         self.unknowns.len()
     }

@@ -11,7 +11,7 @@ mod motion;
 mod pattern;
 
 use super::error::Norm;
-use super::form::{ContactForm, Mobility, Place};
+use super::form::{ContactForm, Mobility, RowPlace};
 
 use super::local::csr::Csr;
 #[cfg(test)]
@@ -19,15 +19,15 @@ use super::local::form::Delassus;
 use super::local::form::Form;
 use super::local::law::Law;
 use super::local::solver::Method;
-use super::local::state::{Budget, State};
+use super::local::state::{Budget, Iteration};
 use super::nodal::NodalSystem;
 use super::problem::Problem;
 use super::row::{HELD, MomentForm, SystemRow, Term, turning};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use bodies::{Axis, Bodies, Motions, Unknown};
+use bodies::{Axis, BodyOperator, Motions, Unknown};
 
 /// Impulses of the contacts, and moments; `None` between immovable bodies.
-type Totals<S> = (
+type ImpulsesAndMoments<S> = (
     Vec<Option<<S as Space>::Vector>>,
     Vec<Option<<S as Space>::Spin>>,
 );
@@ -41,7 +41,7 @@ struct Places {
 
 /// The problem of a step in blocks of D unknowns, where D is the dimension of S.
 pub struct Standard<'a, S: Space, const D: usize> {
-    w: Bodies<'a, S, D>,
+    w: BodyOperator<'a, S, D>,
     laws: Vec<Law>,
     q: Vec<[f64; D]>,
     places: Vec<Places>,
@@ -80,7 +80,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         moments: &[MomentForm<S>],
     ) -> Self {
         let mut out = Self {
-            w: Bodies::new(&problem.masses, &problem.systems),
+            w: BodyOperator::new(&problem.masses, &problem.systems),
             laws: Vec::new(),
             q: Vec::new(),
             places: Vec::with_capacity(forms.len()),
@@ -105,7 +105,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     /// The row of a contact with a dynamical system.
     fn system_row(problem: &Problem<S>, k: usize) -> Option<&SystemRow<S>> {
         match problem.places[k] {
-            Place::System(r) => Some(&problem.of_systems[r as usize]),
+            RowPlace::System(r) => Some(&problem.of_systems[r as usize]),
             _ => None,
         }
     }
@@ -374,7 +374,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         p: &[[f64; D]],
         forms: &[ContactForm<S>],
         moments: &[MomentForm<S>],
-    ) -> Totals<S> {
+    ) -> ImpulsesAndMoments<S> {
         let sum = |places: &Places| -> [f64; D] {
             let mut sum = [0.0; D];
             for c in [places.contact, places.bond].into_iter().flatten() {
@@ -488,7 +488,7 @@ pub fn improve<S: Space, const D: usize>(
     let (impulses, turned, done) = {
         let standard = Standard::<S, D>::new(problem, forms, moments);
         let form = Form::new(&standard.w, &standard.q, &standard.laws, norm);
-        let mut state = State::new(&form, standard.start(problem, forms));
+        let mut state = Iteration::new(&form, standard.start(problem, forms));
         let mut budget = Budget::new(tolerance, iterations, f64::INFINITY);
         method.solver().solve(&form, &mut state, &mut budget);
         let (impulses, turned) = standard.totals(&state.p, forms, moments);

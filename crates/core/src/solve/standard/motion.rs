@@ -9,14 +9,14 @@
     reason = "loops over the components of blocks read like their formulas"
 )]
 
-use super::bodies::Bodies;
+use super::bodies::BodyOperator;
 use super::pattern::{Pattern, size};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, times};
 use crate::solve::local::factored::{Shift, Shifted};
 use crate::solve::local::form::Delassus;
-use crate::solve::local::linear::{Factor, Rows};
+use crate::solve::local::linear::{Factor, SparseRows};
 
 /// Returns the mass matrix of a body, with ones for imposed degrees of freedom.
 fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
@@ -66,8 +66,8 @@ fn invert<const D: usize>(s: &Block<D>, size: usize) -> Option<Block<D>> {
 }
 
 /// The factors, with the maps between impulses and motions.
-struct Factors<'a, S: Space, const D: usize> {
-    w: &'a Bodies<'a, S, D>,
+struct MotionFactors<'a, S: Space, const D: usize> {
+    w: &'a BodyOperator<'a, S, D>,
     s: Vec<Block<D>>,
     r: Vec<Block<D>>,
     sizes: Vec<usize>,
@@ -76,7 +76,7 @@ struct Factors<'a, S: Space, const D: usize> {
     lu: Factor,
 }
 
-impl<S: Space, const D: usize> Bodies<'_, S, D> {
+impl<S: Space, const D: usize> BodyOperator<'_, S, D> {
     /// Returns the column of H of a component for one of its bodies, by degrees of freedom.
     fn column(&self, c: usize, k: usize, side: usize) -> [f64; 6] {
         let axis = &self.unknowns[c].axes[k];
@@ -142,7 +142,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
             }
         }
         let lu = Factor::new(&a)?;
-        Some(Box::new(Factors {
+        Some(Box::new(MotionFactors {
             w: self,
             s,
             r,
@@ -154,9 +154,9 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
 
     /// Returns M with the sparsity pattern of the system; an imposed degree of freedom has a
     /// decoupled row.
-    fn masses_alone(&self, pattern: &Pattern) -> Rows {
+    fn masses_alone(&self, pattern: &Pattern) -> SparseRows {
         let d = size::<S>();
-        let mut a = Rows::default();
+        let mut a = SparseRows::default();
         a.starts.push(0);
         for (b, near) in pattern.near.iter().enumerate() {
             if near.is_empty() {
@@ -177,7 +177,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
     }
 }
 
-impl<S: Space, const D: usize> Factors<'_, S, D> {
+impl<S: Space, const D: usize> MotionFactors<'_, S, D> {
     /// Solves once with the factors.
     fn once(&self, b: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
         let pattern = self.w.pattern();
@@ -219,7 +219,7 @@ impl<S: Space, const D: usize> Factors<'_, S, D> {
     }
 }
 
-impl<S: Space, const D: usize> Shifted<D> for Factors<'_, S, D> {
+impl<S: Space, const D: usize> Shifted<D> for MotionFactors<'_, S, D> {
     fn solve(&self, b: &mut [[f64; D]]) -> bool {
         /// R may be large; iterative refinement recovers the digits lost to rounding.
         const REFINEMENTS: usize = 1;

@@ -100,7 +100,7 @@ pub(super) struct Moment {
 }
 
 /// Motion of the grains and of other bodies that nothing drives.
-pub(super) struct Motion {
+pub(super) struct UndrivenMotion {
     /// Their kinetic energy (J).
     pub kinetic: f64,
     /// Sum of m g d over them (J).
@@ -163,7 +163,7 @@ impl Clock {
         &mut self,
         until: &Until,
         now: &Moment,
-        motion: impl FnOnce() -> Motion,
+        motion: impl FnOnce() -> UndrivenMotion,
     ) -> Option<&'static str> {
         let begun = self.begun.last()?;
         let (start, first_step) = (begun.start, begun.first_step);
@@ -179,7 +179,7 @@ impl Clock {
                 held,
                 at_most,
             } => {
-                let Motion { kinetic, scale } = motion();
+                let UndrivenMotion { kinetic, scale } = motion();
                 let still =
                     share.is_none_or(|s| kinetic < s * scale) && energy.is_none_or(|e| kinetic < e);
                 if !still {
@@ -245,7 +245,7 @@ mod tests {
             step: 10,
             h: 1.0,
         };
-        let motion = |kinetic| Motion {
+        let motion = |kinetic| UndrivenMotion {
             kinetic,
             scale: 4.0,
         };

@@ -46,7 +46,7 @@ impl Linear {
 
 /// A contact that passes gaps with different attraction.
 #[derive(Clone, Copy, Debug)]
-struct Pull {
+struct AttractedContact {
     at: usize,
     /// What the form has beside the attraction: tension (N s), and the shift without what a tension
     /// adds to it (m/s).
@@ -57,7 +57,7 @@ struct Pull {
     linear: Linear,
 }
 
-impl Pull {
+impl AttractedContact {
     /// Writes the linearised attraction into the form.
     fn apply<S: Space>(&self, form: &mut ContactForm<S>, h: f64) {
         let Linear { x, force, slope } = self.linear;
@@ -77,10 +77,10 @@ impl Pull {
 
 /// Contacts of one interface: where attraction acts, and those whose attraction is linearised.
 #[derive(Debug)]
-struct Group {
+struct AttractionGroup {
     interface: usize,
     members: Vec<usize>,
-    pulls: Vec<Pull>,
+    pulls: Vec<AttractedContact>,
 }
 
 /// How attractions differ from those over the gaps that a solve led to.
@@ -108,12 +108,12 @@ impl Differences {
 /// The iteration of a step.
 #[derive(Debug)]
 pub(super) struct Attractions {
-    groups: Vec<Group>,
+    groups: Vec<AttractionGroup>,
 }
 
 /// Gaps of a contact in a step (m).
 #[derive(Clone, Copy, Debug)]
-struct Path {
+struct GapPath {
     /// At the start of the step, and at detection.
     start: f64,
     gap: f64,
@@ -122,7 +122,7 @@ struct Path {
     theta: f64,
 }
 
-impl Path {
+impl GapPath {
     /// At the start of the step, at detection, at the next detection, at the end of the step.
     fn gaps(&self) -> [f64; 4] {
         let Self {
@@ -163,7 +163,7 @@ impl Path {
 
 /// The attraction over the gaps of a path, linear between nodes.
 struct Passed {
-    path: Path,
+    path: GapPath,
     gaps: Vec<f64>,
     force: Vec<f64>,
     /// Integral of the force over the gap, up to each node (J).
@@ -171,7 +171,7 @@ struct Passed {
 }
 
 impl Passed {
-    fn of(path: Path, gaps: &[f64], force: &[f64]) -> Self {
+    fn of(path: GapPath, gaps: &[f64], force: &[f64]) -> Self {
         let mut work = vec![0.0; gaps.len()];
         for k in 1..gaps.len() {
             work[k] = work[k - 1] + 0.5 * (force[k] + force[k - 1]) * (gaps[k] - gaps[k - 1]);
@@ -202,7 +202,7 @@ impl Passed {
 
     /// G(x).
     fn given(&self, x: f64) -> f64 {
-        let Path {
+        let GapPath {
             start, gap, theta, ..
         } = self.path;
         let end = self.at(gap + x)[0];
@@ -220,7 +220,7 @@ impl Passed {
 
     /// Changes of the gap from zero to x_s at nodes, in the order passed.
     fn changes(&self) -> Vec<f64> {
-        let Path { gap, x, .. } = self.path;
+        let GapPath { gap, x, .. } = self.path;
         let within = |c: &f64| *c != 0.0 && (0.0..1.0).contains(&(c / x));
         let mut all: Vec<f64> = self.gaps.iter().map(|g| g - gap).filter(within).collect();
         if x < 0.0 {
@@ -271,14 +271,14 @@ impl Passed {
 /// A contact that may pass gaps with different attraction.
 struct Moved {
     at: usize,
-    path: Path,
-    pull: Option<Pull>,
+    path: GapPath,
+    pull: Option<AttractedContact>,
 }
 
 /// Finds the contacts that are attracted.
 pub(super) fn begin_attractions<S: Space>(s: &Simulation<S>) -> Attractions {
     let attracted = s.workspace.evaluator.attracted(&s.laws);
-    let group = |(interface, members)| Group {
+    let group = |(interface, members)| AttractionGroup {
         interface,
         members,
         pulls: Vec::new(),
@@ -316,7 +316,11 @@ fn load<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
 }
 
 /// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
-fn moved<S: Space>(s: &Simulation<S>, group: &Group, info: &StepInfo) -> (Vec<Moved>, f64) {
+fn moved<S: Space>(
+    s: &Simulation<S>,
+    group: &AttractionGroup,
+    info: &StepInfo,
+) -> (Vec<Moved>, f64) {
     let (workspace, contacts) = (&s.workspace, &s.state.network.contacts);
     let mut moved = Vec::new();
     let mut whole = 0.0;
@@ -326,7 +330,7 @@ fn moved<S: Space>(s: &Simulation<S>, group: &Group, info: &StepInfo) -> (Vec<Mo
         let pull = pulls.next_if(|p| p.at == *at).copied();
         let solved = &workspace.solved;
         let (gap, n) = (contact.gap, &contact.normal);
-        let path = Path {
+        let path = GapPath {
             start: gap - (1.0 - info.theta) * info.h * n.dot(&solved.before.relative[*at]),
             gap,
             x: info.h * n.dot(&solved.after[*at]),
@@ -347,7 +351,7 @@ fn moved<S: Space>(s: &Simulation<S>, group: &Group, info: &StepInfo) -> (Vec<Mo
 
 fn compare_attraction<S: Space>(
     s: &mut Simulation<S>,
-    group: &mut Group,
+    group: &mut AttractionGroup,
     tolerance: f64,
     differences: &mut Differences,
     info: &StepInfo,
@@ -372,7 +376,7 @@ fn compare_attraction<S: Space>(
             return false;
         };
         let form = &s.workspace.forms[m.at];
-        m.pull = Some(Pull {
+        m.pull = Some(AttractedContact {
             at: m.at,
             tension: form.tension - h * here,
             shift: form.shift_n - form.compliance[0] * form.tension,
@@ -435,7 +439,7 @@ fn compare_attraction<S: Space>(
 
 fn attraction_at<S: Space>(
     s: &mut Simulation<S>,
-    group: &Group,
+    group: &AttractionGroup,
     places: &[usize],
     gaps: &[f64],
     info: &StepInfo,
@@ -483,7 +487,7 @@ pub(super) fn settle_attractions<S: Space>(
 mod tests {
     use super::*;
 
-    fn passed(path: Path, force: impl Fn(f64) -> f64) -> Passed {
+    fn passed(path: GapPath, force: impl Fn(f64) -> f64) -> Passed {
         let gaps = path.nodes();
         let force: Vec<f64> = gaps.iter().map(|g| force(*g)).collect();
         Passed::of(path, &gaps, &force)
@@ -500,7 +504,7 @@ mod tests {
             (-0.2, 0.5, 1.4),
             (3.0, 2.0, -2.0),
         ] {
-            let path = Path {
+            let path = GapPath {
                 start,
                 gap,
                 x,
@@ -518,7 +522,7 @@ mod tests {
     /// F = 1 + x up to 2 and nothing beyond holds up to 2, at x = P - 1, whatever the mass.
     #[test]
     fn the_first_state_that_holds_is_found() {
-        let path = Path {
+        let path = GapPath {
             start: 0.0,
             gap: 0.0,
             x: 100.0,

@@ -79,7 +79,7 @@ impl<S: Space> Sliding<S> {
 
 /// The contacts of one interface whose friction depends on the velocity.
 #[derive(Debug)]
-struct Group<S: Space> {
+struct SlidingGroup<S: Space> {
     interface: usize,
     contacts: Vec<Sliding<S>>,
 }
@@ -97,7 +97,7 @@ fn direction<S: Space>(normal: &S::Vector, velocity: &S::Vector) -> (S::Tangent,
 
 /// What a contact did in a solve.
 #[derive(Clone, Copy, Debug)]
-struct Done<S: Space> {
+struct SlidingAnswer<S: Space> {
     /// Direction of sliding, and velocity (m/s).
     along: S::Tangent,
     speed: f64,
@@ -108,7 +108,7 @@ struct Done<S: Space> {
     slides: bool,
 }
 
-impl<S: Space> Done<S> {
+impl<S: Space> SlidingAnswer<S> {
     fn of(
         contact: &Contact<S>,
         sliding: &Sliding<S>,
@@ -160,7 +160,7 @@ impl Mismatch {
 /// The iteration of a step.
 #[derive(Debug)]
 pub(super) struct SlidingLaws<S: Space> {
-    groups: Vec<Group<S>>,
+    groups: Vec<SlidingGroup<S>>,
     iterations: u32,
     /// V_0 (m/s).
     floor: f64,
@@ -224,7 +224,7 @@ pub(super) fn begin_sliding<S: Space>(
             sliding.apply(form, load);
             group.push(sliding);
         }
-        all.groups.push(Group {
+        all.groups.push(SlidingGroup {
             interface,
             contacts: group,
         });
@@ -256,7 +256,7 @@ pub(super) fn compare_sliding<S: Space>(
         let workspace = &s.workspace;
         let of = |sliding: &Sliding<S>| {
             let at = sliding.at;
-            Done::of(
+            SlidingAnswer::of(
                 &s.state.network.contacts[at],
                 sliding,
                 &workspace.forms[at],
@@ -264,7 +264,7 @@ pub(super) fn compare_sliding<S: Space>(
                 &workspace.solved.after[at],
             )
         };
-        let done: Vec<Done<S>> = group.contacts.iter().map(of).collect();
+        let done: Vec<SlidingAnswer<S>> = group.contacts.iter().map(of).collect();
         let velocities = done
             .iter()
             .map(|d| d.along * d.speed.max(floor))
@@ -300,7 +300,7 @@ pub(super) fn compare_sliding<S: Space>(
 
 fn friction_of<S: Space>(
     s: &mut Simulation<S>,
-    group: &Group<S>,
+    group: &SlidingGroup<S>,
     velocities: &[S::Tangent],
     info: &StepInfo,
 ) -> Result<Vec<FrictionAt>, LawError> {
@@ -312,8 +312,8 @@ fn friction_of<S: Space>(
 /// Linearises the laws at the velocities found.
 fn linearise_sliding<S: Space>(
     s: &mut Simulation<S>,
-    group: &mut Group<S>,
-    done: &[Done<S>],
+    group: &mut SlidingGroup<S>,
+    done: &[SlidingAnswer<S>],
     found: &[FrictionAt],
     (iterations, floor): (u32, f64),
     info: &StepInfo,
@@ -323,7 +323,7 @@ fn linearise_sliding<S: Space>(
         let cohesion = s.workspace.forms[sliding.at].cohesion;
         speeds.push(next_speed(sliding, done, cohesion, iterations).max(floor));
     }
-    let asked = |d: &Done<S>| d.speed.max(floor);
+    let asked = |d: &SlidingAnswer<S>| d.speed.max(floor);
     let elsewhere = speeds.iter().zip(done).any(|(v, d)| *v != asked(d));
     let given;
     let friction = if elsewhere {
@@ -383,7 +383,7 @@ pub(super) fn settle_sliding<S: Space>(s: &mut Simulation<S>, laws: SlidingLaws<
 /// Where to linearise next (m/s).
 fn next_speed<S: Space>(
     sliding: &Sliding<S>,
-    done: &Done<S>,
+    done: &SlidingAnswer<S>,
     cohesion: f64,
     iterations: u32,
 ) -> f64 {

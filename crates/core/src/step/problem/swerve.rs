@@ -20,12 +20,12 @@ use crate::step::Simulation;
 use crate::threads::fill;
 
 /// Velocity and spin of a body.
-type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+type RelativeMotion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the
 /// velocities without contacts; leaves the list empty where nothing is hollow, no driven body turns
 /// and no material passes.
-pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>], h: f64) {
+pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[RelativeMotion<S>], h: f64) {
     let mut swerves = std::mem::take(&mut s.workspace.swerves);
     swerves.clear();
     let hollow = s.shapes.surfaces.iter().any(|s| s.shape.is_hollow());
@@ -80,7 +80,7 @@ impl<S: Space> Scene<'_, S> {
         surface.is_some_and(|s| self.shapes.surfaces[s].shape.is_hollow())
     }
 
-    fn swerve(&self, contact: &Contact<S>, free: &[Motion<S>], h: f64) -> f64 {
+    fn swerve(&self, contact: &Contact<S>, free: &[RelativeMotion<S>], h: f64) -> f64 {
         let network = self.network;
         // A spring pushes out what it lets in, a bond holds what it joins; a contact found on the
         // way has the place where it closes.
@@ -110,7 +110,7 @@ impl<S: Space> Scene<'_, S> {
         sides: [usize; 2],
         [arm, place]: [S::Vector; 2],
         n: S::Vector,
-        free: &[Motion<S>],
+        free: &[RelativeMotion<S>],
         h: f64,
     ) -> f64 {
         let bodies = self.bodies;
