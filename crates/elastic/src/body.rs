@@ -46,7 +46,7 @@ pub struct ElasticBody<S: Space> {
     pub(crate) velocity: Vec<f64>,
     /// Both at the start of the step.
     pub(crate) start: [Vec<f64>; 2],
-    /// K q in small strain, now once it was asked for, and at the start of the step (N).
+    /// K q in small strain, now once it was computed, and at the start of the step (N).
     elastic: OnceLock<Vec<f64>>,
     elastic_at_start: Vec<f64>,
     /// Moves since the step began: after two it has ended.

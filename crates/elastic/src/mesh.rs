@@ -71,7 +71,7 @@ impl<S: Space> Mesh<S> {
     /// boundary by the D points of each of their facets, in any order.
     ///
     /// # Errors
-    /// The mesh has no elements, or one of the faults that [`MeshError`] lists.
+    /// The mesh has no elements, or one of the defects that [`MeshError`] lists.
     pub fn new(
         points: Vec<S::Vector>,
         elements: Vec<u32>,

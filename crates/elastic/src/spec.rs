@@ -1,4 +1,4 @@
-//! What a body is made of, as its maker is told.
+//! What a body is made of: the input of its constructor.
 
 use crate::material::Elasticity;
 use crate::mesh::Mesh;

@@ -160,12 +160,7 @@ impl LawEvaluator {
         let divide = self.divides(members.len(), BOND);
         let batches = members.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info: step.info,
-            };
+            let source = Source::new(law, index, network, step.info);
             let opening = BondOpenings {
                 source,
                 motion: MotionSource::Solved(step),
@@ -212,12 +207,7 @@ impl LawEvaluator {
             let divide = self.divides(members.len(), BOND);
             let trials = &mut self.trials;
             let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
-                let source = Source {
-                    law,
-                    index,
-                    network,
-                    info: step.info,
-                };
+                let source = Source::new(law, index, network, step.info);
                 let opening = BondOpenings {
                     source,
                     motion: MotionSource::Solved(step),

@@ -42,7 +42,7 @@ pub enum End {
     Done,
     /// It ended early, for the given reason.
     Early(String),
-    /// It ended early since the system refused it memory, which is no fault of what was tried: in a
+    /// It ended early since the system refused it memory, which is no failure of what was tried: in a
     /// sentence.
     NoMemory(String),
 }
@@ -100,9 +100,9 @@ pub fn read_request() -> Result<Value, String> {
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
     read.map_err(|e| e.to_string())?;
-    let asked: Question = serde_json::from_str(&text).map_err(|e| e.to_string())?;
-    let _ = TOKEN.set(asked.token);
-    Ok(asked.question)
+    let request: Question = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+    let _ = TOKEN.set(request.token);
+    Ok(request.question)
 }
 
 /// Runs the program with a hidden subcommand and collects its output.

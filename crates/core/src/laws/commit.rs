@@ -64,7 +64,7 @@ impl LawEvaluator {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
-        // A law that remembers nothing is asked for conductances only where something flows.
+        // A law without internal variables is called only where heat or current flows.
         let conducts = network.thermal.as_ref().map(|t| t.conducts);
         let idle = |l: &&Loaded| {
             let remembers = l.variables() > 0 && conducts.is_some();
@@ -122,12 +122,7 @@ impl LawEvaluator {
         }
         let size = chunk_size(BATCH);
         let of = |network: &_, batch: &mut LawBatch, (first, members): &mut (usize, &[usize])| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info: step.info,
-            };
+            let source = Source::new(law, index, network, step.info);
             batch.gather_after(&source, members, &MotionSource::Solved(step), slots);
             let here = *first..*first + members.len();
             let mut answers = Vec::with_capacity(slots.len());

@@ -167,12 +167,7 @@ impl LawEvaluator {
         let still = Velocities::still(&network.contacts);
         let batches = stretched.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info,
-            };
+            let source = Source::new(law, index, network, info);
             batch.gather_before(&source, members, &still, &[cohesion]);
             batch.columns.damage.fill(0.0);
             let run = batch.run_afresh(cohesion, info, 0.0, Call::Energy);
@@ -214,12 +209,7 @@ impl LawEvaluator {
         let laws: Vec<&Loaded> = law.loaded().collect();
         let batches = new.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info,
-            };
+            let source = Source::new(law, index, network, info);
             batch.gather_before(&source, members, &still, &laws);
             for loaded in &laws {
                 let run = batch.run_afresh(loaded, info, 0.0, Call::Initialise);

@@ -18,6 +18,22 @@ pub(super) struct Source<'a, S: Space> {
     pub info: &'a StepInfo,
 }
 
+impl<'a, S: Space> Source<'a, S> {
+    pub fn new(
+        law: &'a Interface,
+        index: usize,
+        network: &'a Network<S>,
+        info: &'a StepInfo,
+    ) -> Self {
+        Self {
+            law,
+            index,
+            network,
+            info,
+        }
+    }
+}
+
 /// What contacts do in a step.
 #[derive(Debug)]
 pub(super) enum MotionSource<'a, S: Space> {

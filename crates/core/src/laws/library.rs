@@ -330,7 +330,7 @@ pub fn try_libraries() -> Result<(), String> {
         send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
                 Err(LawError::Pinned { .. }) => json!(loading::CHANGED),
-                // Its code does not get into the process that asks.
+                // Its code does not get into the process that requested the trial.
                 Err(LawError::Unexamined { reason, .. }) => json!(reason),
                 _ => Value::Null,
             },

@@ -57,4 +57,4 @@ pub use slot::SlotCommit;
 pub use spring::{SpringForm, SpringStep};
 pub use step_info::StepInfo;
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};
-pub use trial::Step;
+pub use trial::LawStep;

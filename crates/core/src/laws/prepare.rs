@@ -306,12 +306,7 @@ impl LawBatch {
             cohesion,
             ..
         } = *request;
-        let source = Source {
-            law,
-            index,
-            network,
-            info,
-        };
+        let source = Source::new(law, index, network, info);
         let mut prepared = Prepared {
             moments: Vec::new(),
             held_back: Vec::new(),

@@ -20,7 +20,7 @@ impl Range {
     }
 
     /// Returns the first value outside the range by more than rounding, and clamps the others to
-    /// it. Almost always the range of the column tells that there is none.
+    /// it. Almost always the range of the column shows that there is none.
     fn settle(self, column: &mut [f64], found: &ColumnRange, largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
             *largest = largest.max(found.most);
@@ -38,7 +38,7 @@ impl Range {
     }
 }
 
-/// What one pass without branches tells of a column.
+/// Range of a column, found in one pass without branches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ColumnRange {
     /// Whether all values are finite.

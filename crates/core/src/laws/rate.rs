@@ -6,7 +6,7 @@ use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::Source;
-use super::trial::{Step, TrialRequest};
+use super::trial::{LawStep, TrialRequest};
 use crate::geometry::space::Space;
 
 /// About what the two calls take for a contact (ns).
@@ -37,7 +37,10 @@ impl LawEvaluator {
     /// The interfaces whose friction depends on the velocity of sliding, found by trying it on some
     /// of their contacts, with the contacts that they have in the step. An error at a velocity that
     /// is tried is none of the run's.
-    pub fn rate_dependent<S: Space>(&mut self, step: &mut Step<'_, S>) -> Vec<(usize, Vec<usize>)> {
+    pub fn rate_dependent<S: Space>(
+        &mut self,
+        step: &mut LawStep<'_, S>,
+    ) -> Vec<(usize, Vec<usize>)> {
         let mut found = Vec::new();
         for (index, law) in step.laws.iter().enumerate() {
             if law.constant_contact() {
@@ -79,12 +82,12 @@ impl LawEvaluator {
     /// The law's error, with the contact.
     pub fn friction_at<S: Space>(
         &mut self,
-        step: &mut Step<'_, S>,
+        step: &mut LawStep<'_, S>,
         index: usize,
         members: &[usize],
         velocities: &[S::Tangent],
     ) -> Result<Vec<FrictionAt>, LawError> {
-        self.ask(step, index, members, velocities, EACH, |batch, request| {
+        self.evaluate_with(step, index, members, velocities, EACH, |batch, request| {
             let TrialRequest { source, before, .. } = *request;
             batch.gather_before(&source, request.members, before, &[source.law.contact()]);
             for (k, at) in request.members.iter().enumerate() {

@@ -7,7 +7,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::Source;
 use super::interface::Interface;
-use super::trial::{Step, TrialRequest};
+use super::trial::{LawStep, TrialRequest};
 use crate::geometry::space::Space;
 
 /// About what a call takes for a contact (ns).
@@ -36,7 +36,7 @@ impl LawEvaluator {
     /// The law's error, with the contact.
     pub fn attraction_at<S: Space>(
         &mut self,
-        step: &mut Step<'_, S>,
+        step: &mut LawStep<'_, S>,
         index: usize,
         members: &[usize],
         gaps: &[f64],
@@ -44,7 +44,7 @@ impl LawEvaluator {
         let Some(cohesion) = step.laws[index].cohesion() else {
             return Ok(vec![0.0; members.len()]);
         };
-        self.ask(step, index, members, gaps, EACH, |batch, request| {
+        self.evaluate_with(step, index, members, gaps, EACH, |batch, request| {
             let TrialRequest {
                 source,
                 before,

@@ -20,7 +20,7 @@ use crate::solve::form::{ContactForm, ContactSolution};
 pub struct SpringForm<S: Space> {
     /// Gap g of the spring at detection (m), negative where the bodies overlap.
     pub gap: f64,
-    /// Overlap d at which the law was asked (m).
+    /// Overlap d at which the law was evaluated (m).
     pub overlap: f64,
     /// Normal force there (N).
     pub force_n: f64,
@@ -261,7 +261,7 @@ mod tests {
     }
 
     /// F d/(1 + k d/F) of a linear spring is F d/2; of Hertz' spring, F of d^1.5, it is F d/2.5.
-    /// Beyond the overlap at which the law was asked the force is that of its slope.
+    /// Beyond the overlap at which the law was evaluated the force follows its slope.
     #[test]
     fn a_spring_that_is_found_compressed_has_energy() {
         assert!((form().initial_energy() - 0.4).abs() < 1e-15);

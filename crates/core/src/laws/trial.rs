@@ -15,7 +15,7 @@ use crate::threads::chunk_size;
 
 /// Where laws are called: the contacts of the step, and what is known of them at its start.
 #[derive(Debug)]
-pub struct Step<'a, S: Space> {
+pub struct LawStep<'a, S: Space> {
     /// The interfaces.
     pub laws: &'a [Interface],
     /// Memory of the checks.
@@ -28,7 +28,7 @@ pub struct Step<'a, S: Space> {
     pub info: &'a StepInfo,
 }
 
-/// Contacts of one interface that a batch asks for, each with a value that takes the place of an
+/// Contacts of one interface that a batch is evaluated at, each with a value that takes the place of an
 /// input.
 pub(super) struct TrialRequest<'a, S: Space, T> {
     pub source: Source<'a, S>,
@@ -38,11 +38,11 @@ pub(super) struct TrialRequest<'a, S: Space, T> {
 }
 
 impl LawEvaluator {
-    /// Asks a law of an interface for contacts with given values, by batches that are divided among
+    /// Evaluates a law of an interface at contacts with given values, by batches that are divided among
     /// threads; a call takes about `each` (ns) for a contact.
-    pub(super) fn ask<S: Space, T: Sync, R: Send>(
+    pub(super) fn evaluate_with<S: Space, T: Sync, R: Send>(
         &mut self,
-        step: &mut Step<'_, S>,
+        step: &mut LawStep<'_, S>,
         index: usize,
         members: &[usize],
         given: &[T],
@@ -55,12 +55,7 @@ impl LawEvaluator {
         let of = |network: &Network<S>,
                   batch: &mut LawBatch,
                   (members, given): &mut (&[usize], &[T])| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info,
-            };
+            let source = Source::new(law, index, network, info);
             call(
                 batch,
                 &TrialRequest {

@@ -43,7 +43,7 @@ pub(super) fn add_response<'a, S: Space>(
     }
 }
 
-/// Weighted sums of the nodes of a system, told by their index: first each node alone, then those
+/// Weighted sums of the nodes of a system, identified by their index: first each node alone, then those
 /// that are added.
 #[derive(Clone, Debug)]
 pub(super) struct Points {

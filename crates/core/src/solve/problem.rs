@@ -57,7 +57,7 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<RowPlace>,
-    /// Connected sets of the contacts that it had when these were asked for last.
+    /// Connected sets of the contacts, as last computed.
     pub(super) connected: Connected,
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,

@@ -1,4 +1,4 @@
-//! How much a step has changed: what tells whether a longer one would do.
+//! How much a step has changed, from which follows whether a longer one would do.
 
 use crate::contact::Key;
 use nalgebra::Vector3;

@@ -14,7 +14,8 @@ use std::fmt::Debug;
 /// An error of a moment ends the step with [`super::StepError::Process`], unless it is a
 /// [`super::StepError`] itself; the state is then that of this moment.
 pub trait Process<S: Space>: Any + Debug + Send + Sync {
-    /// Its name: tells processes of one simulation apart in checkpoints and messages.
+    /// Its name, which identifies it among the processes of a simulation in checkpoints and
+    /// messages.
     fn name(&self) -> &str;
 
     /// At the start of a step, before anything of it is done.

@@ -1,4 +1,4 @@
-//! What a simulation holds at the end of a step, for those who read it: columns of bodies, rows of
+//! What a simulation holds at the end of a step, for readers: columns of bodies, rows of
 //! contacts.
 
 use super::Simulation;

@@ -50,7 +50,7 @@ impl<S: Space> Simulation<S> {
             scar.reapply_depth(&mut self.shapes);
         }
         self.notify(|process, simulation| process.follow_state(simulation));
-        // Results may be asked for before the next step.
+        // Results may be read before the next step.
         self.state
             .systems
             .deform(&self.state.bodies, &mut self.shapes);

@@ -1,4 +1,4 @@
-//! What a body of finite elements tells of itself: stress, forces of its holders, its mesh and the
+//! Results of a body of finite elements: stress, forces of its holders, its mesh and the
 //! surface that touches.
 
 use super::ElasticBody;

@@ -91,7 +91,7 @@ fn a_law_of_transport_remembers_steps_without_a_flow_of_heat() {
     }
 }
 
-/// A law that remembers nothing is asked for its conductance only where heat flows.
+/// A law without internal variables is called only where heat flows.
 #[test]
 fn a_law_without_memory_is_asked_where_heat_flows() {
     let law = interface([constant()]);

@@ -134,7 +134,7 @@ fn debris_of_one_mode() {
 }
 
 /// A grain that was bonded again and breaks away again costs the new bond only, and stays bonded
-/// between: what was booked is not booked again.
+/// between: what was counted is not counted again.
 #[test]
 fn bonds_of_earlier_debris_do_not_count_again() {
     let mut s = scene();

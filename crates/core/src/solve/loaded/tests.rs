@@ -114,7 +114,7 @@ fn nodes_of_many_points_move_as_with_the_whole_compliance() {
     compare(&points, true);
 }
 
-/// Points that are vertices of a facet, told with all vertices of it, are single nodes.
+/// Points that are vertices of a facet, given with all vertices of it, are single nodes.
 #[test]
 fn a_point_with_one_weight_is_its_node() {
     let mut system = system();

@@ -104,8 +104,8 @@ mod tests {
         assert!(said(&|p| p.dimension = 4).contains("not 4"));
         let sizes = "2 contacts of 2 components ask for W of 4 x 4 and q of 4, not ";
         for (rows, columns) in [(3, 4), (4, 3)] {
-            let told = said(&|p| p.w = Csr::from_triplets(rows, columns, &[]));
-            assert_eq!(told, format!("{sizes}{rows} x {columns} and 4"));
+            let message = said(&|p| p.w = Csr::from_triplets(rows, columns, &[]));
+            assert_eq!(message, format!("{sizes}{rows} x {columns} and 4"));
         }
         assert_eq!(said(&|p| p.q.push(0.0)), format!("{sizes}4 x 4 and 5"));
         assert!(said(&|p| p.mu.push(0.0)).starts_with("3 contacts of 2"));

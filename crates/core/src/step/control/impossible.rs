@@ -96,8 +96,8 @@ impl ImpossibleMotions {
                 self.overlapping_at
             )
         });
-        let told: Vec<String> = [squeezed, overlapping].into_iter().flatten().collect();
-        (!told.is_empty()).then(|| told.join("; "))
+        let warnings: Vec<String> = [squeezed, overlapping].into_iter().flatten().collect();
+        (!warnings.is_empty()).then(|| warnings.join("; "))
     }
 }
 
@@ -142,9 +142,9 @@ fn squeezing<S: Space>(
     if !solver.unbounded {
         let wasted = solver.parts.residual_energy;
         let left = (work - wasted - solver.parts.slip_energy).abs();
-        let asked = solver.iterations >= LEAST_ITERATIONS
+        let tried = solver.iterations >= LEAST_ITERATIONS
             || solver.iterations < s.options.solver.max_iterations;
-        if !(asked && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
+        if !(tried && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
             return Vec::new();
         }
     }
@@ -255,8 +255,8 @@ fn depth_of_driven<S: Space>(
     };
     let travelled = scheme.h * (speed(0) + speed(1));
     // Steps are chords of curved paths.
-    let told = depth > ROUNDING * size + travelled * travelled / size;
-    (-closing * scheme.h > GRAZING * travelled && told).then_some(depth)
+    let overlaps = depth > ROUNDING * size + travelled * travelled / size;
+    (-closing * scheme.h > GRAZING * travelled && overlaps).then_some(depth)
 }
 
 #[cfg(test)]

@@ -111,7 +111,7 @@ pub(in crate::step) fn deepest_overlap<S: Space>(s: &Simulation<S>) -> f64 {
     })
 }
 
-/// The overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` tells which bodies are
+/// The overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` says which bodies are
 /// grains.
 #[inline]
 pub(in crate::step) fn overlap<S: Space>(

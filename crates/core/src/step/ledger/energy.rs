@@ -12,7 +12,7 @@ const CHUNK: usize = 1024;
 /// About what it takes to look whether a contact is one of a driven body (ns).
 const RECEIVED: f64 = 5.0;
 
-/// Books the step in the energy ledger.
+/// Adds the step to the energy ledger.
 pub(in crate::step) fn close_energy<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,

@@ -126,7 +126,7 @@ pub(in crate::step) fn end_systems<S: Space>(
     s.state.systems.energies()
 }
 
-/// The current step, as systems are told of it.
+/// The data of the current step that systems receive.
 pub(in crate::step) fn system_step<S: Space>(s: &Simulation<S>) -> SystemStep<S> {
     SystemStep {
         time: s.state.time,

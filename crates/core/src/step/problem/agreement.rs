@@ -74,8 +74,8 @@ pub(super) fn solve_in_agreement<S: Space>(
             .zip(&s.workspace.solved.contact_steps);
         both.for_each(|(form, step)| form.impulse = step.solution.impulse);
     }
-    let told = report.solver.converged.then(|| answers::is_not_searched(s));
-    [report.solver.not_searched, report.solver.pinched] = told.unwrap_or_default();
+    let searched = report.solver.converged.then(|| answers::is_not_searched(s));
+    [report.solver.not_searched, report.solver.pinched] = searched.unwrap_or_default();
     sliding::settle_sliding(s, sliding);
     attraction::settle_attractions(s, attractions, info.h);
     answers::collect_spring_steps(s);

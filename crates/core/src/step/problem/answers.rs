@@ -11,7 +11,7 @@ use crate::step::{Scheme, Simulation};
 use crate::threads::fill;
 use std::sync::{Mutex, PoisonError};
 
-/// Least overlap, over the reduced radius, for which a law is asked at a contact that closes within
+/// Least overlap, over the reduced radius, for which a law is evaluated at a contact that closes within
 /// the step: its velocity before may not tell of that.
 const CLOSING_OVERLAP: f64 = 1e-3;
 

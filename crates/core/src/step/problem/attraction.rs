@@ -12,14 +12,14 @@
 //! if there is none, at x_s or beyond. There the attraction is linearised: by its value, and, where
 //! it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
 
-use super::asking::asks;
+use super::law_step::law_step;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::StepInfo;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 
-/// The nodes at which an attraction is asked for: powers of two of the distance from the smallest
+/// The nodes at which an attraction is evaluated: powers of two of the distance from the smallest
 /// gap, and parts of each.
 const OCTAVES: usize = 18;
 const PARTS: usize = 8;
@@ -447,12 +447,12 @@ fn attraction_at<S: Space>(
     if places.is_empty() {
         return Ok(Vec::new());
     }
-    let (evaluator, mut step) = asks(s, info);
+    let (evaluator, mut step) = law_step(s, info);
     evaluator.attraction_at(&mut step, group.interface, places, gaps)
 }
 
 /// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a
-/// body deforms, of which only the answer of a solve tells.
+/// body deforms, which only a solve shows.
 fn inertia_of<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
     let (bodies, contact) = (&s.state.bodies, &s.state.network.contacts[at]);
     let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();

@@ -4,9 +4,9 @@
 mod action;
 mod agreement;
 mod answers;
-mod asking;
 mod attraction;
 mod coupling;
+mod law_step;
 mod posing;
 mod sliding;
 pub(super) mod surfaces;

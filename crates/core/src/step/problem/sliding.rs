@@ -10,9 +10,9 @@
 //! Laws in the logarithm of the velocity rise without bound towards rest, m P then being far above
 //! all masses, and a network of such dampers is as good as glued. Velocities below the floor V_0,
 //! the tolerance of the solver times the root mean square of the velocities of all contacts, are
-//! none that a solution could tell from rest: laws are asked at max(|u_t|, V_0).
+//! none that a solution could tell from rest: laws are evaluated at max(|u_t|, V_0).
 
-use super::asking::asks;
+use super::law_step::law_step;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::ContactStep;
@@ -146,7 +146,7 @@ impl Mismatch {
         let rising: f64 = differs(true).map(|d| d.0).sum();
         let share = |x: f64| if x > 0.0 { x / whole } else { 0.0 };
         let many = iterations >= MANY;
-        // Each that rises is judged by itself, unless it carries next to nothing.
+        // Each that rises is compared by itself, unless it carries next to nothing.
         let each = differs(true).all(|d| d.0 <= TOLERANCE * (d.1 + NEXT_TO_NOTHING * whole));
         let rises = each || many && share(rising) <= TOLERANCE_OF_ALL;
         let falls = share(falling) <= TOLERANCE_OF_ALL || many;
@@ -195,7 +195,7 @@ pub(super) fn begin_sliding<S: Space>(
     }
     let tolerance = s.options.solver.tolerance;
     all.floor = floor::<S>(tolerance, &s.workspace.solved.before.relative);
-    let (evaluator, mut step) = asks(s, info);
+    let (evaluator, mut step) = law_step(s, info);
     let dependent = evaluator.rate_dependent(&mut step);
     for (interface, members) in dependent {
         let contacts = &s.state.network.contacts;
@@ -206,7 +206,7 @@ pub(super) fn begin_sliding<S: Space>(
             along * speed.max(all.floor)
         };
         let velocities: Vec<S::Tangent> = members.iter().map(of).collect();
-        let (evaluator, mut step) = asks(s, info);
+        let (evaluator, mut step) = law_step(s, info);
         let friction = evaluator.friction_at(&mut step, interface, &members, &velocities)?;
         let (contacts, forms) = (&s.state.network.contacts, &mut s.workspace.forms);
         let mut group = Vec::with_capacity(members.len());
@@ -305,7 +305,7 @@ fn friction_of<S: Space>(
     info: &StepInfo,
 ) -> Result<Vec<FrictionAt>, LawError> {
     let members: Vec<usize> = group.contacts.iter().map(|s| s.at).collect();
-    let (evaluator, mut step) = asks(s, info);
+    let (evaluator, mut step) = law_step(s, info);
     evaluator.friction_at(&mut step, group.interface, &members, velocities)
 }
 

@@ -1,5 +1,5 @@
 //! Moments of contacts with dynamical systems: what of a system turns where a contact acts, and the
-//! spins that laws are told of.
+//! spins that laws receive.
 
 use crate::bodies::{Nodes, TurningNode};
 use crate::contact::Contact;

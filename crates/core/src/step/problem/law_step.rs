@@ -1,17 +1,16 @@
-//! Laws asked in the course of a step.
+//! What laws are evaluated with in the course of a step.
 
 use crate::geometry::space::Space;
-use crate::laws::Step;
-use crate::laws::StepInfo;
 use crate::laws::evaluator::LawEvaluator;
+use crate::laws::{LawStep, StepInfo};
 use crate::step::Simulation;
 
-/// What calls laws, and what they are asked of.
-pub(super) fn asks<'a, S: Space>(
+/// The evaluator of laws, and the contacts that it evaluates them at.
+pub(super) fn law_step<'a, S: Space>(
     s: &'a mut Simulation<S>,
     info: &'a StepInfo,
-) -> (&'a mut LawEvaluator, Step<'a, S>) {
-    let step = Step {
+) -> (&'a mut LawEvaluator, LawStep<'a, S>) {
+    let step = LawStep {
         laws: &s.laws,
         history: &mut s.state.law_history,
         network: &mut s.state.network,
