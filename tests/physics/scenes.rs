@@ -460,7 +460,7 @@ fn a_first_body_that_is_a_ball_is_named() {
 #[test]
 fn collapse_on_teeth_sees_its_contacts_in_time() {
     let summary = finished("collapse", &["output.frames=0"], |_| {});
-    let count = |name: &str| summary.found.number(&format!("haste.{name}"));
+    let count = |name: &str| summary.found.number(&format!("step_size.{name}"));
     assert_eq!((count("late"), count("passed")), (Some(0.0), Some(0.0)));
     assert!(summary.run.trustworthy, "{:?}", summary.run.reasons);
 }

@@ -126,7 +126,8 @@ fn a_study_of_what_the_case_does_not_have() {
     let trial = Trial::new();
     trial.write("case.ron", PLANE);
     for (output, words) in [
-        ("haste.first_late", "the course of the run"),
+        ("step_size.first_late", "the course of the run"),
+        ("haste.late", "`haste.late` is called `step_size.late` now"),
         ("uncertainty.wear.step", "the course of the run"),
         (
             "uncertainty.friction_coefficient.scatter",
@@ -148,7 +149,7 @@ fn a_study_of_what_the_case_does_not_have() {
         );
         let listed = said.split("nothing to compare").nth(1).unwrap_or_default();
         assert!(
-            !listed.contains("haste.")
+            !listed.contains("step_size.")
                 && !listed.contains("uncertainty.")
                 && !listed.contains("peak_friction"),
             "{said}"

@@ -1,7 +1,7 @@
 //! Outputs that a case has, determined before anything runs.
 
 use super::output::{OutputName, listed};
-use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
+use fretwork_observe::quantity::{Catalogue, Findings, Role, renamed, unit};
 use fretwork_observe::standard;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::Built;
@@ -94,6 +94,9 @@ impl AvailableQuantities {
             };
         }
         let name = output.name.as_str();
+        if let Some(now) = renamed(name) {
+            return Err(format!("`{name}` is called `{now}` now"));
+        }
         let unknown = || Err(output.unknown(&self.names(), "", name));
         if let Some(why) = self.lack(name) {
             return Err(format!(

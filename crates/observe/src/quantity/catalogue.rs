@@ -100,8 +100,28 @@ impl Catalogue {
     }
 }
 
-/// A value of a summary by its path.
+/// Groups of a summary by their present names and by those that earlier versions gave them.
+const RENAMED: [[&str; 2]; 1] = [["step_size", "haste"]];
+
+/// The present path of one that earlier versions of the program wrote.
+pub fn renamed(path: &str) -> Option<String> {
+    let (group, rest) = path.split_once('.').unwrap_or((path, ""));
+    let [now, _] = RENAMED.iter().find(|[_, before]| *before == group)?;
+    let dot = if rest.is_empty() { "" } else { "." };
+    Some(format!("{now}{dot}{rest}"))
+}
+
+/// A value of a summary by its path, also in summaries of versions that gave its group another
+/// name.
 pub fn find<'a>(summary: &'a Value, path: &str) -> Option<&'a Value> {
+    let before = RENAMED.iter().find_map(|[now, before]| {
+        let rest = path.strip_prefix(now)?;
+        (rest.is_empty() || rest.starts_with('.')).then(|| format!("{before}{rest}"))
+    });
+    at_path(summary, path).or_else(|| at_path(summary, &before?))
+}
+
+fn at_path<'a>(summary: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(summary, |at, part| match at {
         Value::Array(list) => list.get(part.parse::<usize>().ok()?),
         _ => at.get(part),

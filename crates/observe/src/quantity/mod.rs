@@ -10,7 +10,7 @@ mod findings;
 mod format;
 mod nested;
 
-pub use catalogue::{Catalogue, Entry, find};
+pub use catalogue::{Catalogue, Entry, find, renamed};
 pub use described::{Described, Field, Schema, field, part};
 pub use estimate::Estimate;
 pub use findings::{Expected, Findings};

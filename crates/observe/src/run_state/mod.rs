@@ -122,8 +122,8 @@ impl Counts {
         energy::report(&self.energy, self.momentum, bonds, found);
         found.begin(Topic::Run, Role::Diagnostic);
         let doc = "whether the step was small enough to detect every contact in time";
-        found.fields("haste", &self.step_size, &step_size::FIELDS, doc);
-        found.edit_all(&["haste"], |q| {
+        found.fields("step_size", &self.step_size, &step_size::FIELDS, doc);
+        found.edit_all(&["step_size"], |q| {
             q.lacks(COURSE);
         });
     }
