@@ -10,7 +10,7 @@ mod made;
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::law::Law;
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::local::state::{Budget, State};
+use fretwork::solve::local::state::{Budget, Iteration};
 use made::{Made, apart, friction, rigid, rng, twisted, well};
 
 /// The error asked for: methods of first order crawl below 1e-6.
@@ -32,7 +32,7 @@ fn iterations(method: Method) -> u32 {
 }
 
 /// Solves from p = 0, checks what must hold whatever comes out, and says whether it is solved.
-fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>, bool) {
+fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (Iteration<D>, bool) {
     let (w, q) = (made.blocks(), made.free());
     let (tolerance, most) = (tolerance(method), iterations(method));
     let mut budget = Budget::new(tolerance, most, 20.0);
@@ -62,7 +62,7 @@ fn share<const D: usize>(
     problems: &[Made<D>],
     norm: Norm,
     least: impl Fn(Method) -> f64,
-    further: impl Fn(Method, &Made<D>, &State<D>),
+    further: impl Fn(Method, &Made<D>, &Iteration<D>),
 ) {
     for method in Method::ALL.iter().copied() {
         let (mut solved, mut served, mut left) = (0, 0, Vec::new());

@@ -5,7 +5,7 @@ use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::block::BlockMatrix;
 use fretwork::solve::local::form::{Form, coulomb};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::local::state::{Budget, State};
+use fretwork::solve::local::state::{Budget, Iteration};
 use std::time::Instant;
 
 /// Result of a solver on a problem.
@@ -32,7 +32,7 @@ pub fn solve(problem: &LocalProblem, method: Method, most: u32) -> Fared {
     let w = BlockMatrix::<2>::from_csr(&problem.w);
     let (q, laws) = (problem.q.as_chunks::<2>().0, coulomb(&problem.mu));
     let form = Form::new(&w, q, &laws, Norm::Balance);
-    let mut state = State::new(&form, vec![[0.0; 2]; laws.len()]);
+    let mut state = Iteration::new(&form, vec![[0.0; 2]; laws.len()]);
     let mut budget = Budget::new(GOAL, most, 600.0);
     budget.history = Some(Vec::new());
     let clock = Instant::now();

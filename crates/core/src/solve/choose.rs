@@ -13,7 +13,7 @@ use super::chosen::{Attempt, SolvePath, hyperstaticity};
 use super::context::{AutoState, SolveContext};
 use super::form::ContactForm;
 
-use super::local::auto::sweeps_per_factorisation;
+use super::local::auto::{factorisations_before_newton, sweeps_per_factorisation};
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
 use super::problem::Problem;
@@ -34,9 +34,6 @@ const CHECKED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOS
 /// tolerance.
 const AT_REST: f64 = 1e-3;
 
-/// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
-const LOOSE: f64 = 40.0;
-const TIGHT: f64 = 20.0;
 /// Time of a dense factorisation as a share of a sparse one of as many entries: measured on
 /// `cases/cylinder_on_flat_fretting.ron`, some 80 contacts of two systems.
 const DENSE: f64 = 1.0 / 6.0;
@@ -271,11 +268,7 @@ impl<S: Space> SolveContext<'_, S> {
             let parts = sparse.powf(1.5) + DENSE * dense.powf(1.5);
             per *= parts / (sparse + dense).powf(1.5);
         }
-        let worth = if self.options.tolerance >= 1e-5 {
-            LOOSE
-        } else {
-            TIGHT
-        };
+        let worth = factorisations_before_newton(self.options.tolerance);
         let sweeps = worth * per * auto_state.patience;
         sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32
     }

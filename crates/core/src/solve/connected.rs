@@ -10,7 +10,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Connected {
     /// The contacts that it is of: the numbers of the orders of their rows
-    /// ([`Order::changes`](super::colour::Order::changes)).
+    /// ([`ContactOrder::changes`](super::colour::ContactOrder::changes)).
     pub of: Option<[u64; KINDS]>,
     /// The set of each body; none of those that do not move, or that nothing touches.
     of_body: Vec<u32>,

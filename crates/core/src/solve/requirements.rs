@@ -107,7 +107,7 @@ mod tests {
     use crate::solve::local::block::{Block, BlockMatrix};
     use crate::solve::local::form::{Delassus, Form};
     use crate::solve::local::law::Law;
-    use crate::solve::local::state::{Budget, State};
+    use crate::solve::local::state::{Budget, Iteration};
 
     /// An operator that gives products alone, as a transform would.
     struct Products(BlockMatrix<2>);
@@ -145,7 +145,7 @@ mod tests {
         for method in Method::ALL {
             let error = |w: &dyn Delassus<2>| {
                 let form = Form::new(w, &q, &laws, Norm::Velocity);
-                let mut state = State::new(&form, vec![[0.0; 2]; 2]);
+                let mut state = Iteration::new(&form, vec![[0.0; 2]; 2]);
                 let mut budget = Budget::new(1e-8, 10_000, f64::INFINITY);
                 method.solver().solve(&form, &mut state, &mut budget);
                 state.error

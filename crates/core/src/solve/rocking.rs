@@ -6,7 +6,7 @@ use super::connected::Connected;
 use super::error::{Scale, Sums};
 use super::kinds::of_kind;
 use super::problem::Problem;
-use super::row::{Kind, Moving, Row, SolverBody, noise};
+use super::row::{Moving, Row, RowKind, SolverBody, noise};
 use super::rows::Rows;
 use crate::geometry::space::Space;
 use crate::lanes::{Batch, LaneVector};
@@ -122,7 +122,7 @@ fn apart<S: Space>(
 }
 
 /// Adds the contacts of rows to the sums of their sets.
-fn add<S: Space, K: Kind<S>>(
+fn add<S: Space, K: RowKind<S>>(
     rows: &Rows<S, K>,
     of: impl Fn([u32; 2]) -> Option<usize>,
     now: impl Fn([u32; 2]) -> [SolverBody<S>; 2],

@@ -28,9 +28,11 @@ pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
     0.9 * entries.powf(1.5) / (entries + 60.0 * contacts)
 }
 
-/// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
-const LOOSE: f64 = 40.0;
-const TIGHT: f64 = 20.0;
+/// Cost of Gauss-Seidel before Newton, in factorisations: more at a loose tolerance.
+pub fn factorisations_before_newton(tolerance: f64) -> f64 {
+    if tolerance >= 1e-5 { 40.0 } else { 20.0 }
+}
+
 /// Cost of Gauss-Seidel without progress, in factorisations, after which Newton is tried at once.
 const STALLED: f64 = 10.0;
 /// Steps of Newton from the first sweeps, and from those of a round.
@@ -73,11 +75,7 @@ impl<const D: usize> Solver<D> for Auto {
         };
         let blocks = w.others() + form.len();
         let per = sweeps_per_factorisation((blocks * D * D) as f64, form.len() as f64);
-        let worth = if budget.tolerance >= 1e-5 {
-            LOOSE
-        } else {
-            TIGHT
-        };
+        let worth = factorisations_before_newton(budget.tolerance);
         let sweeps = (worth * per).clamp(100.0, 1e6) as u32;
         let newton_serves = Newton::serves(form.laws).is_ok();
         let first = Anderson {

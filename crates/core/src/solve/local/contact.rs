@@ -199,16 +199,21 @@ mod tests {
         (0..D).map(|k| (p[k] - y[k]).powi(2)).sum::<f64>().sqrt()
     }
 
+    /// A random symmetric positive block.
+    fn symmetric<const D: usize>(rng: &mut rand_pcg::Pcg64) -> Block<D> {
+        let g: Block<D> =
+            std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                (0..D).map(|k| g[i][k] * g[j][k]).sum::<f64>() + f64::from(i == j)
+            })
+        })
+    }
+
     fn random<const D: usize>() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(3);
         for _ in 0..5000 {
-            let g: Block<D> =
-                std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
-            let w: Block<D> = std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
-                    (0..D).map(|k| g[i][k] * g[j][k]).sum::<f64>() + f64::from(i == j)
-                })
-            });
+            let w = symmetric::<D>(&mut rng);
             let f: [f64; D] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
             let mu = rng.random_range(0.0..0.8);
             let p = Local::new(&w, mu).solve(&f);
@@ -222,13 +227,7 @@ mod tests {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(4);
         let mut slack = 0;
         for _ in 0..500 {
-            let g: Block<D> =
-                std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
-            let w: Block<D> = std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
-                    (0..D).map(|k| g[i][k] * g[j][k]).sum::<f64>() + f64::from(i == j)
-                })
-            });
+            let w = symmetric::<D>(&mut rng);
             let f: [f64; D] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
             let start: [f64; D] = std::array::from_fn(|_| rng.random_range(-9.0..9.0));
             let p = Local::new(&w, 0.0).solve_rare(&f, &Law::Pull, &start, &[]);
@@ -244,19 +243,11 @@ mod tests {
     }
 
     #[test]
-    fn pulls_in_the_plane_and_in_space() {
+    fn contacts_are_solved_in_the_plane_and_in_space() {
+        random::<2>();
+        random::<3>();
         pulls::<2>();
         pulls::<3>();
-    }
-
-    #[test]
-    fn answers_in_the_plane() {
-        random::<2>();
-    }
-
-    #[test]
-    fn answers_in_space() {
-        random::<3>();
     }
 
     /// A contact that sticks by its cohesion alone, of a block whose directions have other

@@ -8,7 +8,7 @@
 
 use super::form::{Form, largest, squared};
 use super::law::{Law, slip};
-use super::linear::{Factor, Rows};
+use super::linear::{Factor, SparseRows};
 use super::state::{Best, Budget, Iteration, Solver};
 use std::time::Instant;
 
@@ -158,7 +158,7 @@ impl<const D: usize> Prox<'_, D> {
         if active.is_empty() {
             return Some(d);
         }
-        let mut a = Rows::default();
+        let mut a = SparseRows::default();
         a.starts.push(0);
         let mut b = Vec::with_capacity(active.len() * D);
         for &c in &active {
@@ -218,7 +218,7 @@ impl<const D: usize> Prox<'_, D> {
     }
 }
 
-fn push<const D: usize>(a: &mut Rows, block: usize, row: &[f64; D]) {
+fn push<const D: usize>(a: &mut SparseRows, block: usize, row: &[f64; D]) {
     for (j, x) in row.iter().enumerate() {
         a.columns.push(block * D + j);
         a.values.push(*x);

@@ -124,14 +124,14 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
 
 /// What a condition of rest looks at: the grains, first bodies and dynamical systems of which
 /// nothing is imposed.
-fn motion_of_free<S: Space>(s: &Simulation<S>) -> phases::Motion {
+fn motion_of_free<S: Space>(s: &Simulation<S>) -> phases::UndrivenMotion {
     let bodies = &s.state.bodies;
     let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
     let moving = || (0..bodies.len()).filter(free);
     // Work of gravity on a grain over its own diameter.
     let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
     let (systems, size) = s.state.systems.motion_of_free();
-    phases::Motion {
+    phases::UndrivenMotion {
         kinetic: moving().map(|b| bodies.energy_of(b)).sum::<f64>() + systems,
         scale: (moving().map(weight).sum::<f64>() + size) * s.state.gravity.norm(),
     }
