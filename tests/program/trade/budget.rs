@@ -50,7 +50,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
         said.contains("forecast") && said.contains("INCOMPLETE, the budget is spent"),
         "{said}"
     );
-    // Building, a trial of two steps and two probes come on top, on a machine that may be busy.
+    // Building, the trial for the budget and two probes come on top, on a machine that may be busy.
     assert!(
         started.elapsed() < Duration::from_secs(60),
         "{:?}",

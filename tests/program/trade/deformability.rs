@@ -183,11 +183,11 @@ fn doubted_runs(out: &str, setting: &Value) -> usize {
         .count()
 }
 
-/// From the other ends of the ladder: rigid contacts get springs of the materials, grains and
+/// From the other forms: rigid contacts get springs of the materials, grains and
 /// half-spaces become rigid.
 #[test]
-fn every_rung_leads_to_the_others() {
-    let folder = Folder::new("ladder");
+fn every_form_leads_to_the_others() {
+    let folder = Folder::new("forms");
     let rigid = SHEAR.replace("\"hertz-mindlin\"", "\"coulomb\"");
     let rigid = rigid
         .replace(", \"restitution\": 0.1", "")

@@ -1,6 +1,6 @@
 //! Numbers that a run leaves: from `summary.json` or a column of `statistics.csv`.
 
-use fretwork_observe::quantity::{Catalogue, find};
+use fretwork_observe::quantity::find;
 use fretwork_scene::source::nearest;
 use serde_json::Value;
 use std::path::Path;
@@ -136,45 +136,6 @@ impl OutputName {
             listed(names, prefix)
         )
     }
-
-    /// Checks whether a run has an output of this name; it may be null, or absent because one of
-    /// the case's `measures` begins later.
-    ///
-    /// # Errors
-    /// A sentence with the nearest name.
-    pub fn check(&self, summary: &Value, folder: &Path, measures: &[&str]) -> Result<(), String> {
-        match &self.place {
-            Place::Summary(path) => {
-                let mut at = summary;
-                for part in path {
-                    at = match at {
-                        // Groups that are empty after a short run may be filled by a whole one.
-                        Value::Null | Value::Array(_) => return Ok(()),
-                        _ => match at.get(part) {
-                            Some(next) => next,
-                            None if self.measured(measures) => return Ok(()),
-                            None => {
-                                let names = names_of(summary);
-                                return Err(self.unknown(&names, "", &self.name));
-                            }
-                        },
-                    };
-                }
-                match at {
-                    Value::Number(_) | Value::Null => Ok(()),
-                    _ => Err(self.is_group()),
-                }
-            }
-            Place::Column(name, _) => {
-                let names = header(&folder.join("statistics.csv"));
-                if names.iter().any(|n| n == name) {
-                    Ok(())
-                } else {
-                    Err(self.unknown(&names, "statistics.", name))
-                }
-            }
-        }
-    }
 }
 
 /// List of the existing outputs.
@@ -188,32 +149,6 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
         return format!("it has none of this kind{more}");
     }
     format!("there are {}{more}", names.join(", "))
-}
-
-/// Paths of the numbers of a summary that can be compared; all numbers where the summary has no
-/// catalogue.
-fn names_of(summary: &Value) -> Vec<String> {
-    let mut names = Catalogue::of(summary).comparable();
-    if names.is_empty() {
-        flatten(summary, "", &mut names);
-    }
-    names
-}
-
-fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
-    match value {
-        Value::Object(map) => {
-            for (key, inner) in map {
-                let path = match path {
-                    "" => key.clone(),
-                    path => format!("{path}.{key}"),
-                };
-                flatten(inner, &path, out);
-            }
-        }
-        Value::Number(_) | Value::Null => out.push(path.to_owned()),
-        _ => {}
-    }
 }
 
 /// Names of the columns, without units.
@@ -254,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_numbers_in_a_summary_and_names_the_nearest() {
+    fn finds_numbers_in_a_summary() {
         let summary: Value = serde_json::from_str(
             r#"{"friction_coefficient": 0.3, "wear": {"Qs": 2.0, "Qe": null}, "cycles": [{"work": 4.0}]}"#,
         )
@@ -264,21 +199,20 @@ mod tests {
         assert_eq!(read("wear.Qs"), Some(2.0));
         assert_eq!(read("cycles.0.work"), Some(4.0));
         assert_eq!(read("wear.Qe"), None);
-        let check = |name: &str| {
-            let output = OutputName::parse(name).unwrap();
-            output.check(&summary, none, &["bulk"])
-        };
-        // A measure that begins later is not in the summary of a short run.
-        assert!(check("measures.bulk_mu").is_ok() && check("measures.bulk").is_ok());
-        assert!(check("measures.bulky").is_err() && check("measures.mu").is_err());
-        assert!(check("wear.Qe").is_ok() && check("cycles.3.work").is_ok());
-        let said = check("frction_coefficient").unwrap_err().to_string();
-        assert!(
-            said.contains("did you mean `friction_coefficient`?"),
-            "{said}"
-        );
-        let said = check("Qs").unwrap_err().to_string();
-        assert!(said.contains("did you mean `wear.Qs`?"), "{said}");
-        assert!(check("wear").is_err());
+    }
+
+    #[test]
+    fn an_unknown_name_gets_the_nearest() {
+        let names = ["friction_coefficient", "wear.Qs"].map(str::to_owned);
+        for (wanted, near) in [("frction_coefficient", 0), ("Qs", 1)] {
+            let output = OutputName::parse(wanted).unwrap();
+            let said = output.unknown(&names, "", wanted);
+            assert!(
+                said.contains(&format!("did you mean `{}`?", names[near])),
+                "{said}"
+            );
+        }
+        let output = OutputName::parse("measures.bulk_mu").unwrap();
+        assert!(output.measured(&["bulk"]) && !output.measured(&["bul"]));
     }
 }

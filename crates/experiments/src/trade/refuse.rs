@@ -2,18 +2,13 @@
 //! run.
 
 use super::output::Output;
-use super::plan::Trade;
 use super::request::Request;
 use crate::Error;
 use crate::duration::seconds;
-use crate::runs::available::{AvailableQuantities, measure_names};
-use crate::runs::launcher::{Patience, Run};
-use crate::runs::stored::summary;
+use crate::runs::available::AvailableQuantities;
 use crate::runs::trial::Trial;
 use fretwork_scene::Built;
 use fretwork_scene::case::Case;
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
 
 /// The requested outputs, or the default ones, with their exact values where given; an error if the
 /// case does not have one.
@@ -95,33 +90,4 @@ pub fn budget(request: &Request, case: &Case, scene: Built) -> Result<(), Error>
         trial.text(),
         (usual / 60.0).ceil()
     )))
-}
-
-/// Checks outputs in groups that only a run fills, by a run of two steps, if the case allows one.
-///
-/// # Errors
-/// An output that the run does not have.
-pub fn after_two_steps(trade: &Trade, case: &Case, stop: &AtomicBool) -> Result<(), Error> {
-    let short = Run {
-        sets: vec![format!("time.end={:e}", 2.0 * case.time.step)],
-        seed: case.seed,
-    };
-    let patience = Patience {
-        deadline: Some(Instant::now() + Duration::from_secs(60).min(trade.budget)),
-        limit: None,
-        stop,
-    };
-    let launcher = &trade.launcher;
-    if launcher.stored(&short).is_none() && launcher.run(&short, patience)?.is_none() {
-        return Ok(());
-    }
-    let place = launcher.place(&short);
-    let summary = summary(&place);
-    for output in trade.outputs.iter().filter(|_| summary.is_object()) {
-        output
-            .quantity
-            .check(&summary, &place, &measure_names(case))
-            .map_err(|why| output.refused(&why))?;
-    }
-    Ok(())
 }

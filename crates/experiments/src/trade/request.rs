@@ -92,7 +92,6 @@ impl Request {
         {
             refuse::budget(self, &loaded.case, scene)?;
         }
-        refuse::after_two_steps(&trade, &loaded.case, stop)?;
         trade.test_for_chaos(self.seeds.into(), stop)?;
         trade.prepare(stop)?;
         Ok((trade, lock))
