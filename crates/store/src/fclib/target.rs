@@ -5,7 +5,7 @@
 
 use super::FclibError;
 use super::source::guard;
-use hdf5::{DatatypeMessage, H5File};
+use hdf5::{DatatypeMessage, H5File, H5Group};
 use std::path::{Path, PathBuf};
 
 /// A file being written.
@@ -32,19 +32,12 @@ impl Target {
         })
     }
 
-    /// Creates a group, and its missing parents.
+    /// Creates a group in an existing one.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn group(&self, name: &str) -> Result<(), FclibError> {
-        let (parent, own) = split(name);
-        self.guarded(|| {
-            let mut group = self.file.root_group();
-            for part in parent {
-                group = group.group(part)?;
-            }
-            group.create_group(own).map(drop)
-        })
+        self.in_parent(name, |parent, own| parent.create_group(own).map(drop))
     }
 
     /// Writes a scalar: a 32-bit integer in an array of length 1.
@@ -94,14 +87,9 @@ impl Target {
         };
         let mut bytes: Vec<u8> = text.chars().map(ascii).collect();
         bytes.push(0);
-        let (parent, own) = split(name);
-        self.guarded(|| {
-            let mut group = self.file.root_group();
-            for part in parent {
-                group = group.group(part)?;
-            }
+        self.in_parent(name, |parent, own| {
             let datatype = DatatypeMessage::fixed_string(bytes.len() as u32);
-            let dataset = group.new_dataset::<u8>().datatype(datatype).scalar();
+            let dataset = parent.new_dataset::<u8>().datatype(datatype).scalar();
             dataset.create(own)?.write_raw_bytes(&bytes)
         })
     }
@@ -127,13 +115,11 @@ impl Target {
     }
 
     fn array<T: hdf5::H5Type>(&self, name: &str, values: &[T]) -> Result<(), FclibError> {
-        let (parent, own) = split(name);
-        self.guarded(|| {
-            let mut group = self.file.root_group();
-            for part in parent {
-                group = group.group(part)?;
-            }
-            let dataset = group.new_dataset::<T>().shape([values.len()]).create(own)?;
+        self.in_parent(name, |parent, own| {
+            let dataset = parent
+                .new_dataset::<T>()
+                .shape([values.len()])
+                .create(own)?;
             if values.is_empty() {
                 return Ok(());
             }
@@ -141,15 +127,23 @@ impl Target {
         })
     }
 
-    fn guarded<T>(&self, call: impl FnOnce() -> hdf5::Result<T>) -> Result<T, FclibError> {
-        guard(call).map_err(|e| unwritable(&self.path, e))
+    /// Calls the HDF5 crate with the parent group of a name and the last part of the name.
+    fn in_parent<T>(
+        &self,
+        name: &str,
+        call: impl FnOnce(H5Group, &str) -> hdf5::Result<T>,
+    ) -> Result<T, FclibError> {
+        let name = name.trim_matches('/');
+        let (parents, own) = name.rsplit_once('/').unwrap_or(("", name));
+        guard(|| {
+            let root = self.file.root_group();
+            match parents {
+                "" => call(root, own),
+                _ => call(root.group(parents)?, own),
+            }
+        })
+        .map_err(|e| unwritable(&self.path, e))
     }
-}
-
-fn split(name: &str) -> (Vec<&str>, &str) {
-    let mut parts: Vec<&str> = name.trim_matches('/').split('/').collect();
-    let own = parts.pop().unwrap_or_default();
-    (parts, own)
 }
 
 fn unwritable(path: &Path, reason: String) -> FclibError {
