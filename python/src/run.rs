@@ -8,7 +8,7 @@ use crate::search::search_path;
 use crate::workers::Workers;
 use fretwork::cli;
 use fretwork::laws::watch::{self, Saved};
-use fretwork::record::checkpoint::Found;
+use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
 use fretwork::scene::{Built, InputError, Loaded};
@@ -202,9 +202,9 @@ impl Task {
         let mut stop = None;
         if self.resume {
             match record::stopped(loaded, &built, options) {
-                Ok(Found::Nothing) => {}
-                Ok(Found::State(state)) => stop = Some(state),
-                Ok(Found::Finished) => return End::Done,
+                Ok(FolderState::Nothing) => {}
+                Ok(FolderState::State(state)) => stop = Some(state),
+                Ok(FolderState::Finished) => return End::Done,
                 Err(e) => return failed(e),
             }
         }

@@ -7,7 +7,7 @@ use crate::experiments::duration::parse as duration;
 use crate::experiments::fit::evaluate::Tests;
 use crate::experiments::fit::half_step::half_step;
 use crate::experiments::fit::outcome::identify;
-use crate::experiments::fit::search::{Found, Progress, Search, Stage};
+use crate::experiments::fit::search::{Progress, Search, SearchResult, Stage};
 use crate::experiments::fit::spec::FitFile;
 use crate::experiments::fit::{OWNER, files, page};
 use crate::interrupt;
@@ -68,7 +68,7 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
             }
         },
     };
-    let mut found: Found = search.run()?;
+    let mut found: SearchResult = search.run()?;
     let mut outcome = match stop.load(Ordering::Relaxed) {
         true => None,
         false => identify(&search, &mut found)?,

@@ -4,7 +4,7 @@ use super::output::{answer_json, inform};
 use super::progress::Display;
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
-use crate::record::checkpoint::Found;
+use crate::record::checkpoint::FolderState;
 use crate::record::{self, Run, RunError, RunOptions, Summary};
 use crate::scene::build::Origin;
 use crate::scene::interfaces::without_interface;
@@ -152,14 +152,14 @@ fn run_case(
     let mut stop = None;
     if args.resume {
         match record::stopped(loaded, &built, options)? {
-            Found::Nothing => inform(format!(
+            FolderState::Nothing => inform(format!(
                 "nothing to resume in {out}: starting from the beginning"
             )),
-            Found::State(state) => {
+            FolderState::State(state) => {
                 inform(format!("resuming the run in {out}"));
                 stop = Some(state);
             }
-            Found::Finished => {
+            FolderState::Finished => {
                 // Whoever ended the process while it made the report left the results whole.
                 if !options.out.join(fretwork_view::FILE).exists() {
                     report(&options.out, args);

@@ -28,7 +28,7 @@ use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
 use self::stamps::{density_of, stamps};
-use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
+use super::checkpoint::{CheckpointWriter, FolderState, Identity, Kind, ResumePoint, find};
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
@@ -205,7 +205,11 @@ pub fn run(
 ///
 /// # Errors
 /// The state cannot be read, is damaged, or belongs to another version or case.
-pub fn stopped(loaded: &Loaded, built: &Built, options: &RunOptions) -> Result<Found, RunError> {
+pub fn stopped(
+    loaded: &Loaded,
+    built: &Built,
+    options: &RunOptions,
+) -> Result<FolderState, RunError> {
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 

@@ -5,7 +5,7 @@ use super::common::{Folder, marked, same};
 use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::process::{Process, ProcessError};
-use fretwork::record::checkpoint::Found;
+use fretwork::record::checkpoint::FolderState;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
 use fretwork::record::quantity::Findings;
@@ -145,7 +145,7 @@ fn stop_after(folder: &Folder, step: u64) -> Summary {
 fn resume(folder: &Folder, observer: Option<MeanGap>) -> Result<Summary, RunError> {
     let (loaded, built) = cradle();
     let options = options(folder);
-    let Found::State(stop) = stopped(&loaded, &built, &options)? else {
+    let FolderState::State(stop) = stopped(&loaded, &built, &options)? else {
         panic!("no state to go on from");
     };
     let mut run = Run::new(&loaded, built, &options).resume(stop);

@@ -4,7 +4,7 @@
 
 use super::common::{Folder, files, same};
 use crate::scene;
-use fretwork::record::checkpoint::Found;
+use fretwork::record::checkpoint::FolderState;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
 
@@ -96,7 +96,7 @@ fn run(folder: &Folder, until: Option<u64>, resumed: bool) -> Summary {
         threads: 1,
     };
     let stop = resumed.then(|| match stopped(&loaded, &built, &options) {
-        Ok(Found::State(stop)) => stop,
+        Ok(FolderState::State(stop)) => stop,
         other => panic!("no state to resume: {:?}", other.err()),
     });
     let mut run = Run::new(&loaded, built, &options).observe(Speeds::default());

@@ -3,7 +3,7 @@
 use super::evaluate::Tests;
 use super::outcome::{HalfStep, Outcome, mean_of};
 use super::page::{draw, sheet};
-use super::search::Found;
+use super::search::SearchResult;
 use super::spec::FitFile;
 use crate::Error;
 use crate::table::{Column, Table, csv};
@@ -14,7 +14,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_evaluations(tests: &Tests, found: &Found, out: &Path) -> Result<(), Error> {
+pub fn write_evaluations(tests: &Tests, found: &SearchResult, out: &Path) -> Result<(), Error> {
     let path = out.join("evaluations.csv");
     csv::write(&evaluations(tests, found), &path, csv::Numbers::Exponents)
 }
@@ -26,7 +26,7 @@ pub fn write_evaluations(tests: &Tests, found: &Found, out: &Path) -> Result<(),
 pub fn write(
     read: &FitFile,
     tests: &Tests,
-    found: &Found,
+    found: &SearchResult,
     outcome: &Outcome,
     out: &Path,
 ) -> Result<String, Error> {
@@ -42,7 +42,7 @@ pub fn write(
     Ok(json)
 }
 
-fn json(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Value {
+fn json(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Value {
     let known = &outcome.identification;
     let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     let names = read.spec.names();
@@ -96,7 +96,7 @@ fn json(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Valu
 }
 
 /// All points that were run, with the reason where one failed.
-fn evaluations(tests: &Tests, found: &Found) -> Table {
+fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     let all = &found.evaluations;
     let mut columns = vec![
         Column::whole("evaluation", (1..=all.len()).map(|k| Some(k as f64))),
@@ -123,7 +123,7 @@ fn evaluations(tests: &Tests, found: &Found) -> Table {
 }
 
 /// Measured and fitted values side by side.
-fn curves(tests: &Tests, found: &Found, outcome: &Outcome) -> Table {
+fn curves(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Table {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let target = &tests.target;
     let count = target.measured().len();

@@ -6,7 +6,7 @@
 //! one of second order four thirds of it.
 
 use super::outcome::{HalfStep, Moved, Outcome, half_widths};
-use super::search::{Found, Search};
+use super::search::{Search, SearchResult};
 use crate::Error;
 use fretwork_math::statistics::interval::Mean;
 use std::sync::atomic::Ordering;
@@ -22,7 +22,7 @@ const SMALL: f64 = 0.125;
 /// A run cannot be started.
 pub fn half_step(
     search: &Search<'_>,
-    found: &Found,
+    found: &SearchResult,
     outcome: &Outcome,
 ) -> Result<Option<HalfStep>, Error> {
     let best = &found.evaluations[outcome.best];

@@ -1,7 +1,7 @@
 //! What the measurements say of the parameters: estimates with intervals, from runs around the best
 //! point.
 
-use super::search::{Evaluation, Found, Search, Stage};
+use super::search::{Evaluation, Search, SearchResult, Stage};
 use crate::Error;
 use fretwork_math::fit::identify::{self as mathematics, Data, Identification, Run};
 use fretwork_math::fit::residuals::over_seeds;
@@ -79,7 +79,7 @@ impl Outcome {
 ///
 /// # Errors
 /// A run cannot be started, or too few of the runs around the best point succeed.
-pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome>, Error> {
+pub fn identify(search: &Search<'_>, found: &mut SearchResult) -> Result<Option<Outcome>, Error> {
     if found.best.is_none() {
         return Ok(None);
     }

@@ -3,7 +3,7 @@
 use super::evaluate::Tests;
 use super::measured::heading;
 use super::outcome::{HalfStep, Moved, Outcome, mean_of};
-use super::search::Found;
+use super::search::SearchResult;
 use super::spec::{FitFile, TestSpec};
 use crate::page::{section, table};
 use fretwork_math::fit::identify::{End, ParameterEstimate};
@@ -49,7 +49,7 @@ fn title(read: &FitFile) -> String {
 }
 
 /// The sentences of the result, worst first.
-fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
+fn verdict(read: &FitFile, found: &SearchResult, outcome: &Outcome) -> Vec<String> {
     let known = &outcome.identification;
     let names = read.spec.names();
     let mut out = Vec::new();
@@ -159,7 +159,7 @@ fn moved_text(moved: Moved) -> String {
 }
 
 /// The result for the terminal.
-pub fn answer(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> String {
+pub fn answer(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> String {
     let known = &outcome.identification;
     let mut out = format!(
         "{} points, search ended: {}\n",
@@ -202,7 +202,7 @@ fn axes(read: &FitFile, test: usize) -> (String, String) {
 /// one run.
 type TestPoints = Vec<(f64, f64, f64, f64, f64)>;
 
-fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<TestPoints> {
+fn points(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Vec<TestPoints> {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let mut place = 0;
     let of = |test: &fretwork_math::fit::residuals::Measurement| {
@@ -224,7 +224,7 @@ fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<TestPoints> {
 }
 
 /// The page of a fit.
-pub fn sheet(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
+pub fn sheet(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Sheet {
     let known = &outcome.identification;
     let figures = charts(read, tests, found, outcome).into_iter();
     let figures = figures.map(|chart| Block::Figure(Box::new(chart)));
@@ -254,7 +254,7 @@ pub fn sheet(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) ->
     }
 }
 
-fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Block> {
+fn parameter_blocks(read: &FitFile, found: &SearchResult, outcome: &Outcome) -> Vec<Block> {
     let known = &outcome.identification;
     let names = read.spec.names();
     let rows = known
@@ -322,7 +322,7 @@ fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Blo
     blocks
 }
 
-fn search_blocks(found: &Found) -> Vec<Block> {
+fn search_blocks(found: &SearchResult) -> Vec<Block> {
     let mut least = f64::INFINITY;
     let mut points = Vec::new();
     let mut best = Vec::new();
@@ -351,7 +351,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
 }
 
 /// Measured and fitted curves of each test, with two standard deviations.
-fn charts(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Chart> {
+fn charts(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Vec<Chart> {
     let all = points(tests, found, outcome).into_iter().enumerate();
     let chart = |(t, points): (usize, TestPoints)| {
         let (x, y) = axes(read, t);
@@ -387,7 +387,7 @@ fn charts(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Ve
 pub fn draw(
     read: &FitFile,
     tests: &Tests,
-    found: &Found,
+    found: &SearchResult,
     outcome: &Outcome,
     path: &Path,
 ) -> Result<(), DrawError> {

@@ -75,7 +75,7 @@ impl Stage {
 
 /// What a search found.
 #[derive(Clone, Debug, Default)]
-pub struct Found {
+pub struct SearchResult {
     /// All points in the order of their runs.
     pub evaluations: Vec<Evaluation>,
     /// Number of the best point among them.
@@ -124,9 +124,9 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A run cannot be started, or all of the region fails.
-    pub fn run(&self) -> Result<Found, Error> {
+    pub fn run(&self) -> Result<SearchResult, Error> {
         let count = self.tests.bounds.len();
-        let mut found = Found::default();
+        let mut found = SearchResult::default();
         let (fewest, most) = self.seeds_of_points();
         let points = self.spec.points.map_or(10 * count, |n| n as usize);
         let cube = maximin_latin_hypercube(points, count, self.spec.seed, TRIES);
@@ -204,7 +204,12 @@ impl Search<'_> {
     }
 
     /// Runs the candidates with all seeds, and points around the best of them.
-    fn finish(&self, mut found: Found, cma: &Cma, most: usize) -> Result<Found, Error> {
+    fn finish(
+        &self,
+        mut found: SearchResult,
+        cma: &Cma,
+        most: usize,
+    ) -> Result<SearchResult, Error> {
         let mut candidates = vec![cma.mean().to_vec()];
         candidates.extend(cma.best().map(|(place, _)| place.to_vec()));
         candidates.extend(
@@ -226,7 +231,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A run cannot be started.
-    pub fn candidate(&self, found: &mut Found, values: &[f64]) -> Result<(), Error> {
+    pub fn candidate(&self, found: &mut SearchResult, values: &[f64]) -> Result<(), Error> {
         let place = self.tests.bounds.point(values);
         let (_, most) = self.seeds_of_points();
         self.evaluate(found, vec![place], 0..most as u64, Stage::Candidates)
@@ -238,7 +243,7 @@ impl Search<'_> {
     /// A run cannot be started.
     pub fn around(
         &self,
-        found: &mut Found,
+        found: &mut SearchResult,
         half_widths: &[f64],
         round: u64,
     ) -> Result<Range<usize>, Error> {
@@ -296,14 +301,14 @@ impl Search<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn interrupted(&self, mut found: Found) -> Found {
+    fn interrupted(&self, mut found: SearchResult) -> SearchResult {
         found.ended = "interrupted".to_owned();
         found
     }
 
     fn evaluate(
         &self,
-        found: &mut Found,
+        found: &mut SearchResult,
         places: Vec<Vec<f64>>,
         seeds: Range<u64>,
         stage: Stage,
@@ -357,7 +362,7 @@ impl Search<'_> {
     }
 }
 
-impl Found {
+impl SearchResult {
     /// Number of points that failed.
     pub fn failed(&self) -> usize {
         let failed = self.evaluations.iter().filter(|e| e.chi_squared.is_none());

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Result of the search.
 #[derive(Debug)]
-pub enum Found {
+pub enum FolderState {
     /// No run was started in the folder, or no state of it was saved yet.
     Nothing,
     /// A state to resume from.
@@ -61,17 +61,17 @@ fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
 /// # Errors
 /// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to
 /// another version or case, or it has rows and no state.
-pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
+pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
-        return Ok(Found::Nothing);
+        return Ok(FolderState::Nothing);
     }
     loop {
         let reading = FolderLock::read(folder, RUN_LOCK)?;
         let before = version(&path);
         let saved = match look(folder, &path, identity)? {
-            Seen::Nothing => return Ok(Found::Nothing),
-            Seen::Finished => return Ok(Found::Finished),
+            Seen::Nothing => return Ok(FolderState::Nothing),
+            Seen::Finished => return Ok(FolderState::Finished),
             Seen::State(saved) => saved,
         };
         drop(reading);
@@ -79,7 +79,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         // Between the two another run may have gone on from there.
         if version(&path) == before {
             let (results, number, state) = *saved;
-            return Ok(Found::State(ResumePoint {
+            return Ok(FolderState::State(ResumePoint {
                 results,
                 number,
                 state,
