@@ -5,7 +5,7 @@
 //! cargo run --release --no-default-features --features laws,results --example stop_and_resume
 //! ```
 
-use fretwork::record::checkpoint::Found;
+use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{Run, RunOptions, stopped};
 use fretwork::scene::Loaded;
 use std::ops::ControlFlow;
@@ -23,9 +23,9 @@ fn run(loaded: &Loaded, out: &Path, until: Option<u64>) -> Result<Option<String>
     let found = stopped(loaded, &built, &options).map_err(|e| e.to_string())?;
     let mut run = Run::new(loaded, built, &options);
     match found {
-        Found::Nothing => {}
-        Found::State(state) => run = run.resume(state),
-        Found::Finished => return Ok(None),
+        FolderState::Nothing => {}
+        FolderState::State(state) => run = run.resume(state),
+        FolderState::Finished => return Ok(None),
     }
     // Called after each step. All files are complete when it has stopped the run.
     let summary = run.execute(&mut |progress| match until {
