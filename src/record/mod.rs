@@ -1,5 +1,5 @@
-//! Observers of a run, by [`fretwork_observe`]; with the feature `results` also the run loop and its
-//! files, by [`fretwork_store`]; with the feature `view` also pictures, by [`fretwork_view`].
+//! Observers of a run, by [`fretwork_observe`]; with the feature `results` also the run loop and
+//! its files, by [`fretwork_store`]; with the feature `view` also pictures, by [`fretwork_view`].
 #[cfg(feature = "results")]
 pub mod run;
 

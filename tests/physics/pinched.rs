@@ -505,8 +505,8 @@ fn what_many_contacts_pinch_hangs() {
 }
 
 /// Under a force that varies by a tenth, or beside what moves, the errors of a step move
-/// hyperstatic impulses until some slide at the default tolerance, which is reported; Newton's method
-/// at 1e-6 leaves them.
+/// hyperstatic impulses until some slide at the default tolerance, which is reported; Newton's
+/// method at 1e-6 leaves them.
 #[test]
 fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {
     for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 127), (2, 129), (2, 500)] {

@@ -264,8 +264,8 @@ fn strength_is_told_over_the_pressure_of_the_scene() {
     assert!(weak.contains("WEAK"), "{weak}");
 }
 
-/// The run time is that of a few steps; a step that fails is reported and is no crash; `--no-timing`
-/// leaves it out.
+/// The run time is that of a few steps; a step that fails is reported and is no crash;
+/// `--no-timing` leaves it out.
 #[test]
 fn the_run_time_is_estimated() {
     let (_, _, text) = check("silo", &[]);

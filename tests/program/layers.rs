@@ -307,8 +307,8 @@ fn stages_of_the_step_name_those_before_them() {
     }
 }
 
-/// What observes, writes and draws a run reads it without its dimension. The identity of a run alone
-/// hashes the state itself.
+/// What observes, writes and draws a run reads it without its dimension. The identity of a run
+/// alone hashes the state itself.
 #[test]
 fn observers_files_and_pictures_have_no_dimension() {
     let identity = Path::new("crates/store/src/checkpoint/identity.rs");

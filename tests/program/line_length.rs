@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const COLUMNS: usize = 100;
 
 /// Folders and files, from the root of the repository.
-const CHECKED: [&str; 14] = [
+const CHECKED: [&str; 17] = [
     "docs",
     "crates",
     "src",
@@ -16,6 +16,9 @@ const CHECKED: [&str; 14] = [
     "plugins",
     "tests",
     "benches",
+    "cases",
+    "examples",
+    "fits",
     "validation",
     ".github",
     "CHANGELOG.md",

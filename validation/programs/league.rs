@@ -1,12 +1,12 @@
 //! League table of a folder of FCLIB problems: every solver of Fretwork against the best solver of
 //! another program.
 //!
-//! `cargo run --release --example league -- FOLDER BASELINE.csv
-//! [OUT]` solves every problem of FOLDER with `auto` at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT`
-//! seconds if set), and with every other solver at 1e-8, at most 2 s, evaluates the error of every
-//! solution again from a written file, and writes `fclib_table.md` and
-//! `figures/solvers_profile.png` to OUT (docs). `ONLY=auto` omits the other solvers and the
-//! picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
+//! `cargo run --release --example league -- FOLDER BASELINE.csv [OUT]` solves every problem of
+//! FOLDER with `auto` at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT` seconds if set), and with
+//! every other solver at 1e-8, at most 2 s, evaluates the error of every solution again from a
+//! written file, and writes `fclib_table.md` and `figures/solvers_profile.png` to OUT (docs).
+//! `ONLY=auto` omits the other solvers and the picture. BASELINE.csv holds the other program's
+//! times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
 use fretwork::solve::local::solver::{self, Limits, Method, Outcome};

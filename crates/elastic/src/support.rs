@@ -12,9 +12,9 @@ pub struct Support {
     pub part: String,
     /// The drive along each axis; a force (N; N/m in 2D) is that on the whole part.
     pub axes: Vec<Option<Dof>>,
-    /// Drives that take over during the run, in phases whose start [`ElasticBody`](crate::ElasticBody)
-    /// is notified of: index of the phase, axis, drive. Parts with a common corner must have the
-    /// same.
+    /// Drives that take over during the run, in phases whose start
+    /// [`ElasticBody`](crate::ElasticBody) is notified of: index of the phase, axis, drive. Parts
+    /// with a common corner must have the same.
     pub later: Vec<(usize, usize, Dof)>,
 }
 

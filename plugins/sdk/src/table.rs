@@ -131,7 +131,8 @@ macro_rules! plugin_table {
         static VERSION: [u8; <$law>::VERSION.len() + 1] = $crate::table::terminated(<$law>::VERSION);
         static DOC: [u8; <$law>::DOC.len() + 1] = $crate::table::terminated(<$law>::DOC);
         static REFERENCE: [u8; <$law>::REFERENCE.len() + 1] = $crate::table::terminated(<$law>::REFERENCE);
-        // SAFETY: names, schemas and functions are static, and the functions are those of the wrapper.
+        // SAFETY: names, schemas and functions are static, and the functions are those of the
+        // wrapper.
         static TABLE: $crate::abi::LinkedLaw = unsafe { $crate::abi::LinkedLaw::new($crate::abi::FwPlugin {
             size: core::mem::size_of::<$crate::abi::FwPlugin>(),
             abi_major: $crate::abi::ABI_MAJOR,

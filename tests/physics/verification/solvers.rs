@@ -174,8 +174,8 @@ fn alike<S: Space>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str
     }
 }
 
-/// What a method cannot solve is refused with the reason: before the run where the laws show it, else
-/// at the first step that asks for it.
+/// What a method cannot solve is refused with the reason: before the run where the laws show it,
+/// else at the first step that asks for it.
 fn refused() {
     for (case, method, word) in [
         ("rolling_stop_sphere", "Newton", "rotation"),

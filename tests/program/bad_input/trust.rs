@@ -267,8 +267,8 @@ fn a_law_that_does_not_come_back() {
     assert!(said.contains("resuming the run"), "{said}");
 }
 
-/// The trial steps of `check`: a law that fails in one is reported, one that does not come back holds
-/// nothing up.
+/// The trial steps of `check`: a law that fails in one is reported, one that does not come back
+/// holds nothing up.
 #[test]
 fn check_times_steps_of_laws_that_fail_and_hang() {
     for (fault, says) in [

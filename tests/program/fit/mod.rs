@@ -1,6 +1,6 @@
 //! `fretwork fit` through the program: planted parameters found again within their intervals,
-//! directions that the measurements do not determine, ends of ranges, failed runs, resuming, and wrong
-//! input.
+//! directions that the measurements do not determine, ends of ranges, failed runs, resuming, and
+//! wrong input.
 
 use crate::temp::TempFolder;
 use serde_json::Value;

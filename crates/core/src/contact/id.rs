@@ -3,8 +3,8 @@
 //!
 //! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a
 //! step, and is compared often. A [`ContactId`] names the same contact in another listing of the
-//! same bodies, such as a resumed run, a scene from which other bodies were removed, or a part of the
-//! scene on another machine. [`ContactNames`] translates between them.
+//! same bodies, such as a resumed run, a scene from which other bodies were removed, or a part of
+//! the scene on another machine. [`ContactNames`] translates between them.
 
 use super::network::{Contact, Key, Network, ShapeIndex};
 use crate::bodies::Bodies;

@@ -31,8 +31,8 @@ impl std::fmt::Debug for BuiltInLaws {
 }
 
 impl BuiltInLaws {
-    /// Laws of a program: the statics `TABLE` that `plugin_table!` of the crate `fretwork-law` makes.
-    /// Those whose kind or name cannot be read are left out.
+    /// Laws of a program: the statics `TABLE` that `plugin_table!` of the crate `fretwork-law`
+    /// makes. Those whose kind or name cannot be read are left out.
     pub fn new(laws: impl IntoIterator<Item = &'static LinkedLaw>) -> Self {
         let known = laws.into_iter().filter_map(|law| {
             // SAFETY: the name of a linked law is NUL-terminated static text.
@@ -62,7 +62,8 @@ impl BuiltInLaws {
     pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
         let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
         Some(executable().and_then(|(path, sha256)| {
-            // SAFETY: the table of a linked law is static and follows the interface of this version.
+            // SAFETY: the table of a linked law is static and follows the interface of this
+            // version.
             unsafe { Plugin::from_table(entry.law.table(), path, sha256, true) }
         }))
     }

@@ -42,8 +42,8 @@ pub enum End {
     Done,
     /// It ended early, for the given reason.
     Early(String),
-    /// It ended early since the system refused it memory, which is no failure of what was tried: in a
-    /// sentence.
+    /// It ended early since the system refused it memory, which is no failure of what was tried: in
+    /// a sentence.
     NoMemory(String),
 }
 

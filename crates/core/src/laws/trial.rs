@@ -28,8 +28,8 @@ pub struct LawStep<'a, S: Space> {
     pub info: &'a StepInfo,
 }
 
-/// Contacts of one interface that a batch is evaluated at, each with a value that takes the place of an
-/// input.
+/// Contacts of one interface that a batch is evaluated at, each with a value that takes the place
+/// of an input.
 pub(super) struct TrialRequest<'a, S: Space, T> {
     pub source: Source<'a, S>,
     pub before: &'a Velocities<S>,
@@ -38,8 +38,8 @@ pub(super) struct TrialRequest<'a, S: Space, T> {
 }
 
 impl LawEvaluator {
-    /// Evaluates a law of an interface at contacts with given values, by batches that are divided among
-    /// threads; a call takes about `each` (ns) for a contact.
+    /// Evaluates a law of an interface at contacts with given values, by batches that are divided
+    /// among threads; a call takes about `each` (ns) for a contact.
     pub(super) fn evaluate_with<S: Space, T: Sync, R: Send>(
         &mut self,
         step: &mut LawStep<'_, S>,

@@ -43,8 +43,8 @@ pub(super) fn add_response<'a, S: Space>(
     }
 }
 
-/// Weighted sums of the nodes of a system, identified by their index: first each node alone, then those
-/// that are added.
+/// Weighted sums of the nodes of a system, identified by their index: first each node alone, then
+/// those that are added.
 #[derive(Clone, Debug)]
 pub(super) struct Points {
     /// Where the terms of each point end.

@@ -18,7 +18,8 @@
 //! ([`super::search`]) only, one of more than [`MOST`] where controlled bodies squeeze a body that
 //! begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not,
 //! nor those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide
-//! in a set of rigid contacts that is not solved again, it is reported ([`Problem::is_not_searched`]).
+//! in a set of rigid contacts that is not solved again, it is reported
+//! ([`Problem::is_not_searched`]).
 
 use super::connected::Connected;
 use super::context::{AutoState, SolveContext};

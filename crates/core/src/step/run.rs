@@ -6,8 +6,8 @@ use crate::geometry::space::Space;
 use std::ops::ControlFlow;
 
 impl<S: Space> Simulation<S> {
-    /// Steps until a time (s) is reached, and calls `after` with the state and the report at the end
-    /// of every step. Break from `after` to stop early, for instance where the phases of a case
+    /// Steps until a time (s) is reached, and calls `after` with the state and the report at the
+    /// end of every step. Break from `after` to stop early, for instance where the phases of a case
     /// have ended ([`Simulation::finished`]). Returns why the run stopped early, if it did; the
     /// simulation can go on.
     ///
@@ -41,8 +41,8 @@ impl<S: Space> Simulation<S> {
         self.act(Process::between_steps)
     }
 
-    /// Calls the processes after the last step, for what they do at intervals of steps only; what is
-    /// due between steps comes first.
+    /// Calls the processes after the last step, for what they do at intervals of steps only; what
+    /// is due between steps comes first.
     ///
     /// # Errors
     /// Why a process cannot.

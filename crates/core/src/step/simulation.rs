@@ -29,7 +29,8 @@ pub struct Simulation<S: Space> {
     pub laws: Vec<Interface>,
     /// Interface law of each pair of materials.
     pub table: LawTable,
-    /// Phases in the order in which they run; the schedule of the state has the index of the current one.
+    /// Phases in the order in which they run; the schedule of the state has the index of the
+    /// current one.
     pub phases: Vec<Phase>,
     /// How it is computed; no step changes it.
     pub options: Options,

@@ -60,7 +60,7 @@ pub use control::RunControl;
 pub use fields::{FieldInfo, FieldKind, FieldValues, GrainFields};
 pub use memory::MemoryUse;
 pub use rows::{
-    BallView, BodyColumns, BondCounts, ContactView, BodyMotion, Outline, PieceView, ScarVertex,
+    BallView, BodyColumns, BodyMotion, BondCounts, ContactView, Outline, PieceView, ScarVertex,
     ScarView, SurfaceView,
 };
 pub use run_view::RunView;

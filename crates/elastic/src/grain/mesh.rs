@@ -196,7 +196,8 @@ impl<S: Space> Triangles<S> {
                     let point = match (one, two, inside) {
                         (Some(k), None, _) => t[k],
                         (Some(k), Some(l), false) => {
-                            // From the point of lower index, so that both triangles give it one name.
+                            // From the point of lower index, so that both triangles give it one
+                            // name.
                             let (k, l) = if t[k] < t[l] { (k, l) } else { (l, k) };
                             let name = (t[k], t[l], weights[k]);
                             *on_edges.entry(name).or_insert_with(|| make(&mut points))

@@ -53,8 +53,8 @@ impl Bench {
         self.work_to_break(&Direction::at(angle), SLOW, 0.0)
     }
 
-    /// Breaks a bond that opens and turns in proportion: to an opening normal and across (m), with a
-    /// twist and a bending (rad).
+    /// Breaks a bond that opens and turns in proportion: to an opening normal and across (m), with
+    /// a twist and a bending (rad).
     ///
     /// # Errors
     /// The law's error.

@@ -1,9 +1,9 @@
 //! Kinds of interface laws: a registry with one entry a kind.
 //!
 //! An interface is a list of slots, at most one law of each kind. All that depends on the kind
-//! stands in its [`KindSpec`]: the word that cases, file names and the command line use, the code of
-//! the plugin table, the functions a law must have, at which contacts it acts, what it writes, what
-//! it needs of the other slots, what the host does with it at the end of a step, how it is
+//! stands in its [`KindSpec`]: the word that cases, file names and the command line use, the code
+//! of the plugin table, the functions a law must have, at which contacts it acts, what it writes,
+//! what it needs of the other slots, what the host does with it at the end of a step, how it is
 //! certified, and the text that `fretwork law new` begins with. A further kind is one such entry,
 //! here or in another crate by [`Kind::register`].
 

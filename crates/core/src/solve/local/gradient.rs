@@ -3,9 +3,9 @@
 //! friction bounds s = mu p_n are updated in every iteration (the diagonalised Tresca fixed point).
 //!
 //! The predicted point is projected onto C^k; gradient and last direction are projected onto the
-//! tangent cone of C^k at the iterate. [`GradientKind::Plain`] uses the gradient, [`GradientKind::Conjugate`]
-//! conjugate directions, and [`GradientKind::Preconditioned`] conjugate directions in the metric of the
-//! diagonal of W.
+//! tangent cone of C^k at the iterate. [`GradientKind::Plain`] uses the gradient,
+//! [`GradientKind::Conjugate`] conjugate directions, and [`GradientKind::Preconditioned`] conjugate
+//! directions in the metric of the diagonal of W.
 //!
 //! A contact that slips at the end of an iteration is moved to its new friction bound. If it stayed
 //! at the old bound while its normal part grows, it would stick in the next iteration and slip in

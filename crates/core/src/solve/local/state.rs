@@ -93,7 +93,8 @@ impl<const D: usize> Best<D> {
 pub struct Limits {
     /// The [`field_error`](super::solver::field_error) to reach.
     pub tolerance: f64,
-    /// The [`scale_free_error`](super::solver::Outcome::scale_free_error) to reach as well; `None` to report it only.
+    /// The [`scale_free_error`](super::solver::Outcome::scale_free_error) to reach as well; `None`
+    /// to report it only.
     pub scale_free: Option<f64>,
     /// Maximum number of iterations.
     pub max_iterations: u32,

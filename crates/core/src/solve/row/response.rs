@@ -20,8 +20,8 @@ pub(super) fn inverse_along<L: Lane>(w_t: L, w_n: L) -> L {
     inverse(w_t.greatest(L::all(MIN_RATIO) * w_n))
 }
 
-/// Returns 1/w_t as [`inverse_along`] does; where nothing moves at all, a shear cohesion (N s) takes its bound from a
-/// slip of 1e-12 m/s on.
+/// Returns 1/w_t as [`inverse_along`] does; where nothing moves at all, a shear cohesion (N s)
+/// takes its bound from a slip of 1e-12 m/s on.
 #[inline(always)]
 pub(super) fn answer_to_slip<L: Lane>(w_t: L, w_n: L, cohesion: L) -> L {
     const LEAST_SLIP: f64 = 1e-12;

@@ -47,7 +47,8 @@ pub(in crate::step) fn check_bodies<S: Space>(s: &Simulation<S>) -> Result<(), S
     }
 }
 
-/// Removes penetrations if one exceeds the bound, repeats detection, and adds the work to the ledger.
+/// Removes penetrations if one exceeds the bound, repeats detection, and adds the work to the
+/// ledger.
 pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projected> {
     if s.options.projection <= 0.0 {
         return None;

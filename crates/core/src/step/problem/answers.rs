@@ -11,8 +11,8 @@ use crate::step::{Scheme, Simulation};
 use crate::threads::fill;
 use std::sync::{Mutex, PoisonError};
 
-/// Least overlap, over the reduced radius, for which a law is evaluated at a contact that closes within
-/// the step: its velocity before may not tell of that.
+/// Least overlap, over the reduced radius, for which a law is evaluated at a contact that closes
+/// within the step: its velocity before may not tell of that.
 const CLOSING_OVERLAP: f64 = 1e-3;
 
 /// The velocities of the candidates relative to their antagonists, at the current velocities.
