@@ -2,8 +2,8 @@
 //! as data in `figures.json` all the same.
 
 use super::{Recorder, RunError};
+use crate::RunView;
 use crate::scene::case::OutputSpec;
-use crate::step::InDimension;
 use fretwork_observe::chart::Figure;
 use fretwork_observe::picture::Paint;
 use std::path::Path;
@@ -13,11 +13,11 @@ use std::path::Path;
 pub(super) struct Camera(Vec<Paint>);
 
 impl Camera {
-    pub fn new(_: InDimension<'_>, _: &OutputSpec) -> Self {
+    pub fn new(_: &dyn RunView, _: &OutputSpec) -> Self {
         Self::default()
     }
 
-    pub fn assign_layers(&mut self, _: InDimension<'_>) {}
+    pub fn assign_layers(&mut self, _: &dyn RunView) {}
 
     pub fn paints(&self) -> &[Paint] {
         &self.0
