@@ -17,6 +17,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A pair of shapes of which at least one is a convex piece.
 struct ShapePair<S: Space> {
+    /// Candidate and antagonist, numbered as in a [`Key`].
     name: (u32, u32),
     bodies: [u32; 2],
     law: u16,
@@ -70,8 +71,8 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the
-    /// antagonist is a piece.
+    /// Returns the pieces that may continue either shape of a pair across a seam; the antagonist is
+    /// a piece.
     fn adjacent(&self, pair: [u32; 2]) -> Vec<AdjacentPiece<'_, S>> {
         let (shapes, centre) = (self.placed.scene.shapes, |k| self.piece_centre(k));
         self.partners
@@ -96,7 +97,7 @@ impl<S: Space> Narrow<'_, S> {
             return false;
         };
         let apart = shapes.periodic.shortest(x - y);
-        // Beyond the distance at which a corner counts as on a face.
+        // More than the distance at which a corner still counts as lying on a face.
         let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
         apart.dot(&apart) > limit * limit
     }
@@ -162,7 +163,7 @@ impl<S: Space> Narrow<'_, S> {
         }
         for m in out.iter_mut() {
             *m = m.rotated::<S>(&rotation);
-            // The area of a grain belongs to its vertices.
+            // No bond forms here: the area of a deformable grain is shared among its vertices.
             m.facing &= !closed;
         }
         let [i, j] = bodies.map(|b| state.position[b as usize]);
@@ -196,7 +197,7 @@ impl<S: Space> Narrow<'_, S> {
             let (sizes, motion) = ([radius, piece.rounding], self.motion(bodies, centres));
             keep_ball_apart::<S>(core, &apart, sizes, tolerances, &motion, &mut point);
         }
-        // The inside of a face is not on a seam.
+        // A contact with the inside of a face, along the normal of the face, is not at a seam.
         let inside = |n: &S::Vector| n.dot(&point.normal) > 1.0 - ROUNDING;
         let adjacent = || self.adjacent([name.0, name.1]);
         let over_seam = point.gap <= tolerances.reach

@@ -47,7 +47,7 @@ impl Extents {
         self.levers.get(body).copied().unwrap_or(0.0)
     }
 
-    /// Recomputes them if the number of bodies or pieces has changed.
+    /// Recomputes both lists if the number of bodies or pieces has changed.
     pub(super) fn update<S: Space>(&mut self, scene: &CollisionScene<S>) {
         let counts = [scene.bodies.len(), scene.shapes.pieces.len()];
         if [self.levers.len(), self.pieces.len()] != counts {
@@ -80,9 +80,9 @@ impl Extents {
 }
 
 /// Returns the relative motion in a step (m) from which a pair is followed through the step: a
-/// fraction of the smallest half thickness, at most the range of the alert distance.
+/// fraction of the smallest half thickness, at most the alert distance `alert` (m).
 pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
-    // A point of a surface has no thickness of its own: behind it is its body.
+    // Balls of radius zero are points of a body: the thickness behind them is that of the body.
     let balls = shapes.balls.iter().map(|b| b.radius).filter(|r| *r > 0.0);
     let thinnest = balls.chain(half_thicknesses(shapes));
     alert.min(FAST * thinnest.fold(f64::INFINITY, f64::min))

@@ -12,9 +12,9 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct MeetingSearch<'a, S: Space> {
     pub network: &'a Network<S>,
     pub sweep: &'a PairSweep<'a, S>,
-    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all
-    /// bodies.
+    /// Displacement of each ball, piece and surface in the step (m), in this order.
     pub travels: Vec<f64>,
+    /// Largest displacement of all bodies in the step (m).
     pub farthest: f64,
     /// Whether a surface moves by rotation.
     pub turning: bool,
@@ -29,9 +29,9 @@ pub(super) struct Meeting<S: Space> {
     pub at: Option<f64>,
     /// Largest relative displacement of two of its points in the step (m).
     pub travel: f64,
-    /// Contacts there.
+    /// Contacts at that time; empty for a pair that is only reported.
     pub contacts: Vec<Contact<S>>,
-    /// Whether it is reported as passing.
+    /// Whether the pair is reported: its bodies may pass through each other.
     pub passing: bool,
 }
 
@@ -77,7 +77,7 @@ impl<'a, S: Space> MeetingSearch<'a, S> {
     pub fn fast_pair(&self, names: (u32, u32)) -> Option<SweptPair<'a, S>> {
         let slow = self.slow(names);
         let pair = self.sweep.pair(names);
-        // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
+        // The comparison is false for NaN, so that such a pair is followed, and reported.
         if pair.travel <= slow {
             None
         } else {
@@ -85,8 +85,8 @@ impl<'a, S: Space> MeetingSearch<'a, S> {
         }
     }
 
-    /// Follows a fast pair with these contacts through the step. Returns its contacts if it meets,
-    /// or that it is to be reported.
+    /// Follows a fast pair with these contacts through the step. Returns `None` if it does not
+    /// meet, otherwise the contacts where it meets, or none if it is only to be reported.
     pub fn examine(
         &self,
         names: (u32, u32),
@@ -98,8 +98,8 @@ impl<'a, S: Space> MeetingSearch<'a, S> {
         let law = sweep.scene.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
         let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
-        // The gap at the places of detection is larger than the motion along the normal, along
-        // which the gap closes.
+        // A pair without surfaces does not meet if its gap at detection is larger than its motion
+        // along the normal.
         let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
         let nearest = contacts.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         if let Some(nearest) = nearest

@@ -1,5 +1,5 @@
-//! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals
-//! (narrow phase).
+//! Contact detection at q_m, the positions (1 - theta) h after the start of a step: a neighbour
+//! list with a skin (broad phase), then gaps and normals (narrow phase).
 
 mod convex_pair;
 mod edges;
@@ -120,9 +120,9 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 
 /// Finds the contacts of this step at the current positions and carries their memory over.
 ///
-/// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `h` is
-/// the time since the last detection (s). Contact points of convex pairs are found by several
-/// threads if `parallel`; the results are the same.
+/// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `time` is
+/// that at the start of the step and `h` that since the last detection (s). Pairs are divided among
+/// several threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
@@ -163,8 +163,8 @@ fn centres<S: Space>(scene: &CollisionScene<S>, parallel: bool) -> Vec<S::Vector
     centres
 }
 
-/// Returns the points that the neighbour list tracks beside the centres of balls and pieces: the
-/// frames of the surfaces, and the vertices of surfaces that deform.
+/// Returns the points that the neighbour list tracks beside the centres of balls and pieces (m):
+/// the centres of the bodies that carry surfaces, then the vertices of surfaces that deform.
 fn watched_of_surfaces<'a, S: Space>(
     scene: &'a CollisionScene<S>,
 ) -> impl Iterator<Item = S::Vector> + 'a {
@@ -206,7 +206,7 @@ fn must_rebuild<S: Space>(
     any(parallel, centres.len(), CENTRE, centre) || surfaces.any(|(x, seen)| left(x, seen))
 }
 
-/// Builds the neighbour list: the pairs that may touch before one of them leaves its skin.
+/// Builds the neighbour list: the pairs that may touch before a shape has moved by half the skin.
 fn rebuild<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,

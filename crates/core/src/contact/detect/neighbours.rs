@@ -15,7 +15,7 @@ const COST: f64 = 20.0;
 /// The neighbour list is built for this multiple of the spin of rotating surfaces.
 const TURNING: f64 = 1.5;
 
-/// Additional range around a fast body (m): the list extends as far as it moves.
+/// Additional range around a body (m): that of its motion if it is fast, otherwise zero.
 fn widening(widened: &[f64], body: u32) -> f64 {
     widened.get(body as usize).copied().unwrap_or(0.0)
 }
@@ -25,9 +25,9 @@ pub(super) struct NeighbourSearch<'a, S: Space> {
     scene: &'a CollisionScene<'a, S>,
     /// Centres of the balls, then of the convex pieces (m).
     centres: &'a [S::Vector],
-    /// Radii of their bounding balls (m), widened around fast bodies.
+    /// Radii of the bounding balls of these shapes (m), widened around fast bodies.
     radii: Vec<f64>,
-    /// Range beyond these (m).
+    /// Largest distance of two bounding balls in the list (m).
     reach: f64,
     /// Whether each body never moves.
     still: Vec<bool>,
@@ -188,7 +188,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
                     continue;
                 }
                 if far < search.size {
-                    // Within a grain no place is too deep.
+                    // Inside a grain a shape may touch at any depth.
                     pairs.push(pair);
                     continue;
                 }
@@ -208,15 +208,16 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
 struct SurfaceSearch {
     /// Index of the surface.
     s: usize,
-    /// Distance of its farthest vertex, if it deforms (m).
+    /// Distance of the farthest vertex from the origin of a surface that deforms (m); else zero.
     size: f64,
-    /// Angle by which it turns before the list is built again, if that moves it (rad).
+    /// Angle by which the surface may turn before the list is built again (rad); `None` if it
+    /// deforms, or if the rotation leaves it unchanged.
     sweep: Option<f64>,
-    /// Additional range (m).
+    /// Additional range if the surface is fast (m).
     extra: f64,
 }
 
-/// Joins sorted pairs with some more in any order; each pair once.
+/// Merges sorted pairs with others in any order; the result is sorted, with each pair once.
 pub(super) fn joined(pairs: Vec<(u32, u32)>, mut more: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
     if more.is_empty() {
         return pairs;

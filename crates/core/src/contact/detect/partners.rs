@@ -10,24 +10,25 @@ use std::sync::OnceLock;
 #[derive(Default)]
 pub(super) struct Partners(OnceLock<Lists>);
 
-/// The concatenated lists, and the start of each.
+/// The lists of all balls, then of all pieces, one after the other.
 struct Lists {
+    /// Index in `names` of the first entry of each list, then the length of `names`.
     starts: Vec<u32>,
     names: Vec<u32>,
 }
 
 impl Partners {
-    /// The pieces in pairs with a ball or piece, in the order of the pairs; `count` is the number
-    /// of balls and pieces, `balls` that of balls.
+    /// Pieces that form a candidate pair with the ball or piece `name`, in the order of the pairs;
+    /// `count` is the number of balls and pieces, `balls` that of balls.
     pub fn of(&self, pairs: &[(u32, u32)], count: usize, balls: usize, name: u32) -> &[u32] {
         let lists = self.0.get_or_init(|| Lists::new(pairs, count, balls));
         let at = ShapeIndex::of(name).place([balls, 0]);
         &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
     }
 
-    /// Returns the pieces adjacent to one of a pair that may touch the other one too; the
-    /// antagonist is a piece. `cores` are those of the pieces in world axes, `centre` gives their
-    /// centres (m).
+    /// Returns the pieces that may continue either shape of a pair across a seam: those that form a
+    /// candidate pair with the other shape. The antagonist is a piece. `cores` are the cores of all
+    /// pieces in world axes, `centre` gives the centre of a piece (m).
     pub fn adjacent<'a, S: Space>(
         &self,
         pairs: &[(u32, u32)],
@@ -47,7 +48,7 @@ impl Partners {
                     core: &cores[k],
                     at: shapes.periodic.shortest(centre(k) - origin),
                     rounding: shapes.pieces[k].rounding,
-                    // A piece near the candidate is adjacent to the antagonist.
+                    // Pieces near the candidate continue the antagonist, and the reverse.
                     of_candidate: side == 1,
                     name: *other,
                 });

@@ -9,16 +9,16 @@ use crate::geometry::convex::Core;
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads;
 
-/// Pairs of balls per task, and pairs of other shapes.
+/// Pairs per task: in scenes of balls alone, and in scenes with pieces or surfaces.
 const CHUNK: [usize; 2] = [512, 128];
-/// Approximate time for a pair of balls, and for other shapes (ns).
+/// Approximate time per pair in these two kinds of scenes (ns).
 const COST: [f64; 2] = [15.0, 200.0];
 /// Approximate time to collect the data of a ball (ns).
 const BALL: f64 = 5.0;
 /// Tasks whose new contacts are kept at a time: a few megabytes.
 const BATCH: usize = 64;
 
-/// A contact as found in this step, without memory.
+/// A contact found in this step, without memory; the fields mean the same as in [`Contact`].
 pub(super) struct Hit<S: Space> {
     pub key: Key,
     pub bodies: [u32; 2],
@@ -32,15 +32,18 @@ pub(super) struct Hit<S: Space> {
 enum RenewalEvent<S: Space> {
     /// A contact with memory separated.
     Dropped(Contact<S>),
-    /// A new contact, whose pair penetrates by this much (m) elsewhere, and its size (m).
+    /// A new contact; the largest penetration among the old contacts of its pair (m), and the size
+    /// of its bodies (m).
     New(Contact<S>, [f64; 2]),
 }
 
-/// The memory of a contact whose normal turned.
+/// The memory of a contact, rotated with its normal.
 struct Turned<S: Space> {
     law: u16,
     slot: u32,
+    /// Tangential opening in the new frame (m).
     opening: S::Tangent,
+    /// Rotation of the bond in the new frame (rad), if it is stored.
     rotation: Option<S::Spin>,
 }
 
@@ -89,7 +92,7 @@ impl<'c, S: Space> Renewed<'c, S> {
         next.is_some_and(|c| c.key.pair() == pair)
     }
 
-    /// Reads the old contacts of a pair, see [`Self::old`].
+    /// Reads the old contacts of a pair, which [`Self::old`] then returns.
     pub fn begin_pair(&mut self, pair: (u32, u32)) {
         self.skip_to(pair);
         self.old.clear();
@@ -171,7 +174,7 @@ impl<'c, S: Space> Renewed<'c, S> {
 
     /// Adds the contact that continues the old contact `k` of the pair.
     pub fn renew(&mut self, narrow: &Narrow<S>, k: usize, hit: &Hit<S>) {
-        // In most cases it keeps its place, which still holds it.
+        // In most cases the contact keeps its place in the list, which still holds it.
         if self.out.more.is_empty() && self.out.kept == self.out.read - self.old.len() + k {
             let contact = &mut self.contacts[self.out.kept];
             renew(narrow, contact, hit, &mut self.out.turned);
@@ -197,10 +200,10 @@ impl<'c, S: Space> Renewed<'c, S> {
             )
         };
         contact.broken = narrow.network.broken_pairs.contains(&hit.key.pair());
-        // Penetrations in the initial state belong to the sample.
+        // Penetrations in the initial state come from the sample, not from the step.
         if narrow.placed.time > 0.0 {
             let known = self.old.iter().map(|c| -c.gap).fold(0.0, f64::max);
-            // The thickness behind a point of a grain is that of the grain.
+            // The thickness behind a point on the surface of a grain is that of the whole grain.
             let bodies = narrow.placed.scene.bodies;
             let grain = |b: &&u32| bodies.carrier(**b as usize).is_some_and(|c| c.grain);
             let grain = contact.bodies.iter().find(grain);
@@ -224,7 +227,7 @@ impl<'c, S: Space> Renewed<'c, S> {
     }
 }
 
-/// Gives an old contact the geometry of this step; its memory rotates with the pair.
+/// Gives an old contact the geometry of this step; the rotated memory is added to `turned`.
 #[inline]
 fn renew<S: Space>(
     narrow: &Narrow<S>,
@@ -389,7 +392,7 @@ fn turned_cores<S: Space>(
 }
 
 impl<S: Space> TaskResult<S> {
-    /// Applies it to the network; tasks are applied in the order of their pairs.
+    /// Applies the result to the network; tasks are applied in the order of their pairs.
     fn apply(self, network: &mut Network<S>, renewal: &mut Renewal<S>, placed: &PlacedScene<S>) {
         for turned in self.turned {
             let memory = &mut network.memory[turned.law as usize];
@@ -428,7 +431,7 @@ struct Renewal<S: Space> {
 }
 
 impl<S: Space> Renewal<S> {
-    /// Keeps the first of the next `read` contacts.
+    /// Keeps the first `kept` of the next `read` old contacts.
     fn keep(&mut self, kept: usize, read: usize) {
         if self.written == self.read {
             self.written += kept;

@@ -10,7 +10,7 @@ use nalgebra::{Vector1, Vector2};
 
 const H: f64 = 1e-3;
 
-/// Makes all materials touch by the first law.
+/// Lets shapes of material 0 touch by law 0.
 fn touching(mut s: Simulation<Dim2>) -> Simulation<Dim2> {
     s.table.set(0, 0, 0);
     let Network {
@@ -78,13 +78,13 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     assert_eq!(predicted.len(), 1);
     assert_eq!(predicted[0].bodies, [1, 2]);
     assert!(predicted[0].broken);
-    // Of two disks of 0.5 m, as of any contact of theirs.
+    // The reduced radius of two disks of 0.5 m, which any contact of them has.
     assert_eq!(predicted[0].radius, 0.25);
 }
 
-/// A point of a body of 1 m goes fast towards a chain, which it sees from behind within the alert
-/// distance of 1 mm only: it is followed in parts of that, however large its body is, and meets the
-/// chain when it has made its way to it.
+/// A point of a body of 1 m moves fast towards a chain, which is detected from behind only within
+/// the alert distance of 1 mm: its motion is followed in parts of that distance, however large its
+/// body is, and it meets the chain where it reaches it.
 #[test]
 fn a_point_is_followed_in_parts_of_the_alert_distance() {
     for (height, depth) in [(0.02, 0.5), (0.3, 0.01), (0.7, 2.0)] {
