@@ -16,16 +16,16 @@ pub struct Bond<S: Space> {
     pub opening_n: f64,
     /// Tangential opening (m).
     pub opening_t: S::Tangent,
-    /// Rest gap of the bond, at which it is rigid in compression (m): the gap at formation for a
-    /// tension-only law, zero where springs also push.
+    /// Rest gap (m), below which the contact is rigid in compression while the bond is intact: the
+    /// gap at formation for a law that acts in tension only, zero where springs also push.
     pub gap: f64,
     /// Damage D in \[0, 1\]; 1 is broken.
     pub damage: f64,
     /// Damage used in the step's impulse: D at its start, or the coupling's trial value.
     pub step_damage: f64,
-    /// Area (m^2).
+    /// Area (m^2; m in 2D).
     pub area: f64,
-    /// Stored energy (J).
+    /// Stored energy (J; J/m in 2D).
     pub energy: f64,
     /// Energy history.
     pub life: Life,
@@ -58,14 +58,15 @@ pub struct Slides {
     pub sum: f64,
     /// Largest slide (m).
     pub largest: f64,
-    /// Sum of the slides, each times the energy that damage released in the step (J m; J).
+    /// Sum of the slides, each times the energy that damage released in the step (J m; J in 2D).
     pub by_released: f64,
     /// Sum of these energies (J; J/m in 2D).
     pub released: f64,
 }
 
 impl Slides {
-    /// Adds a step of a bond: its slide (m), and the energy that damage released in it (J).
+    /// Adds a step of a bond: its slide (m), and the energy that damage released in it (J; J/m in
+    /// 2D).
     #[inline]
     pub fn add(&mut self, slide: f64, released: f64) {
         self.steps += 1;
@@ -89,7 +90,7 @@ impl Slides {
 /// The state of the bond of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondState {
-    /// There is no bond, and was none.
+    /// There is no bond and never was one.
     None,
     /// The bond is intact.
     Intact {
@@ -132,8 +133,8 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// Allocates a slot for a contact with the given initial variables; with an intact bond if
-    /// `bonded`.
+    /// Allocates a slot for a contact with the given initial variables; if `bonded`, with an intact
+    /// bond of rest gap `gap` (m) and `area` (m^2; m in 2D).
     pub fn allocate(&mut self, bonded: bool, gap: f64, area: f64, initial: &[f64]) -> u32 {
         let slot = self.free.pop().unwrap_or_else(|| {
             self.bonds.push(Bond::none(area));
@@ -195,7 +196,7 @@ impl<S: Space> Memory<S> {
             .sum()
     }
 
-    /// Returns the stored energy (J).
+    /// Returns the stored energy of the intact bonds (J; J/m in 2D).
     pub fn energy(&self) -> f64 {
         self.bonds
             .iter()

@@ -6,12 +6,12 @@ use std::sync::Arc;
 /// Where the heat of a contact enters a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeatSide {
-    /// Nowhere: it is insulated.
+    /// Nowhere: the body is insulated.
     #[default]
     Insulated,
     /// At a node.
     Node(u32),
-    /// Between nodes of a mesh, see [`ContactHeat::between`].
+    /// At a point between nodes of a mesh: index in [`ContactHeat::between`].
     Between(u32),
 }
 
@@ -22,7 +22,8 @@ pub struct MaterialPair {
     /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2
     /// (ohm m).
     pub material: [f64; 2],
-    /// Share of the first by effusivities, e1/(e1 + e2).
+    /// Share of the heat that enters the first, and its weight in the temperature of the contact, by
+    /// effusivities: e1/(e1 + e2).
     pub share: f64,
 }
 
@@ -48,7 +49,7 @@ pub struct ContactHeat {
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws
     /// give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
-    /// Points of meshes that sides refer to, by nodes of the heat.
+    /// Points of meshes to which [`HeatSide::Between`] refers, as sums of nodes with a temperature.
     pub between: Vec<Nodes>,
     /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
     pub source: Vec<f64>,
@@ -59,7 +60,7 @@ pub struct ContactHeat {
 }
 
 impl ContactHeat {
-    /// The nodes of a side with their weights, whose sum is 1; none of an insulated one.
+    /// The nodes of a side with their weights, whose sum is 1; no nodes if the side is insulated.
     pub fn terms(&self, side: HeatSide) -> impl Iterator<Item = (usize, f64)> + '_ {
         let node = match side {
             HeatSide::Node(node) => Some((node as usize, 1.0)),
@@ -74,7 +75,8 @@ impl ContactHeat {
             .chain(of_mesh.map(|(node, weight)| (node as usize, weight)))
     }
 
-    /// Temperature of a side (K), by those of the nodes of the heat; none of an insulated one.
+    /// Temperature of a side (K), where `of` gives the temperature of a node (K); `None` if the
+    /// side is insulated.
     pub fn temperature_of(&self, side: HeatSide, of: impl Fn(usize) -> f64) -> Option<f64> {
         match side {
             HeatSide::Insulated => None,
