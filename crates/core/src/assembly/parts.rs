@@ -1,4 +1,4 @@
-//! Bodies and shapes in their dimension.
+//! The parts of a scene in one dimension: bodies, shapes, wear and dynamical systems.
 
 use super::{
     AnySystem, AnyUnion, Assembly, Block, Filling, Inertia, Pile, RecordedPiece, Start, Weight,
@@ -15,12 +15,12 @@ use crate::step::Simulation;
 use crate::view::AnySimulation;
 use crate::wear::Scar;
 
-/// What a scene consists of so far.
+/// The parts of a scene while it is assembled.
 #[derive(Debug)]
 pub struct Parts<S: Space> {
     /// The bodies.
     pub bodies: Bodies<S>,
-    /// Their shapes.
+    /// Shapes of the bodies.
     pub shapes: Shapes<S>,
     /// Surfaces that wear.
     scars: Vec<Scar<S>>,
@@ -37,7 +37,7 @@ pub enum AnyParts<'a> {
     Space(&'a mut Parts<Dim3>),
 }
 
-/// A spin about axes as that of a dimension.
+/// Converts an angular velocity (rad/s) about x, y, z to the dimension: in 2D about z alone.
 fn spin<S: Space>(spin: &[f64; 3]) -> S::Spin {
     match S::D {
         2 => S::Spin::from_slice(&spin[2..]),
@@ -45,11 +45,13 @@ fn spin<S: Space>(spin: &[f64; 3]) -> S::Spin {
     }
 }
 
+/// Rotates a vector by the numbers of a rotation; `None` if they are not one.
 pub(super) fn turned<S: Space>(rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
     let rotation = S::rotation_from(rotation)?;
     Some(S::rotate(&rotation, &S::Vector::from_slice(&v)).padded())
 }
 
+/// A half-space with this outward normal, drawn over a distance `shown` (m).
 pub(super) fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
     match dimension {
         2 => AnySurface::Plane(Box::new(plane::<Dim2>(normal, shown))),
@@ -85,7 +87,8 @@ impl<S: Space> Parts<S> {
         self.bodies.spin[body as usize] = spin::<S>(&start.spin);
     }
 
-    /// Leaves out bodies of which the flag is false, with their shapes.
+    /// Removes the bodies whose flag is false, with their shapes. Called before wear and dynamical
+    /// systems are added, which are not renumbered.
     pub fn keep(&mut self, kept: &[bool]) {
         let moved = self.bodies.keep(kept);
         let at = |body: &mut u32| match moved[*body as usize] {

@@ -13,7 +13,7 @@ pub enum AnySystem {
 }
 
 impl AnySystem {
-    /// Its name.
+    /// Name of the system.
     pub fn name(&self) -> &str {
         match self {
             Self::Plane(system) => system.name(),
@@ -21,7 +21,7 @@ impl AnySystem {
         }
     }
 
-    /// Its parts that can touch.
+    /// Parts of the system that can touch.
     pub fn contactors(&self) -> Vec<Contactor> {
         match self {
             Self::Plane(system) => system.contactors(),

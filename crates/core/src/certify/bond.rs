@@ -145,8 +145,8 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Loading, unloading, reloading and unloading to several levels beyond the onset, in three
-/// directions.
+/// Returns paths of loading, unloading, reloading and unloading to several levels beyond the onset,
+/// in three directions.
 fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
     let mut out = Vec::new();
     for level in [1.2, 1.5, 2.0, 3.0] {
@@ -191,7 +191,7 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::below(
         NAME,
         worst,
-        // A law without an onset has a little damage at any opening.
+        // Not zero: a law without an onset has a little damage at any opening.
         1e-5,
         format!(
             "largest distance of the traction at D = 0.3, 0.7 and 1 from (1 - D)^{m} of the undamaged one"
@@ -255,17 +255,18 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
 
 /// Measures the order at which the energy of a pull of fixed duration converges with the step.
 fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
-    /// Steps of the coarsest pull, number of times that they are halved, and number of pulls of
-    /// slightly different reach.
+    /// Steps of the coarsest pull.
     const COARSEST: u32 = 50;
+    /// Number of times that the steps are halved.
     const HALVINGS: u32 = 4;
+    /// Number of pulls of slightly different reach.
     const REACHES: u32 = 16;
-    /// Fraction of the golden ratio, whose multiples spread evenly over the places of the onset
-    /// within a step.
+    /// Fractional part of the golden ratio, whose multiples spread evenly over the places of the
+    /// onset within a step.
     const SPREAD: f64 = 0.618_033_988_749_894_9;
     let reach = before_failure(rig, 2.0);
-    // The error of a pull depends on where within a step the onset falls, so that the order of one
-    // pull is a matter of chance: that of the root mean square over several reaches is not.
+    // The error of a pull depends on where within a step the onset falls, so that the order found
+    // from one pull is a matter of chance: the root mean square over several reaches is used.
     let mut squares = [0.0f64; HALVINGS as usize];
     let mut scale = f64::MIN_POSITIVE;
     for pull_number in 0..REACHES {
@@ -346,8 +347,8 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Unloads half way and completely, and reloads: the path must end in the origin, as the undamaged
-/// bond does, and return to its start.
+/// Checks that unloading half way and completely follows the path of the undamaged bond, scaled by
+/// the remaining stiffness, to the origin, and that reloading returns along it.
 fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
@@ -387,7 +388,7 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Returns this multiple of the onset, or half way from the onset to failure where that is less.
+/// Returns this multiple of the onset (m), or the middle between onset and failure if that is less.
 fn before_failure(rig: &Rig, multiple: f64) -> f64 {
     let reach = multiple * rig.onset;
     rig.end
@@ -399,8 +400,8 @@ fn length(a: &Answer) -> f64 {
     a.traction.iter().map(|t| t * t).sum::<f64>().sqrt()
 }
 
-/// Returns the traction of the undamaged bond at an opening, up to a factor. The bond is linear
-/// where the law under test is not a cohesion.
+/// Returns the traction of the undamaged bond at an opening `u` (m) at an angle from the normal
+/// (rad), up to a constant factor. The bond is linear where the law under test is not a cohesion.
 fn undamaged(rig: &mut Rig, angle: f64, u: f64) -> Result<f64, LawError> {
     let m = rig.tested().plugin.degradation;
     if rig.kind != Kind::COHESION || m <= 0.0 {

@@ -10,6 +10,7 @@ use std::sync::Barrier;
 /// The first check: a law that fails it may corrupt the memory of all later ones.
 pub const FIRST: (&str, Check) = ("columns", columns);
 
+/// The checks after [`FIRST`], with their names.
 pub const CHECKS: [(&str, Check); 8] = [
     ("range", range),
     ("batch", batch),
@@ -24,8 +25,8 @@ pub const CHECKS: [(&str, Check); 8] = [
 /// The checks that depend on parameters; the others depend on the code only.
 pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
-/// Moves a batch along walks, one per contact, some of them used repeatedly; returns the bits of
-/// all outputs.
+/// Moves a batch of `n` contacts along walks, each used by several contacts if there are fewer than
+/// `n`; returns the bits of all outputs. `turn` changes which contact takes which walk.
 pub fn run_batch(
     bench: &mut Bench,
     walks: &[Vec<Motion>],
@@ -60,8 +61,8 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged("columns", true, 0.0, KEPT))
 }
 
-/// Checks that the law leaves rounding and subnormal numbers of its caller as they are, in all
-/// calls before.
+/// Checks that the law has left rounding and subnormal numbers of its caller as they are, in all
+/// calls so far.
 fn floating_point(rig: &mut Rig) -> Result<Line, LawError> {
     const CHECK: &str = "floating point";
     let kept = "leaves rounding and subnormal numbers of its caller as they are";
@@ -75,7 +76,7 @@ fn floating_point(rig: &mut Rig) -> Result<Line, LawError> {
     })
 }
 
-/// Checks that outputs are within their physical range.
+/// Checks that outputs are within their physical range; other errors are left to other checks.
 fn range(rig: &mut Rig) -> Result<Line, LawError> {
     let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(80 + k, 200, 0.3)).collect();
     match run_batch(&mut rig.strict(), &walks, 17, 0) {
@@ -89,6 +90,7 @@ fn range(rig: &mut Rig) -> Result<Line, LawError> {
     }
 }
 
+/// Returns the bits of all outputs except conductances.
 fn bits(answers: &[Answer]) -> Vec<u64> {
     let numbers = answers.iter().flat_map(|a| {
         let rest = [a.stored, a.damage, a.mu, a.worn];

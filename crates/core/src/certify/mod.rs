@@ -20,7 +20,7 @@ use crate::laws::{LawError, Loaded, Plugin, SearchPath};
 use rig::Rig;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Result of a check.
+/// Whether a law has the property that a check tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CheckOutcome {
@@ -32,12 +32,12 @@ pub enum CheckOutcome {
     Skip,
 }
 
-/// Result of one check.
+/// Result of one check, a line of the certificate.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Line {
     /// Name of the check.
     pub check: String,
-    /// Result.
+    /// Whether the law has the property.
     pub outcome: CheckOutcome,
     /// The number that decided, described by the text. Infinity is written as null.
     #[serde(deserialize_with = "null_is_infinite")]
@@ -101,6 +101,7 @@ struct CertificateWriter<'a> {
     report: &'a mut dyn FnMut(CertifyProgress<'_>),
 }
 
+/// A check; errors of the law are turned into a failed line by the caller.
 type Check = fn(&mut Rig) -> Result<Line, LawError>;
 
 impl CertificateWriter<'_> {
@@ -126,13 +127,13 @@ impl CertificateWriter<'_> {
 pub struct Certificate {
     /// Kind of the law.
     pub kind: String,
-    /// Name.
+    /// Name of the law.
     pub name: String,
-    /// Version.
+    /// Version of its plugin.
     pub version: String,
     /// SHA-256 of the library.
     pub sha256: String,
-    /// The library.
+    /// Path of the library.
     pub library: String,
     /// Results of the checks.
     pub lines: Vec<Line>,
@@ -168,8 +169,8 @@ pub fn certify(
     )
 }
 
-/// Certifies as [`certify`], without the checks that do not depend on parameters: for laws whose
-/// code is known, such as the shipped ones.
+/// Tests a law like [`certify`], but without the checks that do not depend on parameters: for laws
+/// whose code is known, such as the shipped ones.
 ///
 /// # Errors
 /// The law cannot be prepared with its partners.

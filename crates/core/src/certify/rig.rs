@@ -11,11 +11,14 @@ pub const PRESSURE: f64 = 1e6;
 
 /// A law with its partners on the bench.
 pub struct Rig {
+    /// Bench that does not report values out of range as errors.
     pub bench: Bench,
     law: Interface,
     dimension: u32,
+    /// Name of the cohesion beside the law, as a suffix for texts; empty without one.
     partner: String,
-    /// Opening at which damage begins, or for a law without damage the one that stores 1 J/m^2 (m).
+    /// Opening at which damage begins, or for a law without damage the one that stores 1 J/m^2 (m);
+    /// set by [`Self::find_scale`].
     pub onset: f64,
     /// Opening at which the bond breaks, if it does (m).
     pub end: Option<f64>,
@@ -23,13 +26,14 @@ pub struct Rig {
     pub kind: Kind,
 }
 
+/// Finds a law by its name, with default parameters.
 fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawError> {
     Ok(Loaded::with_defaults(path.find(kind, name)?))
 }
 
 impl Rig {
-    /// The law in its slot, beside each set of partners of its kind: a damage law with this
-    /// cohesion, or once with a linear bond (m = 1), once with MAC's (m = 2).
+    /// Creates one rig for each set of partners of the kind of law. A damage law is combined with
+    /// `cohesion` if given, else once with a linear bond (m = 1) and once with that of MAC (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
@@ -54,7 +58,7 @@ impl Rig {
             if !slots.iter().any(|l| l.plugin.kind == Kind::CONTACT) {
                 slots.push(by_default(path, Kind::CONTACT, "frictionless")?);
             }
-            // One with the given cohesion is enough.
+            // Sets that become equal by the given cohesion are tested once.
             if cohesion.is_none() || !laws.iter().any(|(known, _)| *known == partner) {
                 laws.push((partner, slots));
             }
@@ -81,10 +85,12 @@ impl Rig {
             .collect()
     }
 
+    /// Returns the name of the cohesion beside the law, as a suffix for texts.
     pub fn partner(&self) -> &str {
         &self.partner
     }
 
+    /// Returns whether the laws have an opening.
     pub fn opens(&self) -> bool {
         self.law.opens()
     }
@@ -99,7 +105,7 @@ impl Rig {
         self.law.law(self.kind).unwrap_or(self.law.contact())
     }
 
-    /// Returns a second bench with the same laws.
+    /// Returns a second bench with the laws of this one.
     pub fn another(&self) -> Bench {
         self.strict().lenient()
     }
@@ -118,8 +124,9 @@ impl Rig {
         Bench::new(law, self.dimension, RADIUS).lenient()
     }
 
-    /// Finds the openings at which damage begins and at which the bond is broken, by single pulls
-    /// in mode I and, if that has no effect, mode II.
+    /// Finds the openings at which damage begins and at which the bond is broken, by one pull in
+    /// mode I and, if that causes no damage, one in mode II. Without damage the onset is the
+    /// opening that stores 1 J/m^2.
     pub fn find_scale(&mut self) -> Result<(), LawError> {
         if !self.opens() {
             return Ok(());
@@ -149,8 +156,9 @@ impl Rig {
         Ok(())
     }
 
-    /// Returns a random walk around the scale of the law, normal and tangential, with steps of the
-    /// fraction `share` of it; for a law without opening, of gaps and slips.
+    /// Returns a random walk of `steps` openings, normal and tangential, up to 3 times the onset,
+    /// in steps of up to `share` times the onset; for a law without opening these are gaps and
+    /// slips.
     pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<Motion> {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let reach = 3.0 * self.onset;
@@ -180,7 +188,7 @@ impl Rig {
             .collect()
     }
 
-    /// Returns a vector in tangential axes that are rotated, in 2D reversed.
+    /// Returns a vector (normal, two tangents) in tangential axes that are rotated, in 2D reversed.
     pub fn turned(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
         if self.dimension == 2 {
             [n, -t1, 0.0]
@@ -189,7 +197,7 @@ impl Rig {
         }
     }
 
-    /// Drives one new contact along motions.
+    /// Drives one new contact along motions, each over a step of `h` (s).
     pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<Vec<Answer>, LawError> {
         let mut state = self.bench.fresh();
         let step = |motion| self.bench.step_one(&mut state, motion, h);
@@ -197,7 +205,7 @@ impl Rig {
     }
 }
 
-/// Returns an opening of length `u` at an angle from the normal (rad).
+/// Returns a motion that ends at an opening of length `u` (m) at an angle from the normal (rad).
 pub fn pull(u: f64, angle: f64) -> Motion {
     let opening = [u * angle.cos(), u * angle.sin(), 0.0];
     Motion {

@@ -6,7 +6,7 @@ use crate::laws::LawError;
 use crate::laws::bench::{Answer, Motion};
 use crate::laws::kind::CheckSet;
 
-/// The checks of a set.
+/// Returns the checks of a set, with their names.
 pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
     const ALL: [(&str, Check); 3] = [
         ("dissipation", signs),
@@ -20,8 +20,9 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
     }
 }
 
-/// Checks that friction, strengths and wear are not negative and restitution does not exceed one,
-/// so that no step creates energy or mass.
+/// Checks that friction, strengths, rolling friction and wear are not negative and that
+/// restitution is between 0 and 1 along the normal and between -1 and 1 along the tangent, so that
+/// no step creates energy or mass.
 fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {

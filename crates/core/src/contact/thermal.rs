@@ -22,8 +22,8 @@ pub struct MaterialPair {
     /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2
     /// (ohm m).
     pub material: [f64; 2],
-    /// Share of the heat that enters the first, and its weight in the temperature of the contact, by
-    /// effusivities: e1/(e1 + e2).
+    /// Share of the heat that enters the first, and its weight in the temperature of the contact,
+    /// by effusivities: e1/(e1 + e2).
     pub share: f64,
 }
 
