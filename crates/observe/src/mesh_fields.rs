@@ -8,12 +8,12 @@ use fretwork_core::unit::AREA;
 use fretwork_core::view::{RunView, SystemView};
 use nalgebra::Vector3;
 
-/// What the values of a field stand at.
+/// Where a field has values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
     /// Points of the mesh.
     Points,
-    /// Its elements.
+    /// Elements of the mesh.
     Cells,
 }
 
@@ -24,11 +24,11 @@ pub struct MeshField<T> {
     pub name: &'static str,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
-    /// One line.
+    /// Explanation in one line.
     pub doc: &'static str,
-    /// Where its values stand.
+    /// Whether there is a value at each point or at each element.
     pub at: At,
-    /// Numbers of a value.
+    /// Numbers per value.
     pub width: usize,
     /// All values, one after the other.
     pub values: fn(&T) -> Vec<f64>,
@@ -42,7 +42,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// Of a system; none where it has no mesh.
+    /// Takes the mesh and the velocities of a system; `None` if it has no mesh.
     pub fn of(system: &dyn SystemView) -> Option<Self> {
         let mesh = system.deformed_mesh()?;
         let mut velocity = system.mesh_velocity();
@@ -50,27 +50,28 @@ impl BodyState {
         Some(Self { mesh, velocity })
     }
 
-    /// Its mesh.
+    /// The deformed mesh.
     pub fn mesh(&self) -> &DeformedMesh<Vector3<f64>> {
         &self.mesh
     }
 }
 
-/// Grains that deform as one mesh, as it is now.
+/// The current state of several deformable grains, joined to one mesh.
 #[derive(Clone, Debug, Default)]
 pub struct GrainsState {
     mesh: DeformedMesh<Vector3<f64>>,
     velocity: Vec<Vector3<f64>>,
-    /// Points at the start of the run, without load (m), and their way from there.
+    /// Points at the start of the run, without load (m).
     start: Vec<Vector3<f64>>,
+    /// Displacement of each point since the start of the run (m).
     travel: Vec<Vector3<f64>>,
-    /// By point and by element the identity of the body.
+    /// Identity of the body of each point, and of each element.
     bodies: [Vec<i64>; 2],
 }
 
 impl GrainsState {
-    /// Of the systems of these indices; those that have no mesh are left out. Grains that left the
-    /// period of the scene are shown in it.
+    /// Joins the systems with these indices, without those that have no mesh. Grains that have left
+    /// the periodic cell are shown at their image inside it.
     pub fn of(run: &dyn RunView, systems: &[usize]) -> Self {
         let mut out = Self::default();
         for k in systems {
@@ -121,7 +122,7 @@ impl GrainsState {
     }
 }
 
-/// Numbers of vectors, three each.
+/// Components of vectors, three numbers per vector.
 pub fn triples(vectors: &[Vector3<f64>]) -> Vec<f64> {
     vectors.iter().flatten().copied().collect()
 }
@@ -150,7 +151,7 @@ impl Meshed for GrainsState {
     }
 }
 
-/// What bodies of finite elements and grains have alike: velocity and stress.
+/// Fields of bodies of finite elements as well as of deformable grains.
 fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
     [
         MeshField {
@@ -216,11 +217,11 @@ pub fn of_grains() -> [MeshField<GrainsState>; 5] {
     [displacement, deformation, velocity, stress, von_mises]
 }
 
-/// What the components of a stress are.
+/// Explanation of the field of stress: the order of its components.
 const STRESS: &str =
     "stress (Cauchy): XX, YY, ZZ, XY, YZ, XZ; in plane strain ZZ is along the depth";
 
-/// Stresses xx, yy, zz, yz, xz, xy in VTK's order.
+/// Reorders stresses xx, yy, zz, yz, xz, xy (Pa) to VTK's order xx, yy, zz, xy, yz, xz.
 fn in_vtk_order(stress: &[[f64; 6]]) -> Vec<f64> {
     let order = |[xx, yy, zz, yz, xz, xy]: &[f64; 6]| [*xx, *yy, *zz, *xy, *yz, *xz];
     stress.iter().flat_map(order).collect()

@@ -51,7 +51,7 @@ impl Recorder<'_> {
         files
     }
 
-    /// Adds the steps that were written as FCLIB problems.
+    /// Adds the numbers of steps that were and were not written as FCLIB problems.
     fn report_problems(&self, found: &mut Findings) {
         let (written, skipped) = self.problems;
         found.begin(Topic::Run, Role::Diagnostic);
@@ -84,7 +84,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// Reads the rows of the statistics back: where something is made of them.
+    /// Reads the rows of the statistics back, if figures or observers need them.
     fn read_statistics(&mut self) -> Result<(), RunError> {
         if !self.has_figures() && !self.observers.read_statistics() {
             return Ok(());
@@ -93,7 +93,8 @@ impl Recorder<'_> {
         self.table.recall().map_err(|e| unreadable(&path, &e))
     }
 
-    /// Writes all other files, also after one of them failed.
+    /// Writes the statistics, the results, the files of observers and the figures. All are tried;
+    /// the first error is returned.
     fn files(&mut self, wall: Duration) -> Result<(), RunError> {
         let written = self.timed(
             |t| &mut t.files,
@@ -116,7 +117,7 @@ impl Recorder<'_> {
         written.and(drawn)
     }
 
-    /// Whether figures are drawn.
+    /// Whether figures are drawn: the case asks for them, and the run is not stopped in a hurry.
     fn has_figures(&self) -> bool {
         let hurried = self.hurry.is_some_and(|flag| flag.load(Ordering::SeqCst));
         self.loaded.case.output.figures && !hurried
@@ -131,8 +132,7 @@ impl Recorder<'_> {
         Ok(self.results.finish(&self.out)?)
     }
 
-    /// Writes the figures as data, as far as they are known now: for the report, and for other
-    /// programs.
+    /// Writes the figures known so far as data, for the report and for other programs.
     pub(super) fn describe_figures(&self, wall: Duration) -> Result<(), RunError> {
         let outputs = self.observers.figures(&self.end(wall)).into_iter();
         let figure = |output| match output {
@@ -144,7 +144,7 @@ impl Recorder<'_> {
         write_atomic(&self.out.join(Figure::FILE), &text)
     }
 
-    /// Draws the figures, where the case asks for them.
+    /// Draws the figures, unless they are left out.
     fn draw(&self, wall: Duration) -> Result<(), RunError> {
         if !self.has_figures() {
             return Ok(());

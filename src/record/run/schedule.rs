@@ -4,9 +4,10 @@ use super::Recorder;
 use crate::scene::case::Checkpoint;
 
 impl Recorder<'_> {
-    /// Steps of the case until the next record, which no step passes. With `every: 1`, the default,
-    /// there is a row after each step, however many of the case it spans, unless measures and tests
-    /// average over rows.
+    /// Steps of the case until the next record, the most that one step of the simulation may span.
+    /// With `every: 1`, the default, rows do not limit the span: a row then follows each step of
+    /// the simulation, however many of the case it spans, unless measures and tests average over
+    /// rows.
     pub(super) fn until_record(&self) -> u64 {
         let case = &self.loaded.case;
         let output = &case.output;
@@ -28,18 +29,18 @@ impl Recorder<'_> {
     }
 }
 
-/// Whether event k of `count` over the run falls on this step.
+/// Whether one of `count` events, spread evenly over `total` steps, falls on this step.
 pub(super) fn due(step: u64, total: u64, count: u32) -> bool {
     count > 0 && events(step, total, count) > events(step - 1, total, count)
 }
 
-/// How many of `count` events over the run fall on the steps up to this one.
+/// How many of `count` events, spread evenly over `total` steps, fall on the steps up to this one.
 fn events(step: u64, total: u64, count: u32) -> u128 {
     u128::from(step) * u128::from(count) / u128::from(total.max(1))
 }
 
-/// Steps after this one until the next of `count` events over the run; `None` where none is to
-/// come.
+/// Number of steps from this one to the next of `count` events, spread evenly over `total` steps;
+/// `None` if `count` is zero.
 fn until_next(step: u64, total: u64, count: u32) -> Option<u64> {
     let next = events(step, total, count) + 1;
     let at = (next * u128::from(total.max(1))).div_ceil(u128::from(count.max(1)));

@@ -20,8 +20,8 @@ const BRITTLE: f64 = 1.05;
 /// Slide over critical opening, in the steps in which they break, from which brittle bonds count as
 /// not resolved: the step, not the law, then decides which of several breaks.
 const OVERSHOOT: f64 = 0.2;
-/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`:
-/// with damage at its start or end, and with damage at its middle.
+/// Slide per step over critical opening up to which a step resolves a bond, as in `fretwork check`:
+/// if damage is that at the start or end of the step, and if it is that at its middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
 
 /// What the energy to break a bond is compared with.
@@ -106,7 +106,8 @@ crate::described! {
 }
 
 impl FractureSummary {
-    /// Of the bonds of some interfaces, in a run with these options.
+    /// Summarises the bonds of some interfaces in a run with these options; `jumps` is whether
+    /// cycles were skipped.
     pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, options: &Options) -> Self {
         let resolved = match options.coupling {
             Coupling::Midpoint => RESOLVED[1],
@@ -137,7 +138,7 @@ impl FractureSummary {
         found.warn(text.map(|text| Warning::note("BONDS NOT RESOLVED", text)));
     }
 
-    /// Sentence of the terminal.
+    /// Sentence for the terminal, for the released over the declared energy.
     fn sentence(&self, ratio: f64) -> String {
         let once = self.interfaces.iter().filter_map(|b| {
             let share = b.softening_at_once().filter(|s| *s > 0.0)?;
@@ -195,7 +196,7 @@ impl FractureSummary {
 }
 
 impl BondEnergies {
-    /// Adds how far its bonds slid in a step.
+    /// Sets how far the bonds slid in a step, relative to their critical opening if it is known.
     pub(crate) fn slide(&mut self, slides: &Slides) {
         let Some(critical) = self.critical_opening else {
             return;
@@ -218,12 +219,14 @@ impl BondEnergies {
         self.broken_at_once.filter(|_| !self.brittle())
     }
 
-    /// Slide in the steps in which they broke, of brittle bonds that the step does not resolve.
+    /// Slide over critical opening of brittle bonds in the steps in which they broke, if the step
+    /// does not resolve them.
     fn overshoot(&self) -> Option<f64> {
         self.slide_breaking
             .filter(|s| self.brittle() && *s > OVERSHOOT)
     }
 
+    /// Text for the warning, if the step does not resolve the bonds.
     fn unresolved(&self) -> Option<String> {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
         let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
