@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 pub struct CodeError(String);
 
 impl CodeError {
-    /// The bytes are of something else: `what` names it in the plural.
+    /// Error for bytes of another case: `what` names, in the plural, what differs.
     pub fn other(what: &str) -> Self {
         Self(format!("it holds other {what} than the case has"))
     }

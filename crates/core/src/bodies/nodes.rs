@@ -1,12 +1,12 @@
-//! A point of a dynamical system as a weighted sum of its nodes.
+//! Points of dynamical systems as weighted sums of nodes.
 
 use crate::geometry::space::VectorLike;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// A point of a system as a weighted sum of nodes: u = sum w_a u_a, and an impulse p there is w_a p
-/// on each of them. The weights are shape functions, the affine coordinates of a point in a frame,
-/// or those of a mean place.
+/// A point of a system as a weighted sum of nodes: its displacement is u = sum w_a u_a, and an
+/// impulse p on it acts as w_a p on each node a. The weights are shape functions, affine
+/// coordinates of a point in a frame, or those of an average over several places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes(Terms);
 
@@ -22,14 +22,14 @@ enum Terms {
     Shared(Arc<[(u32, f64)]>),
 }
 
-/// Weight up to which a vertex of a facet is left out.
+/// Magnitude of the weight up to which a vertex of a facet is left out.
 const ROUNDING: f64 = 1e-9;
 
 /// Largest number of nodes stored in place: those of a facet with quadratic shape functions.
 const INLINE: usize = 8;
 
 impl Nodes {
-    /// A node itself.
+    /// The point at a node.
     pub fn one(node: u32) -> Self {
         Self::inline(&[(node, 1.0)])
     }
@@ -47,7 +47,7 @@ impl Nodes {
         })
     }
 
-    /// A weighted sum of different nodes; none of no node.
+    /// A weighted sum of different nodes; `None` without nodes.
     pub fn sum(terms: &[(u32, f64)]) -> Option<Self> {
         match terms.len() {
             0 => None,
@@ -57,8 +57,8 @@ impl Nodes {
     }
 
     /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to
-    /// rounding, that node itself, and on an edge two nodes, which cost the solver less. None of no
-    /// vertex.
+    /// rounding, that node itself, and on an edge two nodes, which cost the solver less. `None`
+    /// without vertices.
     pub fn on_facet(terms: &[(u32, f64)]) -> Option<Self> {
         let there = terms.iter().filter(|(_, weight)| weight.abs() > ROUNDING);
         let there: Vec<_> = there.copied().collect();
@@ -93,7 +93,7 @@ impl Nodes {
         })
     }
 
-    /// The node at a place among them and its weight.
+    /// The node at an index, from 0 to `count` - 1, and its weight.
     fn term(&self, k: usize) -> (u32, f64) {
         match &self.0 {
             Terms::Inline { ids, weights, .. } => (ids[k], weights[k]),
@@ -101,7 +101,7 @@ impl Nodes {
         }
     }
 
-    /// The weighted sum of a vector that is given at each node.
+    /// The weighted sum of the vectors that `of` gives at the nodes.
     pub fn sum_of<V: VectorLike>(&self, of: impl Fn(u32) -> V) -> V {
         let terms = self.terms();
         terms.fold(V::zero(), |sum, (node, weight)| sum + of(node) * weight)

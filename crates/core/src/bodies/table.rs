@@ -1,14 +1,15 @@
-//! Tables of points (time, value), linear between them and constant outside.
+//! Tables of points (time (s), value), linear between them and constant outside.
 
-/// TimePoints in the order of time.
+/// Points (time (s), value), sorted by time.
 pub(super) type TimePoints = [(f64, f64)];
 
-/// Returns the tolerance for equal times, which are sums and differences of numbers of this size.
+/// Returns the tolerance for equal times (s), computed by sums and differences of numbers of this
+/// size.
 pub(super) fn rounding(t: f64) -> f64 {
     16.0 * f64::EPSILON * t.abs()
 }
 
-/// Returns the points within (t, t + h), excluding one at an end to rounding.
+/// Returns the points inside (t, t + h), without those that coincide with an end up to rounding.
 pub(super) fn inside(points: &TimePoints, t: f64, h: f64) -> &TimePoints {
     let eps = rounding(t + h);
     let first = points.partition_point(|p| p.0 <= t + eps);
@@ -29,17 +30,17 @@ pub(super) fn value(points: &TimePoints, t: f64) -> f64 {
     }
 }
 
-/// Returns the slope at a time, from the left at a point.
+/// Returns the slope at a time; at a point of the table, that on its left.
 pub(super) fn slope(points: &TimePoints, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 < t))
 }
 
-/// Returns the slope at a time, from the right at a point.
+/// Returns the slope at a time; at a point of the table, that on its right.
 pub(super) fn slope_after(points: &TimePoints, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 <= t))
 }
 
-/// Returns the slope of the segment that ends at a point.
+/// Returns the slope of the segment that ends at point `k`; zero outside the table.
 fn slope_to(points: &TimePoints, k: usize) -> f64 {
     if k == 0 || k == points.len() {
         return 0.0;
@@ -47,6 +48,7 @@ fn slope_to(points: &TimePoints, k: usize) -> f64 {
     (points[k].1 - points[k - 1].1) / (points[k].0 - points[k - 1].0)
 }
 
+/// Returns the integral of the value from one time to a later one, exactly.
 pub(super) fn integral(points: &TimePoints, from: f64, to: f64) -> f64 {
     let first = points.partition_point(|p| p.0 <= from);
     let last = points.partition_point(|p| p.0 < to);

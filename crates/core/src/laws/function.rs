@@ -1,20 +1,20 @@
-//! The functions of a law that are called over a batch.
+//! The functions of a law that are called for a batch of contacts.
 
-/// A call over a batch.
+/// A call for a batch of contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Call {
-    /// New contacts.
+    /// Sets the variables of new contacts.
     Initialise,
-    /// Start of a step.
+    /// Computes the response at the start of a step.
     Prepare,
-    /// End of a step.
+    /// Updates the variables at the end of a step.
     Commit,
-    /// Stored energy.
+    /// Computes the stored energy.
     Energy,
 }
 
 impl Call {
-    /// The function of the plugin table.
+    /// Name of the function in the plugin table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Initialise => "initialise",
