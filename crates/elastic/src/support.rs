@@ -1,25 +1,26 @@
-//! What holds and drives a body: parts of its boundary move along an axis as one.
+//! Supports of a deformable body, parts of whose boundary move along an axis as one, and Rayleigh
+//! damping.
 
 use fretwork_core::bodies::Dof;
 use serde::{Deserialize, Serialize};
 
 /// A part of the boundary in a holder that does not turn: along each axis all its points move as
-/// one, free, fixed, at an imposed velocity or displacement, or under a force. Axes that are `None`
-/// are left to the points.
+/// one: free, fixed, at an imposed velocity or displacement, or under a force. Along an axis that
+/// is `None` each point moves by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// Name of the part in the mesh.
     pub part: String,
-    /// The drive along each axis; a force (N; N/m in 2D) is that on the whole part.
+    /// The drive along each axis; a force (N; N/m in 2D) acts on the part as a whole.
     pub axes: Vec<Option<Dof>>,
-    /// Drives that take over during the run, in phases whose start
-    /// [`ElasticBody`](crate::ElasticBody) is notified of: index of the phase, axis, drive. Parts
-    /// with a common corner must have the same.
+    /// Drives that take over during the run: index of the phase at whose start the drive takes
+    /// over, axis, drive. [`ElasticBody`](crate::ElasticBody) is notified of the start of each
+    /// phase. Parts that share a corner must have equal ones.
     pub later: Vec<(usize, usize, Dof)>,
 }
 
 impl Support {
-    /// The drives that take over along an axis.
+    /// The drives that take over along an axis, with the index of their phase.
     pub(crate) fn later(&self, axis: usize) -> impl Iterator<Item = (usize, &Dof)> {
         let along = self.later.iter().filter(move |l| l.1 == axis);
         along.map(|(phase, _, drive)| (*phase, drive))
@@ -34,7 +35,7 @@ pub struct Rayleigh {
     /// its critical damping.
     #[serde(default)]
     pub mass: f64,
-    /// Factor beta of the stiffness (s): beta w/2 of the critical damping.
+    /// Factor beta of the stiffness (s): such a mode is damped by beta w/2 of its critical damping.
     #[serde(default)]
     pub stiffness: f64,
 }

@@ -59,8 +59,8 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.force.fill(0.0);
-        // Which axes yield to forces stays as it is over a run: phases that would change it are
-        // refused.
+        // The kept compliance depends on h and theta alone: phases of the run that change which
+        // axes of the holder yield to forces are refused.
         let of = |s: &SystemStep<S>| [s.h, s.theta];
         if self.held() <= MAX_KEPT && self.step.as_ref().map(of) != Some(of(step)) {
             let cells = (0..self.fixed.grid.len() as u32).collect();
@@ -148,7 +148,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
             work.scheme += (theta - 0.5) * mass * change * change;
             work.external += h * self.reaction(axis, step) * average;
         }
-        // What makes the surface roll holds it against the contacts along x.
+        // The drive that makes the surface roll balances the contact forces along x.
         let rolled = self.rolled();
         work.external -= h * self.force[rolled] * self.average(rolled, theta);
         work
@@ -230,8 +230,8 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         let cells = self.fixed.grid.len();
         let base = self.fixed.places[origin as usize];
         let middle = self.fixed.grid.middle(origin as usize);
-        // The place without load of what is there now: displacements are small against cells, so
-        // that three times are enough.
+        // The unloaded place of the material that is at the contact now, by fixed-point iteration:
+        // three rounds are enough since displacements are small against cells.
         let mut at = self.node_position(origin) + *arm - self.entries(&self.displacement, cells);
         for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
             at[axis] += x - base[axis];
@@ -249,7 +249,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         Nodes::on_facet(&weights).unwrap_or_else(|| contactor.nodes.clone())
     }
 
-    /// That of its places: what rolls passes through them.
+    /// The velocity of the cells, without that of the material that rolls through them.
     fn contactor_velocity(&self, contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {
         let terms = contactor.nodes.terms();
         let elastic = terms.fold(S::Vector::zero(), |sum, (cell, weight)| {
@@ -319,7 +319,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
             let (mut displacement, mut velocity, mut force) = (0.0, 0.0, 0.0);
             if let Some(step) = &self.step {
                 velocity = self.average(c, step.theta);
-                // Forces are those that leave the displacement of the end of the step.
+                // The forces over the step lead to the displacement at its end.
                 displacement = self.start[0][c] + step.h * velocity;
                 force = if c == self.rolled() {
                     -self.force[c]
@@ -364,7 +364,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
 
     fn touching_surface(&self) -> Option<TouchingSurface<S::Vector>> {
         let cells = self.fixed.grid.len() as u32;
-        // The image of the first cell of a surface that repeats is no cell of its own.
+        // Facets to the image of the first cell of a surface that repeats are left out.
         let mut facets = Vec::new();
         for facet in self.fixed.facets.iter().map(|f| &f[..S::D]) {
             let at = |k: &u32| self.fixed.vertices[*k as usize];
@@ -381,7 +381,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
     }
 
     fn size(&self) -> Option<SystemSize> {
-        // A surface that rolls has a second table, of the material behind.
+        // A surface that rolls has a second table: for the material that comes from behind.
         let tables = 1 + usize::from(self.fixed.rolling.is_some());
         let column = if self.held() <= MAX_KEPT {
             self.held() * S::D * size_of::<f64>()
