@@ -1,4 +1,4 @@
-//! Lock on a folder: one writer at a time, and no reader of what is half written.
+//! Lock on a folder: one writer at a time, and no readers while it writes.
 
 use crate::write_advice;
 use std::fs::{File, TryLockError};
@@ -29,7 +29,7 @@ pub enum LockError {
         /// The file in it by which it was owned.
         mark: String,
     },
-    /// The file that is locked cannot be made.
+    /// The lock file cannot be created.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
@@ -43,14 +43,14 @@ pub enum LockError {
 /// ends, however it ends.
 #[derive(Clone, Debug)]
 pub struct FolderLock {
-    /// None on file systems without locks, where there is no protection.
+    /// The locked file, kept open; `None` for a reader that found no file to lock.
     _file: Option<Arc<File>>,
-    /// The file by which it is owned, and where it lay; none of a reader, and of systems that
-    /// number no files.
+    /// The file by which the folder is owned, and its number when it was locked; `None` for a
+    /// reader, and on systems without file numbers.
     owned: Option<(PathBuf, Place)>,
 }
 
-/// Device and number of a file.
+/// Device and number of a file, which stay the same when the file is renamed.
 type Place = (u64, u64);
 
 #[cfg(unix)]
@@ -65,7 +65,8 @@ fn place(_: &std::fs::Metadata) -> Option<Place> {
 }
 
 impl FolderLock {
-    /// Owns a folder that exists, by a file in it that is left there.
+    /// Owns an existing folder by a lock on the file `mark` in it, which is created if necessary
+    /// and left there.
     ///
     /// # Errors
     /// Somebody owns it or reads it, or the file cannot be made.
@@ -91,7 +92,7 @@ impl FolderLock {
     /// its name.
     ///
     /// # Errors
-    /// It, or the file by which it is owned, was removed, moved or replaced.
+    /// The folder, or the file by which it is owned, was removed, moved or replaced.
     pub fn kept(&self) -> Result<(), LockError> {
         let Some((path, at)) = &self.owned else {
             return Ok(());
@@ -117,7 +118,8 @@ impl FolderLock {
     /// # Errors
     /// Somebody owns it.
     pub fn read(folder: &Path, mark: &str) -> Result<Self, LockError> {
-        // Without the file, or the right to read it, nobody of this user writes there.
+        // Without the file no run has written there; a file that this user must not read cannot be
+        // locked, and the folder is read without protection.
         let file = File::open(folder.join(mark)).ok();
         if let Some(file) = &file {
             held(folder, file.try_lock_shared())?;
@@ -129,8 +131,8 @@ impl FolderLock {
     }
 }
 
-/// Whether somebody else holds a lock. File systems that have none refuse differently, and let
-/// everybody in.
+/// Returns an error if somebody else holds the lock. Other errors come from file systems without
+/// locks, where there is no protection, and are ignored.
 fn held(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
     match locked {
         Err(TryLockError::WouldBlock) => Err(LockError::Held {

@@ -5,16 +5,17 @@ use super::write::{complete, put};
 use super::{FclibError, Problem};
 use std::path::Path;
 
-/// A solution, with the names of the layout.
+/// A solution, with the names of the layout. The sizes are those of the problem: n degrees of
+/// freedom, p constraints, and m components of all contacts, 2 or 3 per contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution {
-    /// Velocities of the degrees of freedom (length n); global problems only.
+    /// Velocities of the degrees of freedom (n); global problems only.
     pub v: Vec<f64>,
-    /// Multipliers of the constraints (length p).
+    /// Multipliers of the constraints (p); empty without constraints.
     pub l: Vec<f64>,
-    /// Relative velocities of the contacts (length m).
+    /// Relative velocities of the contacts (m).
     pub u: Vec<f64>,
-    /// Contact impulses (length m).
+    /// Impulses of the contacts (m).
     pub r: Vec<f64>,
 }
 
@@ -42,8 +43,8 @@ pub fn write_with_solution(
     })
 }
 
-/// Reads the solution of a file, if it has the group. Many files have a group that was never
-/// written and reads as zeros.
+/// Reads the solution of a file, if it has the group; vectors that are missing are empty. Many
+/// files have a group that was never filled and reads as zeros.
 ///
 /// # Errors
 /// The file or the group is damaged.

@@ -1,5 +1,4 @@
-//! Reads how the grains that deform are deformed in a recorded state, from the meshes of their
-//! materials.
+//! Reads the deformation of grains in a recorded state, from the meshes of their materials.
 
 use super::reader::Reader;
 use fretwork_scene::recorded::Deformed;
@@ -8,10 +7,11 @@ use std::collections::{BTreeSet, HashMap};
 /// Group of the meshes of grains that deform.
 const ROOT: &str = "views/elastic_grains";
 
-/// The deformation of all grains that deform, by their identity, in the state of a number.
+/// Reads the deformation of all deformable grains in the state with the index `frame`, by the
+/// identity of the grain.
 ///
 /// # Errors
-/// A description of what is wrong with the file.
+/// The file is damaged; the text says where.
 pub(super) fn read(reader: &Reader, frame: usize) -> Result<HashMap<u64, Deformed>, String> {
     let mut out = HashMap::new();
     for material in reader.groups_in(ROOT) {
@@ -20,6 +20,7 @@ pub(super) fn read(reader: &Reader, frame: usize) -> Result<HashMap<u64, Deforme
     Ok(out)
 }
 
+/// Adds the grains of one material, whose mesh is in `group`.
 fn of_material(
     reader: &Reader,
     group: &str,
@@ -64,7 +65,7 @@ fn of_material(
 }
 
 impl Reader {
-    /// Names of the groups in a group.
+    /// Names of the groups directly in a group.
     pub fn groups_in(&self, group: &str) -> BTreeSet<String> {
         let inside = self.names().filter_map(|n| {
             let rest = n.strip_prefix(group)?.strip_prefix('/')?;

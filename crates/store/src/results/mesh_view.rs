@@ -1,6 +1,6 @@
-//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: points and cells
-//! stand in the file once, without load, and every state points at them; what changes is the data.
-//! A reader moves the points by the field `displacement`.
+//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: the unloaded
+//! points and the cells are in the file once, and every state refers to them; only the data change.
+//! A reader of the file moves the points by the field `displacement`.
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 
@@ -14,13 +14,13 @@ const KINDS: [(usize, u8); 3] = [(2, 3), (3, 5), (4, 10)];
 /// A mesh, and the fields that it carries.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Its group in `/views`: `meshes/NAME`, `surfaces/NAME` or `elastic_grains/NAME`.
+    /// Group of the mesh in `/views`: `meshes/NAME`, `surfaces/NAME` or `elastic_grains/NAME`.
     pub group: String,
     /// Coordinates without load, three per point (m).
     pub points: Vec<f64>,
-    /// Points of all cells, one cell after another.
+    /// Indices of the points of all cells, one cell after another.
     pub cells: Vec<i64>,
-    /// Corners of a cell: 2, 3 or 4.
+    /// Corners per cell: 2, 3 or 4.
     pub corners: usize,
     /// Fields, in the order of their values.
     pub fields: Vec<Field>,
@@ -32,35 +32,39 @@ pub struct Mesh {
 /// A field of a mesh.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Name.
+    /// Name of the dataset.
     pub name: &'static str,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
-    /// One line.
+    /// Explanation in one line.
     pub doc: &'static str,
-    /// Numbers of a value.
+    /// Numbers per value.
     pub width: usize,
-    /// Whether a value stands at a cell, or at a point.
+    /// Whether there is a value per cell; otherwise per point.
     pub of_cells: bool,
 }
 
 impl Mesh {
-    /// Its group in the file.
+    /// Path of the group in the file.
     pub fn path(&self) -> String {
         format!("/views/{}", self.group)
     }
 }
 
-/// A mesh in the file.
+/// A mesh that is declared in the file, to which states are appended.
 #[derive(Debug)]
 pub struct MeshView {
+    /// Time of each state (s).
     values: Growing,
-    /// Of each state: first part, number of parts, first point, first cell, first corner.
+    /// For each state: first part, number of parts, first point, first cell, first corner.
     steps: [Growing; 5],
+    /// Values of each field.
     data: Vec<Growing>,
+    /// For each field: the row of its first value in each state.
     data_offsets: Vec<Growing>,
-    /// Of what all states share: 0.
+    /// Offsets of data that all states share: always 0.
     shared_offsets: Vec<Growing>,
+    /// Number of states.
     count: i64,
     path: String,
 }
@@ -134,7 +138,7 @@ impl MeshView {
         })
     }
 
-    /// Appends a state: the values of each field.
+    /// Appends a state: its time (s) and the values of each field.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -173,7 +177,7 @@ impl MeshView {
     }
 }
 
-/// Writes points and cells, the one part of all states.
+/// Writes the points and cells, which all states share.
 fn write_topology(store: &mut Store, path: &str, mesh: &Mesh) -> Result<(), ResultsError> {
     let cells = mesh.cells.len() / mesh.corners;
     let mut whole = |name: &str, values: &[i64], doc: &str| {

@@ -8,7 +8,7 @@ pub use fretwork_scene::recorded::{Grain, Motion, ShapedGrain, State, StateError
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Reads a state (the last one without a `frame`) for a case of a dimension.
+/// Reads the state with the index `frame`, or the last one, for a case of a dimension (2 or 3).
 ///
 /// # Errors
 /// The file is missing, not a results file, damaged, of the other dimension, without that state, or
@@ -59,9 +59,10 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
     grains.read(path, frame, shaped)
 }
 
-/// Group of the grains' view.
+/// Group of the view of the grains.
 const ROOT: &str = "views/grains";
 
+/// The grains of a file.
 struct Grains {
     reader: Reader,
     /// Columns of the angular velocity.
@@ -71,6 +72,7 @@ struct Grains {
 }
 
 impl Grains {
+    /// Checks the index of the state and reads it.
     fn read(
         &self,
         path: &Path,
@@ -81,7 +83,7 @@ impl Grains {
             path: path.to_owned(),
             reason,
         };
-        // The columns of an interrupted run may differ in length by the last state.
+        // The columns of an interrupted run may differ in length by one state.
         let states = ["Steps/Values", "Steps/PointOffsets", "NumberOfPoints"]
             .map(|n| self.reader.rows(&format!("{ROOT}/{n}")))
             .into_iter()
@@ -102,6 +104,7 @@ impl Grains {
         self.frame(asked, shaped).map_err(unreadable)
     }
 
+    /// Reads the state with an index that the file has.
     fn frame(&self, frame: usize, shaped: Option<Shaped>) -> Result<State, String> {
         let time = self
             .reader
@@ -128,7 +131,7 @@ impl Grains {
         };
         let (radius, first_body, id) = (column("radius")?, column("first_body")?, column("id")?);
         let corners = where_listed("corners")?;
-        // Older files have the name `gone`.
+        // Older files call this column `gone`.
         let removed = match self.reader.has(&place("gone")) {
             true => column("gone")?,
             false => where_listed("removed")?,
@@ -188,6 +191,7 @@ impl Grains {
     }
 }
 
+/// Error for grains whose shapes the file does not have.
 fn shapeless(frame: usize) -> String {
     format!(
         "state {frame} holds grains that are no balls, and the file does not say of what shape: it is of an older version; \
@@ -195,12 +199,12 @@ fn shapeless(frame: usize) -> String {
     )
 }
 
-/// Shapes by the identity of their grain.
+/// Shapes of grains by the identity of the grain; `None` once taken.
 struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
 
-/// The shape of the grain of a row.
+/// What is known of the shape of the grain of a row.
 enum Known {
-    /// A shape, with its first part in this row.
+    /// A shape, which this row is the first to have.
     First(Box<ShapedGrain>),
     /// A shape that was returned for an earlier row.
     Again,
@@ -209,6 +213,7 @@ enum Known {
 }
 
 impl Sorted {
+    /// Gives each grain its balls and pieces.
     fn of(shaped: Shaped) -> Result<Self, String> {
         let mut grains: HashMap<u64, Option<Box<ShapedGrain>>> = HashMap::new();
         for body in shaped.bodies {
@@ -242,7 +247,7 @@ impl Sorted {
         Ok(Self(grains))
     }
 
-    /// Takes the shape of the grain of a row.
+    /// Takes the shape of the grain of a row, and gives it the motion of that row.
     fn take(&mut self, body: u64, motion: Motion) -> Known {
         match self.0.get_mut(&body).map(Option::take) {
             None => Known::Not,
