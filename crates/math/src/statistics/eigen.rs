@@ -1,16 +1,16 @@
 //! Eigenvalues and eigenvectors of a symmetric matrix by Jacobi's rotations.
 //!
 //! Golub, Van Loan, Matrix Computations, section 8.5. Slower than other methods for large matrices,
-//! but accurate, short, and with sums, products and square roots alone: the same bits on all
-//! machines, which the products of larger matrices in a library that chooses instructions at run
-//! time do not have.
+//! but accurate, short, and made of sums, products and square roots alone, so that the result has
+//! the same bits on all machines. A library that chooses instructions at run time for products of
+//! larger matrices does not guarantee this.
 
 use nalgebra::DMatrix;
 
-/// Rounds after which any matrix of finite numbers is diagonal; ten is usual for large ones.
+/// Upper bound of the rounds over all pairs of rows; large matrices usually need about ten.
 const MOST_ROUNDS: usize = 60;
 
-/// Eigenvalues, and the eigenvectors as columns, in no order.
+/// Returns the eigenvalues (n), unsorted, and the eigenvectors as columns (n x n) in their order.
 pub(crate) fn eigen(symmetric: &DMatrix<f64>) -> (Vec<f64>, DMatrix<f64>) {
     let n = symmetric.nrows();
     let mut a = symmetric.clone();
@@ -33,7 +33,7 @@ pub(crate) fn eigen(symmetric: &DMatrix<f64>) -> (Vec<f64>, DMatrix<f64>) {
     ((0..n).map(|i| a[(i, i)]).collect(), vectors)
 }
 
-/// The rotation in the plane of p and q that makes a_pq vanish.
+/// Rotates `a` in the plane of axes p and q so that a_pq vanishes, and `vectors` with it.
 fn rotate(a: &mut DMatrix<f64>, vectors: &mut DMatrix<f64>, p: usize, q: usize) {
     let n = a.nrows();
     let half = (a[(q, q)] - a[(p, p)]) / (2.0 * a[(p, q)]);
@@ -66,7 +66,7 @@ mod tests {
     use crate::statistics::random::normal;
     use rand::SeedableRng;
 
-    /// V diag V^T is the matrix, V is orthogonal, for condition numbers to 1e12.
+    /// V diag V^T is the matrix and V is orthogonal, for condition numbers up to 1e12.
     #[test]
     fn reconstructs_the_matrix() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
@@ -82,7 +82,7 @@ mod tests {
         }
     }
 
-    /// [[2, 1], [1, 2]] has the eigenvalues 1 and 3; diagonal and singular matrices.
+    /// [[2, 1], [1, 2]] has the eigenvalues 1 and 3; the singular matrix of ones has 0, 0 and 3.
     #[test]
     fn known_values() {
         let sorted = |m: &DMatrix<f64>| {

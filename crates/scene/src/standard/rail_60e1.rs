@@ -10,19 +10,23 @@ use super::Drawing;
 
 /// Half of the widths at which the arcs meet (mm).
 const HALF: [f64; 2] = [20.456 / 2.0, 52.053 / 2.0];
+/// Radius of the arc in the middle (mm).
 const CROWN: f64 = 300.0;
+/// Radius of the arcs next to it (mm).
 const SHOULDER: f64 = 80.0;
+/// Radius of the arcs at the corners (mm).
 const CORNER: f64 = 13.0;
 /// Depth at which the flank ends (mm).
 const FLANK_END: f64 = 35.27;
-/// Slope of the flank.
+/// Slope of the flank: depth over width.
 const FLANK: f64 = 20.0;
 
 pub(super) struct Rail60E1 {
-    /// Centres of the shoulder and the corner (mm).
+    /// Centre (y, z) of the arc of the shoulder at y > 0 (mm).
     shoulder: [f64; 2],
+    /// Centre (y, z) of the arc of the corner at y > 0 (mm).
     corner: [f64; 2],
-    /// Point where the corner arc meets the flank (mm).
+    /// Point (y, z) where the arc of the corner meets the flank (mm).
     tangent: [f64; 2],
 }
 
@@ -53,7 +57,7 @@ impl Rail60E1 {
         self.tangent[0] + (FLANK_END - self.tangent[1]) / FLANK
     }
 
-    /// Highest point of the rail inclined 1:n, before rotation (mm).
+    /// Highest point of the rail inclined 1:n, in the axes of the upright rail (mm).
     fn apex(&self, n: f64) -> [f64; 2] {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         if CROWN * sin <= HALF[0] {
@@ -66,8 +70,8 @@ impl Rail60E1 {
         }
     }
 
-    /// A point of the rail inclined 1:n towards negative y, with its highest point at the origin
-    /// (mm).
+    /// Converts a point (y, z) of the upright rail (mm) to axes in which the rail is inclined 1:n
+    /// towards negative y and its highest point is at the origin.
     pub(super) fn inclined(&self, (y, z): (f64, f64), n: f64) -> (f64, f64) {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         let [ya, za] = self.apex(n);

@@ -54,8 +54,8 @@ mod tests {
     use super::*;
     use fretwork_law::testing::{Bond, opened, pull};
 
-    /// For m = 1 the load K u/strength does not depend on D: over a cycle 0 - u - 0 it integrates
-    /// to 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
+    /// For m = 1 the load K u/s, with the strength s, does not depend on D: with the endurance C, a
+    /// cycle 0 - u - 0 gives D = 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
     #[test]
     fn a_cycle_damages_by_its_integral() {
         let law = RoeSiegmund::default();
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(bond.site.damage, 0.1);
     }
 
-    /// Without cyclic damage the area under monotonic loading is the envelope's energy.
+    /// Without cyclic damage the area under monotonic loading is the energy of the envelope.
     #[test]
     fn the_envelope_holds_its_energy() {
         let law = RoeSiegmund {

@@ -1,4 +1,4 @@
-//! Tests of the module above.
+//! Masses as nodes of systems against rigid bodies, and sweeps against products of W.
 
 use super::*;
 use crate::bodies::Nodes;
@@ -20,14 +20,16 @@ fn form(bodies: [u32; 2], normal: Vector2<f64>) -> ContactForm<Dim2> {
     }
 }
 
+/// Masses of the bodies (kg).
 const MASSES: [f64; 3] = [2.0, 0.5, 3.0];
 
+/// Velocity of a body or node without contacts (m/s).
 fn free(k: usize) -> Vector2<f64> {
     Vector2::new(0.3 - 0.2 * k as f64, -1.0 - 0.1 * k as f64)
 }
 
-/// Three bodies that do not turn, one on the other on a plane; as nodes of a system where they are
-/// not rigid.
+/// A stack of three bodies that do not rotate on a fixed plane, as rigid bodies or as nodes of one
+/// system.
 fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
     let mut problem = Problem::default();
     for (k, mass) in MASSES.iter().enumerate() {
@@ -64,7 +66,7 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
         },
     };
     let mut forms = Vec::new();
-    // In the order of the iteration, which takes contacts that share no body first.
+    // In the order in which the iteration takes them: contacts that share no body first.
     for (k, below) in [(0, 3), (2, 1), (1, 0)] {
         let form = form([k as u32, below as u32], Vector2::new(0.0, 1.0));
         if rigid {
@@ -77,7 +79,7 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
     (problem, forms)
 }
 
-/// What errors are measured against knows no difference between a mass as a body and as a node.
+/// The scale of the solver's error is the same for a mass that is a body and one that is a node.
 #[test]
 fn errors_of_nodes_and_bodies_are_measured_alike() {
     for norm in [Norm::Balance, Norm::Velocity] {
@@ -111,9 +113,9 @@ fn motions_of_nodes_count_as_those_of_bodies() {
     assert_eq!(of_bodies, of_nodes);
 }
 
-/// A rigid disk and a fixed plane on two systems of full compliance, which touch each other too, by
-/// sums of nodes: W as a matrix, its products, and velocities updated contact by contact are the
-/// same.
+/// A rigid disk and a fixed plane touch two systems of full compliance, which also touch each
+/// other, at weighted sums of nodes: relative velocities are the same from W as a matrix, from products
+/// without the matrix, and updated contact by contact.
 #[test]
 fn matrix_products_and_sweeps_agree() {
     let mut problem = Problem::<Dim2>::default();

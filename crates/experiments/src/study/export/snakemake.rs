@@ -1,25 +1,26 @@
-//! Snakemake: a rule that makes a chunk of runs, and one that collects.
+//! Snakemake: a rule that makes a chunk of runs, and one that collects their results.
 
 use super::{Export, Written, absolute, quote, shell, shell_with};
 use crate::Error;
 use crate::study::spec::DesignSpec;
 use std::path::{Path, PathBuf};
 
+/// Writes a `Snakefile` and returns the command that starts it.
 pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let out = absolute(&export.plan.out);
     let tasks = export.tasks().len();
     let (count, chunk) = (export.plan.count(), export.chunk);
-    // Braces are Snakemake's own.
+    // Snakemake formats commands and paths, so that literal braces are doubled.
     let escaped = |text: String| text.replace('{', "{{").replace('}', "}}");
-    // No other word of a call has a control character.
+    // A control character, which no other argument has, holds the place of the numbers of the runs.
     let point = shell_with(&export.call("point", &["\u{1}"])?, "\u{1}", "\u{1}");
     let point = escaped(point).replace('\u{1}', "{params.runs}");
     let collect = escaped(shell(&export.call("collect", &[])?));
-    // A text of JSON is one of Python.
+    // A string literal of JSON is also one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));
-    // Where they have changed, the runs are looked at again; those that are there still are not
-    // made.
+    // If one of these files has changed, Snakemake runs the rule again, which then skips the runs
+    // that are already there.
     let mut inputs = vec![export.plan.file.clone(), export.plan.launcher.case.clone()];
     if let DesignSpec::Table { file } = &export.plan.design {
         let beside = export.plan.file.parent().unwrap_or(Path::new(""));
