@@ -1,8 +1,8 @@
 //! Bodies and shapes that become a simulation, described without their dimension.
 //!
-//! A scene says what there is, with vectors of three components, zero in the third in the plane;
-//! spins are about the axes, about the third alone in the plane. Behind [`Assembly`] it is put
-//! together in the dimension of the case.
+//! A scene is described by vectors of three components and angular velocities about the three axes.
+//! In 2D the third component of vectors is zero, and angular velocities are about the third axis
+//! alone. The trait [`Assembly`] hides the dimension in which the scene is put together.
 
 mod checks;
 mod parts;
@@ -30,7 +30,7 @@ use std::fmt::Debug;
 pub struct Start {
     /// Position (m).
     pub position: [f64; 3],
-    /// Orientation in numbers, see [`crate::view::Motion`]; `None` for that of the case's axes.
+    /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
     pub rotation: Option<[f64; 4]>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],
@@ -44,20 +44,20 @@ pub type Filling = (u16, f64);
 /// Moments of inertia of a first body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inertia {
-    /// About any axis (kg m^2).
+    /// Equal about all axes (kg m^2; kg m in 2D).
     Uniform(f64),
-    /// The mean over the axes of its shapes, of a density (kg/m^3).
+    /// The mean over the axes of that of the shapes, at a density (kg/m^3).
     Mean(f64),
-    /// That of its shapes, of a density (kg/m^3).
+    /// That of the shapes, at a density (kg/m^3).
     OfShapes(f64),
 }
 
 /// Mass and inertia of a body of several shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
-    /// A grain: those of its shapes, of a density (kg/m^3).
+    /// A grain: mass and inertia of the shapes, at a density (kg/m^3).
     Grain(f64),
-    /// A first body of a mass (kg).
+    /// A first body: mass (kg; kg/m in 2D) and moments of inertia.
     First(f64, Inertia),
 }
 
@@ -66,9 +66,9 @@ pub enum Weight {
 pub struct Block {
     /// The part.
     pub part: AnyPart,
-    /// Its start; the position is that of its centre of mass.
+    /// Start of the body; the position is that of the centre of mass.
     pub start: Start,
-    /// Its volume (m^3; m^2 in 2D).
+    /// Volume (m^3; m^2 in 2D).
     pub volume: f64,
     /// Moment of inertia about its centre of mass at unit density (m^5; m^4 in 2D); that of the
     /// part where it is not given.
@@ -93,11 +93,11 @@ impl Block {
     }
 }
 
-/// A scene that is put together.
+/// A scene that is being put together.
 pub trait Assembly: Debug + Send {
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
-    /// Lengths of the periodic cell.
+    /// Lengths of the periodic cell (m).
     fn periodic(&self) -> &Periodic;
     /// Number of bodies.
     fn body_count(&self) -> usize;
@@ -107,8 +107,8 @@ pub trait Assembly: Debug + Send {
     fn radii(&self) -> Vec<f64>;
     /// Whether a ball or part belongs to no driven body.
     fn has_loose_shapes(&self) -> bool;
-    /// Radius of the smallest of the balls about the centres of the balls and convex parts of
-    /// grains that they hold (m); infinite without grains.
+    /// Smallest radius of a grain (m): of a ball, or of the largest ball about its centre inside a
+    /// convex part; infinite without grains.
     fn thinnest_grain(&self) -> f64;
     /// Number of surfaces.
     fn surface_count(&self) -> usize;
@@ -117,19 +117,21 @@ pub trait Assembly: Debug + Send {
     /// Names of the surfaces that wear.
     fn worn_names(&self) -> Vec<&str>;
 
-    /// Adds a ball as a grain; its index.
+    /// Adds a ball of a radius (m) as a grain; returns its index.
     fn add_ball(&mut self, radius: f64, of: Filling, start: &Start) -> u32;
     /// Adds a fixed plane as a first body, with its outward unit normal.
     fn add_wall(&mut self, name: String, at: [f64; 3], normal: [f64; 3], material: u16);
-    /// Adds a body of several shapes, of which the start is that of its frame; its index.
+    /// Adds a body of several shapes, where `start` is that of the frame of the shapes; returns its
+    /// index.
     fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32;
-    /// Adds a grain of one convex part; its index.
+    /// Adds a grain of one convex part; returns its index.
     fn add_block(&mut self, block: Block, of: Filling) -> u32;
-    /// Adds a grain with its mass (kg), moments of inertia in its axes, row by row (kg m^2), in 2D
-    /// the first alone, which are multiplied by a factor, and length (m).
+    /// Adds a grain of a mass (kg; kg/m in 2D), with a tensor of inertia in its axes, row by row
+    /// (kg m^2; in 2D the first entry alone, kg m), which is multiplied by `factor`, and a length
+    /// (m). Returns its index.
     ///
     /// # Errors
-    /// What is no number, or no orientation.
+    /// A position that is not finite, or an orientation that is not a rotation.
     fn add_weighed(
         &mut self,
         mass: f64,
@@ -141,7 +143,7 @@ pub trait Assembly: Debug + Send {
     /// Adds a ball to a body, at an offset in its frame (m).
     ///
     /// # Errors
-    /// Its radius is not above zero, or its place is not finite.
+    /// The radius is not above zero, or the offset is not finite.
     fn carry_ball(
         &mut self,
         body: u32,
@@ -152,25 +154,26 @@ pub trait Assembly: Debug + Send {
     /// Adds a convex part to a body from its record.
     ///
     /// # Errors
-    /// What is wrong with the record.
+    /// The record does not describe a convex part; the text says why.
     fn carry_piece(&mut self, body: u32, piece: RecordedPiece, material: u16)
     -> Result<(), String>;
     /// Drives a body.
     fn drive(&mut self, driven: Driven);
-    /// Has a surface wear; whether it can.
+    /// Lets a surface wear; returns whether it can.
     fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool;
-    /// Adds a dynamical system after those that are there.
+    /// Adds a dynamical system after those added before.
     fn add_system(&mut self, system: AnySystem);
 
-    /// An upper bound of the pairs of bodies that come within a distance of each other (m).
+    /// Returns an upper bound of the number of pairs of bodies within a distance of each other (m).
     fn most_pairs(&self, reach: f64) -> f64;
-    /// A place with many grains, where more than `most(shapes)` pairs of shapes with an interface
-    /// come within a distance (m) of each other.
+    /// Finds a place where too many shapes are close together: more than `most(number of shapes)`
+    /// pairs of shapes with an interface are within a distance (m) of each other.
     fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile>;
 
     /// The bodies and shapes in their dimension.
     fn parts(&mut self) -> AnyParts<'_>;
-    /// The simulation, with the surface that each dynamical system has added to it.
+    /// Builds the simulation; also returns the index of the surface that each dynamical system has
+    /// added, if any.
     fn into_simulation(
         self: Box<Self>,
         laws: Vec<Interface>,

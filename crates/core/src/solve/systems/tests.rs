@@ -114,8 +114,8 @@ fn motions_of_nodes_count_as_those_of_bodies() {
 }
 
 /// A rigid disk and a fixed plane touch two systems of full compliance, which also touch each
-/// other, at weighted sums of nodes: relative velocities are the same from W as a matrix, from products
-/// without the matrix, and updated contact by contact.
+/// other, at weighted sums of nodes: relative velocities are the same from W as a matrix, from
+/// products without the matrix, and updated contact by contact.
 #[test]
 fn matrix_products_and_sweeps_agree() {
     let mut problem = Problem::<Dim2>::default();
