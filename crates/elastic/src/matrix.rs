@@ -166,8 +166,8 @@ pub struct Pattern {
 #[derive(Debug)]
 struct Order {
     symbolic: SymbolicCholesky<u32>,
-    /// How solutions walk a factor whose columns share few rows; none of one that `faer` keeps as
-    /// dense blocks.
+    /// How solutions walk a factor whose columns share few rows; `None` for one that `faer` keeps
+    /// as dense blocks.
     panels: Option<Panels>,
 }
 

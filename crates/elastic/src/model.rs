@@ -27,7 +27,7 @@ pub struct Formed<S: Space> {
     /// None where A is not positive definite in double precision: velocities are then not finite,
     /// and the step ends with an error.
     pub factor: Option<Factor>,
-    /// Compliance of the points of the surface, column by column as they are touched; none where
+    /// Compliance of the points of the surface, column by column as they are touched; `None` where
     /// there are too many.
     pub surface: Option<Arc<Compliance<S>>>,
 }

@@ -33,8 +33,8 @@ struct Panel {
 }
 
 impl Panels {
-    /// Of a factor in compressed columns, of which the first row is that of the diagonal; none
-    /// where it has too many values.
+    /// Builds the panels of a factor in compressed columns, the first row of each being that of the
+    /// diagonal; `None` where it has too many values.
     pub fn new(starts: &[u32], rows: &[u32]) -> Option<Self> {
         u32::try_from(rows.len()).ok()?;
         let n = starts.len() - 1;

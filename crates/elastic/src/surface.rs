@@ -120,7 +120,7 @@ impl SurfacePart {
         })
     }
 
-    /// The nodes of a weighted sum of vertices; none of no vertex.
+    /// The nodes of a weighted sum of vertices; `None` without vertices.
     pub fn of_vertices(&self, weights: &[(u32, f64)]) -> Option<Nodes> {
         let terms = weights.iter().map(|(k, w)| (self.points[*k as usize], *w));
         Nodes::sum(&terms.collect::<Vec<_>>())

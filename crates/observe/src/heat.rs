@@ -47,7 +47,7 @@ pub struct HeatObserver {
 }
 
 impl HeatObserver {
-    /// From the current state on; none where no heat is computed.
+    /// From the current state on; `None` where no heat is computed.
     pub fn of(run: &dyn RunView) -> Option<Self> {
         let (heat, state) = (run.heat()?, run.heat_state()?);
         let temperatures = || state.nodes.iter().map(|n| n.temperature);

@@ -39,7 +39,7 @@ pub struct EventTable {
     pub name: &'static str,
     /// Its columns, one value an event.
     pub columns: Vec<Column>,
-    /// A column of which an event has any number of values, one event after another; none where
+    /// A column of which an event has any number of values, one event after another; `None` where
     /// there is none.
     pub list: Option<Column>,
 }
@@ -162,8 +162,8 @@ pub trait Observer: Debug + Send {
         Vec::new()
     }
 
-    /// What it carries from step to step, as bytes for a checkpoint
-    /// ([`fretwork_core::code::encode`]); none where it carries nothing.
+    /// Encodes the state that the observer carries from step to step for a checkpoint, by
+    /// [`fretwork_core::code::encode`]; no bytes if it carries nothing.
     ///
     /// # Errors
     /// It cannot be put into bytes.

@@ -67,7 +67,8 @@ pub struct FacetTraction {
 }
 
 impl SurfaceState {
-    /// Of a system of a simulation, over its last step; none where the system has no such surface.
+    /// Takes the tractions on a system of a simulation over its last step; `None` where the system
+    /// has no surface that touches.
     pub fn of(run: &dyn RunView, system: usize) -> Option<Self> {
         let body = run.system(system)?;
         let surface = body.touching_surface()?;
@@ -150,7 +151,7 @@ impl SurfaceState {
 struct Areas(HashMap<u32, HashMap<u32, f64>>);
 
 impl Areas {
-    /// Of the point of a contact; none where it is none of the surface of a system.
+    /// Of the point of a contact; `None` where it is none of the surface of a system.
     fn of_point(&mut self, run: &dyn RunView, contact: &ContactView) -> Option<f64> {
         let carrier = run.bodies().carrier(contact.bodies[0] as usize)?;
         let areas = self.0.entry(carrier.system).or_insert_with(|| {

@@ -246,7 +246,7 @@ fn surfaces(s: &dyn RunView) -> Vec<Side> {
 }
 
 /// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its
-/// mass; none of other bodies.
+/// mass; `None` for other bodies.
 fn of_deforming(s: &dyn RunView, body: u32) -> Option<[f64; 2]> {
     let (bodies, b) = (s.bodies(), body as usize);
     bodies.carrier(b).filter(|carrier| carrier.grain)?;

@@ -22,7 +22,7 @@ pub struct FrictionTest {
 }
 
 impl FrictionTest {
-    /// Finds the test of a case in its scene; none where the case has none.
+    /// Finds the test of a case in its scene; `None` where the case has none.
     pub fn of(case: &Case, s: &dyn RunView) -> Option<Self> {
         let test = case.friction.as_ref()?;
         let (rubbed, dof) = rubbed(case, s)?;

@@ -65,7 +65,7 @@ fn twice(observers: &Observers) -> Option<Twice> {
     None
 }
 
-/// The error at the line of the case that makes a name; none if it is of an observer of the
+/// The error at the line of the case that makes a name; `None` if it is of an observer of the
 /// library's user.
 fn at_line(loaded: &Loaded, what: &str, name: &str) -> Option<InputError> {
     let message = format!("another {what} is named `{name}`; take another name here");

@@ -36,7 +36,7 @@ impl<S: Space> Compliance<S> {
         &self.nodes
     }
 
-    /// The place of a node in the list; none of a node that is not in it.
+    /// The place of a node in the list; `None` for a node that is not in it.
     pub fn place(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
     }

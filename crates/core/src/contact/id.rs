@@ -95,7 +95,7 @@ impl ContactNames {
         ])
     }
 
-    /// The name of the contact of a key; none where the scene has no such contactors.
+    /// The name of the contact of a key; `None` where the scene has no such contactors.
     pub fn id<S: Space>(&self, key: &Key) -> Option<ContactId> {
         let sides = self.sides(key)?;
         if sides[0] <= sides[1] {

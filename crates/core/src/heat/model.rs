@@ -88,7 +88,7 @@ impl BodyNodes {
         }
     }
 
-    /// The node at a place in the axes of the body (m); none of a mesh, where a place is between
+    /// The node at a place in the axes of the body (m); `None` for a mesh, where a place is between
     /// several.
     #[inline]
     pub fn at<S: Space>(&self, place: impl FnOnce() -> S::Vector) -> Option<u32> {
@@ -103,7 +103,7 @@ impl BodyNodes {
 /// A heat flow from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imposed {
-    /// The body with which it ends where that is removed; none of finite elements, which stay.
+    /// The body with which it ends where that is removed; `None` for finite elements, which stay.
     pub body: Option<u32>,
     /// The node.
     pub node: u32,

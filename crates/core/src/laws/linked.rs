@@ -368,7 +368,7 @@ mod linux {
     }
 
     impl Needs {
-        /// Of the bytes of a 64-bit file of little end; none where it is not one, or damaged.
+        /// Reads the bytes of a 64-bit little-endian file; `None` if it is another file or damaged.
         fn read(bytes: &[u8]) -> Option<Self> {
             const LOAD: u64 = 1;
             const DYNAMIC: u64 = 2;

@@ -45,7 +45,7 @@ impl CycleClock {
         if share > 1.0 - 1e-6 { 1.0 } else { share }
     }
 
-    /// When a cycle begins and ends (s); none without cycles.
+    /// When a cycle begins and ends (s); `None` without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
         let begun = self.start + f64::from(number.saturating_sub(1)) * self.period?;
         Some([begun, begun + self.period?])

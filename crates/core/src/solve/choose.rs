@@ -384,8 +384,8 @@ impl<S: Space> SolveContext<'_, S> {
     }
 }
 
-/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work, or
-/// where W cannot be had as a matrix.
+/// The local form of a problem of Coulomb contacts: W, q, mu; `None` where another law is at work,
+/// or where W cannot be had as a matrix.
 pub fn coulomb<S: Space>(
     problem: &Problem<S>,
     forms: &[ContactForm<S>],

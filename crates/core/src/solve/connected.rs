@@ -12,7 +12,7 @@ pub(super) struct Connected {
     /// The contacts that it is of: the numbers of the orders of their rows
     /// ([`ContactOrder::changes`](super::colour::ContactOrder::changes)).
     pub of: Option<[u64; KINDS]>,
-    /// The set of each body; none of those that do not move, or that nothing touches.
+    /// The set of each body; `NONE` for bodies that do not move, or that nothing touches.
     of_body: Vec<u32>,
     /// The first body of each set.
     first: Vec<u32>,
@@ -104,7 +104,7 @@ impl Connected {
         (set != NONE).then_some(set as usize)
     }
 
-    /// The set of a contact of two bodies; none where neither moves.
+    /// The set of a contact of two bodies; `None` where neither moves.
     pub fn of(&self, [a, b]: [u32; 2]) -> Option<usize> {
         self.of_body(a).or_else(|| self.of_body(b))
     }

@@ -214,8 +214,8 @@ impl<S: Space> Problem<S> {
         sets
     }
 
-    /// What distinguishes its contacts of rigid bodies from those of another step; none where they
-    /// are not sorted, or systems act.
+    /// What distinguishes its contacts of rigid bodies from those of another step; `None` where
+    /// they are not sorted, or systems act.
     fn contacts_of_rows(&self) -> Option<[u64; KINDS]> {
         let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
         let known = self.rows.iter().all(sorted) && self.systems.is_empty();

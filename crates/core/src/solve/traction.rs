@@ -81,8 +81,8 @@ impl Tractions {
         self.errors.push([error, residual.squared]);
     }
 
-    /// The largest error, and the squared residual of that contact (m^2/s^2); none where nothing is
-    /// loaded.
+    /// The largest error, and the squared residual of that contact (m^2/s^2); zeros where nothing
+    /// is loaded.
     pub fn worst<S: Space>(&self, rows: &[SystemRow<S>]) -> [f64; 2] {
         let mut worst = [0.0; 2];
         for (row, [error, residual]) in rows.iter().zip(&self.errors) {

@@ -86,7 +86,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its
-    /// contacts on a first body; none for a name that no first body has.
+    /// contacts on a first body; `None` for a name that no first body has.
     pub fn contact_force_on(&self, name: &str) -> Option<(S::Vector, S::Spin)> {
         let place = self
             .state
@@ -110,7 +110,7 @@ impl<S: Space> Simulation<S> {
         self.state.heat.as_ref()?.mean_temperature(nodes)
     }
 
-    /// The problem of the last step solved, in the form of the field's collection; none where a
+    /// The problem of the last step solved, in the form of the field's collection; `None` where a
     /// bond, cohesion or friction against rotation was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<LocalProblem> {
         let (forms, contacts) = (&self.workspace.forms, &self.state.network.contacts);
@@ -163,7 +163,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The vertices of the surface of the antagonist below the facets of a point, with their shares
-    /// of what is worn off there; none of a contact on the nearest place.
+    /// of what is worn off there; `None` for a contact on the nearest place.
     pub(crate) fn worn_shares(&self, contact: &Contact<S>) -> Option<&[(u32, f64)]> {
         mean_places::worn_shares(self, contact)
     }

@@ -32,10 +32,10 @@ pub trait SystemView {
     fn size(&self) -> Option<SystemSize>;
     /// Its mesh as it is now; `None` where it has none.
     fn deformed_mesh(&self) -> Option<DeformedMesh<Vector3<f64>>>;
-    /// Velocities of the points of that mesh (m/s); none where they are not known.
+    /// Velocities of the points of that mesh (m/s); empty where they are not known.
     fn mesh_velocity(&self) -> Vec<Vector3<f64>>;
-    /// Places of the points of that mesh at the start of the run, without load (m), of a body that
-    /// travels as grains do; none of others.
+    /// Positions of the points of that mesh at the start of the run, without load (m), for a body
+    /// that travels as grains do; empty for others.
     fn mesh_at_start(&self) -> Vec<Vector3<f64>>;
     /// The surface that touches; `None` where tractions along it are not known.
     fn touching_surface(&self) -> Option<TouchingSurface<Vector3<f64>>>;

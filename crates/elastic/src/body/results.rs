@@ -111,7 +111,7 @@ impl<S: Space> ElasticBody<S> {
         }
     }
 
-    /// The part that touches, with its areas; none where nothing touches.
+    /// The part that touches, with its areas; `None` where nothing touches.
     pub(super) fn surface_part(&self) -> Option<TouchingSurface<S::Vector>> {
         let part = self.model.part.as_ref()?;
         let finite = self.model.large.is_some();

@@ -12,7 +12,7 @@ use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, block_of};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
 impl<S: Space> ElasticBody<S> {
-    /// How a node turns as it stands now; none of points of the mesh.
+    /// How a node turns as it stands now; `None` for points of the mesh.
     pub(super) fn facet_spin(&self, node: u32) -> Option<FacetSpin<S>> {
         let part = self.model.part.as_ref()?;
         let facet = (node as usize).checked_sub(self.model.mesh.points().len())?;
@@ -52,7 +52,7 @@ impl<S: Space> ElasticBody<S> {
         Some((node, self.facet_spin(node)?.length))
     }
 
-    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; none
+    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; `None`
     /// where these are not kept.
     pub(super) fn compliance_with_turning(&self, nodes: &[u32]) -> Option<Vec<S::Matrix>> {
         let formed = self.formed.as_ref()?;
@@ -104,7 +104,7 @@ impl<S: Space> ElasticBody<S> {
     }
 }
 
-/// Compliance of points by their kept columns; none where one is not kept.
+/// Compliance of points by their kept columns; `None` where one is not kept.
 pub(super) fn blocks_of_points<S: Space>(
     kept: &Compliance<S>,
     nodes: &[u32],

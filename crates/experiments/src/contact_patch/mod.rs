@@ -73,9 +73,9 @@ pub struct Patch {
     pub mean_pressure: f64,
     /// Semi-axis along the motion (m).
     pub semi_axis: f64,
-    /// Semi-axis across it (m); none of a line.
+    /// Semi-axis across it (m); `None` for a line.
     pub semi_axis_across: Option<f64>,
-    /// Area (m²); none of a line.
+    /// Area (m²); `None` for a line.
     pub area: Option<f64>,
     /// Approach of distant points (m); of a line it depends on the form of the bodies at a
     /// distance.

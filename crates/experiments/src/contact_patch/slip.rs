@@ -169,7 +169,7 @@ pub struct Window {
     pub pressure_drop: f64,
     /// By how much the gap of the undeformed bodies grows from the middle to its edges (m).
     pub gap: f64,
-    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; none where neither
+    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; `None` where neither
     /// was requested.
     pub slip: Option<Range>,
 }

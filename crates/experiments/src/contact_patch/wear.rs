@@ -13,7 +13,7 @@ use serde::Serialize;
 pub struct Wear {
     /// By Archard's law, of each body with a hardness.
     pub archard: Vec<BodyWear>,
-    /// By the map of the law `t-gamma`; none of a line contact, which has no area.
+    /// By the map of the law `t-gamma`; `None` for a line contact, which has no area.
     pub energy_map: Option<EnergyMap>,
     /// Of each first body of the runs from which the friction coefficient is, by its specific wear
     /// rate there.

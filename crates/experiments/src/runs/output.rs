@@ -163,7 +163,7 @@ fn header(path: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// Unit of a column of a table of statistics, `1` for pure numbers; none without such a column.
+/// Unit of a column of a table of statistics, `1` for pure numbers; `None` without such a column.
 pub fn column_unit(path: &Path, name: &str) -> Option<String> {
     let mut reader = csv::Reader::from_path(path).ok()?;
     let headings = reader.headers().ok()?.clone();

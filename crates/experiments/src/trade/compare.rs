@@ -75,7 +75,7 @@ pub struct Comparison {
 }
 
 impl Row {
-    /// How many of its runs say that they are not trustworthy, and why; none where all are.
+    /// How many of its runs say that they are not trustworthy, and why; `None` where all are.
     pub fn not_trustworthy(&self) -> Option<String> {
         let words: Vec<&str> = self.doubts.iter().map(String::as_str).collect();
         let (doubted, seeds) = (self.doubted, self.seeds);

@@ -88,7 +88,7 @@ impl Columns for TableColumns<'_> {
 }
 
 impl Rows {
-    /// The points; none if a column is missing, or if the horizontal value does not change.
+    /// The points; `None` if a column is missing, or if the horizontal value does not change.
     fn points(&self, columns: &dyn Columns) -> Option<Vec<(f64, f64)>> {
         let (x, y) = (self.x.of(columns)?, self.y.of(columns)?);
         let first = x.iter().find(|x| x.is_finite())?;

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 pub struct Entry {
     /// The path.
     pub path: String,
-    /// SI unit, `1` for pure numbers; none of texts and flags.
+    /// SI unit, `1` for pure numbers; `None` for texts and flags.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// One line of explanation.

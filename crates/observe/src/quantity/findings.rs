@@ -262,8 +262,8 @@ impl Findings {
         &self.to_come
     }
 
-    /// Whether a result that is not there yet will have a field of this path; none where nothing is
-    /// known of its group.
+    /// Whether a result that is not there yet will have a field of this path; `None` where nothing
+    /// is known of its group.
     pub fn expects(&self, path: &str) -> Option<bool> {
         let wanted = keys(path);
         let known: Vec<Vec<String>> = self.to_come.iter().map(|e| keys(&e.path)).collect();
@@ -273,7 +273,7 @@ impl Findings {
     }
 
     /// SI unit of a number by its path, `1` for pure numbers, also of one that is not there yet or
-    /// in a longer list; none where nothing is known of it.
+    /// in a longer list; `None` where nothing is known of it.
     pub fn unit_of(&self, path: &str) -> Option<&'static str> {
         let wanted = keys(path);
         let own = self.list.iter().find(|q| q.name() == path);
@@ -345,7 +345,7 @@ impl Findings {
         self.edit(name, |q| q.estimate = Some(estimate.clone()));
     }
 
-    /// The number of a quantity; none where it is null, no number, or not there.
+    /// The number of a quantity; `None` where it is null, no number, or not there.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.quantity(name)?.value.as_f64()
     }

@@ -104,7 +104,7 @@ pub struct Quantity {
     pub estimate: Option<Estimate>,
     /// How the terminal words it.
     pub wording: Wording,
-    /// Why runs of this case have no value for it; none where they have.
+    /// Why runs of this case have no value for it; `None` where they have.
     pub lacks: Option<&'static str>,
 }
 

@@ -9,13 +9,13 @@ pub const RELATIVE_RESIDUAL: &str = "energy_residual_relative";
 /// How a run went.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
-    /// Steps done; none where there is no summary.
+    /// Steps done; `None` where there is no summary.
     pub steps: Option<f64>,
     /// Steps that missed the tolerance of the solver.
     pub unconverged: f64,
     /// Steps that missed the tolerance of the damage coupling.
     pub uncoupled: f64,
-    /// Energy that no entry of the ledger explains, over the largest energy; none where it is not
+    /// Energy that no entry of the ledger explains, over the largest energy; `None` where it is not
     /// finite.
     pub residual: Option<f64>,
     /// Processor time (s).

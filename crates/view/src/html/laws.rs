@@ -93,7 +93,7 @@ pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
     (0..names.len()).map(law).collect()
 }
 
-/// The interfaces of a case with the parameters of their laws; none if the case cannot be read.
+/// The interfaces of a case with the parameters of their laws; `None` if the case cannot be read.
 pub(crate) fn interfaces(
     run: &RunFolder,
     files: &Files,

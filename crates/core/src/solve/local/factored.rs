@@ -27,7 +27,7 @@ struct Factored {
     starts: Vec<usize>,
 }
 
-/// Factorises W plus a diagonal shift, W given by its blocks; none where it is singular.
+/// Factorises W plus a diagonal shift, W given by its blocks; `None` where it is singular.
 pub fn factor<'a, const D: usize>(
     w: &BlockMatrix<D>,
     shift: &Shift<D>,

@@ -20,11 +20,12 @@ pub trait Delassus<const D: usize> {
     fn diagonal(&self, c: usize) -> &Block<D>;
     /// Computes u = W p + q.
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
-    /// W as a matrix, formed where needed; none of an operator that gives products alone. Methods
-    /// that need one say so ([`crate::solve::Operator`]) and leave a problem without one as it is.
+    /// W as a matrix, formed where needed; `None` for an operator that gives products alone.
+    /// Methods that need a matrix say so ([`crate::solve::Operator`]) and leave a problem without
+    /// one as it is.
     fn matrix(&self) -> Option<&BlockMatrix<D>>;
-    /// The factors of N W N + S; none where it is singular to rounding, or where W cannot be had as
-    /// a matrix.
+    /// The factors of N W N + S; `None` where it is singular to rounding, or where W cannot be had
+    /// as a matrix.
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
         factored::factor(self.matrix()?, shift)
     }

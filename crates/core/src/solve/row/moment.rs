@@ -294,7 +294,7 @@ fn sign(spin: f64) -> f64 {
     if spin == 0.0 { 0.0 } else { spin.signum() }
 }
 
-/// The moment at its bound against a spin that is given; none where nothing turns.
+/// The moment of magnitude `bound` against a given spin; zero where nothing turns.
 fn against<T: VectorLike>(spin: &T, bound: f64) -> T {
     let size = spin.norm();
     if size > 0.0 {

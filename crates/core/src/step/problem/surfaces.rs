@@ -35,8 +35,8 @@ impl<S: Space> Surfaces<S> {
         }
     }
 
-    /// The forms of the contacts in the velocities of the bodies; none where these are those of the
-    /// surfaces.
+    /// The forms of the contacts in the velocities of the bodies; `None` where these are those of
+    /// the surfaces.
     pub fn forms_of_bodies(
         &self,
         forms: &[ContactForm<S>],

@@ -28,7 +28,7 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
     points
 }
 
-/// The sides of a contact, by its place in the network; none where both are rigid.
+/// The sides of a contact, by its place in the network; `None` where both are rigid.
 fn sides<S: Space>(s: &Simulation<S>, k: usize) -> Option<[Side<S>; 2]> {
     let contact = &s.state.network.contacts[k];
     let carriers = contact.bodies.map(|b| s.state.bodies.carrier(b as usize));

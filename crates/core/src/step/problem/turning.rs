@@ -7,7 +7,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use crate::step::workspace::SystemContacts;
 
-/// By side of a contact the node that its moment turns; none of a rigid side.
+/// By side of a contact the node that its moment turns; `None` for a rigid side.
 pub(super) fn turned<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,

@@ -75,7 +75,7 @@ pub(crate) fn grains(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> V
     out
 }
 
-/// The scale of the stress in a window; none where nothing is stressed.
+/// The scale of the stress in a window; `None` where nothing is stressed.
 pub(crate) fn scale(run: &dyn RunView, window: [f64; 4]) -> Option<ColourScale> {
     let most = seen(run, window, true)
         .iter()
