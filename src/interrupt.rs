@@ -65,8 +65,8 @@ pub fn watch() -> &'static AtomicBool {
     &ASKED
 }
 
-/// Has SIGXCPU come before the end: a limit whose two parts are equal ends the process without a
-/// signal that it can handle.
+/// Lowers the soft limit of processor time so that SIGXCPU comes before the end: if both limits are
+/// equal, the process ends without a signal that it can handle.
 #[cfg(unix)]
 fn ask_before_the_end() {
     let mut limit = libc::rlimit {

@@ -223,8 +223,8 @@ mod posix {
         unsafe { libc::_exit(FAILED.into()) }
     }
 
-    /// Has the other thread save what was recorded, and waits for it. It takes no lock and no
-    /// memory.
+    /// Asks the other thread to save what was recorded, and waits for it, without taking a lock or
+    /// allocating memory.
     fn rescued(why: &Why) -> Saved {
         WHY.store(std::ptr::from_ref(why).cast_mut(), Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);

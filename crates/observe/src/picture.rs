@@ -3,12 +3,12 @@
 use super::chart::Chart;
 use serde::{Deserialize, Serialize};
 
-/// Colours of what sticks, of what slips, and of what carries no force (red, green, blue). The
-/// first two differ in lightness too, and are told apart with every deficiency of colour vision.
+/// Colour of what sticks (red, green, blue). It differs in lightness from that of what slips, so
+/// that the two are told apart with every deficiency of colour vision.
 pub const STICKS: (u8, u8, u8) = (0, 90, 170);
-/// See [`STICKS`].
+/// Colour of what slips (red, green, blue).
 pub const SLIPS: (u8, u8, u8) = (250, 225, 40);
-/// See [`STICKS`].
+/// Colour of what carries no force (red, green, blue).
 pub const OPEN: (u8, u8, u8) = (231, 232, 235);
 
 /// What the colour of a grain says.

@@ -20,7 +20,7 @@ pub enum Zone {
 }
 
 impl Zone {
-    /// As the field `status` of contacts.
+    /// Value of the field `status` of contacts: 0 no force, 1 stick, 2 slip.
     pub fn status(self) -> f64 {
         match self {
             Self::Open => 0.0,

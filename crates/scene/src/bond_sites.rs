@@ -144,7 +144,7 @@ impl Side {
 /// Pairs that may come into contact.
 #[derive(Default)]
 struct Candidates {
-    /// Such as most contacts may be.
+    /// Pairs that are typical of most contacts.
     usual: Vec<BondPair>,
     /// The lightest grain with every other, and with surfaces.
     extreme: Vec<BondPair>,

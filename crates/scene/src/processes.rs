@@ -83,8 +83,8 @@ pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a 
     driven.or(held.first()).copied()
 }
 
-/// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the
-/// tribological circuit. Wear recession came with the surfaces that wear.
+/// Adds the processes of a case to its simulation, which has not made a step: cycle jumps and the
+/// tribological circuit. Recession by wear was added with the surfaces that wear.
 pub fn install(case: &Case, s: &mut dyn RunSetup) {
     add_jumps(case, s);
     if let (Some(spec), Some(words)) = (circuit::install(case, s), &case.circuit) {

@@ -263,7 +263,7 @@ struct Recorder<'a> {
     summary: Summary,
     /// How well the main results are known, at the end.
     uncertainty: Uncertainty,
-    /// See [`Run::hurry`].
+    /// Flag by which figures are left out at the end ([`Run::hurry`]).
     hurry: Option<&'a AtomicBool>,
     /// Why rows of `statistics.csv` are missing, which is made of the results again when the run
     /// goes on.

@@ -12,11 +12,11 @@ pub struct Pile {
     pub body: u32,
     /// Its place (m).
     pub at: [f64; 3],
-    /// Number of shapes there, and within which distance (m).
+    /// Number of shapes there.
     pub count: usize,
-    /// See [`Pile::count`].
+    /// Size of the grid cell in which they are counted (m).
     pub size: f64,
-    /// An upper bound of the pairs at all.
+    /// An upper bound of the number of pairs in the whole scene.
     pub pairs: f64,
 }
 

@@ -213,8 +213,8 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Has all systems linearise, and finds their velocities without contacts, and those of the
-    /// contactors' bodies in `free`, which is by body.
+    /// Linearises all systems and computes their velocities without contacts; those of the bodies
+    /// of contactors are written to `free`, which has an entry per body.
     pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
         for entry in &mut self.entries {
             // Rotation without contacts may have turned spins since the start.
@@ -228,8 +228,8 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Has systems linearise anew where their forces are not those of the velocities that they
-    /// have, and finds their velocities without contacts again; gives the systems that did.
+    /// Linearises those systems again whose forces are not those at their current velocities, and
+    /// computes their velocities without contacts; returns the indices of these systems.
     ///
     /// # Errors
     /// The index of a system that finds no balance, and why.

@@ -16,13 +16,13 @@ impl<S: Space> Simulation<S> {
         motion::add_system(self, system)
     }
 
-    /// Has a process act from now on, after those that are there.
+    /// Adds a process, which acts from now on, after those added before.
     pub fn add_process(&mut self, process: impl Process<S>) {
         self.processes.push(Box::new(process));
     }
 
-    /// Has a feature of the core act from now on, before those that are there and before all
-    /// processes. What it carries from step to step is in the state.
+    /// Adds a feature of the core, which acts from now on, before those added earlier and before
+    /// all processes. What it carries from step to step is in the state.
     pub(crate) fn add_feature(&mut self, feature: impl Process<S>) {
         self.features.insert(0, Box::new(feature));
     }

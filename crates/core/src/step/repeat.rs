@@ -69,8 +69,8 @@ impl<S: Space> Simulation<S> {
         list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
     }
 
-    /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with
-    /// the same ones.
+    /// Restores the states of the processes that [`Simulation::save_processes`] returned for a
+    /// simulation with the same processes.
     ///
     /// # Errors
     /// The states are of other processes; where one cannot be read, those before it are restored
@@ -119,7 +119,7 @@ impl<S: Space> Simulation<S> {
         self.options.grown = count - 1;
     }
 
-    /// Has `trial` make steps from the current state, with options that it may change, and then
+    /// Lets `trial` make steps from the current state, with options that it may change, and then
     /// restores the state before it: the next step gives the same bits as without the trial.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ impl<S: Space> Simulation<S> {
         Ok(result)
     }
 
-    /// Has `trial` make steps; where it fails, restores the state before it.
+    /// Lets `trial` make steps; if it fails, restores the state before it.
     ///
     /// # Errors
     /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.

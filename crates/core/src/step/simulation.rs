@@ -150,7 +150,7 @@ impl Simulation<crate::geometry::space::Dim2> {
         Self::new(self.state.bodies, self.shapes, vec![law], table, 1e-3, 1e-3)
     }
 
-    /// Has a body driven, with these drives of x, y and the rotation.
+    /// Drives a body, with these drives of x, y and the rotation.
     pub(crate) fn drive(&mut self, body: u32, dofs: [crate::bodies::Dof; 3]) {
         let name = format!("body {body}");
         let dofs = dofs.to_vec();

@@ -76,8 +76,8 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// The errors of [`Simulation::repeat`].
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError>;
-    /// Has `trial` make steps, and restores the state before it where it returns false; see
-    /// [`Simulation::attempt`]. Returns what it returned.
+    /// Lets `trial` make steps, and restores the state before it if it returns false
+    /// ([`Simulation::attempt`]). Returns what `trial` returned.
     ///
     /// # Errors
     /// As [`Simulation::attempt`].

@@ -42,8 +42,8 @@ pub trait RunSetup: RunControl {
     fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
     /// Measures the loaded areas of all pressures.
     fn measure_areas(&mut self);
-    /// Has a surface recede by wear that is worn through at a depth (m), every so many steps, in
-    /// the place of its body; whether it can.
+    /// Lets a surface recede by wear, every `every` steps, in the place of its body; it is worn
+    /// through at the depth `thickness` (m). Returns whether it can wear.
     fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool;
     /// Removes a driven body, by its place among them, at a time (s).
     fn add_gate(&mut self, place: usize, time: f64);
@@ -53,8 +53,8 @@ pub trait RunSetup: RunControl {
     fn set_in_motion(&mut self);
     /// Computes heat from here on.
     fn add_heat(&mut self, heat: Heat, state: HeatState);
-    /// Has bodies expand by coefficients of linear expansion (1/K), one of each rigid body, and
-    /// dynamical systems; see [`ThermalExpansion::add_to`].
+    /// Lets bodies expand with temperature ([`ThermalExpansion::add_to`]): rigid bodies by
+    /// coefficients of linear expansion (1/K), one per body, and dynamical systems.
     fn add_expansion(&mut self, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>);
     /// Jumps over cycles; see [`Jumps::new`].
     fn add_jumps(&mut self, spec: JumpSpec, clock: CycleClock, test: SlidingBody, steps: [u64; 2]);

@@ -365,8 +365,8 @@ impl<S: Space> HalfSpace<S> {
         axes.chain(rolling).collect()
     }
 
-    /// Has the displacement along the surface of the material that is in each cell now, where the
-    /// surface rolls: what lay a distance (m) behind has come.
+    /// Where the surface rolls, gives each cell the displacement along the surface of the material
+    /// that is there now: it was a distance (m) behind before.
     fn roll(&mut self, distance: f64) {
         if self.behind.as_ref().is_none_or(|b| b.0 != distance) {
             let Fixed {

@@ -313,7 +313,7 @@ impl AccuracyControl {
         let parts = f64::from(1u32 << self.level());
         run.span_steps(h / parts, count);
         let parts = parts / f64::from(count);
-        // As much of an overlap is taken out in a given time.
+        // The share of an overlap that is corrected in a given time does not depend on the step.
         run.options_mut().correction = if parts == 1.0 {
             correction
         } else {

@@ -49,13 +49,13 @@ impl Axis {
         }
     }
 
-    /// The same axis on a logarithmic scale.
+    /// Makes the scale of the axis logarithmic.
     pub fn log(mut self) -> Self {
         self.log = true;
         self
     }
 
-    /// The same axis with ticks at whole numbers only.
+    /// Puts ticks at whole numbers only.
     pub fn whole(mut self) -> Self {
         self.whole = true;
         self

@@ -16,9 +16,9 @@ pub const FEWEST: usize = 3;
 /// repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// As the run computes it.
+    /// Values from the run itself.
     pub coarse: [f64; 2],
-    /// Repeated.
+    /// Values from the repeat.
     pub fine: [f64; 2],
 }
 

@@ -36,7 +36,7 @@ const MOST_COST: f64 = 0.05;
 pub(crate) struct Place {
     /// Steps done before it.
     step: u64,
-    /// As the run computes it.
+    /// With the step and tolerance of the run.
     pub(crate) base: Increments,
     /// With a quarter of the step.
     pub(crate) finer: Increments,

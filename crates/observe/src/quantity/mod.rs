@@ -169,7 +169,7 @@ impl Quantity {
         self
     }
 
-    /// Has a sentence in place of its value on the terminal.
+    /// Shows a sentence in place of the value on the terminal.
     pub fn sentence(&mut self, label: impl Into<String>, text: impl Into<String>) -> &mut Self {
         self.wording = Wording::Sentence(label.into(), text.into());
         self

@@ -17,7 +17,7 @@ pub(super) struct DeformableWear {
 }
 
 impl DeformableWear {
-    /// Has a surface of the body wear.
+    /// Lets a surface of the body wear.
     ///
     /// # Errors
     /// The surface is vertical or overhangs somewhere.

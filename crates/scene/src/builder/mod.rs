@@ -114,8 +114,8 @@ impl CaseBuilder {
         self
     }
 
-    /// Has the run choose step and tolerance for an accuracy: a share of friction by which they may
-    /// change it.
+    /// Lets the run choose step and tolerance for an accuracy: the relative change of friction that
+    /// they may cause.
     #[must_use]
     pub fn accuracy(mut self, accuracy: AccuracySpec) -> Self {
         self.case.accuracy = Some(accuracy);

@@ -52,8 +52,8 @@ impl Coefficients<'_> {
     }
 }
 
-/// Has bodies of a case expand: rigid ones of balls, polygons and polyhedra that have one
-/// temperature which may change, and bodies of finite elements.
+/// Lets bodies of a case expand with temperature: rigid bodies of balls, polygons and polyhedra
+/// that have one temperature which may change, and bodies of finite elements.
 pub(super) fn install(
     case: &Case,
     spec: &HeatSpec,

@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 /// Properties of the materials of a case, in its order.
 pub(crate) type Properties = [BTreeMap<String, Sourced>];
 
-/// Has a simulation compute the heat of its case, where it has any. Densities are without inertia
-/// scaling (kg/m^3).
+/// Lets a simulation compute heat if its case asks for it. Densities are without inertia scaling
+/// (kg/m^3).
 pub(crate) fn install(
     case: &Case,
     properties: &Properties,

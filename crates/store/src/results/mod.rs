@@ -155,7 +155,7 @@ impl Results {
         })
     }
 
-    /// Has every write check first that the folder is still the one that this lock owns.
+    /// Sets the lock by which every write first checks that the folder is still the owned one.
     pub fn owned_by(&mut self, lock: FolderLock) {
         if let Some(store) = &mut self.store {
             store.owned_by(lock);

@@ -124,7 +124,7 @@ impl Store {
         })
     }
 
-    /// Has every write check first that the folder is still the one that this lock owns.
+    /// Sets the lock by which every write first checks that the folder is still the owned one.
     pub fn owned_by(&mut self, lock: FolderLock) {
         self.lock = Some(lock);
     }

@@ -57,8 +57,8 @@ fn circuit(s: &Simulation<Dim2>) -> GrainCircuit {
     GrainCircuit::new(spec(), s)
 }
 
-/// Has the account see a step in which bonds formed and broke, these with so much work of opening
-/// and sliding and fracture energy (J/m).
+/// Shows the account a step in which bonds formed and broke, the broken ones with work of opening,
+/// work of sliding and fracture energy (J/m).
 fn step(
     circuit: &mut GrainCircuit,
     s: &mut Simulation<Dim2>,

@@ -35,8 +35,8 @@ fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
     }
 }
 
-/// Has a star face the facets of a surface from one of them on, of which `project` gives the
-/// coordinates along the contact. None where one that it faces is steep.
+/// Adds to a star the facets of a surface that it faces, starting at one of them; `project` gives
+/// coordinates along the contact. `None` where one of these facets is steep.
 fn add_facets<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,

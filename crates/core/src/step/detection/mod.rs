@@ -53,8 +53,8 @@ pub(super) fn add_contacts<S: Space>(s: &mut Simulation<S>, found: Vec<Contact<S
     mean_places::find_of_new_contacts(s);
 }
 
-/// Has processes see the contacts of the step, gives new ones their memory, and forms the bonds
-/// that are due.
+/// Shows the contacts of the step to processes, gives new contacts their memory, and forms the
+/// bonds that are due.
 pub(super) fn prepare_contacts<S: Space>(
     s: &mut Simulation<S>,
     info: &StepInfo,

@@ -84,7 +84,7 @@ pub(super) fn begin_systems<S: Space>(s: &mut Simulation<S>, time: f64) {
     carry_systems(s);
 }
 
-/// Has the bodies of contactors follow their systems, and surfaces deform with them.
+/// Moves the bodies of contactors with their systems, and deforms surfaces with them.
 pub(super) fn carry_systems<S: Space>(s: &mut Simulation<S>) {
     s.state.systems.carry(&mut s.state.bodies);
     s.state.systems.deform(&s.state.bodies, &mut s.shapes);
@@ -98,7 +98,7 @@ pub(super) fn free_systems<S: Space>(s: &mut Simulation<S>, free: &mut [(S::Vect
     }
 }
 
-/// Has all systems at the velocities that they began the step with, their bodies too.
+/// Sets all systems and their bodies to the velocities at the start of the step.
 pub(super) fn restart_systems<S: Space>(s: &mut Simulation<S>) {
     if !s.state.systems.is_empty() {
         s.state.systems.restart();

@@ -123,7 +123,7 @@ pub(super) fn begin_step<S: Space>(s: &mut Simulation<S>) {
     s.state.auto_state.begin_step();
 }
 
-/// Has laws update damage, bonds and wear with the impulses of the step, and counts its contacts.
+/// Lets laws update damage, bonds and wear with the impulses of the step, and counts its contacts.
 pub(super) fn commit_laws<S: Space>(
     s: &mut Simulation<S>,
     info: &StepInfo,

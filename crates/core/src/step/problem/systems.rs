@@ -241,9 +241,8 @@ pub(super) fn adopt_system_velocities<S: Space>(s: &mut Simulation<S>) -> Result
     Ok(())
 }
 
-/// Has systems whose forces are not linear linearise at the velocities that they reached; whether
-/// one did, so that the contacts are to be solved again. Their next impulses start from the current
-/// ones.
+/// Linearises nonlinear systems at the velocities that they reached; returns whether any was, so
+/// that the contacts are to be solved again. Their next impulses start from the current ones.
 ///
 /// # Errors
 /// A system that finds no balance.

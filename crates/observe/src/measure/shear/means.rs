@@ -17,7 +17,7 @@ pub(super) struct Means {
     /// Friction and inertial number of the mean stresses and rate.
     mu: f64,
     inertial: f64,
-    /// The same over blocks of equal time: p, mu, phi, I; `None` without enough rows.
+    /// Means over blocks of equal time: p, mu, phi, I; `None` without enough rows.
     blocks: Option<[Flow; 4]>,
     /// Strain before the time, and from it on.
     strain: [f64; 2],

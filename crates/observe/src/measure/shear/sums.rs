@@ -17,7 +17,7 @@ pub(super) struct Sums {
     /// Impulses of the contacts times their branches, over the volume: across the layers and along
     /// (Pa s).
     pub contacts: [f64; 2],
-    /// The same of the motion of the grains, m v' v' h.
+    /// Contribution of the motion of the grains to these sums, m v' v' h over the volume (Pa s).
     pub motion: [f64; 2],
     /// Shear rate (1).
     pub rate: f64,

@@ -153,7 +153,7 @@ impl Faces {
         })
     }
 
-    /// As [`Self::sliding`], over the last step at v_theta.
+    /// Sliding velocity of [`Self::sliding`] at v_theta of the last step.
     pub fn sliding_over_step(&self, run: &dyn RunView) -> Vector3<f64> {
         let theta = run.options().scheme.theta;
         let started = run.started();

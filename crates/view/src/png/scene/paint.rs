@@ -41,7 +41,7 @@ const VALUES: [Rgb; 5] = [
     [66, 14, 84],
 ];
 
-/// Has a colour on a picture.
+/// What has a colour in a picture.
 pub(crate) trait Coloured {
     /// The colour of a grain of this shade, 0 light to 1 dark.
     fn colour(self, shade: f64) -> Rgb;
