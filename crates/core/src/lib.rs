@@ -25,7 +25,8 @@
 //! use nalgebra::Vector2;
 //! use std::ops::ControlFlow;
 //!
-//! // A disk of 1 cm and 2000 kg/m^3 falls; materials without an interface law pass through each other.
+//! // A disk of 1 cm and 2000 kg/m^3 falls; materials without an interface law pass through each
+//! // other.
 //! let mut bodies = Bodies::<Dim2>::default();
 //! let body = bodies.add_ball(Vector2::new(0.0, 1.0), 0.01, 2000.0);
 //! let ball = Ball { body, radius: 0.01, offset: Vector2::zero(), material: 0, area: Vector2::zero() };

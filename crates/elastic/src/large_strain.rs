@@ -4,7 +4,8 @@
 //! the step are those of
 //!
 //! ```text
-//! P = F_theta S(C_theta),   F_theta = (1 - theta) F + theta F+,   C_theta = (1 - theta) F^T F + theta F+^T F+
+//! P = F_theta S(C_theta)
+//! F_theta = (1 - theta) F + theta F+,   C_theta = (1 - theta) F^T F + theta F+^T F+
 //! ```
 //!
 //! on the nodes f_a = V P g_a. The strain is averaged, not the place: a rotation over the step
@@ -14,11 +15,8 @@
 //! C.
 //!
 //! The tangent is that of P with the strain's own derivative taken at F_theta in place of F+, which
-//! makes it symmetric:
-//!
-//! ```text
-//! K_t = df/dq at theta = 1;   otherwise it is off by about half of (F+ - F), and iterations converge by that factor
-//! ```
+//! makes it symmetric. At theta = 1 it is the exact tangent, K_t = df/dq; otherwise it is off by
+//! about half of (F+ - F), and iterations converge by that factor.
 //!
 //! Sources: J. C. Simo and N. Tarnow, "The discrete energy-momentum method", Z. Angew. Math. Phys.
 //! 43 (1992); J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis",

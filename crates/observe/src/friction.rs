@@ -61,7 +61,8 @@ crate::described! {
         pub stick_ratio: f64 => ONE,
         /// Mean of |Q|/P at the reversals of the motion.
         pub reversal_ratio: f64 => ONE,
-        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal; 0 before the first reversal.
+        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal;
+        /// 0 before the first reversal.
         pub plateau_ratio: f64 => ONE,
         /// Partial or gross slip, from the energy ratio.
         pub regime: Regime => WORD,

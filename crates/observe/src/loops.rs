@@ -71,9 +71,9 @@ impl Loop {
         }
     }
 
-    /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first reversal. A stroke is the path
-    /// between two reversals; its half is that of the longest so far (of twice the path to the
-    /// first reversal, before there are two).
+    /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first
+    /// reversal. A stroke is the path between two reversals; its half is that of the longest so far
+    /// (of twice the path to the first reversal, before there are two).
     pub fn plateau(&self) -> Option<f64> {
         (self.plateau[1] > 0.0).then(|| self.plateau[0] / self.plateau[1])
     }

@@ -7,8 +7,10 @@
 //! factor of a stiff spring tends to -1, and layers of grains with little inertia blow up):
 //!
 //! ```text
-//! 0 <= p_n  _|_  u_n + s_n + c_n p_n >= 0        c_n = 1/(h (k h + d_n)),  s_n = (k (g + d) - F + d_n max(g, 0)/h)/(k h + d_n)
-//! u_t + s_t + c_t p_t against p_t, |p_t| <= mu p_n     c_t = 1/(h (k_t h + d_t)),  s_t = T_0/(k_t h + d_t)
+//! 0 <= p_n  _|_  u_n + s_n + c_n p_n >= 0
+//!     c_n = 1/(h (k h + d_n)),  s_n = (k (g + d) - F + d_n max(g, 0)/h)/(k h + d_n)
+//! u_t + s_t + c_t p_t against p_t, |p_t| <= mu p_n
+//!     c_t = 1/(h (k_t h + d_t)),  s_t = T_0/(k_t h + d_t)
 //! ```
 
 use crate::contact::Spring;

@@ -1,17 +1,32 @@
 //! Error of a solution: the natural map of the De Saxce form, in a scale-free norm.
 //!
-//! The residual of a contact is a velocity, r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c|
-//! e_n))) / rho_c,   rho_c = 1 / lambda_max(W_cc).
+//! The residual of a contact is a velocity:
 //!
-//! [`Norm::Velocity`]: error = |r| / max(|u|, |u_free|), Euclidean over all contacts. The strictest norm:
-//! velocities must be right, whatever the load.
+//! ```text
+//! r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| e_n))) / rho_c
+//! rho_c = 1 / lambda_max(W_cc)
+//! ```
 //!
-//! [`Norm::Balance`]: error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 ), f = |sum_c p_c . r_c| / |v -
-//! v_free|_M^2. The first part is the usual error measure of the literature (whose maximum also
-//! contains the impulses), made scale-free. As an average over contacts it can be small before the
-//! load has been transmitted through a packing. The second part detects this: f is the unbalanced
-//! fraction of the step's work, so that f^2 is the kinetic energy of the part that is not
-//! supported, relative to the part that is.
+//! [`Norm::Velocity`], with Euclidean norms over all contacts:
+//!
+//! ```text
+//! error = |r| / max(|u|, |u_free|)
+//! ```
+//!
+//! The strictest norm: velocities must be right, whatever the load.
+//!
+//! [`Norm::Balance`]:
+//!
+//! ```text
+//! error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 )
+//! f = |sum_c p_c . r_c| / |v - v_free|_M^2
+//! ```
+//!
+//! The first part is the usual error measure of the literature (whose maximum also contains the
+//! impulses), made scale-free. As an average over contacts it can be small before the load has been
+//! transmitted through a packing. The second part detects this: f is the unbalanced fraction of the
+//! step's work, so that f^2 is the kinetic energy of the part that is not supported, relative to
+//! the part that is.
 //!
 //! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in
 //! small sets only: where a heavy body rests on light ones, p/rho is far above all velocities, and
@@ -19,11 +34,16 @@
 //! contacts that are connected through bodies that move, each with its own N and work
 //! ([`super::rocking`]): a stack stands as well among others as alone.
 //!
-//! [`Norm::Power`]: error = sum_c |p_c . r_c| / sum_c |p_t,c . (u_t,c + s_t,c)|, the power of the residuals over that of slip, for
-//! contacts that are springs. `Balance` compares residuals with p/rho, which with scaled inertia is
-//! far above the velocities of a slow flow; this compares the heat that they make with the heat of
-//! friction. Where nothing slips, at rest and where sliding turns, the error of `Balance` times 5e5
-//! takes its place.
+//! [`Norm::Power`], the power of the residuals over that of slip, for contacts that are springs:
+//!
+//! ```text
+//! error = sum_c |p_c . r_c| / sum_c |p_t,c . (u_t,c + s_t,c)|
+//! ```
+//!
+//! `Balance` compares residuals with p/rho, which with scaled inertia is far above the velocities
+//! of a slow flow; `Power` compares the heat that they make with the heat of friction. Where
+//! nothing slips, at rest and where sliding reverses, the error of `Balance` times 5e5 takes its
+//! place.
 //!
 //! r_c is the residual of the natural map or [`lost`], whichever is larger. The work of the step is
 //! bounded below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an
@@ -41,11 +61,17 @@
 //!
 //! The error does not change when a scene is scaled in length, mass or time.
 //!
-//! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the error measure of the literature
-//! (`fc3d_compute_error` of Siconos), for problems from files. It adds impulses and velocities and
-//! therefore depends on units. Solvers also enforce two conditions that it does not contain:
-//! [`lost`], and |r| / max(|u|, |u_free|) where that exceeds one half; without the latter a problem
-//! without a solution would be "solved" by unbounded impulses.
+//! [`Norm::Field`], the error measure of the literature (`fc3d_compute_error` of Siconos) for
+//! problems from files, with rho = 1:
+//!
+//! ```text
+//! error = |r| / max(|u|, |u_free|, |p|)
+//! ```
+//!
+//! It adds impulses and velocities and therefore depends on units. Solvers also enforce two
+//! conditions that it does not contain: [`lost`], and |r| / max(|u|, |u_free|) where that exceeds
+//! one half; without the latter a problem without a solution would be "solved" by unbounded
+//! impulses.
 
 use crate::lanes::{Lane, Mask};
 use serde::{Deserialize, Serialize};
@@ -194,7 +220,8 @@ pub struct Residual<L = f64> {
     pub impulse: L,
     /// p . r, r the residual velocity (J).
     pub power: L,
-    /// |p . r|, or rho |r|^2 where that is larger: a contact without the impulse that it should have (J).
+    /// |p . r|, or rho |r|^2 where that is larger, as at a contact without the impulse that it
+    /// should have (J).
     pub unbalanced: L,
     /// |p_t . (u_t + s_t)|, the work of slip (J).
     pub slip: L,

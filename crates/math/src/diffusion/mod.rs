@@ -20,7 +20,8 @@
 //! ```
 //! use fretwork_math::diffusion::{Edge, Graph, Node, Store, step};
 //!
-//! // A grain of 1 J/K at 400 K on a wall of 300 K, joined by 0.1 W/K, with 2 W of frictional heat: it tends to 320 K.
+//! // A grain of 1 J/K at 400 K on a wall of 300 K, joined by 0.1 W/K, with 2 W of frictional heat:
+//! // it tends to 320 K.
 //! let mut nodes = [Node::new(400.0, Store::Lumped(1.0)), Node::new(300.0, Store::Fixed)];
 //! let graph = Graph::new(2, vec![Edge { nodes: [0, 1], conductance: 0.1 }]);
 //! for _ in 0..300 {

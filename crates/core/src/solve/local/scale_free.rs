@@ -5,8 +5,9 @@
 //! The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`]:
 //!
 //! ```text
-//! |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 /
-//! lambda_max(W_cc)
+//! error = |r| / max(|u|, |q|)
+//! r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c
+//! rho_c = 1 / lambda_max(W_cc)
 //! ```
 //!
 //! Scaling W by s and p by 1/s, or changing the units of q, u and p, gives the same number.
