@@ -17,7 +17,7 @@ pub struct Simplex<S: Space> {
 }
 
 impl<S: Space> Simplex<S> {
-    /// Of its corners (m); `None` where it has no volume at all.
+    /// Creates the element from its corners (m); `None` if it has no volume at all.
     pub fn new(corners: &[S::Vector]) -> Option<Self> {
         let d = S::D;
         let mut edges = Matrix3::identity();

@@ -38,8 +38,8 @@ pub struct FacetSpin<S: Space> {
 }
 
 impl<S: Space> FacetSpin<S> {
-    /// Of facets by the points of the mesh at their D corners. `position` gives the current place
-    /// of a point (m).
+    /// Takes facets by the points of the mesh at their D corners. `position` gives the current
+    /// place of a point (m).
     pub fn new(facets: &[[u32; 3]], position: impl Fn(u32) -> S::Vector) -> Self {
         let mut corners = Vec::with_capacity(S::D * facets.len());
         let mut total = 0.0;

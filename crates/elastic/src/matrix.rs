@@ -20,7 +20,8 @@ pub struct Sparse {
 }
 
 impl Sparse {
-    /// Of entries (row, column, value), added up where they are given twice, in their order.
+    /// Builds the matrix from entries (row, column, value); entries at one place are added in their
+    /// order.
     pub fn from_entries(rows: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Self {
         let mut by_row: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); rows];
         for (row, column, value) in entries {
@@ -191,7 +192,7 @@ impl Order {
 }
 
 impl Pattern {
-    /// That of a matrix; `None` where it has too many entries.
+    /// Finds the pattern of a matrix; `None` if it has too many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
         let order = (a.rows() > 0).then(|| Order::of(a).map(Arc::new));
         match order {
@@ -243,13 +244,13 @@ pub struct FactorSize {
     pub bytes: usize,
     /// Floating-point operations of a factorisation.
     pub factorise: f64,
-    /// Those of a solution.
+    /// Operations of a solution.
     pub solve: f64,
 }
 
 impl FactorSize {
-    /// Of a matrix, in the order of elimination that [`Pattern::of`] takes; `None` where it has too
-    /// many entries.
+    /// Counts for a matrix, in the order of elimination that [`Pattern::of`] takes; `None` if it
+    /// has too many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
         if a.rows() == 0 {
             return Some(Self::default());

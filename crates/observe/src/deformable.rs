@@ -32,7 +32,7 @@ pub struct Deformable {
     bodies: Vec<String>,
     /// Largest strain and rotation of each, where it takes both for small.
     distortions: Vec<Option<[f64; 2]>>,
-    /// Of each body the largest share of a force on its border.
+    /// For each body, the largest share of a force on its border.
     borders: Vec<f64>,
     /// Elements across the contact of each, and whether the material of each passes.
     resolutions: Vec<Resolution>,
@@ -124,7 +124,7 @@ impl BorderLoad {
 }
 
 impl Deformable {
-    /// Of the dynamical systems of the simulation of a case.
+    /// Observes the dynamical systems of the simulation of a case.
     pub fn of(case: &Case, run: &dyn RunView) -> Self {
         let systems = || first_bodies(run);
         let rolls = |name: &str| {

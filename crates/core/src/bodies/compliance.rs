@@ -19,7 +19,7 @@ pub struct Compliance<S: Space> {
 }
 
 impl<S: Space> Compliance<S> {
-    /// Of some nodes (in any order, each counts once), without columns.
+    /// Creates the compliance of some nodes (in any order, each counts once), without columns.
     pub fn new(mut nodes: Vec<u32>) -> Self {
         nodes.sort_unstable();
         nodes.dedup();

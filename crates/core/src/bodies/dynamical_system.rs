@@ -57,8 +57,8 @@ pub struct SystemWork {
     /// step, h f . v_theta, less the change of the stored energy: negative where the scheme adds
     /// energy.
     pub scheme: f64,
-    /// Of thermal expansion: the increase of the stored energy when the free strain of the step was
-    /// set.
+    /// Work of thermal expansion: the increase of the stored energy when the free strain of the
+    /// step was set.
     pub expansion: f64,
 }
 

@@ -125,7 +125,7 @@ mod tests {
                 Window::around(&V::new(t.cos() * t, t.sin() * t), 0.05 * t)
             };
             let mut boxes = Boxes::default();
-            // Of another chain, which is forgotten.
+            // The boxes of another chain are replaced.
             boxes.set((0..90).map(segment));
             boxes.set((0..count).map(segment));
             for k in 0..200 {

@@ -78,11 +78,11 @@ struct StarFacet {
 #[derive(Clone, Copy, Debug, Default)]
 struct VertexIntegral {
     vertex: u32,
-    /// Of the shape function.
+    /// Integral of the shape function.
     plain: f64,
-    /// Of its products with the coordinates.
+    /// Integrals of its products with the coordinates.
     moments: Along,
-    /// Of its product with the shape function of the point.
+    /// Integral of its product with the shape function of the point.
     with_point: f64,
 }
 

@@ -21,7 +21,8 @@ pub(super) struct MeshWear {
 }
 
 impl MeshWear {
-    /// Of an unworn surface; `None` unless all of its triangles face up, or all down.
+    /// Creates the worn form of an unworn surface; `None` unless all of its triangles face up, or
+    /// all down.
     pub(super) fn new(points: &[V], triangles: &[[u32; 3]]) -> Option<Self> {
         let corners = triangles.iter().map(|t| t.map(|c| points[c as usize]));
         let side = corners.map(|[a, b, c]| facing(a, b, c));
@@ -70,7 +71,7 @@ impl Recede<Dim3> for Mesh {
         let mut tributary = vec![0.0; self.points.len()];
         for t in &self.triangles {
             let [a, b, c] = t.map(|c| self.points[c as usize]);
-            // Of the triangle seen along z.
+            // Area of the triangle seen along z (m^2).
             let area = 0.5 * (b - a).xy().perp(&(c - a).xy()).abs();
             for corner in t {
                 tributary[*corner as usize] += area / 3.0;

@@ -57,8 +57,8 @@ pub struct Expansion<S: Space> {
 }
 
 impl<S: Space> Expansion<S> {
-    /// Of rigid bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of
-    /// the temperatures `reference` (K), and of systems.
+    /// Creates the expansion of rigid bodies with these coefficients (1/K) and lengths (m), whose
+    /// shapes are now those at the temperatures `reference` (K), and of systems.
     pub fn new(
         coefficient: Vec<f64>,
         reference: Vec<f64>,

@@ -44,11 +44,11 @@ pub(super) enum CallChecks {
     /// Errors for values that are not finite or out of range, and for writes just beyond a column.
     #[default]
     Run,
-    /// Those of `Run` without the range check, which certification makes itself.
+    /// The checks of `Run` without that of ranges, which certification makes itself.
     Lenient,
-    /// Those of `Run`, and every call is made twice in guarded memory.
+    /// The checks of `Run`; every call is made twice in guarded memory.
     Guarded(Box<Guarded>),
-    /// Those of `Lenient`, and every call is repeated.
+    /// The checks of `Lenient`; every call is repeated.
     Repeated,
 }
 

@@ -100,11 +100,11 @@ fn fit(column: &mut Vec<f64>, n: usize) {
 /// Which columns a batch has, beside those of every batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contents {
-    /// Those along t2, in three dimensions.
+    /// Columns along t2, in three dimensions.
     pub spatial: bool,
     /// Rotations of bonds.
     pub rotates: bool,
-    /// Those of compliant contacts.
+    /// Columns of compliant contacts.
     pub compliant: bool,
     /// Springs at the start of the step, beside those at its end.
     pub after: bool,

@@ -44,18 +44,18 @@ pub struct LawEvaluator {
 pub(super) struct Members {
     /// All.
     pub all: Vec<usize>,
-    /// Those with an intact bond, where the interface makes bonds.
+    /// Contacts with an intact bond, where the interface makes bonds.
     pub bonded: Vec<usize>,
     /// The others, where the interface makes bonds.
     pub loose: Vec<usize>,
-    /// Those within the alert distance or held by a bond, if that is not all.
+    /// Contacts within the alert distance or held by a bond, if these are not all.
     near: Vec<usize>,
     /// The others.
     pub beyond: Vec<usize>,
 }
 
 impl Members {
-    /// Those within the alert distance or held by a bond.
+    /// Contacts within the alert distance or held by a bond.
     pub fn near(&self) -> &[usize] {
         if self.beyond.is_empty() {
             &self.all

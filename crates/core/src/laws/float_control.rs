@@ -83,7 +83,7 @@ mod registers {
     }
 }
 
-/// Of other processors it is not known.
+/// On other processors the control register is not known.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod registers {
     pub type Control = ();

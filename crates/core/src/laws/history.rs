@@ -64,7 +64,7 @@ impl DeferredWork {
             while let Some(other) = before.next_if(|(other, _)| *other < pair) {
                 deferred.push(other);
             }
-            // Of an earlier contact of the pair in this step, or of an earlier step.
+            // Work of an earlier contact of the pair in this step, or of an earlier step.
             let before_it = deferred.pop_if(|(other, _)| *other == pair);
             let before_it = before_it.or_else(|| before.next_if(|(other, _)| *other == pair));
             work += before_it.map_or(0.0, |(_, before_it)| before_it);
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(deferred.0, [((0, 9), -1.0), ((4, 1), -0.5)]);
     }
 
-    /// Of pairs (0, 1) to (0, 6) only (0, 2) touches: six are more than twice one, two are not.
+    /// Only (0, 2) of the pairs (0, 1) to (0, 6) touches: six are more than twice one, two are not.
     #[test]
     fn work_of_separated_pairs_is_dropped_once_they_are_many() {
         let contact = contact([0, 2]);

@@ -27,7 +27,7 @@ pub(super) struct Connected {
 }
 
 impl Connected {
-    /// Of bodies, some of which move, and the pairs that touch.
+    /// Finds the sets of bodies, some of which move, from the pairs that touch.
     pub fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
         let mut parent: Vec<u32> = (0..moves.len() as u32).collect();
         pairs(&mut |[a, b]: [u32; 2]| {

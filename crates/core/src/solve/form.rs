@@ -13,8 +13,8 @@ pub struct ContactForm<S: Space> {
     pub arms: [S::Vector; 2],
     /// Both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
-    /// Of a central contact, whether its arms are not the lengths of its bodies: it acts in the gap
-    /// between two balls, or in their overlap.
+    /// For a central contact, whether its arms are not the lengths of its bodies: it acts in the
+    /// gap between two balls, or in their overlap.
     pub apart: bool,
     /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
     pub shift_n: f64,
@@ -216,7 +216,7 @@ impl<S: Space> Mobility<S> {
 /// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RowPlace {
-    /// Of a kind of rows, see [`super::kinds`].
+    /// Place in the rows of a kind ([`super::kinds`]).
     Row {
         kind: u8,
         row: u32,

@@ -11,7 +11,7 @@
 use crate::geometry::space::{Space, VectorLike};
 use pulp::Arch;
 
-/// Of a point that is not loaded.
+/// Column of a point that is not loaded.
 const NONE: u32 = u32::MAX;
 
 /// Points for which columns have place beyond those that are loaded when they are found.

@@ -36,9 +36,9 @@ const LARGE: usize = 64;
 /// impulse on one are read in a row in each update of a contact.
 #[derive(Clone, Debug)]
 enum ComplianceColumns<S: Space> {
-    /// Of the step, one after the other.
+    /// Blocks of the step, one after the other.
     Own(Arc<Vec<f64>>),
-    /// That the system keeps, with the columns of touched nodes.
+    /// Compliance that the system keeps, with the columns of touched nodes.
     Retained(Arc<Compliance<S>>),
 }
 
@@ -53,15 +53,15 @@ impl<S: Space> ComplianceColumns<S> {
 }
 
 impl<S: Space> NodalSystem<S> {
-    /// Of all nodes of a compliance that the system keeps, with their free velocities (m/s).
+    /// Takes all nodes of a compliance that the system keeps, with their free velocities (m/s).
     /// Contacts act on nodes whose columns are there.
     pub fn kept(compliance: Arc<Compliance<S>>, free: Vec<S::Vector>) -> Self {
         let nodes = compliance.nodes().to_vec();
         Self::with(nodes, free, ComplianceColumns::Retained(compliance))
     }
 
-    /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by
-    /// row (1/kg).
+    /// Takes nodes in increasing order, with their free velocities (m/s) and their compliance, row
+    /// by row (1/kg).
     pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: &[S::Matrix]) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());

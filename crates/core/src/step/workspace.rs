@@ -26,7 +26,7 @@ pub(crate) struct Workspace<S: Space> {
     pub springs: Vec<Option<SpringForm<S>>>,
     /// Energy in springs of contacts at the start of the step (J).
     pub spring_energy: f64,
-    /// Those that resist rotation.
+    /// Forms of the contacts that resist rotation.
     pub moments: Vec<MomentForm<S>>,
     /// What contacts with dynamical systems act on.
     pub systems: SystemContacts<S>,
@@ -68,7 +68,7 @@ pub(crate) struct Solved<S: Space> {
     /// Relative velocities at the end of the step (m/s).
     pub after: Vec<S::Vector>,
     pub contact_steps: Vec<ContactStep<S>>,
-    /// Those of compliant contacts; empty without a compliant law.
+    /// Steps of the springs of compliant contacts; empty without a compliant law.
     pub springs: Vec<Option<SpringStep<S>>>,
     pub moment_steps: Vec<MomentStep<S>>,
     /// The contacts that held a load before and slide now, in order.

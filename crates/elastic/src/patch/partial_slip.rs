@@ -20,7 +20,7 @@ pub struct PartialSlip {
 }
 
 impl PartialSlip {
-    /// Of a patch under `load` (N) with the friction coefficient `mu`.
+    /// Computes the partial slip of a patch under `load` (N) with the friction coefficient `mu`.
     ///
     /// A circle: delta* = 3 mu P/(16 a) ((2 - nu1)/G1 + (2 - nu2)/G2), Johnson 7.43. An ellipse:
     /// the displacement of a traction mu p by the integrals of Mindlin (1949), along its long or

@@ -344,7 +344,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Of the mean over the seeds.
+    /// Chi-squared of the mean over the seeds.
     fn chi_squared(&self, samples: &[Sample]) -> Option<f64> {
         let rows: Option<Vec<Vec<f64>>> =
             samples.iter().map(|s| s.as_ref().ok().cloned()).collect();
@@ -352,7 +352,7 @@ impl Search<'_> {
         self.tests.target.chi_squared(&mean).ok()
     }
 
-    /// Of each seed alone.
+    /// Chi-squared of each seed alone.
     fn by_seed(&self, evaluation: &Evaluation) -> Vec<Option<f64>> {
         let one = |s: &Sample| {
             let values = s.as_ref().ok()?;

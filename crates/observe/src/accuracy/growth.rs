@@ -38,9 +38,9 @@ pub(super) struct Growth {
     /// Displacement over a step that is aimed at, over the half size of the smallest grain, and
     /// change of forces that is allowed, over these.
     allowed: f64,
-    /// As chosen; events and records may end a step before.
+    /// Steps of the case that were chosen; events and records may end a step earlier.
     chosen: u32,
-    /// Of the last step.
+    /// Steps of the case that the last step spanned.
     last: u32,
     /// Whether an event ends the next step.
     event: bool,

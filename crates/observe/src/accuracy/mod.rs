@@ -132,7 +132,7 @@ pub struct StepParts {
 }
 
 impl AccuracyControl {
-    /// Of a run of a case that asks for an accuracy.
+    /// Creates the control of a run; `None` if the case asks for no accuracy.
     pub fn new(case: &Case, run: &dyn RunView) -> Option<Self> {
         let spec = case.accuracy.as_ref()?;
         let test = FrictionTest::of(case, run);

@@ -34,7 +34,7 @@ pub struct BrokenBonds {
 }
 
 impl BrokenBonds {
-    /// Of a case whose interfaces make bonds, where there are `any`.
+    /// Starts the count for a case; `any` is whether its interfaces make bonds.
     pub fn new(any: bool) -> Self {
         Self { count: 0, any }
     }
@@ -167,7 +167,7 @@ fn circuit(run: &dyn RunView) -> Option<&GrainCircuit> {
 }
 
 impl CircuitAccount {
-    /// Of a circuit whose account begins at a time (s).
+    /// Starts the account of a circuit at a time (s).
     pub fn new(start: f64) -> Self {
         Self {
             start,

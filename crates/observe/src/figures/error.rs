@@ -38,7 +38,7 @@ pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
     let (Some(last), Some(value), true) = (last, known.value, cycles.oscillates()) else {
         return Series::default();
     };
-    // That of the coupling is a part of that of the step.
+    // The error of the coupling is a part of that of the step.
     let parts = [known.scatter, known.step, known.tolerance];
     let half: f64 = parts
         .into_iter()

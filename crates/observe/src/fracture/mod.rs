@@ -49,7 +49,7 @@ struct Broken {
     broken: u64,
     torn: u64,
     at_once: u64,
-    /// Those that began at their gap.
+    /// Number of bonds that began at their gap.
     begun_open: u64,
     released: f64,
     /// Part of it that is compared with what follows.
@@ -58,7 +58,7 @@ struct Broken {
     declared: f64,
     /// Their areas by angle.
     areas: Vec<f64>,
-    /// Those that turned.
+    /// Bonds that turned.
     turned: Vec<Turned>,
 }
 
@@ -141,7 +141,7 @@ pub struct Fracture {
 }
 
 impl Fracture {
-    /// Of the bonds of a simulation.
+    /// Observes the bonds of a simulation.
     pub fn of(case: &Case, run: &dyn RunView) -> Self {
         Self {
             jumps: case.jump.is_some(),

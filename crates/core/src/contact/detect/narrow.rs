@@ -226,7 +226,7 @@ impl<S: Space> Narrow<'_, S> {
         let (i, j) = (ball.body as usize, surface.body as usize);
         let grain = |b: usize| bodies.carrier(b).is_some_and(|c| c.grain);
         let twice = ball.radius == 0.0 && grain(i) && grain(j);
-        // Of two grains both have points, each with half of the area.
+        // Between two grains both have contact points, each with half of the area.
         let share = if twice {
             f64::powf(0.5, 1.0 / (S::D - 1) as f64)
         } else {

@@ -218,7 +218,7 @@ impl Polygon {
         let (mut deepest, mut depth): (_, f64) = (0, f64::NEG_INFINITY);
         for (k, (corner, normal)) in self.points.iter().zip(&self.normals).enumerate() {
             let height = (point - corner).dot(normal);
-            // Of equal ones the last.
+            // The last of equal corners is taken.
             if height.total_cmp(&depth).is_ge() {
                 (deepest, depth) = (k, height);
             }

@@ -26,7 +26,7 @@ pub fn contact_points(pair: &CorePair<Dim2>, out: &mut Vec<ContactPoint<V>>) {
     if from_b > reach {
         return;
     }
-    // Of two equally good sides the candidate's is used, independent of rounding.
+    // If two sides are equally good, that of the candidate is used, independent of rounding.
     let a_leads = from_a + tolerances.slack * 1e-3 >= from_b;
     let best = if a_leads { from_a } else { from_b };
     let on_side = |slack: f64| {
@@ -147,7 +147,7 @@ fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
             continue;
         }
         let s = full(k, height);
-        // Of equal ones the first.
+        // The first of equal ones is taken.
         if s > best.0 || (s == best.0 && k < best.1) {
             best = (s, k);
         }
@@ -483,7 +483,7 @@ mod tests {
             assert_eq!(p.normal, V::new(0.0, 1.0));
             assert!((p.gap - 0.05).abs() < 1e-14 && (p.share - 1.0).abs() < 1e-14);
         }
-        // Of equal width: no corner is outside the other side by more than the slack.
+        // Sides of equal width: no corner is outside the other side by more than the slack.
         let tolerances = ContactTolerances {
             reach: 0.1,
             slack: 1e-6,

@@ -61,7 +61,7 @@ pub struct KindSpec {
 pub enum Domain {
     /// All, also those made ahead of the step that closes them because the bodies are fast.
     All,
-    /// Those within the alert distance or held by a bond.
+    /// Contacts within the alert distance or held by a bond.
     Near,
     /// Intact bonds.
     Bonds,
@@ -120,8 +120,8 @@ pub enum CheckSet {
     /// Work, damage and convergence of bonds, where the laws make bonds; else as
     /// [`CheckSet::Contact`].
     Bond,
-    /// Those of [`CheckSet::Contact`], and that the volume removed does not depend on the number
-    /// of steps.
+    /// The checks of [`CheckSet::Contact`], and that the volume removed does not depend on the
+    /// number of steps.
     Removal,
     /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap,
     /// damage and temperature.

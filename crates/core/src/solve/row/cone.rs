@@ -13,8 +13,8 @@ use crate::solve::local::contact::Local;
 use crate::solve::slide::slide;
 
 impl<S: Space> LawLimits<S> {
-    /// Of a form whose block, with a bond that acts and the compliance, is `compliant` in the frame
-    /// of the contact.
+    /// Takes a form whose block, with an acting bond and the compliance, is `compliant` in the
+    /// frame of the contact.
     pub(super) fn on_block(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
         let (w_n, w_t) = (compliant.entry(0, 0), quickest::<S>(compliant));
         let rho = if w_n > 0.0 {
@@ -22,7 +22,7 @@ impl<S: Space> LawLimits<S> {
         } else {
             inverse(w_t)
         };
-        // Of a contact that nothing moves: it is right after one visit.
+        // A contact that yields by its compliance alone is right after one visit.
         let held = [w_n, w_t] == contact.compliance;
         Self {
             mu: contact.friction,
@@ -145,7 +145,7 @@ impl<S: Space> Cone<S> {
         }
     }
 
-    /// Of a law that never acts.
+    /// The cone of a law that never acts.
     pub fn none() -> Self {
         Self {
             w: <S::M<f64>>::zero(),

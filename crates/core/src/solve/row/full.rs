@@ -45,7 +45,7 @@ struct TestTerms<S: Space, L: Lane = f64> {
     a: Parts<S, L>,
     b: [L; 2],
     cohesion: L,
-    /// Of the natural map: 1/(W' + C), the smaller of both directions.
+    /// Step length of the natural map: 1/(W' + C), the smaller of both directions.
     rho: L,
     shift: Parts<S, L>,
     compliance: [L; 2],

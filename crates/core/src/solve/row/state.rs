@@ -29,7 +29,7 @@ impl<S: Space, L: Lane> Parts<S, L> {
         self.n * other.n + self.t.dot(&other.t)
     }
 
-    /// Of a vector at a contact of unit normal `n`.
+    /// Splits a vector at a contact of unit normal `n`.
     #[inline(always)]
     pub fn of(n: &S::V<L>, v: &S::V<L>) -> Self {
         let along = n.dot(v);

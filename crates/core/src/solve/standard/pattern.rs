@@ -17,7 +17,7 @@ pub(super) fn size<S: Space>() -> usize {
 }
 
 impl Pattern {
-    /// Of bodies with these mobilities, and the pairs of them that are in contact.
+    /// Finds the pattern of bodies with these mobilities from the pairs that are in contact.
     pub fn new<S: Space>(masses: &[Mobility<S>], pairs: impl Iterator<Item = [u32; 2]>) -> Self {
         let moves: Vec<bool> = masses.iter().map(Mobility::moves).collect();
         let mut near: Vec<Vec<u32>> = (0..masses.len())

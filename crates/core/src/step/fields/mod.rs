@@ -175,9 +175,9 @@ impl<S: Space, T> FieldList<S, T> {
 /// What grains and contacts carry; see the [module](self).
 #[derive(Clone, Debug)]
 pub struct Fields<S: Space> {
-    /// Of grains, and of the balls and pieces of first bodies.
+    /// Fields of grains, and of the balls and pieces of first bodies.
     pub grains: FieldList<S, GrainPart<S>>,
-    /// Of contacts.
+    /// Fields of contacts.
     pub contacts: FieldList<S, Contact<S>>,
 }
 
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(of(&half), (1, false, 1.25));
         assert_eq!(of(&whole), (1, true, 2.0));
         assert_eq!(of(&vector), (3, false, 12.5));
-        // Of two fields of one name the later one.
+        // The later of two fields with one name is kept.
         let other = Field::<Dim2, f64>::number("half", "m", "a third", |_, x| x / 3.0);
         let list = FieldList::new([half, vector, other]);
         assert_eq!(list.iter().count(), 2);

@@ -298,7 +298,7 @@ pub(super) fn compare_attractions<S: Space>(
 ) -> Result<Differences, LawError> {
     let mut differences = Differences::default();
     if !attractions.groups.is_empty() {
-        // Those of this solve: the forms change below.
+        // Loads of this solve: the forms change below.
         let contacts = 0..s.workspace.solved.contact_steps.len();
         let loads = contacts.map(|at| load(s, at) / info.h);
         differences.loads = loads.sum();
@@ -358,7 +358,7 @@ fn compare_attraction<S: Space>(
 ) -> Result<(), LawError> {
     let h = info.h;
     let (mut moved, whole) = moved(s, group, info);
-    // Those that are not linearised yet, and pass one attraction only, are left as they are.
+    // Contacts that are not linearised yet, and pass one attraction only, are left as they are.
     let unknown = moved.iter().filter(|m| m.pull.is_none());
     let (mut places, mut gaps) = (Vec::new(), Vec::new());
     for m in unknown {

@@ -127,7 +127,7 @@ impl<S: Space> Scene<'_, S> {
         let ((v, w), (v_other, w_other)) = (motion(i), motion(j));
         let ball = contact.key.ball().filter(|_| sides[0] == 0);
         let radius = ball.map_or(0.0, |k| self.shapes.balls[k].radius);
-        // Of a ball its centre stays opposite to the surface, of others the point that touches.
+        // For a ball its centre stays opposite to the surface, for others the point that touches.
         let (arm, place) = (arm + n * radius, place + n * radius);
         let turn = |w: S::Spin, x: &S::Vector| S::rotate(&S::turned(&S::identity(), &(w * h)), x);
         let back = |w: S::Spin, x: &S::Vector| S::unrotate(&S::turned(&S::identity(), &(w * h)), x);

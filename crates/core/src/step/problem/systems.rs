@@ -10,7 +10,7 @@ use crate::step::workspace::SystemContacts;
 use crate::step::{Simulation, StepError};
 use std::sync::Arc;
 
-/// Of a contact without systems.
+/// Index for a contact without systems.
 const RIGID: u32 = u32::MAX;
 
 /// The different points in an order of their own, where they are fewer than the nodes that they are
