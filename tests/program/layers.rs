@@ -162,7 +162,7 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 20] = [
+const MODULES: [&str; 21] = [
     "out_of_memory",
     "huge_pages",
     "threads",
@@ -183,6 +183,7 @@ const MODULES: [&str; 20] = [
     "step",
     "process",
     "view",
+    "assembly",
 ];
 
 /// Modules of the core that a file's code names.

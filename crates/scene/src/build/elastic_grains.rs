@@ -23,8 +23,8 @@ const MAX_ELEMENTS: [usize; 2] = [12, 5];
 /// Grains that were taken out of the rigid bodies, with their entries in the case.
 pub(super) type ElasticGrains = Vec<(AnySystem, Origin)>;
 
-/// What the case says of the grains of a material that deform: its entry, path first, elasticity
-/// and elements along the radius.
+/// What the case says of the grains of a material that deform: path and content of its entry,
+/// elasticity, and elements along the radius.
 type OfMaterial<'a> = BTreeMap<u16, (String, &'a ElasticGrainSpec, Elasticity, usize)>;
 
 /// Key of grains that share their modes: a number for their kind, and all data on which the modes
