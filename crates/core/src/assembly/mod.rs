@@ -204,3 +204,6 @@ pub fn turned(dimension: usize, rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64
         _ => parts::turned::<Dim3>(rotation, v),
     }
 }
+
+#[cfg(test)]
+mod tests;
