@@ -28,15 +28,11 @@ impl Camera {
     }
 }
 
+/// Nothing is drawn.
 #[derive(Debug, Default)]
 pub(super) struct Drawing;
 
 impl Drawing {
-    #[expect(
-        clippy::unused_self,
-        clippy::unnecessary_wraps,
-        reason = "as where pictures are drawn"
-    )]
     pub fn wait(&mut self) -> Result<(), RunError> {
         Ok(())
     }
@@ -46,17 +42,11 @@ pub(super) fn noted<T>(_: Option<String>, draw: impl FnOnce() -> T) -> T {
     draw()
 }
 
-#[expect(clippy::unnecessary_wraps, reason = "as where figures are drawn")]
 pub(super) fn draw_figure(_: &Figure, _: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
 impl Recorder<'_> {
-    #[expect(
-        clippy::unused_self,
-        clippy::unnecessary_wraps,
-        reason = "as where pictures are drawn"
-    )]
     pub(super) fn draw_pictures(&mut self, _: u64) -> Result<(), RunError> {
         Ok(())
     }

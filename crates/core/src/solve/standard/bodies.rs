@@ -75,13 +75,13 @@ impl<S: Space, const D: usize> Unknown<'_, S, D> {
 }
 
 /// Impulse and moment of a body, or its velocity and spin.
-pub type BodyMotion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+pub type LinearAngular<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Impulses on all bodies and on the nodes of all systems, or their velocities.
 #[derive(Clone, Debug)]
 pub struct Motions<S: Space> {
     /// By body.
-    pub bodies: Vec<BodyMotion<S>>,
+    pub bodies: Vec<LinearAngular<S>>,
     /// By system, in the order of its nodes.
     pub nodes: Vec<Vec<S::Vector>>,
 }
@@ -141,7 +141,7 @@ impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
     }
 
     /// Returns M^-1 of an impulse and moment on a body.
-    pub fn mobility(&self, body: u32, (p, m): BodyMotion<S>) -> BodyMotion<S> {
+    pub fn mobility(&self, body: u32, (p, m): LinearAngular<S>) -> LinearAngular<S> {
         self.masses[body as usize].apply(&p, &m)
     }
 
