@@ -56,7 +56,7 @@ fn long_lines(text: &str, rust: bool) -> Vec<usize> {
         let fence = said.trim_start().starts_with("```");
         in_code ^= fence;
         let in_code = in_code || (!rust && line.starts_with("    "));
-        let whole = ["|", "#", "<", "[", "!["]
+        let whole = ["| ", "|-", "#", "<", "[", "!["]
             .iter()
             .any(|s| said.trim_start().starts_with(s));
         // A line that is one word behind what introduces it cannot be broken.

@@ -71,7 +71,7 @@ fn a_first_body_has_its_own_mass_and_wears_where_it_can() {
     assert!(!scene.add_scar(0, "floor".to_owned(), 1e-3, 1), "a plane");
     assert!(scene.worn_names().is_empty());
     let (run, added) = scene.into_simulation(Vec::new(), LawTable::new(1), 0.1, 0.1);
-    assert!(added.is_empty() && run.surfaces()[0].flat);
+    assert!(added.is_empty() && run.surfaces()[0].flat.is_some());
     assert_eq!((run.bodies().mass[0], run.bodies().inertia[0]), (2.0, 8.0));
     assert_eq!(run.bodies().length[0], 2.0);
 }

@@ -1,4 +1,4 @@
-//! How much a step has changed, from which follows whether a longer one would do.
+//! How much the contact forces changed in a step, from which follows whether a longer one would do.
 
 use crate::contact::Key;
 use nalgebra::Vector3;
@@ -35,15 +35,6 @@ impl ContactForces {
             0.0
         }
     }
-}
-
-/// What a step has changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepChange {
-    /// Largest displacement of a point of a body, see [`super::Simulation::largest_displacement`].
-    pub displacement: f64,
-    /// Change of the contact forces, see [`ContactForces::change`].
-    pub forces: f64,
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ mod simulation;
 mod state;
 mod workspace;
 
-pub use change::{ContactForces, StepChange};
+pub use change::ContactForces;
 pub use control::ImpossibleMotions;
 pub use dimension::InDimensionMut;
 pub use error::StepError;

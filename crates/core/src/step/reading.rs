@@ -2,7 +2,7 @@
 //! contacts.
 
 use super::Simulation;
-use super::change::{ContactForces, StepChange};
+use super::change::ContactForces;
 use super::control::StepBounds;
 use super::detection::{mean_places, projection};
 use super::process::Process;
@@ -224,14 +224,6 @@ impl<S: Space> Simulation<S> {
             network.alert
         };
         self.options.scheme.h * present.map(speed).fold(0.0, f64::max) / size
-    }
-
-    /// What the last step has changed; `before` are the forces of the step before.
-    pub fn change_since(&self, before: &ContactForces) -> StepChange {
-        StepChange {
-            displacement: self.largest_displacement(),
-            forces: before.change(&self.contact_forces()),
-        }
     }
 
     /// The process of a type, the first where there are several.

@@ -14,7 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// GrainPlace of a grain.
+/// Where a grain is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GrainPlace {
     /// Connected by a path of bonds to the first body of this index.
@@ -44,7 +44,7 @@ impl Amount {
     }
 }
 
-/// MassByPlace of each place.
+/// Grains and their mass, by place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MassByPlace {
     /// Tied to first bodies.

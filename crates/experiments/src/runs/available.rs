@@ -120,7 +120,7 @@ impl AvailableQuantities {
             if within(&own, name) {
                 return Err(output.is_group());
             }
-            // Filled by a run only; checked later on a run of two steps.
+            // Filled by a run only: what may stand there is declared.
             if within(name, &own) && (q.value.is_null() || q.value.is_array()) {
                 return match self.found.expects(name) {
                     Some(false) => unknown(),

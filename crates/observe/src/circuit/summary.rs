@@ -56,7 +56,7 @@ const fn amount(name: &'static str, doc: &'static str) -> Field {
     }
 }
 
-/// MassByPlace of the places of grains.
+/// Grains and their mass in each place.
 const CONTENTS: Schema = Schema::Part(&[
     amount("tied", "tied to first bodies"),
     amount("contact", "in the contact"),
@@ -81,7 +81,7 @@ crate::described! {
         pub start: f64 => SECOND,
         /// Window of the mean flows.
         pub window: [f64; 2] => SECOND,
-        /// MassByPlace at the end.
+        /// Grains and their mass in each place at the end.
         pub contents: MassByPlace = CONTENTS,
         /// Cumulative flows since the start.
         pub flows: Flows = FLOWS,

@@ -16,9 +16,9 @@ impl Case {
     ///
     /// # Examples
     /// ```
-    /// use fretwork_scene::{CaseBuilder, Dim2, load_text};
+    /// use fretwork_scene::{CaseBuilder, load_text};
     ///
-    /// let case = CaseBuilder::<Dim2>::new("a ball").time(1e-3, 0.1).material("steel", "rail_steel_r260").case();
+    /// let case = CaseBuilder::in_plane("a ball").time(1e-3, 0.1).material("steel", "rail_steel_r260").case();
     /// let again = load_text("again.ron", &case.to_ron()?, "".as_ref(), &[])?.case;
     /// assert_eq!(again, case);
     /// # Ok::<(), fretwork_scene::InputError>(())

@@ -542,7 +542,7 @@ mod tests {
         let points = met(&standing, &lying, V::new(0.2, 1.3), [0.1, 0.1]);
         let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
         assert!((least - 0.1).abs() < 1e-15);
-        // OverlapEnd to end.
+        // End to end.
         let points = met(&lying, &lying, V::new(2.3, 0.4), [0.1, 0.1]);
         assert!(points.len() == 1 && (points[0].gap - 0.3).abs() < 1e-15);
     }

@@ -153,7 +153,7 @@ impl Lead<'_> {
             ClipSide::Other(other) if self.of_candidate => name::crossing(edge(k), other),
             ClipSide::Other(other) => name::crossing(other, edge(k)),
             ClipSide::Lead(j) => {
-                // ClipSide j goes from corner j to the next.
+                // Side j goes from corner j to the next.
                 let corner = if j == (k + 1) % sides.len() { j } else { k };
                 let corner = self.own.topology().faces[self.face][corner];
                 name::corner(corner as usize, self.of_candidate)

@@ -144,6 +144,7 @@ fn the_change_of_work_is_that_of_the_mean_control_cycle() {
     assert_eq!(stood, [1, 1, 1, 3, 1, 1, 6, 1, 1]);
     let summary = test.jumps.outcome(&test.s);
     let changes: Vec<f64> = summary.jumps.iter().map(|j| j.work_change).collect();
+    assert_eq!(changes.len(), 2);
     // The second is compared with the last control cycle of the first.
     for (found, expected) in changes.iter().zip([4.5 / 3.0 - 1.0, 1.0 - 3.0 / 5.0]) {
         assert!((found - expected).abs() < 1e-12, "{changes:?}");

@@ -18,7 +18,7 @@ fn view() -> View {
     View::new(0.6, 0.4)
 }
 
-/// SolidScene of a picture. `paints` are those of the balls, then of the convex parts.
+/// The solids of a picture. `paints` are those of the balls, then of the convex parts.
 pub(crate) fn scene(run: &dyn RunView, paints: &[Paint]) -> SolidScene {
     let bodies = run.bodies();
     let shown = |body: u32| !bodies.removed[body as usize];
