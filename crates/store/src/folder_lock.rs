@@ -4,6 +4,7 @@ use crate::write_advice;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The file by which a run owns the folder of its results.
 pub const RUN_LOCK: &str = "results.lock";
@@ -77,7 +78,7 @@ impl FolderLock {
             path: path.clone(),
             reason: e.to_string(),
         })?;
-        held(folder, file.try_lock())?;
+        held(folder, patiently(|| file.try_lock()))?;
         let by_handle = file.metadata().ok().and_then(|data| place(&data));
         let by_name = std::fs::metadata(&path).ok().and_then(|data| place(&data));
         // Some systems give a file a new number whenever it is asked for.
@@ -122,13 +123,25 @@ impl FolderLock {
         // locked, and the folder is read without protection.
         let file = File::open(folder.join(mark)).ok();
         if let Some(file) = &file {
-            held(folder, file.try_lock_shared())?;
+            held(folder, patiently(|| file.try_lock_shared()))?;
         }
         Ok(Self {
             _file: file.map(Arc::new),
             owned: None,
         })
     }
+}
+
+/// Tries a lock again for a tenth of a second: a process that this program just starts holds copies
+/// of its files, and so a lock that was released, until it runs its own program.
+fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
+    for _ in 0..10 {
+        match lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+            other => return other,
+        }
+    }
+    lock()
 }
 
 /// Returns an error if somebody else holds the lock. Other errors come from file systems without

@@ -113,7 +113,9 @@ impl AvailableQuantities {
             if own == name {
                 return match &q.value {
                     Value::Array(_) | Value::Object(_) => Err(output.is_group()),
-                    _ if q.unit == unit::WORD && !q.value.is_null() => unknown(),
+                    // A group without content yet, or a word.
+                    Value::Null if q.unit == unit::WORD => Err(output.is_group()),
+                    _ if q.unit == unit::WORD => unknown(),
                     _ => Ok(()),
                 };
             }
