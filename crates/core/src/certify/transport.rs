@@ -116,9 +116,9 @@ fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
             }
             let scale = points.iter().fold(0.0f64, |m, p| m.max(p.1.abs()));
             let jump = |w: &[(f64, f64)]| (w[1].1 - w[0].1).abs();
-            let largest = points.array_windows();
-            let largest = largest.max_by(|a, b| jump(*a).total_cmp(&jump(*b)));
-            let Some(mut pair) = largest.copied().filter(|_| scale > 0.0) else {
+            let pairs = points.windows(2).map(|pair| [pair[0], pair[1]]);
+            let largest = pairs.max_by(|a, b| jump(a).total_cmp(&jump(b)));
+            let Some(mut pair) = largest.filter(|_| scale > 0.0) else {
                 continue;
             };
             for _ in 0..HALVINGS {

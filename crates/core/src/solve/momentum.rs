@@ -5,9 +5,9 @@
 //! t_k^2)) / 2  (Nesterov 1983).
 //!
 //! Velocities are moved on by the same factor, since they are linear in the impulses. Momentum
-//! starts anew (t = 1) where it points against what the iteration did, (y_k - p_(k+1)) . W (p_(k+1)
-//! - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015, measured by the kinetic energy of
-//! the velocities that the impulses make).
+//! starts anew (t = 1) where it points against what the iteration did,
+//! (y_k - p_(k+1)) . W (p_(k+1) - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015,
+//! measured by the kinetic energy of the velocities that the impulses make).
 //!
 //! With friction the contact problem is no minimisation, and full momentum may circle. Where the
 //! residual does not fall from one convergence test to the next, t is limited to half of its

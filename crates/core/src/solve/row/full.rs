@@ -13,9 +13,10 @@ use crate::lanes::{Batch, BatchMut, Lane, LaneVector, part, record};
 use crate::solve::form::{ContactForm, Elastic};
 
 /// What an update needs. In a direction with w = W_cc, f = u - w p and p_el = -(a + b u): by
-/// elimination of u, s = q - f iw while the contact is closed (or sticks), and p_el = -(k + c (w s
-/// + f)). With the compliance C of the unilateral part, which keeps u + shift + C s at zero: iw =
-/// 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw, k = a/(1 + w b), c = b/(1 + w b).
+/// elimination of u, s = q - f iw while the contact is closed (or sticks), and
+/// p_el = -(k + c (w s + f)). With the compliance C of the unilateral part, which keeps
+/// u + shift + C s at zero: iw = 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw,
+/// k = a/(1 + w b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 struct Response<S: Space, L: Lane = f64> {

@@ -1,9 +1,9 @@
 //! The problem of a step for the solvers of [`super::local`]: blocks of unknowns, each with its
 //! law, and W applied matrix-free from bodies.
 //!
-//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as u + (p_el
-//! + a)/B = 0, is a law without friction whose compliance 1/B is added to the diagonal of W.
-//! Rolling friction and the moments of a bond are treated likewise. Tension c_n and terms that do
+//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as
+//! u + (p_el + a)/B = 0, is a law without friction whose compliance 1/B is added to the diagonal
+//! of W. Rolling friction and the moments of a bond are treated likewise. Tension c_n and terms that do
 //! not depend on velocities are part of the free velocities.
 
 mod bodies;
