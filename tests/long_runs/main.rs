@@ -13,7 +13,6 @@
 mod counting;
 
 use counting::held;
-use fretwork::geometry::space::{Dim2, Space};
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::friction::Cycle;
 use fretwork::record::results::PreviousResults;
@@ -63,7 +62,7 @@ const RUBBED: &str = r#"(
 )"#;
 
 /// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
-fn followed<S: Space>(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
+fn followed(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let sets = [format!("time.end={:e}", 1e-4 * steps as f64)];
     let loaded = load_text("long_run.ron", text, &cases, &sets).unwrap_or_else(|e| panic!("{e}"));
@@ -107,8 +106,8 @@ fn of_cycles(steps: usize) -> usize {
 fn a_rubbed_layer_holds_no_more_but_its_cycles() {
     const SHORT: usize = 4_000;
     let long = std::env::var("FRETWORK_LONG").map_or(20_000, |n| n.parse().unwrap());
-    let (_, small) = followed::<Dim2>("short", RUBBED, SHORT as u64);
-    let (seen, large) = followed::<Dim2>("long", RUBBED, long as u64);
+    let (_, small) = followed("short", RUBBED, SHORT as u64);
+    let (seen, large) = followed("long", RUBBED, long as u64);
     let (early, late) = (most(&seen, SHORT), most(&seen, long));
     println!("held {early} and {late} bytes, states {small} and {large}");
     for k in (1000..=long).step_by(1000) {

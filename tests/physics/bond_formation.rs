@@ -25,7 +25,7 @@ fn tried(alert: f64, bonds: &str, rest: &str) -> Result<Simulation<Dim2>, InputE
 )"#
     );
     let loaded = load_text("formation.ron", &text, Path::new("."), &[])?;
-    Ok(loaded.build_in::<Dim2>(&search_path())?)
+    loaded.build_in::<Dim2>(&search_path())
 }
 
 /// Eleven disks in a row whose gaps grow from 0.1 to 1 mm: how many are bonded does not depend on

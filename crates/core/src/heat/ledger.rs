@@ -4,8 +4,8 @@ use crate::energy::{LedgerEntry, entries};
 use fretwork_math::diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
-/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings
-/// - expansion = stored + fixed + pending + residual.
+/// Heat since the start (J; per metre of depth in 2D):
+/// dissipated + joule + imposed + surroundings - expansion = stored + fixed + pending + residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeatLedger {
     /// Put in by mechanical dissipation: the shares that the case gives of the entries of

@@ -19,10 +19,10 @@ pub type Influence = [[f64; 3]; 3];
 /// Plane strain: the displacement at `x` from the middle of a strip of width `size` (m), relative
 /// to the points at `depth` (m) below the strip.
 ///
-/// Of a force P per depth far from the strip the displacement along P is (2 (1 - nu^2) P/(pi E))
-/// (ln(depth/|x|) -+ 1/(2 (1 - nu))), with
-/// - along the normal and + along the surface (Flamant's solution with its constant such that it
-///   vanishes at that depth).
+/// Of a force P per depth far from the strip the displacement along P is
+/// (2 (1 - nu^2) P/(pi E)) (ln(depth/|x|) -+ 1/(2 (1 - nu))), with the minus along the normal and
+/// the plus along the surface (Flamant's solution with its constant such that it vanishes at that
+/// depth).
 pub fn strip(material: &Elasticity, size: f64, depth: f64, x: f64) -> Influence {
     let nu = material.poisson;
     let own = 2.0 / (PI * material.plane_strain());
