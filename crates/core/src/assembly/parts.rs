@@ -182,7 +182,9 @@ impl<S: Space> Assembly for Parts<S> {
     }
 
     fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32 {
-        let union = union.into_dimension::<S>();
+        let Some(union) = union.into_dimension::<S>() else {
+            unreachable!("the union has the dimension of the scene");
+        };
         let centre = union.centre();
         let (volume, own) = (union.volume(), union.inertia(&centre));
         let only = union.only_ball();
@@ -337,7 +339,10 @@ impl<S: Space> Assembly for Parts<S> {
             AnySystem::Plane(system) => same(system),
             AnySystem::Space(system) => same(system),
         };
-        self.systems.extend(system);
+        match system {
+            Some(system) => self.systems.push(system),
+            None => unreachable!("the system has the dimension of the scene"),
+        }
     }
 
     fn most_pairs(&self, reach: f64) -> f64 {

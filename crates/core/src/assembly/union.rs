@@ -45,21 +45,18 @@ impl AnyUnion {
         balls.chain(self.parts.iter().map(AnyPart::volume)).sum()
     }
 
-    /// The union in dimension `S`, without what has the other.
-    pub(super) fn into_dimension<S: Space>(self) -> Union<S> {
+    /// The union in dimension `S`; `None` if a part of it has the other.
+    pub(super) fn into_dimension<S: Space>(self) -> Option<Union<S>> {
         let balls = self.balls.into_iter();
+        let parts = self.parts.into_iter();
         let surfaces = self.surfaces.into_iter();
-        Union {
+        Some(Union {
             balls: balls.map(|(x, r)| (S::Vector::from_slice(&x), r)).collect(),
-            parts: self
-                .parts
-                .into_iter()
-                .filter_map(AnyPart::into_dimension)
-                .collect(),
+            parts: parts.map(AnyPart::into_dimension).collect::<Option<_>>()?,
             surfaces: surfaces
-                .filter_map(|(at, s)| Some((S::Vector::from_slice(&at), s.into_dimension()?)))
-                .collect(),
-        }
+                .map(|(at, s)| Some((S::Vector::from_slice(&at), s.into_dimension()?)))
+                .collect::<Option<_>>()?,
+        })
     }
 }
 
