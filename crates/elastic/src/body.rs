@@ -21,6 +21,7 @@ mod turning;
 use crate::error::BodyError;
 use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
+use crate::mesh::Mesh;
 use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
@@ -32,7 +33,7 @@ use fretwork_core::bodies::{
     Nodes, SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::geometry::space::{Space, VectorLike, spin_about};
 use std::sync::{Arc, OnceLock};
 
 /// A body of finite elements.
@@ -68,7 +69,7 @@ impl<S: Space> ElasticBody<S> {
     ///
     /// # Errors
     /// A material, a support or a contactor is not possible; [`BodyError`] lists the reasons.
-    pub fn new(spec: BodySpec<S>) -> Result<Self, BodyError> {
+    pub fn new(spec: BodySpec<Mesh<S>>) -> Result<Self, BodyError> {
         let BodySpec {
             name,
             mesh,
@@ -81,6 +82,7 @@ impl<S: Space> ElasticBody<S> {
             velocity,
             spin,
         } = spec;
+        let (velocity, spin) = (S::Vector::from_slice(&velocity), spin_about::<S>(&spin));
         material.check()?;
         let factors = [damping.mass, damping.stiffness];
         if !factors.iter().all(|f| *f >= 0.0 && f.is_finite()) {

@@ -28,7 +28,7 @@ pub mod support;
 pub mod surface;
 mod touching_surface;
 
-pub use any::{AnyBodySpec, AnyHalfSpaceSpec, AnyMesh};
+pub use any::AnyMesh;
 pub use body::ElasticBody;
 pub use error::BodyError;
 pub use grain::{ElasticGrain, ElasticGrainSpec, GrainShape};

@@ -35,8 +35,8 @@ fn body<S: Space>(mesh: Mesh<S>, strain: Strain) -> ElasticBody<S> {
         supports: &supports,
         touching: Touching::Points("top"),
         surface_material: 0,
-        velocity: S::Vector::zero(),
-        spin: S::Spin::zero(),
+        velocity: [0.0; 3],
+        spin: [0.0; 3],
     };
     ElasticBody::new(spec).unwrap()
 }

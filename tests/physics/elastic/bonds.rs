@@ -67,12 +67,12 @@ fn put_block<S: Space>(s: &mut Simulation<S>) -> usize {
 }
 
 /// A half-space of `n` cells along each side.
-fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
+fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'_> {
     HalfSpaceSpec {
         name: "half-space",
         material: STIFF,
         fills: Fills::Above,
-        position: S::Vector::zero(),
+        position: [0.0; 3],
         grid: Grid {
             from: [0.0; 2],
             size: [WIDTH / n as f64; 2],
@@ -89,7 +89,7 @@ fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'
     }
 }
 
-fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
+fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec) -> usize {
     let system = HalfSpace::new(spec).unwrap_or_else(|e| panic!("{e}"));
     s.add_system(Box::new(system))
 }
@@ -179,7 +179,7 @@ fn off_a_plane<S: Space>(infinite: f64) {
     ] {
         let mut s = glue::<S>(0.0, coupling);
         let axes = pull::<S>(axis);
-        let system = put(&mut s, half_space(6, reach, &axes));
+        let system = put(&mut s, half_space::<S>(6, reach, &axes));
         let what = format!("{}D half-space along {axis}, {reach:?}", S::D);
         pulled(&what, s, (system, "holder", axis), tolerances);
     }

@@ -8,7 +8,7 @@ use fretwork::geometry::space::Dim3;
 
 const SIDE: f64 = 0.01;
 
-fn hyperelastic<S: Space>(mesh: Mesh<S>, supports: &[Support]) -> BodySpec<'_, S> {
+fn hyperelastic<S: Space>(mesh: Mesh<S>, supports: &[Support]) -> BodySpec<'_, Mesh<S>> {
     let mut spec = body(mesh, RUBBER, supports);
     spec.strain = Strain::NeoHookean;
     spec

@@ -45,7 +45,7 @@ fn ground<S: Space>(young: f64, theta: f64, all: &[String], bodies: &str) -> Sim
             density: 1000.0,
         },
         fills: Fills::Below,
-        position: S::Vector::zero(),
+        position: [0.0; 3],
         grid: Grid {
             from: [-0.06; 2],
             size: [size; 2],

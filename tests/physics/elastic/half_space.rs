@@ -23,12 +23,12 @@ const RAIL: Elasticity = Elasticity {
 const STEP: f64 = 1e-3;
 
 /// At rest, undriven, flat, filling what is below.
-fn half_space<S: Space>(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
+fn half_space(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_> {
     HalfSpaceSpec {
         name: "lower",
         material,
         fills: Fills::Below,
-        position: S::Vector::zero(),
+        position: [0.0; 3],
         grid,
         repeats: false,
         reach: Reach::Infinite(1.0),
@@ -51,7 +51,7 @@ fn grid(size: [f64; 2], half: [f64; 2]) -> Grid {
     }
 }
 
-fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
+fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec) -> usize {
     let system = HalfSpace::new(spec).unwrap_or_else(|e| panic!("{e}"));
     s.add_system(Box::new(system))
 }
@@ -194,7 +194,7 @@ fn westergaards_wave() {
         let wave = HalfSpaceSpec {
             name: "upper",
             fills: Fills::Above,
-            position: nalgebra::Vector2::new(0.0, -1.0 + amplitude),
+            position: [0.0, -1.0 + amplitude, 0.0],
             profile: Profile::Wave(amplitude, [length, f64::INFINITY]),
             reach: Reach::Periodic(length),
             mass: 10.0,

@@ -68,7 +68,11 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
 }
 
 /// Undamped, without a surface that touches, at rest.
-fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> BodySpec<'_, S> {
+fn body<S: Space>(
+    mesh: Mesh<S>,
+    material: Elasticity,
+    supports: &[Support],
+) -> BodySpec<'_, Mesh<S>> {
     BodySpec {
         name: "specimen",
         mesh,
@@ -78,8 +82,8 @@ fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> 
         supports,
         touching: Touching::Nothing,
         surface_material: 0,
-        velocity: S::Vector::zero(),
-        spin: S::Spin::zero(),
+        velocity: [0.0; 3],
+        spin: [0.0; 3],
     }
 }
 
@@ -98,7 +102,7 @@ fn scene<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn add<S: Space>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
+fn add<S: Space>(s: &mut Simulation<S>, spec: BodySpec<Mesh<S>>) -> usize {
     let system = ElasticBody::new(spec).unwrap_or_else(|e| panic!("{e}"));
     s.add_system(Box::new(system))
 }

@@ -9,7 +9,7 @@ use crate::geometry::any_shape::{AnySurface, same};
 use crate::geometry::convex::Core;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::shape::{Ball, Carried, HalfSpace, Shapes};
-use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
+use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike, spin_about};
 use crate::laws::Interface;
 use crate::step::Simulation;
 use crate::view::AnySimulation;
@@ -35,14 +35,6 @@ pub enum AnyParts<'a> {
     Plane(&'a mut Parts<Dim2>),
     /// In three dimensions.
     Space(&'a mut Parts<Dim3>),
-}
-
-/// Converts an angular velocity (rad/s) about x, y, z to the dimension: in 2D about z alone.
-fn spin<S: Space>(spin: &[f64; 3]) -> S::Spin {
-    match S::D {
-        2 => S::Spin::from_slice(&spin[2..]),
-        _ => S::Spin::from_slice(spin),
-    }
 }
 
 /// Rotates a vector by the numbers of a rotation; `None` if they are not one.
@@ -84,7 +76,7 @@ impl<S: Space> Parts<S> {
 
     fn set_motion(&mut self, body: u32, start: &Start) {
         self.bodies.velocity[body as usize] = S::Vector::from_slice(&start.velocity);
-        self.bodies.spin[body as usize] = spin::<S>(&start.spin);
+        self.bodies.spin[body as usize] = spin_about::<S>(&start.spin);
     }
 
     /// Removes the bodies whose flag is false, with their shapes. Called before wear and dynamical

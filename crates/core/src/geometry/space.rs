@@ -119,6 +119,20 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     const BALL_INERTIA: f64;
 }
 
+/// Components of an angular velocity or a moment about world axes; in 2D about the third alone.
+pub fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
+    match spin.padded() {
+        [about_depth, ..] if S::D == 2 => [0.0, 0.0, about_depth],
+        spin => spin,
+    }
+}
+
+/// The angular velocity or moment with these components about world axes; in 2D that about the
+/// third.
+pub fn spin_about<S: Space>(axes: &[f64; 3]) -> S::Spin {
+    S::Spin::from_slice(&axes[3 - S::Spin::N..])
+}
+
 /// The volume of a ball in a space of so many dimensions; see [`Space::ball_volume`].
 pub fn ball_volume(dimension: usize, radius: f64) -> f64 {
     match dimension {

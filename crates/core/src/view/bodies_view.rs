@@ -1,8 +1,7 @@
 //! Reading the bodies of a simulation.
 
 use super::rows::{BodyColumns, BodyMotion};
-use super::run_view::{about_axes, from_axes};
-use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike, about_axes, spin_about};
 use crate::step::Simulation;
 
 /// The bodies of a run: where they are, how they move, and what they resist it with.
@@ -95,7 +94,7 @@ impl<S: Space> BodiesView for Simulation<S> {
     }
     fn angular_momentum(&self, body: usize, spin: [f64; 3]) -> [f64; 3] {
         let bodies = &self.state.bodies;
-        about_axes::<S>(&bodies.angular_momentum(body, &from_axes::<S>(spin)))
+        about_axes::<S>(&bodies.angular_momentum(body, &spin_about::<S>(&spin)))
     }
     fn kinetic_energy(&self, body: usize) -> f64 {
         self.state.bodies.energy_of(body)

@@ -2,7 +2,7 @@
 
 use super::RunView;
 use crate::code::{CodeError, decode_first, encode};
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{Space, VectorLike, spin_about};
 use crate::solve::local::LocalProblem;
 use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, StepReport};
 
@@ -158,11 +158,8 @@ impl<S: Space> RunControl for Simulation<S> {
         self.state.control.tolerance = tolerance;
     }
     fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]) {
-        let angular = match S::D {
-            2 => S::Spin::from_slice(&angular[2..]),
-            _ => S::Spin::from_slice(&angular),
-        };
-        self.apply_impulse(body, &S::Vector::from_slice(&impulse), &angular);
+        let (impulse, angular) = (S::Vector::from_slice(&impulse), spin_about::<S>(&angular));
+        self.apply_impulse(body, &impulse, &angular);
     }
     fn local_problem(&self) -> Option<LocalProblem> {
         self.local_problem()

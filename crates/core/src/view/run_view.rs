@@ -128,19 +128,6 @@ impl dyn RunView + '_ {
     }
 }
 
-/// An angular velocity or a moment about world axes.
-pub(super) fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
-    match spin.padded() {
-        [about_depth, ..] if S::D == 2 => [0.0, 0.0, about_depth],
-        spin => spin,
-    }
-}
-
-/// An angular velocity or a moment from its components about world axes.
-pub(super) fn from_axes<S: Space>(spin: [f64; 3]) -> S::Spin {
-    S::Spin::from_slice(&spin[3 - S::Spin::N..])
-}
-
 impl<S: Space> RunView for Simulation<S> {
     fn dimension(&self) -> usize {
         S::D

@@ -66,7 +66,7 @@ pub enum Cells {
 
 /// What a half-space is made of.
 #[derive(Clone, Debug)]
-pub struct HalfSpaceSpec<'a, S: Space> {
+pub struct HalfSpaceSpec<'a> {
     /// What a user calls it.
     pub name: &'a str,
     /// Its material; the density has no effect.
@@ -74,7 +74,7 @@ pub struct HalfSpaceSpec<'a, S: Space> {
     /// Where it is.
     pub fills: Fills,
     /// Where the origin of its plane and of the grid is (m).
-    pub position: S::Vector,
+    pub position: [f64; 3],
     /// The cells that may be loaded.
     pub grid: Grid,
     /// How far it reaches.
@@ -155,8 +155,8 @@ impl<S: Space> HalfSpace<S> {
     ///
     /// # Errors
     /// A dimension, a material or a setting is not possible; [`HalfSpaceError`] lists them.
-    pub fn new(spec: HalfSpaceSpec<S>) -> Result<Self, HalfSpaceError> {
-        check(&spec)?;
+    pub fn new(spec: HalfSpaceSpec) -> Result<Self, HalfSpaceError> {
+        check::<S>(&spec)?;
         let HalfSpaceSpec { grid, material, .. } = spec;
         let up = S::D - 1;
         let outward = match spec.fills {
@@ -165,7 +165,7 @@ impl<S: Space> HalfSpace<S> {
         };
         let place = |cell: usize| {
             let middle = grid.middle(cell);
-            let mut at = spec.position;
+            let mut at = S::Vector::from_slice(&spec.position);
             for (axis, x) in middle.iter().enumerate().take(up) {
                 at[axis] += x;
             }
@@ -389,7 +389,7 @@ impl<S: Space> HalfSpace<S> {
     }
 }
 
-fn check<S: Space>(spec: &HalfSpaceSpec<S>) -> Result<(), HalfSpaceError> {
+fn check<S: Space>(spec: &HalfSpaceSpec) -> Result<(), HalfSpaceError> {
     spec.material.check()?;
     let grid = &spec.grid;
     let sides = S::D - 1;

@@ -11,7 +11,7 @@ use crate::source::InputError;
 use fretwork_core::assembly::AnySystem;
 use fretwork_core::bodies::{ContactorShape, Dof};
 use fretwork_elastic::mesh::MeshError;
-use fretwork_elastic::{AnyBodySpec, AnyMesh, BodyError, Elasticity, Support, Touching};
+use fretwork_elastic::{AnyMesh, BodyError, BodySpec, Elasticity, Support, Touching};
 use std::collections::BTreeMap;
 
 impl Builder<'_> {
@@ -212,10 +212,9 @@ impl Builder<'_> {
             TouchSpec::Points(part) => Touching::Points(part),
             TouchSpec::Surface(part) => Touching::Surface(part),
         };
-        let built = AnyBodySpec {
+        let built = BodySpec {
             name: &spec.name,
-            mesh,
-            position: position.into(),
+            mesh: mesh.moved(&position.into()),
             material: elasticity,
             strain: spec.strain,
             damping: spec.damping,

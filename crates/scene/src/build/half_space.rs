@@ -8,8 +8,7 @@ use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::assembly::AnySystem;
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_elastic::AnyHalfSpaceSpec;
-use fretwork_elastic::half_space::{Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
+use fretwork_elastic::half_space::{self, Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
 use std::collections::BTreeMap;
 
 /// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
@@ -65,8 +64,7 @@ impl Builder<'_> {
             }
             self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
         }
-        let built = AnyHalfSpaceSpec {
-            dimension: self.dimension(),
+        let built = half_space::HalfSpaceSpec {
             name: &spec.name,
             material: elasticity,
             fills: match spec.side {
@@ -89,7 +87,7 @@ impl Builder<'_> {
             },
             surface_material: material,
         };
-        built.build().map_err(|error| {
+        built.build(self.dimension()).map_err(|error| {
             let below = match &error {
                 HalfSpaceError::Material(_) => "material",
                 HalfSpaceError::Depth(..) => "depth",

@@ -129,7 +129,7 @@ impl Ground {
                     name: "ground",
                     material: soft(young),
                     fills: Fills::Below,
-                    position: S::Vector::zero(),
+                    position: [0.0; 3],
                     grid: Grid {
                         from: [-0.02; 2],
                         size: [size; 2],
