@@ -30,7 +30,7 @@ impl Camera {
 
 /// Nothing is drawn.
 #[derive(Debug, Default)]
-pub(super) struct Drawing;
+pub(super) struct Drawing {}
 
 impl Drawing {
     pub fn wait(&mut self) -> Result<(), RunError> {
