@@ -82,6 +82,9 @@ impl<S: Space> ElasticBody<S> {
             velocity,
             spin,
         } = spec;
+        if S::D == 2 && [velocity[2], spin[0], spin[1]] != [0.0; 3] {
+            return Err(BodyError::OutOfPlane(name.to_owned()));
+        }
         let (velocity, spin) = (S::Vector::from_slice(&velocity), spin_about::<S>(&spin));
         material.check()?;
         let factors = [damping.mass, damping.stiffness];

@@ -41,6 +41,11 @@ pub enum BodyError {
         "nothing keeps the body `{0}` from turning, and small strain cannot follow a rotation: hold one of its parts along one axis more, or give it `strain: Corotational` or `strain: NeoHookean`"
     )]
     Turns(String),
+    /// A motion out of the plane of a body in 2D.
+    #[error(
+        "the body `{0}` lies in a plane: its velocity has two components, along x and y, and its spin one, about z"
+    )]
+    OutOfPlane(String),
     /// A spin in small strain.
     #[error(
         "the body `{0}` spins, and small strain cannot follow a rotation: give it `strain: Corotational` or `strain: NeoHookean`"

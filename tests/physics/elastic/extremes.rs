@@ -57,7 +57,7 @@ fn elements_of_all_sizes_in_one_mesh() {
             });
             let lines = [graded(0.0, 0.05, 1e-6, 4.0), even(0.0, 0.01, 2)];
             let mut spec = body(block::<Dim2>(&lines).unwrap(), RUBBER, &[]);
-            (spec.strain, spec.spin[0]) = (strain, 2.0);
+            (spec.strain, spec.spin[2]) = (strain, 2.0);
             add(&mut s, spec);
             let (start, mut most) = (s.state.energy.kinetic, 0.0f64);
             for _ in 0..50 {
@@ -145,7 +145,7 @@ fn a_block_tumbles_on_a_rough_floor() {
             let mesh = block::<Dim2>(&[even(0.0, 0.1, 4), even(0.06, 0.16, 4)]).unwrap();
             let mut spec = body(with_skin(&mesh), RUBBER, &[]);
             (spec.strain, spec.touching) = (strain, Touching::Points("skin"));
-            (spec.spin[0], spec.velocity[1]) = (-8.0, -1.0);
+            (spec.spin[2], spec.velocity[1]) = (-8.0, -1.0);
             add(&mut s, spec);
             let (start, mut most) = (s.state.energy.kinetic, 0.0f64);
             for _ in 0..600 {

@@ -21,8 +21,7 @@ fn spinning<S: Space>(
     let mesh = block::<S>(&lines[..S::D]).unwrap();
     let mut spec = body(mesh, material, &[]);
     spec.strain = strain;
-    let last = S::Spin::N - 1;
-    spec.spin[last] = spin;
+    spec.spin[2] = spin;
     add(&mut s, spec);
     s
 }
@@ -151,7 +150,7 @@ fn damping_follows_the_rotation() {
             });
             let mesh = block::<Dim2>(&[even(0.0, 0.2, 4), even(5.0, 5.1, 2)]).unwrap();
             let mut spec = body(mesh, RUBBER, &[]);
-            (spec.strain, spec.spin[0]) = (strain, 20.0);
+            (spec.strain, spec.spin[2]) = (strain, 20.0);
             spec.damping = Rayleigh { mass, stiffness };
             add(&mut s, spec);
             let start = momentum(&s, RUBBER.density);

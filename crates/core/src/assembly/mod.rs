@@ -32,9 +32,9 @@ pub struct Start {
     pub position: [f64; 3],
     /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
     pub rotation: Option<[f64; 4]>,
-    /// Velocity (m/s).
+    /// Velocity (m/s); in 2D that along x and y counts.
     pub velocity: [f64; 3],
-    /// Angular velocity (rad/s).
+    /// Angular velocity (rad/s); in 2D that about the third axis counts.
     pub spin: [f64; 3],
 }
 

@@ -9,48 +9,19 @@ use crate::contact::detect::{CollisionScene, detect};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;
 
-/// A simulation by its dimension, to be changed.
-#[derive(Debug)]
-pub enum InDimensionMut<'a> {
-    /// Two dimensions.
-    Dim2(&'a mut Simulation<Dim2>),
-    /// Three dimensions.
-    Dim3(&'a mut Simulation<Dim3>),
-}
-
-impl<'a> InDimensionMut<'a> {
-    /// The simulation, whose type parameter is one of the two dimensions.
-    pub fn of<S: Space>(simulation: &'a mut Simulation<S>) -> Self {
-        let simulation: &mut dyn Any = simulation;
-        if simulation.is::<Simulation<Dim2>>() {
-            return match simulation.downcast_mut() {
-                Some(plane) => Self::Dim2(plane),
-                None => unreachable!("it is of this type"),
-            };
-        }
-        match simulation.downcast_mut() {
-            Some(space) => Self::Dim3(space),
-            None => unreachable!("there are two and three dimensions"),
-        }
+/// Calls the function for the dimension of a simulation.
+fn by_dimension<S: Space, R>(
+    simulation: &mut Simulation<S>,
+    plane: fn(&mut Simulation<Dim2>) -> R,
+    space: fn(&mut Simulation<Dim3>) -> R,
+) -> R {
+    let simulation: &mut dyn Any = simulation;
+    if let Some(simulation) = simulation.downcast_mut() {
+        return plane(simulation);
     }
-
-    /// Makes one step ([`Simulation::step`]).
-    ///
-    /// # Errors
-    /// Those of [`Simulation::step`].
-    pub fn step(self) -> Result<StepReport, StepError> {
-        match self {
-            Self::Dim2(simulation) => one_step(simulation),
-            Self::Dim3(simulation) => one_step(simulation),
-        }
-    }
-
-    /// Detects the contacts ([`Simulation::detect`]).
-    pub fn detect(self) {
-        match self {
-            Self::Dim2(simulation) => touching(simulation),
-            Self::Dim3(simulation) => touching(simulation),
-        }
+    match simulation.downcast_mut() {
+        Some(simulation) => space(simulation),
+        None => unreachable!("there are two and three dimensions"),
     }
 }
 
@@ -70,11 +41,11 @@ impl<S: Space> Simulation<S> {
     /// if a process failed between the two. A surface was worn through in the previous step; the
     /// state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
-        InDimensionMut::of(self).step()
+        by_dimension(self, one_step, one_step)
     }
 
     /// Detects the contacts at the current positions, without an alert distance.
     pub fn detect(&mut self) {
-        InDimensionMut::of(self).detect();
+        by_dimension(self, touching, touching);
     }
 }

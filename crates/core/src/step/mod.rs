@@ -45,7 +45,6 @@ mod workspace;
 
 pub use change::ContactForces;
 pub use control::ImpossibleMotions;
-pub use dimension::InDimensionMut;
 pub use error::StepError;
 pub use options::{Coupling, Options, Scheme};
 pub use reading::ContactRow;

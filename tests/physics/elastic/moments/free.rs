@@ -2,7 +2,7 @@
 
 use super::bonds::section;
 use super::*;
-use fretwork::geometry::space::Dim3;
+use fretwork::geometry::space::{Dim3, about_axes};
 
 /// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a
 /// (D + 1)-th of each element at its corners.
@@ -32,9 +32,7 @@ fn on_a_free_block<S: Space>(case: &Rolling, strain: Strain) -> Simulation<S> {
     lines.push(even(-0.02, 0.0, 2));
     let mut spec = body(block::<S>(&lines).unwrap(), RUBBER, &[]);
     (spec.strain, spec.touching) = (strain, Touching::Surface("top"));
-    for k in 0..S::Spin::N {
-        spec.spin[k] = 4.0;
-    }
+    spec.spin = about_axes::<S>(&S::Spin::from_slice(&[4.0; 3][..S::Spin::N]));
     add(&mut s, spec);
     s
 }
