@@ -30,6 +30,29 @@ fn touching<S: Space>(s: &mut Simulation<S>) {
     detect(&mut s.state.network, &scene, [0.0; 2], false);
 }
 
+// These four have no type parameter, so that the step is compiled here and not again in each crate
+// that calls it.
+
+#[inline(never)]
+fn step_in_plane(simulation: &mut Simulation<Dim2>) -> Result<StepReport, StepError> {
+    one_step(simulation)
+}
+
+#[inline(never)]
+fn step_in_space(simulation: &mut Simulation<Dim3>) -> Result<StepReport, StepError> {
+    one_step(simulation)
+}
+
+#[inline(never)]
+fn detect_in_plane(simulation: &mut Simulation<Dim2>) {
+    touching(simulation);
+}
+
+#[inline(never)]
+fn detect_in_space(simulation: &mut Simulation<Dim3>) {
+    touching(simulation);
+}
+
 impl<S: Space> Simulation<S> {
     /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are
     /// due between the last step and this one first, where [`Simulation::between_steps`] was not
@@ -41,11 +64,11 @@ impl<S: Space> Simulation<S> {
     /// if a process failed between the two. A surface was worn through in the previous step; the
     /// state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
-        by_dimension(self, one_step, one_step)
+        by_dimension(self, step_in_plane, step_in_space)
     }
 
     /// Detects the contacts at the current positions, without an alert distance.
     pub fn detect(&mut self) {
-        by_dimension(self, touching, touching);
+        by_dimension(self, detect_in_plane, detect_in_space);
     }
 }
