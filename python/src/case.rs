@@ -89,9 +89,9 @@ impl Case {
             return Ok(Some(found.to_string()));
         }
         // A field that is left out because it is empty or has its default.
-        if self.loaded.source.names::<CaseSpec>(path).is_some()
+        if CaseSpec::names(&self.loaded.source, path).is_some()
             && let (above, last) = path.rsplit_once('.').unwrap_or(("", path))
-            && let Some(Names::Fields(fields)) = self.loaded.source.names::<CaseSpec>(above)
+            && let Some(Names::Fields(fields)) = CaseSpec::names(&self.loaded.source, above)
             && fields.iter().any(|f| f == last)
         {
             return Ok(None);
@@ -106,7 +106,7 @@ impl Case {
 
     /// What may stand at a path: one of `fields`, `entries`, `kinds` and `value`, with the names.
     fn names(&self, path: &str) -> Option<(&'static str, Vec<String>)> {
-        Some(match self.loaded.source.names::<CaseSpec>(path)? {
+        Some(match CaseSpec::names(&self.loaded.source, path)? {
             Names::Fields(names) => ("fields", names),
             Names::Entries(names) => ("entries", names),
             Names::Kinds(names) => ("kinds", names),
@@ -145,7 +145,7 @@ impl Case {
     /// `KeyError` with the nearest name.
     fn unknown(&self, path: &str) -> PyErr {
         let (above, last) = path.rsplit_once('.').unwrap_or(("", path));
-        let names = match self.loaded.source.names::<CaseSpec>(above) {
+        let names = match CaseSpec::names(&self.loaded.source, above) {
             Some(Names::Fields(names) | Names::Entries(names)) => names,
             _ => Vec::new(),
         };
@@ -157,9 +157,9 @@ impl Case {
     fn edit(&mut self, sets: &[String]) -> Result<(), InputError> {
         let mut source = self.loaded.source.clone();
         for set in sets {
-            source.set::<CaseSpec>(set)?;
+            CaseSpec::set(&mut source, set)?;
         }
-        let case: CaseSpec = source.parse()?;
+        let case = CaseSpec::read(&source)?;
         check::numbers(&case).map_err(|f| source.locate(f))?;
         (self.loaded.source, self.loaded.case) = (source, case);
         Ok(())
@@ -175,7 +175,7 @@ impl Case {
         match (value, self.edit(&[format!("{path}={text}")])) {
             (Value::String(word), Err(quoted)) => {
                 let plain = word.chars().all(|c| c.is_alphanumeric() || c == '_');
-                let kinds = self.loaded.source.names::<CaseSpec>(path);
+                let kinds = CaseSpec::names(&self.loaded.source, path);
                 match plain && matches!(kinds, Some(Names::Kinds(_))) {
                     true => self.edit(&[format!("{path}={word}")]),
                     false => Err(quoted),

@@ -509,11 +509,11 @@ fn what_many_contacts_pinch_hangs() {
 /// method at 1e-6 leaves them.
 #[test]
 fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {
-    for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 127), (2, 129), (2, 500)] {
+    for (dimension, count) in [(3, 127), (2, 60), (2, 129), (2, 500)] {
         let at_default = debris_falls(dimension, count, "", 0.1);
         println!("{dimension}D, {count}: {at_default:e} m");
     }
-    for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 127), (2, 129)] {
+    for (dimension, count) in [(3, 127), (2, 34), (2, 129)] {
         let solver = "method: Newton, tolerance: 1e-6";
         let fallen = debris_falls(dimension, count, solver, 0.1);
         println!("{dimension}D, {count}: {fallen:e} m by Newton's method");

@@ -29,13 +29,17 @@ macro_rules! in_dimension {
     };
 }
 
+// Where the dimension is forgotten is compiled here: a copy in another crate brings all methods of
+// the traits along, and with them the step.
 impl AnySimulation {
     /// The simulation for reading.
+    #[inline(never)]
     pub fn view(&self) -> &dyn RunView {
         in_dimension!(self, |s| &**s)
     }
 
     /// The simulation before its first step, to be set up.
+    #[inline(never)]
     pub fn setup(&mut self) -> &mut dyn RunSetup {
         in_dimension!(self, |s| &mut **s)
     }
@@ -62,6 +66,26 @@ impl AnySimulation {
         time: f64,
         mut after: impl FnMut(&dyn RunView, &StepReport) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, StepError> {
+        let mut reason = None;
+        self.run_while(time, &mut |s, report| match after(s, report) {
+            ControlFlow::Continue(()) => ControlFlow::Continue(()),
+            ControlFlow::Break(why) => {
+                reason = Some(why);
+                ControlFlow::Break(())
+            }
+        })?;
+        Ok(match reason {
+            Some(why) => ControlFlow::Break(why),
+            None => ControlFlow::Continue(()),
+        })
+    }
+
+    #[inline(never)]
+    fn run_while(
+        &mut self,
+        time: f64,
+        after: &mut dyn FnMut(&dyn RunView, &StepReport) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, StepError> {
         in_dimension!(self, |s| s.run_until(time, |s, report| after(s, report)))
     }
 
@@ -96,12 +120,14 @@ impl<S: Space> From<Simulation<S>> for AnySimulation {
 
 impl Deref for AnySimulation {
     type Target = dyn RunControl;
+    #[inline(never)]
     fn deref(&self) -> &Self::Target {
         in_dimension!(self, |s| &**s)
     }
 }
 
 impl DerefMut for AnySimulation {
+    #[inline(never)]
     fn deref_mut(&mut self) -> &mut Self::Target {
         in_dimension!(self, |s| &mut **s)
     }

@@ -92,8 +92,8 @@ fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError
         // An omitted field has the empty value of its type.
         let empty = |text: &&str| {
             let mut source = Source::from_text(&loaded.path, loaded.source.text());
-            let set = source.set::<Case>(&format!("{name}={text}"));
-            let case = set.and_then(|()| source.parse::<Case>());
+            let set = Case::set(&mut source, &format!("{name}={text}"));
+            let case = set.and_then(|()| Case::read(&source));
             case.and_then(|case| case.to_ron())
                 .is_ok_and(|text| field(&text, name).is_none())
         };

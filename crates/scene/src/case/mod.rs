@@ -7,6 +7,7 @@ mod grains;
 mod half_space;
 mod heat;
 mod interface;
+mod read;
 mod shapes;
 pub(crate) mod slots;
 pub(crate) mod text;

@@ -99,7 +99,7 @@ pub(crate) fn interfaces(
     files: &Files,
     law: &dyn Fn(&str, &str) -> Option<LawInfo>,
 ) -> Vec<Interface> {
-    let Ok(case) = Source::from_text("case", run.case_text.as_str()).parse::<Case>() else {
+    let Ok(case) = Case::read(&Source::from_text("case", run.case_text.as_str())) else {
         return Vec::new();
     };
     let of = |spec: &fretwork_scene::case::InterfaceSpec| {

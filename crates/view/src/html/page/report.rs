@@ -8,6 +8,7 @@ use crate::html::scene::Scene;
 use crate::html::statistics::Statistics;
 use crate::html::{Options, figures};
 use crate::html::{laws as law_data, results::quantity};
+use fretwork_scene::Case;
 use serde_json::{Value, json};
 
 /// Rows of the statistics in a page of the usual size.
@@ -87,10 +88,7 @@ fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics,
 /// Title, verdict and links.
 fn head(run: &RunFolder, gaps: &[String]) -> String {
     let doc = fretwork_scene::source::Source::from_text("case", run.case_text.as_str());
-    let doc = doc
-        .parse::<fretwork_scene::Case>()
-        .map(|c| c.doc)
-        .unwrap_or_default();
+    let doc = Case::read(&doc).map(|c| c.doc).unwrap_or_default();
     let mut out =
         String::from("<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n");
     out += &format!("<h1>{}</h1>\n", escape(&run.title));

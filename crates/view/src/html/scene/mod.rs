@@ -220,9 +220,7 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 }
 
 fn parsed(run: &RunFolder) -> Option<Case> {
-    Source::from_text("case", run.case_text.as_str())
-        .parse()
-        .ok()
+    Case::read(&Source::from_text("case", run.case_text.as_str())).ok()
 }
 
 /// Length of the period along each axis; null where there is none.

@@ -1,0 +1,31 @@
+//! Cases from their text.
+
+use super::Case;
+use crate::source::{InputError, Names, Source};
+
+// These are compiled here: the readers of all parts of a case are half the code of this crate.
+impl Case {
+    /// Reads the case that a text is, see [`Source::parse`].
+    ///
+    /// # Errors
+    /// The text is no case; the error names file, line and column.
+    #[inline(never)]
+    pub fn read(source: &Source) -> Result<Self, InputError> {
+        source.parse()
+    }
+
+    /// Changes a value of the text of a case, see [`Source::set`].
+    ///
+    /// # Errors
+    /// The argument is malformed, or a case has no such key.
+    #[inline(never)]
+    pub fn set(source: &mut Source, argument: &str) -> Result<(), InputError> {
+        source.set::<Self>(argument)
+    }
+
+    /// The names that may stand below a path of a case, see [`Source::names`].
+    #[inline(never)]
+    pub fn names(source: &Source, path: &str) -> Option<Names> {
+        source.names::<Self>(path)
+    }
+}
