@@ -18,7 +18,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
 /// Reads a case from a text, see [`fretwork_scene::load_text`].
 ///
 /// # Errors
-/// At name, line and column.
+/// The text is invalid; the error gives the name of the case, line and column.
 pub fn load_text(
     name: &str,
     text: &str,
@@ -31,7 +31,7 @@ pub fn load_text(
 /// Reads a case from a stream of bytes, see [`fretwork_scene::load_reader`].
 ///
 /// # Errors
-/// As [`load_text`], and what cannot be read.
+/// The text is invalid, with the name of the case, line and column, or the stream cannot be read.
 pub fn load_reader(
     name: &str,
     from: impl Read,

@@ -56,11 +56,11 @@ fn line_of(label: &str, text: &str) -> String {
     format!("  {label:<20} {text}")
 }
 
-/// A line of the answer: what it is about, and the text. Lines that go on with that of the line
-/// before have no label.
+/// A line of the answer: its label and its text. A line that continues the previous one has no
+/// label.
 pub type CheckLine = (String, String);
 
-/// The estimated time of a run, from steps that are made for half a second.
+/// Estimates the time of a run from steps that are computed for half a second.
 pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
     let mut text = Trial::of(&loaded.case, built).text();
     if loaded.case.accuracy.is_some() {
@@ -69,7 +69,7 @@ pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
     ("run time".to_owned(), text)
 }
 
-/// What a run makes of the steps of a case that asks for an accuracy.
+/// Describes how a run chooses its steps for a case that requires an accuracy.
 fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     let Some(accuracy) = &case.accuracy else {
         return String::new();
@@ -84,8 +84,8 @@ fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     }
 }
 
-/// What `fretwork check` prints of a case below its title, but for the [run time](run_time).
-/// Deformable bodies are timed if `timed`.
+/// Returns what `fretwork check` prints about a case below its title, except the [run
+/// time](run_time). Deformable bodies are timed if `timed`.
 pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
     let (case, simulation) = (&loaded.case, &built.simulation);
     let s = simulation.view();
@@ -166,8 +166,8 @@ pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
     out
 }
 
-/// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the
-/// largest radius of a grain (m).
+/// Adds the grains, first bodies, deformable bodies (with times if `timed`) and contacts; returns
+/// the largest radius of a grain (m).
 fn bodies(s: &dyn RunView, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
     let range = |radii: &mut dyn Iterator<Item = f64>| {
         let start = (0, f64::INFINITY, 0.0f64);
@@ -223,8 +223,8 @@ fn interfaces(s: &dyn RunView, line: &mut impl FnMut(&str, String)) {
     }
 }
 
-/// The solvers that support the case, and why the others do not. A case whose own solver does not
-/// support it is rejected earlier.
+/// Describes which solvers support the case, and why the others do not. A case whose own solver
+/// does not support it is rejected earlier.
 fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
     let demands = Demands::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
@@ -260,7 +260,8 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
     else {
         return;
     };
-    // From the start of the test to its end, over all walls: at least one of them is driven.
+    // The strain is taken from the start of the test to its end, over all walls: at least one of
+    // them is driven.
     let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
         let walls = s.bodies().driven.iter();
         let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
@@ -324,7 +325,7 @@ fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMu
     line("pressure", format!("{pressure:.3e} Pa"));
     let mut flags = vec![false; bodies.len()];
     s.grains().into_iter().for_each(|grain| flags[grain] = true);
-    // For convex parts the radius of the ball of the same volume.
+    // A convex part has the radius of the ball of equal volume.
     let balls = s.balls().into_iter().map(|b| (b.body, b.radius));
     let pieces = s.pieces().into_iter().map(|p| (p.body, p.size));
     let volume: f64 = balls

@@ -151,7 +151,7 @@ fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Fail
     )))
 }
 
-/// Description of where a law's library is.
+/// Describes the origin of a law's library.
 fn library(p: &Plugin) -> String {
     match p.built_in {
         true => format!(

@@ -1,5 +1,6 @@
-//! Observers of a run, by [`fretwork_observe`]; with the feature `results` also the run loop and
-//! its files, by [`fretwork_store`]; with the feature `view` also pictures, by [`fretwork_view`].
+//! Recording of a run: observers, from [`fretwork_observe`]; with the feature `results` also the
+//! run loop and its files, from [`fretwork_store`]; with the feature `view` also pictures, from
+//! [`fretwork_view`].
 #[cfg(feature = "results")]
 pub mod run;
 

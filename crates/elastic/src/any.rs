@@ -13,17 +13,17 @@ use std::collections::BTreeMap;
 /// A mesh of the plane or of space.
 #[derive(Clone, Debug)]
 pub enum AnyMesh {
-    /// In two dimensions.
+    /// Mesh in two dimensions.
     Plane(Mesh<Dim2>),
-    /// In three dimensions.
+    /// Mesh in three dimensions.
     Space(Mesh<Dim3>),
 }
 
 impl AnyMesh {
-    /// A mesh in so many dimensions, see [`Mesh::new`].
+    /// Creates a mesh in a dimension, see [`Mesh::new`].
     ///
     /// # Errors
-    /// As [`Mesh::new`].
+    /// Returns the errors of [`Mesh::new`].
     pub fn new(
         dimension: usize,
         points: &[[f64; 3]],
@@ -36,10 +36,10 @@ impl AnyMesh {
         })
     }
 
-    /// The cells of a grid of so many dimensions, whose points are moved; see [`mapped_grid`].
+    /// Creates the mesh of a grid in a dimension, whose points are moved; see [`mapped_grid`].
     ///
     /// # Errors
-    /// As [`mapped_grid`].
+    /// Returns the errors of [`mapped_grid`].
     pub fn mapped(
         dimension: usize,
         grid: &Grid,
@@ -73,7 +73,7 @@ impl BodySpec<'_, AnyMesh> {
     /// Makes the body, see [`ElasticBody::new`].
     ///
     /// # Errors
-    /// See [`BodyError`].
+    /// Returns the errors that [`BodyError`] lists.
     pub fn build(self) -> Result<AnySystem, BodyError> {
         Ok(match self.mesh.clone() {
             AnyMesh::Plane(mesh) => AnySystem::Plane(Box::new(ElasticBody::new(self.of(mesh))?)),
@@ -83,10 +83,10 @@ impl BodySpec<'_, AnyMesh> {
 }
 
 impl HalfSpaceSpec<'_> {
-    /// Makes the half-space in so many dimensions, see [`HalfSpace::new`].
+    /// Creates the half-space in a dimension, see [`HalfSpace::new`].
     ///
     /// # Errors
-    /// See [`HalfSpaceError`].
+    /// Returns the errors that [`HalfSpaceError`] lists.
     pub fn build(self, dimension: usize) -> Result<AnySystem, HalfSpaceError> {
         Ok(match dimension {
             2 => AnySystem::Plane(Box::new(HalfSpace::new(self)?)),

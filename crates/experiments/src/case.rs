@@ -10,7 +10,7 @@ use std::path::Path;
 /// `results.h5`.
 ///
 /// # Errors
-/// At file, line and column.
+/// Returns an error with file, line and column.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
 }

@@ -1,5 +1,5 @@
-//! Folders of experiments: one command at a time, and only in a folder that belongs to such
-//! commands.
+//! Folders of experiments: one command at a time may use a folder, and only a folder that belongs
+//! to such commands.
 
 use crate::Error;
 use fretwork_store::folder_lock::{FolderLock, LockError};
@@ -10,9 +10,9 @@ use std::path::Path;
 pub struct Owner {
     /// The command, `fretwork trade`.
     pub command: &'static str,
-    /// The file that is locked.
+    /// Name of the file that is locked.
     pub mark: &'static str,
-    /// Other files by which its folders are known.
+    /// Other files by which its folders are recognised.
     pub files: &'static [&'static str],
 }
 
@@ -20,7 +20,8 @@ impl Owner {
     /// Creates or opens a folder and locks it until the returned lock is dropped.
     ///
     /// # Errors
-    /// The command runs in it already, it holds other files, or it cannot be written.
+    /// The command already runs in the folder, the folder contains other files, or it cannot be
+    /// written.
     pub fn take(&self, out: &Path) -> Result<FolderLock, Error> {
         let fail = |e: &dyn std::fmt::Display| Error::write(out, e);
         let ours = || {

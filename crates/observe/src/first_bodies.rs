@@ -22,8 +22,8 @@ crate::described! {
     }
 }
 
-/// What each first body lost: volume and depths of its scars. A friction test adds the specific
-/// wear rate.
+/// Returns the loss of each first body: volume and depths of its scars. A friction test adds the
+/// specific wear rate.
 pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
     let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
     let surfaces = run.surfaces();

@@ -37,7 +37,7 @@ pub enum Regime {
 }
 
 impl Regime {
-    /// Regime of one cycle by its energy ratio.
+    /// Returns the regime of one cycle by its energy ratio.
     pub fn of(energy_ratio: f64) -> Self {
         if energy_ratio < TRANSITION {
             Self::Partial
@@ -46,7 +46,7 @@ impl Regime {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the regime.
     pub fn name(self) -> &'static str {
         match self {
             Self::Partial => "partial slip",
@@ -91,7 +91,7 @@ impl Outcome {
         let first = complete.first()?;
         let kind = Regime::of(first.energy_ratio);
         let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        // A cycle that represents several holds the fracture energy of all of them; its neighbours
+        // A cycle that represents several has the fracture energy of all of them; its neighbours
         // give that of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
         let energy = |k: usize| {
@@ -123,9 +123,9 @@ impl Outcome {
     }
 }
 
-/// Sum of y over sum of x for independent pairs (x, y): the slope of cumulative y against
-/// cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron, The
-/// Jackknife, the Bootstrap and Other Resampling Plans, 1982).
+/// Returns the sum of y over the sum of x for independent pairs (x, y): the slope of cumulative y
+/// against cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron,
+/// The Jackknife, the Bootstrap and Other Resampling Plans, 1982).
 fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let n = points.len() as f64;
     let (x, y) = points
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_slope_covers_it_as_often_as_it_says() {
-        // Cycles with 5 % noise on the energy and 10 % on the volume, twenty each.
+        // There are twenty cycles, with 5 % noise on the energy and 10 % on the volume.
         let mut rng = Pcg64::seed_from_u64(1);
         let mut noise = |share: f64| {
             let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();

@@ -90,7 +90,8 @@ pub struct Cycles {
     before: Option<State>,
     shape: Loop,
     place: f64,
-    /// Without a period: integrals of Q d delta and P |d delta| over blocks of equal time.
+    /// Integrals of Q d delta and P |d delta| over blocks of equal time, for tests without a
+    /// period.
     blocks: Vec<(f64, f64)>,
 }
 
@@ -106,14 +107,14 @@ pub struct State {
 }
 
 impl Cycle {
-    /// Largest |Q| over the mean P; `None` if the body was not pressed.
+    /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.
     pub fn peak_ratio(&self) -> Option<f64> {
         (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
     }
 }
 
 impl Cycles {
-    /// Time from which on friction is looked at (s).
+    /// Returns the time from which friction is measured (s).
     pub fn start(&self) -> f64 {
         match self.clock.period {
             Some(_) => self.clock.start,
@@ -122,13 +123,13 @@ impl Cycles {
         }
     }
 
-    /// Cycles of length `period` from `start` on; without a period the second half of the time from
-    /// `start` to `end` is one cycle.
+    /// Creates cycles of length `period` from `start` on; without a period the second half of the
+    /// time from `start` to `end` is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         Self::of(CycleClock::new(start, period, end), end)
     }
 
-    /// Cycles by a clock, of a run until `end` (s).
+    /// Creates cycles from a clock, for a run until `end` (s).
     pub fn of(clock: CycleClock, end: f64) -> Self {
         Self {
             clock,
@@ -147,8 +148,8 @@ impl Cycles {
         }
     }
 
-    /// Scatter of the friction coefficient over the later cycles; without a period over the
-    /// finished blocks.
+    /// Returns the scatter of the friction coefficient over the later cycles; without a period over
+    /// the finished blocks.
     pub fn scatter(&self) -> Option<Scatter> {
         if self.oscillates() {
             return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
@@ -163,7 +164,7 @@ impl Cycles {
         self.clock.number(time)
     }
 
-    /// Start and end of a cycle (s); `None` without cycles.
+    /// Returns start and end of a cycle (s); `None` without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
         self.clock.span(number)
     }
@@ -208,7 +209,7 @@ impl Cycles {
         self.pressure_path += sample.p * sample.slide.abs();
         self.pressure_time += sample.p * h;
         if self.clock.period.is_none() {
-            // The step belongs to the block that its middle lies in.
+            // The step belongs to the block that contains its middle.
             let share = (self.time + 0.5 * h) / (self.end - self.clock.start);
             let block = (share * BLOCKS as f64) as usize;
             if let Some(block) = self.blocks.get_mut(block) {
@@ -253,7 +254,7 @@ impl Cycles {
         cycle.complete = sample.time >= end - 1e-6 * h;
     }
 
-    /// The last complete cycle, or the last one if none is complete.
+    /// Returns the last complete cycle, or the last one if none is complete.
     pub fn last(&self) -> Option<&Cycle> {
         self.list
             .iter()
@@ -267,8 +268,8 @@ impl Cycles {
 mod tests {
     use super::*;
 
-    /// Two cycles of a sine at friction `mu`, with the lid rising and falling with the stroke;
-    /// `measured` is the ratio of the measured to the true force.
+    /// Returns two cycles of a sine at friction `mu`, with the lid rising and falling with the
+    /// stroke; `measured` is the ratio of the measured to the true force.
     fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
         let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
         let omega = std::f64::consts::TAU * f;
@@ -276,7 +277,8 @@ mod tests {
         let (mut balance, mut t) = (Balance::default(), 0.0);
         while t < 0.2 - 0.5 * h {
             let v = a * omega * (omega * (t + 0.5 * h)).cos();
-            // On slopes of `lift`, the tangential force gains what the normal force loses.
+            // On slopes of `lift`, the tangential force increases by what the normal force
+            // decreases.
             let q = mu * p * v.signum() + lift * p;
             let before = balance;
             balance.taken += mu * p * v.abs() * h;

@@ -1,4 +1,4 @@
-//! What a friction test says at its end.
+//! Results of a friction test at its end.
 
 use super::fretting;
 use super::friction::{Cycle, Cycles};
@@ -37,7 +37,7 @@ crate::described! {
 
 const NO_TEST: &str = "the case has no friction test (`friction`)";
 
-/// Adds what cases without a friction test lack.
+/// Marks the results that cases without a friction test do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Friction, Role::Detail);
     add(&Friction::default(), None, found);

@@ -1,5 +1,5 @@
-//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and what
-//! they say together.
+//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and their
+//! evaluation.
 
 use super::figures;
 use super::fretting;
@@ -28,7 +28,7 @@ pub struct FrictionTest {
     state: Followed,
 }
 
-/// What the test carries from step to step.
+/// State of the test carried from step to step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Followed {
     cycles: Cycles,
@@ -39,12 +39,12 @@ struct Followed {
     force: f64,
     /// Volume worn off first bodies (m^3; m^3/m).
     worn: f64,
-    /// Normal force times sliding distance, over the run and what it jumped over (N m; N).
+    /// Normal force times sliding distance, over the run and skipped cycles (N m; N).
     load_path: f64,
 }
 
 impl FrictionTest {
-    /// A test of a body with these cycles, from the current state on.
+    /// Creates a test of a body with these cycles, from the current state on.
     pub fn new(body: SlidingBody, cycles: Cycles, run: &dyn RunView) -> Self {
         Self {
             body,
@@ -61,7 +61,7 @@ impl FrictionTest {
         }
     }
 
-    /// What was cumulated so far.
+    /// Returns the cumulative quantities so far.
     fn cumulated(&self, run: &dyn RunView) -> State {
         State {
             balance: self.state.layer.balance(run),
@@ -70,7 +70,7 @@ impl FrictionTest {
         }
     }
 
-    /// Q, P and the slide of the last step.
+    /// Returns Q, P and the sliding distance of the last step.
     fn measure(&self, run: &dyn RunView) -> Sample {
         let (drive, normal) = run.rubbing(&self.body);
         Sample {
@@ -113,7 +113,7 @@ impl Observer for FrictionTest {
             after,
             damage_ratio(run),
         );
-        // The current cycle may stand for others, see the process of cycle jumps.
+        // The current cycle may represent several, see the process of cycle jumps.
         let number = state.cycles.number(run.time());
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
             cycle.jumped = run.cycle_multiplier() as u32 - 1;

@@ -19,7 +19,7 @@ use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
-/// What the observer carries from row to row.
+/// State of the observer carried from row to row.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct State {
     /// Lowest temperature at the start (K).
@@ -28,16 +28,17 @@ struct State {
     highest: f64,
     /// Residual of the account of heat over its scale.
     off: f64,
-    /// Heat that each first body had received at the last row (J; J/m in 2D), and its time (s).
+    /// Heat that each first body had received at the last row (J; J/m in 2D), and the time of that
+    /// row (s).
     received: Vec<f64>,
     time: f64,
-    /// Heat at contacts beside half-spaces.
+    /// Heat at contacts outside the range of half-spaces.
     shares: ContactShares,
-    /// The row that was given last, and its time: asked for again, it is the same.
+    /// The last row and its time: a second request for the same time gives the same row.
     row: Option<(f64, Vec<f64>)>,
 }
 
-/// Observes the heat of a run, and its electric circuit where it has one.
+/// Observes the heat of a run, and its electric circuit if there is one.
 #[derive(Debug)]
 pub struct HeatObserver {
     /// Names of the first bodies, in the order of [`Heat::first_bodies`].
@@ -47,7 +48,7 @@ pub struct HeatObserver {
 }
 
 impl HeatObserver {
-    /// From the current state on; `None` where no heat is computed.
+    /// Creates the observer from the current state; `None` where no heat is computed.
     pub fn of(run: &dyn RunView) -> Option<Self> {
         let (heat, state) = (run.heat()?, run.heat_state()?);
         let temperatures = || state.nodes.iter().map(|n| n.temperature);
@@ -87,7 +88,7 @@ impl HeatObserver {
             let circuit = &state.circuit;
             row.extend(match run.time() > heat.start {
                 true => [1.0 / circuit.conductance, circuit.voltage, circuit.current],
-                // Nothing is joined to the bodies yet.
+                // The bodies are not connected yet.
                 false => [f64::NAN; 3],
             });
         }
@@ -96,13 +97,14 @@ impl HeatObserver {
     }
 }
 
-/// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat
-/// capacities (K).
+/// Returns the highest temperature of grains and first bodies, and the mean temperature of the
+/// grains weighted by heat capacity (K).
 fn of_grains(run: &dyn RunView, heat: &Heat, state: &HeatState) -> [f64; 2] {
     let removed = run.bodies().removed;
     let grain = run.grain_flags();
     let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
-    // Meshes are seen once, with the first bodies, not with each body that touches for them.
+    // Meshes are included once, with the first bodies, not with each body that represents a
+    // contactor.
     for (_, nodes) in &heat.first_bodies {
         let temperatures = state.nodes[nodes.clone()].iter().map(|n| n.temperature);
         highest = temperatures.fold(highest, f64::max);
@@ -353,7 +355,7 @@ impl Observer for HeatObserver {
     }
 }
 
-/// Columns of the account of heat.
+/// Returns the columns of the account of heat.
 fn ledger_columns() -> Vec<Column> {
     let entries = HeatLedger::default().entries();
     let column = |(name, doc, _): (&str, &'static str, f64)| {

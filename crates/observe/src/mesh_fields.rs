@@ -1,6 +1,6 @@
 //! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line
-//! of explanation: inside a body of finite elements, and along the surface of every body that
-//! touches.
+//! of explanation: inside a body of finite elements, and on the contact surface of every deformable
+//! body.
 
 use super::tractions::{SurfaceState, Zone, signed};
 use fretwork_core::bodies::{DeformedMesh, von_mises};
@@ -8,7 +8,7 @@ use fretwork_core::unit::AREA;
 use fretwork_core::view::{RunView, SystemView};
 use nalgebra::Vector3;
 
-/// Where a field has values.
+/// Location of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
     /// Points of the mesh.
@@ -17,7 +17,7 @@ pub enum At {
     Cells,
 }
 
-/// A field on a mesh; `T` is what its values are taken from.
+/// A field on a mesh; `T` is the source of its values.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshField<T> {
     /// Name: a-z, 0-9 and _.
@@ -26,15 +26,15 @@ pub struct MeshField<T> {
     pub unit: &'static str,
     /// Explanation in one line.
     pub doc: &'static str,
-    /// Whether there is a value at each point or at each element.
+    /// Location of the values: points or elements.
     pub at: At,
-    /// Numbers per value.
+    /// Number of components per value.
     pub width: usize,
-    /// All values, one after the other.
+    /// Function that returns all values, one after the other.
     pub values: fn(&T) -> Vec<f64>,
 }
 
-/// A body with a mesh as it is now.
+/// Current state of a body with a mesh.
 #[derive(Clone, Debug)]
 pub struct BodyState {
     mesh: DeformedMesh<Vector3<f64>>,
@@ -42,7 +42,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// Takes the mesh and the velocities of a system; `None` if it has no mesh.
+    /// Returns mesh and velocities of a system; `None` if it has no mesh.
     pub fn of(system: &dyn SystemView) -> Option<Self> {
         let mesh = system.deformed_mesh()?;
         let mut velocity = system.mesh_velocity();
@@ -106,28 +106,28 @@ impl GrainsState {
         out
     }
 
-    /// Points at the start of the run, without load (m).
+    /// Returns the points at the start of the run, without load (m).
     pub fn start(&self) -> &[Vector3<f64>] {
         &self.start
     }
 
-    /// The D + 1 points of each element, one after the other.
+    /// Returns the D + 1 points of each element, one after the other.
     pub fn elements(&self) -> &[u32] {
         &self.mesh.elements
     }
 
-    /// Identities of the bodies, by point and by element.
+    /// Returns the identities of the bodies, by point and by element.
     pub fn bodies(&self) -> &[Vec<i64>; 2] {
         &self.bodies
     }
 }
 
-/// Components of vectors, three numbers per vector.
+/// Returns the components of vectors, three numbers per vector.
 pub fn triples(vectors: &[Vector3<f64>]) -> Vec<f64> {
     vectors.iter().flatten().copied().collect()
 }
 
-/// A mesh that deforms, with the velocity of its points.
+/// A deformable mesh, with the velocities of its points.
 trait Meshed {
     fn mesh(&self) -> &DeformedMesh<Vector3<f64>>;
     fn velocity(&self) -> &[Vector3<f64>];
@@ -151,7 +151,7 @@ impl Meshed for GrainsState {
     }
 }
 
-/// Fields of bodies of finite elements as well as of deformable grains.
+/// Returns the fields that bodies of finite elements and deformable grains have in common.
 fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
     [
         MeshField {
@@ -181,7 +181,7 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
     ]
 }
 
-/// Fields inside a body of finite elements.
+/// Returns the fields inside a body of finite elements.
 pub fn of_bodies() -> [MeshField<BodyState>; 4] {
     let [velocity, stress, von_mises] = of_meshes();
     let displacement = MeshField {
@@ -195,7 +195,7 @@ pub fn of_bodies() -> [MeshField<BodyState>; 4] {
     [displacement, velocity, stress, von_mises]
 }
 
-/// Fields inside grains that deform.
+/// Returns the fields inside deformable grains.
 pub fn of_grains() -> [MeshField<GrainsState>; 5] {
     let [velocity, stress, von_mises] = of_meshes();
     let displacement = MeshField {
@@ -227,7 +227,7 @@ fn in_vtk_order(stress: &[[f64; 6]]) -> Vec<f64> {
     stress.iter().flat_map(order).collect()
 }
 
-/// Fields along a surface that touches.
+/// Returns the fields on a contact surface.
 pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
     [
         MeshField {

@@ -8,7 +8,7 @@ pub struct Series<T> {
     points: Vec<T>,
     /// The last point, if it is not among the points.
     last: Option<T>,
-    /// One of `each` points is stored.
+    /// Interval of stored points: one of `each` points is stored.
     each: u64,
     seen: u64,
 }
@@ -25,7 +25,7 @@ impl<T> Default for Series<T> {
 }
 
 impl<T> Series<T> {
-    /// Most points; half as many remain at least.
+    /// Largest number of points; at least half of them remain.
     pub const MAX: usize = 2048;
 
     /// Adds a point.
@@ -44,12 +44,12 @@ impl<T> Series<T> {
             });
             self.each *= 2;
         }
-        // After thinning an even number of stored points this one is still one of every `each`.
+        // After thinning an even number of stored points, this point is still one of every `each`.
         self.points.push(point);
         self.last = None;
     }
 
-    /// The stored points and the last one.
+    /// Iterates over the stored points and the last one.
     pub fn points(&self) -> impl Iterator<Item = &T> {
         self.points.iter().chain(&self.last)
     }

@@ -3,8 +3,8 @@
 use fretwork_core::view::RunView;
 use nalgebra::Vector3;
 
-/// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume,
-/// positive in compression; row: axis of the force, column: axis of the branch.
+/// Returns the Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided
+/// by a volume, positive in compression; row: axis of the force, column: axis of the branch.
 ///
 /// f is the mean force of the last step; l points from a grain's centre to the contact: to the face
 /// of a wall, or to the middle of the gap to another grain. At rest the stress equals that on the

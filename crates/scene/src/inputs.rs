@@ -5,15 +5,15 @@ use crate::source::{Group, Kind, Node, Shape, Source, Tree, fields_at};
 
 mod key_units;
 
-/// Where the value of an input comes from.
+/// Origin of the value of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum From {
     /// The case gives it.
     Given,
     /// The default of the schema.
     Default,
-    /// The case does not give it, and without it there is nothing of the kind, or the program
-    /// chooses.
+    /// The case does not give it; there is then nothing of the kind, or the program chooses the
+    /// value.
     NotSet,
 }
 
@@ -30,12 +30,12 @@ pub struct Input {
     pub from: From,
 }
 
-/// A list with more elements than this is one input.
+/// Number of elements above which a list is one input.
 const LONG: usize = 60;
-/// Characters of a value that are kept.
+/// Number of characters of a value that are kept.
 const WIDE: usize = 160;
 
-/// The inputs of a case in the order of the schema, from its text with `--set` applied.
+/// Returns the inputs of a case in the order of the schema, from its text with `--set` applied.
 ///
 /// # Errors
 /// The text is no case; in a sentence.
@@ -70,8 +70,8 @@ pub fn of(text: &str) -> Result<Vec<Input>, String> {
     Ok(walk.out)
 }
 
-/// Where the walk is: the components of the path, these with the names of variants between them,
-/// and the variants at its end.
+/// Current position of the walk: the components of the path, the same with the names of variants
+/// between them, and the variants at its end.
 #[derive(Default)]
 struct Place {
     path: Vec<String>,
@@ -143,7 +143,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Fields of a struct or entries of a map; then the fields that are not set.
+    /// Visits the fields of a struct or the entries of a map, then the fields that are not set.
     fn fields(&mut self, group: &Group, at: &mut Place) {
         if !at.variants.is_empty() {
             let closing = ")".repeat(at.variants.len() - 1);

@@ -31,8 +31,8 @@ pub struct Laws {
 /// Builds the interfaces.
 ///
 /// # Errors
-/// Unknown names, values out of range and laws that do not fit their slot, each at its place in the
-/// case.
+/// Fails for unknown names, values out of range and laws that do not fit their slot, each at its
+/// place in the case.
 pub fn build(
     case: &Case,
     source: &Source,
@@ -105,7 +105,7 @@ pub fn build(
     Ok(out)
 }
 
-/// Indices of the two materials of an interface.
+/// Returns the indices of the two materials of an interface.
 fn material_pair(spec: &InterfaceSpec, materials: &[&String]) -> Result<[u16; 2], ValidationError> {
     let mut pair = [0u16; 2];
     for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
@@ -123,15 +123,16 @@ fn material_pair(spec: &InterfaceSpec, materials: &[&String]) -> Result<[u16; 2]
     Ok(pair)
 }
 
-/// Kind and name of the laws of an interface.
+/// Iterates over kind and name of the laws of an interface.
 fn laws_of(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
     spec.laws.iter().map(|(kind, name)| (kind, name.as_str()))
 }
 
-/// Pairs of materials without an interface that are listed one by one.
+/// Number of pairs of materials without an interface up to which they are listed one by one.
 const LISTED: usize = 50;
 
-/// Pairs of materials in the scene without an interface: their bodies pass through each other.
+/// Returns the pairs of materials in the scene without an interface: their bodies pass through each
+/// other.
 pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     let materials: Vec<&String> = case.materials.keys().collect();
     let mut bodies = vec![BTreeSet::new(); materials.len()];
@@ -140,7 +141,7 @@ pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     let surfaces = s.surfaces().into_iter().map(|f| (f.material, f.body));
     for (material, body) in balls.chain(pieces).chain(surfaces) {
         let of = &mut bodies[usize::from(material)];
-        // Contact within a material needs two bodies of it.
+        // A contact within a material needs two bodies of it.
         if of.len() < 2 {
             of.insert(body);
         }
@@ -173,7 +174,7 @@ pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     out
 }
 
-/// Rejects pins that are malformed, or of laws that the case does not use.
+/// Rejects pins that are malformed, or for laws that the case does not use.
 fn check_pins(case: &Case) -> Result<(), ValidationError> {
     let wanted = case.interfaces.iter().flat_map(laws_of);
     let used: Vec<String> = wanted
@@ -200,7 +201,7 @@ fn check_pins(case: &Case) -> Result<(), ValidationError> {
 #[derive(Default)]
 struct FromFile {
     parameters: InterfaceParameters,
-    /// The file, and the path of the parameters in it.
+    /// File, and path of the parameters in it.
     place: Option<(Source, &'static str)>,
 }
 
@@ -268,7 +269,7 @@ impl FromFile {
         })
     }
 
-    /// The place of an error in these parameters.
+    /// Returns the location of an error in these parameters.
     fn locate(&self, fault: ValidationError) -> Option<InputError> {
         let (file, place) = self.place.as_ref()?;
         Some(match *place {
@@ -336,7 +337,7 @@ fn build_interface(
         .map_err(unfit)
 }
 
-/// Resolves the parameters of a law and has it check them.
+/// Resolves the parameters of a law, and checks them by the law.
 fn load_law(
     case: &Case,
     plugin: Plugin,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A number and where it comes from.
+/// A number and its source.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
@@ -69,7 +69,7 @@ impl<'de> Deserialize<'de> for Given {
         struct WithUnit {
             value: f64,
             unit: String,
-            /// Accepted for the reader of the file; not used.
+            /// Accepted for human readers; not used.
             #[serde(default, rename = "source")]
             _source: Option<String>,
         }
@@ -108,12 +108,12 @@ pub struct Material {
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
-    /// Further properties: laws with parameters of their names followed by `_1` or `_2` take them,
-    /// the others are for the record.
+    /// Further properties: laws use those that equal the names of their parameters without `_1` or
+    /// `_2`; the others are documentation.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
-    /// Parameters of laws between its grains, and between them and other bodies: an interface takes
-    /// them by `parameters_from: "NAME"`, with the name that the case gives the material.
+    /// Parameters of laws between its grains, and between them and other bodies: an interface uses
+    /// them by `parameters_from: "NAME"`, with the name of the material in the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub laws: Option<InterfaceParameters>,
 }
@@ -132,7 +132,7 @@ const PROPERTIES: [(&str, &str); 10] = [
     ("resistivity", "ohm m"),
 ];
 
-/// Whether a name is that of a property with a known unit.
+/// Returns whether a name is that of a property with a known unit.
 pub fn is_property(name: &str) -> bool {
     PROPERTIES.iter().any(|p| p.0 == name)
 }
@@ -141,7 +141,8 @@ impl Material {
     /// The density (kg/m^3); also checks the units of all properties.
     ///
     /// # Errors
-    /// The density is not positive, or a unit is unknown or of another dimension: with its path.
+    /// The density is not positive, or a unit is unknown or of another dimension; the error gives
+    /// the path.
     pub fn density(&self) -> Result<f64, ValidationError> {
         let density = self
             .density
@@ -170,7 +171,7 @@ impl Material {
 }
 
 /// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a
-/// field with the word of its kind.
+/// field with the keyword of its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InterfaceParameters {
     /// Description.
@@ -228,10 +229,10 @@ impl Serialize for InterfaceParameters {
 }
 
 impl InterfaceParameters {
-    /// Checks all units, also those of laws that the case does not use.
+    /// Checks all units, including those of laws that the case does not use.
     ///
     /// # Errors
-    /// The first invalid unit, with its path.
+    /// Returns the first invalid unit, with its path.
     pub fn units(&self) -> Result<(), ValidationError> {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
@@ -250,7 +251,7 @@ impl InterfaceParameters {
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
-    /// Texts that the program gives itself, before all files.
+    /// Texts that the program supplies, which precede all files.
     own: BTreeMap<String, String>,
 }
 
@@ -278,10 +279,10 @@ impl MaterialLibrary {
         self
     }
 
-    /// Reads `NAME.ron`.
+    /// Reads the file `NAME.ron`.
     ///
     /// # Errors
-    /// `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
+    /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
@@ -342,12 +343,12 @@ impl MaterialLibrary {
     }
 }
 
-/// A name for which there is no file.
+/// A name without a file.
 #[derive(Clone, Debug)]
 pub struct Missing {
     /// The nearest name.
     pub nearest: Option<String>,
-    /// All names.
+    /// All available names.
     pub available: String,
     /// The folders that were searched.
     pub looked: String,

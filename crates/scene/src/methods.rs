@@ -1,4 +1,4 @@
-//! Which solvers support a case, determined before it runs.
+//! Solvers that support a case, determined before it runs.
 
 use fretwork_core::laws::demand::{LawRequirements, Requirement};
 use fretwork_core::solve::local::solver::Method;
@@ -8,11 +8,11 @@ use fretwork_core::view::RunView;
 /// Whether a solver supports a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Service {
-    /// The solver supports it.
+    /// The solver supports the case.
     Serves,
     /// The solver may fail in a step: the interface and what it may require.
     May(String),
-    /// The solver does not support it: the interface that rules it out, and why.
+    /// The solver does not support the case: the interface that it does not support, and why.
     Refuses(String),
 }
 
@@ -27,7 +27,8 @@ impl Demands {
         let balls = simulation.balls().into_iter().map(|b| b.radius);
         let radii = balls.chain(pieces);
         let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
-        // Two grains of the smallest radius, and the largest grain against a flat body.
+        // The trial radii are two grains of the smallest radius, and the largest grain on a flat
+        // body.
         let radii = if high > 0.0 {
             [0.5 * low, high]
         } else {
@@ -40,7 +41,7 @@ impl Demands {
         Self(simulation.laws().iter().map(ask).collect())
     }
 
-    /// Names and requirements of the interfaces.
+    /// Iterates over names and requirements of the interfaces.
     pub fn each(&self) -> impl Iterator<Item = (&str, Option<&LawRequirements>)> {
         self.0.iter().map(|(name, d)| (name.as_str(), d.as_ref()))
     }
@@ -57,7 +58,7 @@ impl Demands {
         };
         let mut may = None;
         for (name, demand) in &self.0 {
-            // The reason of a refusal, and how certain it is.
+            // These are the reason of a refusal, and its certainty.
             let (requirement, reason) = match demand {
                 Some(demand) => {
                     let (rotation, cohesion) = (demand.rotation, demand.cohesion);

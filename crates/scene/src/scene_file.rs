@@ -32,7 +32,7 @@ type Rectangle = Vec<f64>;
 /// Reads a scene file of the given dimension.
 ///
 /// # Errors
-/// An error at the line that is wrong.
+/// Returns an error at the invalid line.
 pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
     let source = Source::read(path)?;
     let text = source.text();

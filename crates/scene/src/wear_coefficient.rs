@@ -1,19 +1,19 @@
-//! Wear coefficients from Archard's K and the hardness of the materials, so that another steel
-//! wears differently.
+//! Wear coefficients from Archard's K and the hardness of the materials, so that the coefficient
+//! follows the material.
 //!
-//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K` in
-//! its place. V = K F s/H (J. F. Archard 1953), H the hardness of the softer material, so k = K/H;
-//! in sliding with friction E_d = mu F s, so alpha = K/(mu H) (S. Fouvry, P. Kapsa, L. Vincent
-//! 1996: alpha = k/mu).
+//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K`
+//! instead. V = K F s/H (J. F. Archard 1953) with the hardness H of the softer material, hence k =
+//! K/H; in sliding with friction E_d = mu F s, hence alpha = K/(mu H) (S. Fouvry, P. Kapsa, L.
+//! Vincent 1996: alpha = k/mu).
 
 use super::material::Sourced;
 use super::quantity;
 use super::units;
 
-/// Name under which a pure number is given.
+/// Name of the pure number.
 pub const NAME: &str = "K";
 
-/// Parameters of wear laws that follow from it, with their units.
+/// Parameters of wear laws that are derived from K, with their units.
 const DERIVED: [(&str, &str); 2] = [("k", "1/Pa"), ("alpha", "m^3/J")];
 
 /// A coefficient that was derived.
@@ -27,7 +27,7 @@ pub struct WearCoefficient {
     pub parameter: String,
     /// Value in `unit`.
     pub value: f64,
-    /// `1/Pa` or `m^3/J`.
+    /// Unit, `1/Pa` or `m^3/J`.
     pub unit: String,
     /// Archard's coefficient, a pure number.
     pub dimensionless: f64,
@@ -35,14 +35,14 @@ pub struct WearCoefficient {
     pub hardness: f64,
     /// The softer material, by its name in the case.
     pub softer: String,
-    /// The friction coefficient of the contact law, where it was used.
+    /// Friction coefficient of the contact law, where it was used.
     pub friction: Option<f64>,
-    /// All of this as a sentence.
+    /// Derivation as a sentence.
     pub derivation: String,
 }
 
-/// The parameter that follows from `K`, if the law with these parameters (name, unit) has one and
-/// none that is named `K` itself.
+/// Returns the parameter that follows from `K`, if the law with these parameters (name, unit) has
+/// one, and no parameter named `K`.
 pub fn parameter<'a>(
     mut fields: impl Iterator<Item = (&'a str, &'a str)> + Clone,
 ) -> Option<(&'static str, &'static str)> {
@@ -62,7 +62,7 @@ pub struct Place<'a> {
     pub interface: &'a str,
     /// Wear law.
     pub law: &'a str,
-    /// The parameter and its unit, of [`parameter`].
+    /// The parameter and its unit, as [`parameter`] returns them.
     pub parameter: (&'a str, &'a str),
 }
 
@@ -70,8 +70,8 @@ pub struct Place<'a> {
 /// contact law.
 ///
 /// # Errors
-/// A sentence: no material has a hardness, its scale is no pressure, or there is no friction
-/// coefficient where it is needed.
+/// Returns a sentence: no material has a hardness, its scale is no pressure, or a required friction
+/// coefficient is missing.
 pub fn derive(
     place: Place<'_>,
     dimensionless: f64,
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(got.softer, "rail");
         assert!((got.hardness - 260.0 * 9.80665e6).abs() < 1.0);
         assert!((got.value / (3e-4 / 2.549_729e9) - 1.0).abs() < 1e-9);
-        // Twice the hardness, half the wear.
+        // Twice the hardness gives half the wear.
         let hard = hardness(520.0, "HV 10");
         let sides = [("rail", Some(&hard)), ("oxide", Some(&oxide))];
         let half = derive(ARCHARD, 3e-4, &sides, None).unwrap().value;

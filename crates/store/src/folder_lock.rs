@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The file by which a run owns the folder of its results.
+/// Name of the file by which a run owns the folder of its results.
 pub const RUN_LOCK: &str = "results.lock";
 
-/// Why a folder cannot be owned or read.
+/// Reason why a folder cannot be owned or read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LockError {
-    /// Somebody else owns it.
+    /// Another process owns the folder.
     #[error("another run is writing in {}; wait for its end, or name another folder", folder.display())]
     Held {
         /// The folder.
@@ -27,7 +27,7 @@ pub enum LockError {
     Lost {
         /// The folder.
         folder: PathBuf,
-        /// The file in it by which it was owned.
+        /// Name of the file by which the folder was owned.
         mark: String,
     },
     /// The lock file cannot be created.
@@ -40,13 +40,13 @@ pub enum LockError {
     },
 }
 
-/// A lock on a folder, until it and its clones are dropped; the system releases it when the process
-/// ends, however it ends.
+/// A lock on a folder. It is held until it and its clones are dropped; the system releases it when
+/// the process ends, even by a crash.
 #[derive(Clone, Debug)]
 pub struct FolderLock {
     /// The locked file, kept open; `None` for a reader that found no file to lock.
     _file: Option<Arc<File>>,
-    /// The file by which the folder is owned, and its number when it was locked; `None` for a
+    /// The file by which the folder is owned, and its number when it was locked. `None` for a
     /// reader, and on systems without file numbers.
     owned: Option<(PathBuf, Place)>,
 }
@@ -70,7 +70,7 @@ impl FolderLock {
     /// and left there.
     ///
     /// # Errors
-    /// Somebody owns it or reads it, or the file cannot be made.
+    /// Another process owns or reads the folder, or the file cannot be created.
     pub fn own(folder: &Path, mark: &str) -> Result<Self, LockError> {
         let path = folder.join(mark);
         let file = File::options().create(true).append(true).open(&path);
@@ -81,7 +81,7 @@ impl FolderLock {
         held(folder, patiently(|| file.try_lock()))?;
         let by_handle = file.metadata().ok().and_then(|data| place(&data));
         let by_name = std::fs::metadata(&path).ok().and_then(|data| place(&data));
-        // Some systems give a file a new number whenever it is asked for.
+        // On some systems the number of a file differs between two queries.
         let owned = by_handle.filter(|_| by_handle == by_name);
         Ok(Self {
             _file: Some(Arc::new(file)),
@@ -89,8 +89,8 @@ impl FolderLock {
         })
     }
 
-    /// Checks that the folder is still the one that was owned, before something is written there by
-    /// its name.
+    /// Checks that the folder is still the one that was owned, before a file is written in it by
+    /// name.
     ///
     /// # Errors
     /// The folder, or the file by which it is owned, was removed, moved or replaced.
@@ -114,13 +114,13 @@ impl FolderLock {
         })
     }
 
-    /// Locks a folder for reading, along with other readers, so that nobody can own it meanwhile.
+    /// Locks a folder for reading. Other readers may lock it too, but nobody can own it meanwhile.
     ///
     /// # Errors
-    /// Somebody owns it.
+    /// Another process owns the folder.
     pub fn read(folder: &Path, mark: &str) -> Result<Self, LockError> {
-        // Without the file no run has written there; a file that this user must not read cannot be
-        // locked, and the folder is read without protection.
+        // Without the file no run has written in the folder. A file that this user must not read
+        // cannot be locked, and the folder is then read without protection.
         let file = File::open(folder.join(mark)).ok();
         if let Some(file) = &file {
             held(folder, patiently(|| file.try_lock_shared()))?;
@@ -132,8 +132,8 @@ impl FolderLock {
     }
 }
 
-/// Tries a lock again for a tenth of a second: a process that this program just starts holds copies
-/// of its files, and so a lock that was released, until it runs its own program.
+/// Tries a lock repeatedly for a tenth of a second. A process that this program has just started
+/// holds copies of its open files, and thereby a released lock, until it executes its own program.
 fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
     for _ in 0..10 {
         match lock() {
@@ -144,7 +144,7 @@ fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockE
     lock()
 }
 
-/// Returns an error if somebody else holds the lock. Other errors come from file systems without
+/// Returns an error if another process holds the lock. Other errors come from file systems without
 /// locks, where there is no protection, and are ignored.
 fn held(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
     match locked {
@@ -165,7 +165,7 @@ mod tests {
         std::fs::create_dir_all(&folder).unwrap();
         let read = || FolderLock::read(&folder, "a.lock");
         let own = || FolderLock::own(&folder, "a.lock");
-        // No run ever wrote into the folder.
+        // No run ever wrote in the folder.
         drop(read().unwrap());
         let owner = own().unwrap();
         for refused in [own(), read()] {

@@ -94,8 +94,8 @@ macro_rules! export {
     };
 }
 
-/// The table of a law, a static named `TABLE`, without the exported entry function: for programs
-/// with built-in laws.
+/// Makes the table of a law, a static named `TABLE`, without the exported entry function: for
+/// programs with built-in laws.
 #[macro_export]
 macro_rules! plugin_table {
     (contact $law:ty) => {
@@ -163,5 +163,5 @@ macro_rules! plugin_table {
 /// A schema that can be stored in a static.
 pub struct Fields<const N: usize>(pub [fretwork_abi::FwField; N]);
 
-// SAFETY: never written; its pointers are to static text.
+// SAFETY: the schema is never written; its pointers refer to static text.
 unsafe impl<const N: usize> Sync for Fields<N> {}

@@ -15,7 +15,7 @@ use std::mem::offset_of;
 use std::ptr::null;
 
 parameters! {
-    /// Does what a test asks for.
+    /// A law that does what a test requests.
     pub struct Toy {
         mode: "" = 0.0, 0.0, 9.0, "0 plain, 1 not a number, 2 panics, 3 refused";
     }
@@ -72,7 +72,7 @@ fn zero() -> FwBatch {
     batch
 }
 
-/// Calls with a message of `capacity` bytes; gives status, contact, text.
+/// Calls a function with a message of `capacity` bytes; returns status, contact and text.
 fn call(capacity: usize, body: impl FnOnce(*mut FwMessage) -> i32) -> (i32, i64, String) {
     let mut text = vec![1 as c_char; capacity];
     let mut message = FwMessage {
@@ -105,7 +105,7 @@ fn null_columns_read_as_zero_and_outputs_may_be_null() {
     assert_eq!((answer.0, mu), (STATUS_OK, [1.0, 2.0]));
 }
 
-/// An older host: what lies beyond its size is not read, whatever the bytes there are.
+/// With an older host, what is beyond its size is not read, whatever the bytes are.
 #[test]
 fn nothing_is_read_beyond_the_size() {
     let (gap, wild, mode, mut mu) = ([1.0], [7.0], [0.0], [9.0]);
@@ -126,7 +126,7 @@ fn nothing_is_read_beyond_the_size() {
     batch.size = size_of::<FwBatch>();
     batch.parameters = null();
     assert_eq!(run(&batch), STATUS_ERROR);
-    // SAFETY: null is what is tested.
+    // SAFETY: the null pointer is what is tested.
     let none = call(80, |m| unsafe { border::contact_prepare::<Toy>(null(), m) });
     assert_eq!(none.0, STATUS_ERROR);
 }
@@ -169,7 +169,7 @@ fn infinite_state_is_a_fault() {
 fn a_refusal_is_cut_between_characters() {
     let mode = 3.0;
     let run = |capacity| {
-        // SAFETY: one value, one parameter.
+        // SAFETY: there is one value for the one parameter.
         call(capacity, |m| unsafe {
             border::validate::<Toy>(&raw const mode, m)
         })

@@ -44,7 +44,7 @@ impl Features {
         self.say("dimensions", Some(text));
         let turning = s.bodies().inverse_inertia.iter().filter(|i| **i > 0.0);
         let turning = turning.count();
-        // Only a contact whose force does not pass through the centre exerts a moment.
+        // A contact exerts a moment only if its force does not pass through the centre.
         let levers = has_levers(s);
         let turned = levers || asks(s, |d| d.friction) || s.laws().iter().any(Interface::opens);
         let text = format!("{turning} bodies turn freely");
@@ -62,7 +62,7 @@ impl Features {
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
     }
 
-    /// Changes during the run, and external loads.
+    /// Adds changes during the run, and external loads.
     fn programme(&mut self, case: &Case, s: &dyn RunView) {
         let phases = case.phases.iter().map(|p| match &p.repeat {
             None => p.name.clone(),
@@ -297,7 +297,7 @@ fn has_levers(s: &dyn RunView) -> bool {
     levers
 }
 
-/// Bytes per grain and per contact, from the types that store them.
+/// Returns the bytes per grain and per contact, from the types that store them.
 pub fn memory(s: &dyn RunView) -> [String; 2] {
     let memory = s.memory_use();
     let (kept, line) = (memory.grain, memory.solver_body);

@@ -13,8 +13,8 @@ impl Recorder<'_> {
             self.problems.1 += 1;
             return Ok(());
         };
-        // The FCLIB error adds impulses to velocities; scaled to similar size neither hides the
-        // other.
+        // The FCLIB error adds impulses to velocities. They are scaled to similar size, so that
+        // neither hides the other.
         let scale = problem.normalise();
         let folder = self.out.join("fclib");
         let path = folder.join(format!("step-{step:08}.hdf5"));

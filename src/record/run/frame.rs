@@ -62,7 +62,7 @@ impl Recorder<'_> {
         frames.join(format!("{name}_{step:08}.png"))
     }
 
-    /// Text of the band over a picture during the run, as far as known.
+    /// Returns the text of the band over a picture during the run, from what is known so far.
     fn notice(&mut self) -> Option<String> {
         self.observers.before_step(self.simulation.view());
         let mut now = Summary {

@@ -5,8 +5,8 @@ use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
 
-/// The laws of a run, each listed once, and whether each passes certification with its parameters.
-/// A damage law is tested with the cohesion law beside it if that passes itself, other laws with
+/// Returns the laws of a run, each listed once, and whether each passes certification with its
+/// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
 /// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut known = Known {
@@ -42,7 +42,7 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     stamps
 }
 
-/// Where partners for tests of laws are found.
+/// Returns the search path with the partners for tests of laws.
 #[cfg(feature = "laws")]
 fn partners() -> SearchPath {
     crate::shipped::search_path()
@@ -53,7 +53,7 @@ fn partners() -> SearchPath {
     SearchPath::new(&[])
 }
 
-/// The libraries that a law links to, each with its SHA-256.
+/// Returns the libraries to which a law is linked, each with its SHA-256.
 fn links(p: &Plugin) -> Vec<String> {
     let links = p.links.iter();
     links
@@ -100,8 +100,8 @@ impl Known {
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
         }
-        // A foreign law may end the process in which it is tested, or corrupt its memory. The
-        // shipped laws are certified by the project's tests.
+        // A foreign law may end the process in which it is tested, or corrupt its memory, so it is
+        // tested in a separate process. The shipped laws are certified by the project's tests.
         let own = |p: &Plugin| self.path.is_own(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
@@ -117,7 +117,7 @@ impl Known {
     }
 }
 
-/// Density of the first bodies, for wear expressed as mass.
+/// Returns the density of the first bodies, for wear expressed as mass.
 pub(super) fn density_of(loaded: &Loaded, any: bool) -> f64 {
     let material = loaded.case.bodies.first().map(|b| b.material.as_str());
     match (any, material) {

@@ -1,18 +1,18 @@
-//! Pairs of grains that a scene may make, counted before any pair is stored.
+//! Numbers of pairs of grains in a scene, counted before any pair is stored.
 
 use super::Parts;
 use crate::contact::detect::{LawTable, centre};
 use crate::geometry::grid::{self, Balls};
 use crate::geometry::space::{Space, VectorLike};
 
-/// A place where more grains come near each other than can be.
+/// A place where more grains are close to each other than is possible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pile {
-    /// A body there.
+    /// Index of a body at this place.
     pub body: u32,
-    /// Its place (m).
+    /// Position (m).
     pub at: [f64; 3],
-    /// Number of shapes there.
+    /// Number of shapes at this place.
     pub count: usize,
     /// Size of the grid cell in which they are counted (m).
     pub size: f64,

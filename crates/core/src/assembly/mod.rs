@@ -25,16 +25,16 @@ use crate::laws::Interface;
 use crate::view::AnySimulation;
 use std::fmt::Debug;
 
-/// Where a body is and how it moves at the start.
+/// Position and motion of a body at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Position (m).
     pub position: [f64; 3],
     /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
     pub rotation: Option<[f64; 4]>,
-    /// Velocity (m/s); in 2D that along x and y counts.
+    /// Velocity (m/s); in 2D only the components along x and y are used.
     pub velocity: [f64; 3],
-    /// Angular velocity (rad/s); in 2D that about the third axis counts.
+    /// Angular velocity (rad/s); in 2D only the component about the third axis is used.
     pub spin: [f64; 3],
 }
 
@@ -46,9 +46,9 @@ pub type Filling = (u16, f64);
 pub enum Inertia {
     /// Equal about all axes (kg m^2; kg m in 2D).
     Uniform(f64),
-    /// The mean over the axes of that of the shapes, at a density (kg/m^3).
+    /// Mean over the axes of the moments of inertia of the shapes, at a density (kg/m^3).
     Mean(f64),
-    /// That of the shapes, at a density (kg/m^3).
+    /// Moments of inertia of the shapes, at a density (kg/m^3).
     OfShapes(f64),
 }
 
@@ -70,15 +70,15 @@ pub struct Block {
     pub start: Start,
     /// Volume (m^3; m^2 in 2D).
     pub volume: f64,
-    /// Moment of inertia about its centre of mass at unit density (m^5; m^4 in 2D); that of the
-    /// part where it is not given.
+    /// Moment of inertia about the centre of mass at unit density (m^5; m^4 in 2D); `None` for that
+    /// of the part.
     pub inertia: Option<f64>,
     /// Position of the part's centre relative to the centre of mass (m).
     pub offset: [f64; 3],
 }
 
 impl Block {
-    /// The block of a part that does not move relative to it, at rest.
+    /// Returns a block of one part at rest.
     pub fn of(part: AnyPart) -> Self {
         Self {
             start: Start {
@@ -93,7 +93,7 @@ impl Block {
     }
 }
 
-/// A scene that is being put together.
+/// A scene while it is assembled.
 pub trait Assembly: Debug + Send {
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
@@ -121,7 +121,7 @@ pub trait Assembly: Debug + Send {
     fn add_ball(&mut self, radius: f64, of: Filling, start: &Start) -> u32;
     /// Adds a fixed plane as a first body, with its outward unit normal.
     fn add_wall(&mut self, name: String, at: [f64; 3], normal: [f64; 3], material: u16);
-    /// Adds a body of several shapes, where `start` is that of the frame of the shapes; returns its
+    /// Adds a body of several shapes, where `start` gives the frame of the shapes; returns its
     /// index.
     fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32;
     /// Adds a grain of one convex part; returns its index.
@@ -131,7 +131,7 @@ pub trait Assembly: Debug + Send {
     /// (m). Returns its index.
     ///
     /// # Errors
-    /// A position that is not finite, or an orientation that is not a rotation.
+    /// The position is not finite, or the orientation is not a rotation.
     fn add_weighed(
         &mut self,
         mass: f64,
@@ -172,8 +172,8 @@ pub trait Assembly: Debug + Send {
 
     /// The bodies and shapes in their dimension.
     fn parts(&mut self) -> AnyParts<'_>;
-    /// Builds the simulation; also returns the index of the surface that each dynamical system has
-    /// added, if any.
+    /// Builds the simulation; also returns, for each dynamical system, the index of the surface
+    /// that it has added, if any.
     fn into_simulation(
         self: Box<Self>,
         laws: Vec<Interface>,
@@ -183,7 +183,7 @@ pub trait Assembly: Debug + Send {
     ) -> (AnySimulation, Vec<Option<usize>>);
 }
 
-/// An empty scene of so many dimensions.
+/// Returns an empty scene in a dimension.
 pub fn empty(dimension: usize, periodic: Periodic) -> Box<dyn Assembly> {
     match dimension {
         2 => Box::new(Parts::<Dim2>::new(periodic)),
@@ -191,13 +191,14 @@ pub fn empty(dimension: usize, periodic: Periodic) -> Box<dyn Assembly> {
     }
 }
 
-/// A plane whose open side is that of its outward unit normal; figures show it up to a distance
-/// (m).
+/// Returns a plane whose outward unit normal points to its open side; figures show it up to a
+/// distance (m).
 pub fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
     parts::half_space(dimension, normal, shown)
 }
 
-/// The vector turned by an orientation in numbers; `None` if they are not those of a rotation.
+/// Returns the vector rotated by an orientation given in numbers; `None` if these are not a
+/// rotation.
 pub fn turned(dimension: usize, rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
     match dimension {
         2 => parts::turned::<Dim2>(rotation, v),

@@ -37,13 +37,13 @@ pub enum AnyParts<'a> {
     Space(&'a mut Parts<Dim3>),
 }
 
-/// Rotates a vector by the numbers of a rotation; `None` if they are not one.
+/// Rotates a vector by a rotation given in numbers; `None` if these are not a rotation.
 pub(super) fn turned<S: Space>(rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
     let rotation = S::rotation_from(rotation)?;
     Some(S::rotate(&rotation, &S::Vector::from_slice(&v)).padded())
 }
 
-/// A half-space with this outward normal, drawn over a distance `shown` (m).
+/// Returns a half-space with this outward normal, drawn over a distance `shown` (m).
 pub(super) fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
     match dimension {
         2 => AnySurface::Plane(Box::new(plane::<Dim2>(normal, shown))),
@@ -59,7 +59,7 @@ fn plane<S: Space>(normal: [f64; 3], shown: f64) -> HalfSpace<S> {
 }
 
 impl<S: Space> Parts<S> {
-    /// No bodies, in a periodic cell.
+    /// Creates a scene without bodies, in a periodic cell.
     pub fn new(periodic: Periodic) -> Self {
         Self {
             bodies: Bodies::default(),

@@ -14,7 +14,7 @@ fn scene(dimension: usize) -> Box<dyn Assembly> {
     empty(dimension, Periodic { period: [None; 3] })
 }
 
-/// Two balls of one radius, a metre left and right of a place.
+/// Returns two balls of one radius, one metre to the left and right of a position.
 fn dumbbell(radius: f64) -> AnyUnion {
     let mut union = AnyUnion::default();
     union.add_ball([-1.0, 0.0, 0.0], radius);

@@ -18,14 +18,14 @@ struct Face {
 /// The body or holder on which a servo acts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Pushed {
-    /// A driven body: its index among these, and that of the degree of freedom.
+    /// A driven body: index among the driven bodies, and index of the degree of freedom.
     Body(usize, usize),
     /// The holder of a part of a deformable body.
     Holder(HeldAxis),
 }
 
 impl Pushed {
-    /// Index of the degree of freedom.
+    /// Returns the index of the degree of freedom.
     fn dof(&self) -> usize {
         match self {
             Self::Body(_, dof) => *dof,
@@ -37,7 +37,7 @@ impl Pushed {
 /// A drive that depends on the area between walls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
-    /// The body or holder on which it acts.
+    /// Body or holder on which the servo acts.
     pushed: Pushed,
     /// Index of the stage, 0 where there are no stages.
     drive: usize,
@@ -48,7 +48,7 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// Returns the body or holder on which it acts.
+    /// Returns the body or holder on which the servo acts.
     pub(crate) fn pushed(&self) -> &Pushed {
         &self.pushed
     }

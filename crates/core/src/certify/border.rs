@@ -25,8 +25,8 @@ pub const CHECKS: [(&str, Check); 8] = [
 /// The checks that depend on parameters; the others depend on the code only.
 pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
-/// Moves a batch of `n` contacts along walks, each used by several contacts if there are fewer than
-/// `n`; returns the bits of all outputs. `turn` changes which contact takes which walk.
+/// Moves a batch of `n` contacts along walks, each walk used by several contacts if there are fewer
+/// than `n`; returns the bits of all outputs. `turn` changes which contact takes which walk.
 pub fn run_batch(
     bench: &mut Bench,
     walks: &[Vec<Motion>],

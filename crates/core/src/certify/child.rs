@@ -104,7 +104,7 @@ pub fn certify_in_child(
         return Err(untested(why));
     }
     if let End::Early(why) = output.end {
-        // No check had begun: it is not the law that ended it.
+        // No check had begun, so that the law did not end the process.
         if begun.is_empty() {
             return Err(untested(why));
         }
@@ -114,7 +114,7 @@ pub fn certify_in_child(
     Ok(Certificate::of(plugin, lines))
 }
 
-/// In the child process: certifies the requested law, which may be linked into the program.
+/// Certifies the requested law in the child process; it may be linked into the program.
 ///
 /// # Errors
 /// The request cannot be read.

@@ -9,8 +9,8 @@ use crate::laws::static_memory::{StaticMemory, Unseen};
 
 const CHECK: &str = "static memory";
 
-/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a
-/// buffer that grows on demand and is kept changes its address.
+/// Number of contacts per batch in each round. Each round has a larger batch than all before, so
+/// that a buffer that grows on demand and is kept changes its address.
 const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
 
 /// Compares the static memory before and after calls with other numbers, parameters and batch

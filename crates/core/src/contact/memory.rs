@@ -49,24 +49,25 @@ impl<S: Space> Bond<S> {
     }
 }
 
-/// How far bonds opened or slid in a step, over all steps of all bonds while they were intact.
+/// How far intact bonds opened or slid per step, over all steps and bonds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Slides {
     /// Number of steps of bonds.
     pub steps: u64,
-    /// Sum of the slides (m).
+    /// Sum of the displacements (m).
     pub sum: f64,
-    /// Largest slide (m).
+    /// Largest displacement (m).
     pub largest: f64,
-    /// Sum of the slides, each times the energy that damage released in the step (J m; J in 2D).
+    /// Sum of the displacements, each times the energy that damage released in the step (J m; J in
+    /// 2D).
     pub by_released: f64,
-    /// Sum of these energies (J; J/m in 2D).
+    /// Sum of the released energies (J; J/m in 2D).
     pub released: f64,
 }
 
 impl Slides {
-    /// Adds a step of a bond: its slide (m), and the energy that damage released in it (J; J/m in
-    /// 2D).
+    /// Adds one step of a bond: its displacement (m), and the energy that damage released (J; J/m
+    /// in 2D).
     #[inline]
     pub fn add(&mut self, slide: f64, released: f64) {
         self.steps += 1;
@@ -76,12 +77,12 @@ impl Slides {
         self.released += released;
     }
 
-    /// Mean slide (m).
+    /// Returns the mean displacement (m).
     pub fn mean(&self) -> Option<f64> {
         (self.steps > 0).then(|| self.sum / self.steps as f64)
     }
 
-    /// Mean slide in which energy was released, weighted by that energy (m).
+    /// Returns the mean displacement weighted by released energy (m).
     pub fn mean_by_released(&self) -> Option<f64> {
         (self.released > 0.0).then(|| self.by_released / self.released)
     }
@@ -176,7 +177,7 @@ impl<S: Space> Memory<S> {
         self.made += 1;
     }
 
-    /// The slots that are not in use.
+    /// Returns the slots that are not in use.
     pub(super) fn free_slots(&self) -> &[u32] {
         &self.free
     }
@@ -229,7 +230,7 @@ mod tests {
         assert_eq!(Slides::default().mean(), None);
     }
 
-    /// A slot that is not in use is the next one that is given, with a new bond.
+    /// A released slot is the next one that is allocated, with a new bond.
     #[test]
     fn slots_are_used_again() {
         let mut network =

@@ -1,6 +1,6 @@
-//! Hierarchy of bounding boxes of the segments of a chain: the segments near a place are found
-//! without a search over all. Successive segments of a chain
-//! are near each other, so that nothing has to be sorted.
+//! Hierarchy of bounding boxes of the segments of a chain, to find the segments near a position
+//! without testing all. Successive segments of a chain are near each other, so that no sorting is
+//! needed.
 
 use nalgebra::Vector2;
 
@@ -19,7 +19,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The box of all places within `reach` (m) of one along the axes.
+    /// Returns the box of all positions within `reach` (m) of a centre along the axes.
     pub fn around(centre: &V, reach: f64) -> Self {
         Self {
             low: V::new(centre.x - reach, centre.y - reach),
@@ -59,7 +59,7 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// Takes new boxes of the segments, in the order of the chain.
+    /// Sets the boxes of the segments, in the order of the chain.
     pub fn set(&mut self, segments: impl Iterator<Item = Window>) {
         if self.levels.is_empty() {
             self.levels.push(Vec::new());
@@ -82,7 +82,7 @@ impl Boxes {
     }
 
     /// Calls `each` with the segments whose box meets a window, in order, until it returns false;
-    /// returns whether it did not.
+    /// returns whether it never did.
     pub fn visit(&self, window: &Window, each: &mut impl FnMut(usize) -> bool) -> bool {
         let top = self.levels.len();
         top == 0 || self.descend(top - 1, 0, window, each)

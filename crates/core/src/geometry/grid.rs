@@ -11,7 +11,7 @@ use super::space::VectorLike;
 use crate::threads;
 use std::ops::Range;
 
-/// Balls per task.
+/// Number of balls per task.
 const CHUNK: usize = 1024;
 /// Approximate time for a ball (ns).
 const COST: f64 = 300.0;
@@ -72,7 +72,7 @@ pub fn pairs<V: VectorLike>(
 /// A cell with many balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DenseCell {
-    /// One of them.
+    /// Index of a ball.
     pub ball: u32,
     /// Number of balls
     pub count: usize,

@@ -19,17 +19,17 @@ pub struct Mesh {
     pub(super) points: Vec<V>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) tree: RTree<Placed>,
-    /// The triangles on the other side of the edges of each, from its first corner on.
+    /// Triangles adjacent to each triangle at its edges, starting at its first corner.
     beside: Vec<[Option<u32>; 3]>,
-    /// Whether its points move.
+    /// Whether the points move.
     pub(super) deforms: bool,
-    /// Whether it encloses a grain.
+    /// Whether the surface encloses a grain.
     closed: bool,
-    /// Wear, if it can recede.
+    /// Wear data, if the surface can recede.
     pub(super) worn: Option<MeshWear>,
 }
 
-/// Share of an edge of a grain within which a place is at its end.
+/// Fraction of an edge of a grain within which a position counts as its end.
 const AT_CORNER: f64 = 1e-11;
 
 /// Reason why triangles do not form a surface.
@@ -139,14 +139,14 @@ impl Mesh {
         })
     }
 
-    /// Lets it recede along z, if all of its triangles face up, or all down.
+    /// Permits the surface to recede along z, if all of its triangles face up, or all down.
     #[must_use]
     pub fn with_wear(mut self) -> Self {
         self.worn = MeshWear::new(&self.points, &self.triangles);
         self
     }
 
-    /// Builds the bounding boxes of the triangles where these are now.
+    /// Builds the bounding boxes of the triangles at their current positions.
     pub(super) fn build_boxes(&mut self) {
         self.tree = boxes(&self.points, &self.triangles);
     }
@@ -161,8 +161,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Returns the facets at a vertex on the border, of which one is known; `None` for a vertex
-    /// inside.
+    /// Returns the facets at a vertex on the border, given one of them; `None` for a vertex inside.
     fn around(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
         let (mut found, mut next, mut border) = (vec![known], 0, false);
         while next < found.len() {
@@ -199,7 +198,7 @@ impl Surface<Dim3> for Mesh {
     fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
-        // Grains may stand on each other with corners in line.
+        // Grains may stand on each other with their corners aligned.
         let at_corner = if self.closed { AT_CORNER } else { 0.0 };
         facets::closest_points_within(&near, centre, reach, at_corner, out);
     }

@@ -1,20 +1,20 @@
 //! Quadrature over the overlap of two segments of a line, or of two triangles of a plane, exact for
 //! quadratic functions.
 
-/// A place in the coordinates along a contact (m); in the plane, where that is a line, the second
-/// is zero.
+/// A position in the coordinates along a contact (m); in the plane, where that is a line, the
+/// second coordinate is zero.
 pub type Along = [f64; 2];
 
 /// Maximum number of corners of the overlap of two triangles; clipping by a side adds one.
 const CORNERS: usize = 9;
 
-/// Twice the area of a triangle, positive where its corners are anticlockwise (m^2).
+/// Returns twice the area of a triangle, positive where its corners are anticlockwise (m^2).
 fn twice_area(a: Along, b: Along, c: Along) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Length of a segment (m), positive where it goes up, or area of a triangle (m^2), positive where
-/// it is anticlockwise.
+/// Returns the length of a segment (m), positive where it goes up, or the area of a triangle (m^2),
+/// positive where it is anticlockwise.
 pub fn signed_size(corners: &[Along]) -> f64 {
     match corners {
         [a, b] => b[0] - a[0],
@@ -23,8 +23,8 @@ pub fn signed_size(corners: &[Along]) -> f64 {
     }
 }
 
-/// The shape functions of a segment or triangle at a place; those of the third corner are zero on a
-/// segment.
+/// Returns the shape functions of a segment or triangle at a position; that of the third corner is
+/// zero on a segment.
 pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
     match corners {
         [a, b] => {
@@ -40,8 +40,8 @@ pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
     }
 }
 
-/// Calls a function with places and weights (m or m^2) whose sum over a quadratic function is its
-/// integral over the overlap of two segments or two triangles of any orientations.
+/// Calls a function with positions and weights (m or m^2) whose sum over a quadratic function is
+/// its integral over the overlap of two segments or two triangles of any orientations.
 pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64)) {
     match (one, other) {
         ([a, b], [c, d]) => {
@@ -72,7 +72,7 @@ pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64
     }
 }
 
-/// The convex polygon that two triangles have in common, and the number of its corners.
+/// Returns the convex polygon that two triangles have in common, and the number of its corners.
 ///
 /// Source: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974)
 /// 32.

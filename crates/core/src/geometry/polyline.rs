@@ -8,15 +8,16 @@ use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Distance from a vertex, relative to its segment, up to which it is one of rounding.
+/// Distance from a vertex, relative to its segment, that counts as rounding.
 const AT_VERTEX: f64 = 1e-9;
 
-/// How far below the line of the last segment of a surface that deforms a point beyond its end may
-/// be and still lie in it, as a fraction of the segment: more than loads press it in. What is lower
-/// is beside the surface.
+/// Depth below the line of the last segment of a deformable surface at which a point beyond its end
+/// still counts as inside, as a fraction of the segment: larger than the penetration by loads. A
+/// deeper point is beside the surface.
 const BELOW: f64 = 0.25;
 
-/// Points of a closed chain are one if they are closer than this share of the search distance.
+/// Points of a closed chain count as one if they are closer than this fraction of the search
+/// distance.
 const SEAM: f64 = 1e-9;
 
 /// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it
@@ -30,13 +31,13 @@ const MARGIN: f64 = 0.25;
 pub struct Polyline {
     points: Vec<V>,
     period: Option<f64>,
-    /// Whether it is closed: its last point is its first.
+    /// Whether the chain is closed: its last point is its first.
     closed: bool,
     boxes: Boxes,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<ProfileWear>,
-    /// Where the points were when the boxes were built, and the margin of these (m); `None` unless
-    /// the profile deforms.
+    /// Positions of the points when the boxes were built, and the margin of the boxes (m); `None`
+    /// unless the profile deforms.
     deformed: Option<(Vec<V>, f64)>,
 }
 
@@ -246,8 +247,8 @@ impl Surface<Dim2> for Polyline {
             let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
             let length = from.norm();
             if length < reach && nearest {
-                // At the vertex itself, and behind one that is no valley, a direction from the
-                // vertex means nothing.
+                // At the vertex itself, and behind a vertex that is not a valley, the direction
+                // from the vertex is meaningless.
                 let of = |v: V| V::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
                 let level = from.dot(&mean) >= -BELOW * along.norm();

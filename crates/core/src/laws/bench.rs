@@ -31,7 +31,7 @@ pub struct State {
     pub variables: Vec<f64>,
 }
 
-/// Prescribed motion over a step, and the temperatures of the bodies.
+/// Prescribed motion in a step, and the temperatures of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Opening at its end (m).
@@ -53,7 +53,7 @@ pub const ROOM: f64 = 293.15;
 pub const STEEL: [f64; 2] = [50.0, 2e-7];
 
 impl Default for Motion {
-    /// At rest, closed, without a load, at room temperature.
+    /// The contact is at rest, closed, without a load, at room temperature.
     fn default() -> Self {
         Self {
             opening: [0.0; 3],
@@ -106,7 +106,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A bench for contacts of a reduced radius (m) and the area that goes with it.
+    /// Creates a bench for contacts of a reduced radius (m) and of the area that the interface
+    /// derives from it.
     pub fn new(law: Interface, dimension: u32, radius: f64) -> Self {
         let area = law.area.area(dimension as usize, radius);
         Self {
@@ -120,15 +121,15 @@ impl Bench {
         }
     }
 
-    /// Contacts of this area (m^2; m in 2D) instead of the one that goes with the radius.
+    /// Gives the contacts this area (m^2; m in 2D) instead of the one derived from the radius.
     #[must_use]
     pub fn of_area(mut self, area: f64) -> Self {
         self.area = area;
         self
     }
 
-    /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm
-    /// m); of steel by default.
+    /// Gives the pair this thermal conductivity (W/(m K)) and electrical resistivity (ohm m); the
+    /// default is steel.
     #[must_use]
     pub fn of_material(mut self, material: [f64; 2]) -> Self {
         self.material = material;
@@ -168,7 +169,7 @@ impl Bench {
         &self.declared_damage
     }
 
-    /// Area of its contacts (m^2).
+    /// Returns the area of the contacts (m^2).
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -389,8 +390,8 @@ impl Bench {
         let on_contacts = self.law.loaded().filter(|l| !self.law.acts_on_bonds(l));
         let acting: Vec<Loaded> = on_contacts.cloned().collect();
         for loaded in acting {
-            // Laws whose answers are taken at the start of a step move their variables; the others
-            // see the slip.
+            // Laws whose outputs are used at the start of a step update their variables here; the
+            // others receive the slip.
             let answers_first = loaded.plugin.kind.spec().functions.contains(&Call::Prepare);
             if answers_first && loaded.variables() == 0 {
                 continue;
@@ -417,7 +418,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Damage, slip and friction work at the end of a step.
+    /// Computes damage, slip and friction work at the end of a step.
     fn slide(&mut self, motions: &[Motion], info: &StepInfo, damage: &[f64], answers: &[Answer]) {
         let c = &mut self.batch.columns;
         c.damage.copy_from_slice(damage);

@@ -12,14 +12,14 @@ use super::kind::Kind;
 /// Whether a law requires a feature, from never to always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Requirement {
-    /// It never does.
+    /// The law never requires it.
     #[default]
     Never,
-    /// It did not in the trials, but the law decides at run time.
+    /// The law did not require it in the trials, but decides at run time.
     Unseen,
-    /// It did in some of the trials.
+    /// The law required it in some of the trials.
     Sometimes,
-    /// It does in every closed contact.
+    /// The law requires it in every closed contact.
     Always,
 }
 

@@ -17,7 +17,7 @@ pub enum LawError {
         /// The problem and its remedy.
         reason: String,
     },
-    /// The library was opened, and others came with it than its file says.
+    /// Opening the library loaded other libraries than its file names.
     #[error("cannot use the plugin {}: {reason}", path.display())]
     Unexamined {
         /// The library.
@@ -25,7 +25,7 @@ pub enum LawError {
         /// The problem and its remedy.
         reason: String,
     },
-    /// The law could not be tested, for a reason that is not the law's.
+    /// The law could not be tested, for a reason outside the law.
     #[error("the {kind} law `{name}` could not be tested: {reason}")]
     Untested {
         /// Kind.
@@ -72,13 +72,13 @@ pub enum LawError {
     /// The laws of an interface are incompatible.
     #[error("{reason}")]
     Pairing {
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A kind that cannot be registered.
     #[error("{reason}")]
     Kind {
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A call failed.
@@ -94,7 +94,7 @@ pub enum LawError {
         contact: Option<usize>,
         /// The law's message.
         reason: String,
-        /// Whether it asks for a smaller time step (`FW_REDUCE_STEP`).
+        /// Whether the law asks for a smaller time step (`FW_REDUCE_STEP`).
         smaller_step: bool,
     },
     /// A function of the law wrote beyond the end of a column.
@@ -143,7 +143,7 @@ pub enum LawError {
         /// Accepted range.
         range: Range,
     },
-    /// A function of the law wrote to memory it must not write, or returned different results for
+    /// A function of the law wrote to memory outside its outputs, or returned different results for
     /// equal inputs.
     #[error("the {kind} law `{name}` {what} in {call:?}; fix the law before using it again")]
     Trespass {
@@ -215,7 +215,8 @@ impl LawError {
         }
     }
 
-    /// Whether an output was out of its range, also as the source of the error of an interface.
+    /// Returns whether an output was out of its range, also where this is the source of the error
+    /// of an interface.
     pub(super) fn out_of_range(&self) -> bool {
         match self {
             Self::At { source, .. } => source.out_of_range(),

@@ -13,14 +13,14 @@ use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::threads::{chunk_size, map_chunks, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
-/// About what it takes to look whether a contact is new (ns).
+/// Approximate time to check whether a contact is new (ns).
 const LOOK: f64 = 4.0;
 
 impl LawEvaluator {
-    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's
-    /// bond rule, and by compression time (healing).
+    /// Allocates internal variables of contacts and forms bonds: by the case's bond rule, and by
+    /// compression time (healing).
     ///
     /// # Errors
     /// The law's error in `initialise`.
@@ -62,9 +62,9 @@ impl LawEvaluator {
                 let near = law.bonds_within.is_none_or(|most| contact.gap <= most);
                 let may = !intact && !contact.vertex_contact && !contact.beyond && near;
                 let bonds = may && (due || healed);
-                // The rest position of a new bond: a tension-only bond starts without tension over
-                // its gap; one that also pushes yields until the gap is closed. Penetration is
-                // included in both, so that a bond is formed without stress.
+                // The rest position of a new bond: a bond in tension only starts without tension
+                // over its gap; one that also pushes yields until the gap is closed. Penetration is
+                // included in both cases, so that a bond is formed without stress.
                 let open = law.bond_opening == BondOpening::Gap && contact.gap > 0.0;
                 let filled = if law.tension_only() && !open {
                     contact.gap
@@ -103,8 +103,8 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// The contacts of each interface that may become bonds, and those without memory that have
-    /// internal variables.
+    /// Returns, for each interface, the contacts that may become bonds, and the contacts without
+    /// memory that need internal variables.
     fn find_concerned<S: Space>(
         &self,
         laws: &[Interface],

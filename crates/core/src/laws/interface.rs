@@ -22,7 +22,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// A plugin with these values of its parameters, in the order of its schema.
+    /// Creates a law with these values of its parameters, in the order of its schema.
     pub fn new(plugin: Plugin, parameters: Vec<f64>) -> Self {
         Self {
             plugin: Arc::new(plugin),
@@ -31,7 +31,7 @@ impl Loaded {
         }
     }
 
-    /// A plugin with the defaults of its parameters.
+    /// Creates a law with the defaults of its parameters.
     pub fn with_defaults(plugin: Plugin) -> Self {
         let parameters = plugin.parameters.iter().map(|p| p.default).collect();
         Self::new(plugin, parameters)
@@ -47,7 +47,7 @@ impl Loaded {
         self.plugin.flags & flag != 0
     }
 
-    /// Returns whether it reads temperatures, or says what heat flows.
+    /// Returns whether the law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
         self.plugin.kind == Kind::TRANSPORT || self.has(FLAG_TEMPERATURE)
     }
@@ -68,17 +68,18 @@ pub enum BondRule {
 /// Opening at which a bond begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BondOpening {
-    /// Zero: cement fills the gap, and the bodies cannot come nearer while the bond holds.
+    /// The opening is zero: cement fills the gap, and the bodies cannot approach while the bond
+    /// holds.
     #[default]
     Filled,
-    /// The gap, where there is one: the bond pulls from the start, with the energy of this opening,
-    /// and the bodies are free to close it. LMGC90's cohesive laws do so.
+    /// The opening is the gap, if it is positive: the bond pulls from the start, with the energy of
+    /// this opening, and the bodies are free to close it, as with the cohesive laws of LMGC90.
     Gap,
 }
 
 /// Area on which tractions act, from the radius r of a contact, r1 r2/(r1 + r2) of two balls:
-/// `factor` r times unit depth in 2D, `factor` pi r^2 in 3D. Points of surfaces that deform and
-/// facing sides and faces have the r whose area is theirs, see
+/// `factor` r times unit depth in 2D, `factor` pi r^2 in 3D. For points of surfaces that deform and
+/// for facing sides and faces, r follows from their area, see
 /// [`crate::geometry::shape::point_radius`]. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
@@ -111,7 +112,7 @@ pub struct Interface {
     pub name: String,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Largest gap at which a bond is made (m); the alert distance without one.
+    /// Largest gap at which a bond is made (m); `None` for the alert distance.
     pub bonds_within: Option<f64>,
     /// Opening at which a bond begins.
     pub bond_opening: BondOpening,
@@ -120,9 +121,9 @@ pub struct Interface {
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
-    /// One law a kind, sorted by kind; a contact law first.
+    /// Laws, at most one of each kind, sorted by kind; the contact law comes first.
     slots: Vec<Loaded>,
-    /// What the cohesion law has, by flags.
+    /// Flags of the cohesion law.
     cohesion_flags: u64,
 }
 
@@ -131,7 +132,7 @@ impl Interface {
     /// the laws make bonds, no healing, and the default area.
     ///
     /// # Errors
-    /// No contact law, two laws of one kind, or slots that do not fit together.
+    /// There is no contact law, two laws have the same kind, or slots do not fit together.
     pub fn new(
         name: impl Into<String>,
         laws: impl IntoIterator<Item = Loaded>,
@@ -150,10 +151,10 @@ impl Interface {
         Ok(law)
     }
 
-    /// Returns the interface with another law, in the place of that of its kind where there is one.
+    /// Returns the interface with another law, which replaces the law of its kind if there is one.
     ///
     /// # Errors
-    /// Slots that do not fit together.
+    /// The slots do not fit together.
     pub fn with(mut self, law: Loaded) -> Result<Self, LawError> {
         self.slots.retain(|l| l.plugin.kind != law.plugin.kind);
         self.slots.push(law);
@@ -161,10 +162,10 @@ impl Interface {
         Ok(self)
     }
 
-    /// Returns the interface without the laws that a test refuses.
+    /// Returns the interface with only the laws that `keep` accepts.
     ///
     /// # Errors
-    /// No contact law is left, or slots that do not fit together.
+    /// No contact law is left, or the slots do not fit together.
     pub fn retain(mut self, keep: impl FnMut(&Loaded) -> bool) -> Result<Self, LawError> {
         self.slots.retain(keep);
         self.arrange()?;
@@ -174,7 +175,7 @@ impl Interface {
     /// Returns the interface with another rule for when bonds are made, and a healing time (s).
     ///
     /// # Errors
-    /// Healing without a cohesion law that forms bonds in contact.
+    /// Healing needs a cohesion law that forms bonds in contact.
     pub fn with_bonds(mut self, bonds: BondRule, healing: Option<f64>) -> Result<Self, LawError> {
         (self.bonds, self.healing) = (bonds, healing);
         self.check()?;
@@ -233,29 +234,29 @@ impl Interface {
         &self.slots[0]
     }
 
-    /// Traction against opening.
+    /// Returns the cohesion law: traction against opening.
     pub fn cohesion(&self) -> Option<&Loaded> {
         self.law(Kind::COHESION)
     }
 
-    /// Growth of damage.
+    /// Returns the damage law.
     pub fn damage(&self) -> Option<&Loaded> {
         self.law(Kind::DAMAGE)
     }
 
-    /// What is removed.
+    /// Returns the wear law.
     pub fn wear(&self) -> Option<&Loaded> {
         self.law(Kind::WEAR)
     }
 
-    /// The parameters of the law of a kind, in the order of its schema.
+    /// Returns the parameters of the law of a kind, in the order of its schema.
     pub fn parameters_mut(&mut self, kind: Kind) -> Option<&mut Vec<f64>> {
         let mut slots = self.slots.iter_mut();
         let found = slots.find(|l| l.plugin.kind == kind);
         found.map(|l| &mut l.parameters)
     }
 
-    /// The laws, in the order in which they are evaluated.
+    /// Iterates over the laws, in the order in which they are evaluated.
     pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
         self.slots.iter()
     }
@@ -325,12 +326,12 @@ impl Interface {
         self.cohesion_flags & FLAG_TENSION_ONLY != 0
     }
 
-    /// Returns whether a law reads temperatures, or says what heat flows.
+    /// Returns whether a law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
         self.loaded().any(Loaded::reads_temperatures)
     }
 
-    /// What carries heat and current.
+    /// Returns the transport law: conductances for heat and current.
     pub fn transport(&self) -> Option<&Loaded> {
         self.law(Kind::TRANSPORT)
     }
@@ -351,8 +352,8 @@ mod tests {
     use super::*;
     use crate::laws::sample_laws::{bond, growing, interface, sticky};
 
-    /// Laws of 0, 1 and 1 variables, given in another order: the columns of each begin where those
-    /// of the law before it end.
+    /// Laws of 0, 1 and 1 variables are given in another order: the columns of each law begin after
+    /// those of the law before it.
     #[test]
     fn variables_of_laws_follow_each_other() {
         let law = interface([growing(), sticky()]);

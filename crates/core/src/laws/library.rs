@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// The codes of kinds in words: those of the plugin interface, and those registered beside them.
+/// Describes the codes of kinds: those of the plugin interface, and registered ones.
 fn known_codes() -> String {
     let more = Kind::all()
         .into_iter()
@@ -33,7 +33,7 @@ pub struct Plugin {
     pub kind: Kind,
     /// Name used in cases.
     pub name: String,
-    /// Its own version.
+    /// Version of the law.
     pub version: String,
     /// One-line description.
     pub doc: String,
@@ -57,21 +57,21 @@ pub struct Plugin {
     pub built_in: bool,
     pub(super) table: abi::FwPlugin,
     pub(super) label: watch::Label,
-    /// Shared by all clones.
+    /// Records, shared by all clones, of what the law changed.
     pub(super) disturbed: Arc<Disturbed>,
 }
 
 // SAFETY: the table is read only, and the ABI requires every function to be callable from any
 // thread at any time (pure, no globals).
 unsafe impl Send for Plugin {}
-// SAFETY: as above.
+// SAFETY: the reasons for `Send` apply.
 unsafe impl Sync for Plugin {}
 
 impl Plugin {
     /// Opens a library and performs all checks possible before the first call.
     ///
     /// # Errors
-    /// A sentence that names the file and the problem.
+    /// Returns a sentence that names the file and the problem.
     pub fn open(path: &Path) -> Result<Self, LawError> {
         Self::open_pinned(path, None)
     }
@@ -80,7 +80,7 @@ impl Plugin {
     /// runs.
     ///
     /// # Errors
-    /// Those of [`Self::open`], and [`LawError::Pinned`].
+    /// Returns the errors of [`Self::open`], and [`LawError::Pinned`].
     pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),
@@ -114,8 +114,8 @@ impl Plugin {
                     with_cause(&e)
                 ))
             })?;
-            // SAFETY: the ABI defines the type of this symbol, of which it is known in addition
-            // that it may unwind; a library with another type violates it.
+            // SAFETY: the ABI defines the type of this symbol; only the permission to unwind is
+            // added. A library with another type violates the ABI.
             let table = unsafe {
                 let entry = library
                     .get::<EntryFunction>(abi::ENTRY_SYMBOL)
@@ -194,7 +194,7 @@ impl Plugin {
             // SAFETY: count and array belong to one table.
             parameters: unsafe { fields(table.parameters, table.n_parameters, "parameter") }
                 .map_err(&refuse)?,
-            // SAFETY: as above.
+            // SAFETY: count and array belong to one table.
             variables: unsafe { fields(table.variables, table.n_variables, "variable") }
                 .map_err(&refuse)?,
             path: path.to_owned(),
@@ -271,8 +271,8 @@ impl Plugin {
         function.is_some()
     }
 
-    /// When the law left another control of floating point (rounding, subnormal numbers) to its
-    /// caller, which puts its own back: while its library was loaded, or in a call.
+    /// Returns whether the law changed the floating-point control (rounding, subnormal numbers),
+    /// which the caller restores: while its library was loaded, or in a call.
     pub fn disturbs_floating_point(&self) -> Option<&'static str> {
         if self.disturbed.calling.load(Ordering::Relaxed) {
             return Some("in a call");
@@ -295,7 +295,7 @@ impl Plugin {
 /// The entry of a library, which may unwind.
 type EntryFunction = unsafe extern "C-unwind" fn() -> *const abi::FwPlugin;
 
-/// An error with what the system says of it.
+/// Formats an error with the cause that the system gives.
 fn with_cause(error: &dyn std::error::Error) -> String {
     let text = error.to_string();
     match error.source() {
@@ -307,19 +307,19 @@ fn with_cause(error: &dyn std::error::Error) -> String {
 #[cfg(unix)]
 unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
     use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-    // SAFETY: see the caller.
+    // SAFETY: the caller opens the library under the conditions of `open`.
     unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL).map(Into::into) }
 }
 
 #[cfg(not(unix))]
 unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
-    // SAFETY: see the caller.
+    // SAFETY: the caller opens the library under the conditions of `open`.
     unsafe { libloading::Library::new(path) }
 }
 
-/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is
-/// unchanged. The trial checks that opening returns, and brings no other libraries than were
-/// examined; other errors are reported later, when the parent opens it.
+/// Opens the requested libraries one by one in the child process, each only if its SHA-256 is
+/// unchanged. The trial checks that opening returns, and that it loads only the examined libraries;
+/// the parent reports other errors when it opens the library.
 ///
 /// # Errors
 /// The request cannot be read.
@@ -330,7 +330,7 @@ pub fn try_libraries() -> Result<(), String> {
         send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
                 Err(LawError::Pinned { .. }) => json!(loading::CHANGED),
-                // Its code does not get into the process that requested the trial.
+                // The code of the library is not loaded into the process that requested the trial.
                 Err(LawError::Unexamined { reason, .. }) => json!(reason),
                 _ => Value::Null,
             },

@@ -1,4 +1,4 @@
-//! How laws are named, and the folders of their libraries.
+//! Names of laws, and the folders of their libraries.
 
 /// Environment variable with additional folders.
 pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";

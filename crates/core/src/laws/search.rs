@@ -8,7 +8,7 @@ pub use super::names::{VARIABLE, name_is_valid};
 use super::{loading, trust};
 use std::path::{Path, PathBuf};
 
-/// Folders in which plugins are looked for, in order.
+/// Folders in which plugins are searched, in order.
 #[derive(Clone, Debug)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
@@ -82,7 +82,7 @@ impl SearchPath {
     /// its library. A library therefore cannot replace a built-in law.
     ///
     /// # Errors
-    /// No such law (with the most similar name), or an unusable library.
+    /// There is no such law (the error gives the most similar name), or its library is unusable.
     pub fn find(&self, kind: Kind, name: &str) -> Result<Plugin, LawError> {
         self.find_pinned(kind, name, None)
     }
@@ -90,7 +90,8 @@ impl SearchPath {
     /// Finds a law as [`Self::find`] does, in a library with a required SHA-256 (in hexadecimal).
     ///
     /// # Errors
-    /// Those of [`Self::find`]; and a different SHA-256, before any code of the library runs.
+    /// Returns the errors of [`Self::find`], and an error for a different SHA-256 before any code
+    /// of the library runs.
     pub fn find_pinned(
         &self,
         kind: Kind,
@@ -141,7 +142,7 @@ impl SearchPath {
     /// Opens a law listed by [`SearchPath::laws`].
     ///
     /// # Errors
-    /// The reason why it cannot be used.
+    /// Returns the reason why the law cannot be used.
     pub fn open_law(&self, kind: Kind, name: &str, place: &Place) -> Result<Plugin, LawError> {
         match place {
             Place::Library(path) => self.open(path),
@@ -163,8 +164,8 @@ impl SearchPath {
         loading::try_loading(&libraries);
     }
 
-    /// Returns whether a law belongs to the program itself, so that whoever can change it can
-    /// change the program.
+    /// Returns whether a law belongs to the program itself: whoever can change the law can then
+    /// change the program anyway.
     pub fn is_own(&self, plugin: &Plugin) -> bool {
         plugin.built_in || (self.own(&plugin.path) && self.doubt(&plugin.path).is_none())
     }
@@ -174,7 +175,7 @@ impl SearchPath {
         folder.is_some_and(|p| self.folders[..self.beside].iter().any(|f| f == p))
     }
 
-    /// Returns why a library should not be opened, if there is a reason.
+    /// Returns the reason why a library should not be opened, if there is one.
     fn doubt(&self, library: &Path) -> Option<String> {
         if self.trusting {
             None
@@ -188,7 +189,7 @@ impl SearchPath {
     /// Opens a library, unless others may write to it or to its folder.
     ///
     /// # Errors
-    /// Why it is not opened, or cannot be used.
+    /// Returns the reason why the library is not opened, or cannot be used.
     pub fn open(&self, path: &Path) -> Result<Plugin, LawError> {
         self.open_pinned(path, None)
     }
@@ -201,8 +202,8 @@ impl SearchPath {
         Plugin::open_pinned(path, pin)
     }
 
-    /// Lists all laws by the names under which they are found, unopened and sorted: libraries by
-    /// their file names (with `_` as `-`), and built-in laws.
+    /// Lists all laws by the names under which they are found, sorted and without opening them:
+    /// libraries by their file names (with `_` as `-`), and built-in laws.
     pub fn laws(&self) -> Vec<(Kind, String, Place)> {
         let mut out: Vec<(Kind, String, Place)> = Vec::new();
         let mut add = |kind: Kind, name: String, place: Place| {
@@ -291,13 +292,13 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
         .strip_prefix("fretwork_")?;
     Kind::all().into_iter().find_map(|kind| {
         let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
-        // File names of laws contain no dash; cargo's names with a hash do.
+        // File names of laws contain no dash; the names that cargo gives with a hash do.
         (name_is_valid(name) && !name.contains('-')).then(|| (kind, name.replace('_', "-")))
     })
 }
 
-/// Returns the folders that belong to the program: its own, and the one that an installation has
-/// for laws.
+/// Returns the folders that belong to the program: the folder of its file, and the folder for laws
+/// of an installation.
 fn beside_program() -> Vec<PathBuf> {
     let Ok(program) = crate::program::file() else {
         return Vec::new();

@@ -72,7 +72,7 @@ impl StaticMemory {
     /// Locates the static memory of a law.
     ///
     /// # Errors
-    /// Always, on this system.
+    /// It always fails on this system.
     pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
         Err(match plugin.built_in {
             true => Unseen::BuiltIn,
@@ -154,8 +154,8 @@ mod tests {
 
     static KEPT: AtomicU64 = AtomicU64::new(0);
 
-    /// What a law's library keeps in a static variable is seen: here the library is the program of
-    /// the tests.
+    /// A change of a static variable in a law's library is detected; here the library is the test
+    /// program.
     #[test]
     fn what_is_stored_in_a_static_variable_is_seen() {
         let mut plugin = (*bond().plugin).clone();
@@ -163,7 +163,7 @@ mod tests {
         plugin.built_in = false;
         let memory = StaticMemory::of(&plugin).unwrap();
         let holds = |value: u64| {
-            // Nothing else reads it, so that the compiler might leave it out.
+            // Nothing else reads the variable, so that the compiler might remove it.
             std::hint::black_box(&KEPT).store(value, Ordering::Relaxed);
             let bytes = memory.read().unwrap();
             bytes.windows(8).any(|word| *word == value.to_ne_bytes())

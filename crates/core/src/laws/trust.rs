@@ -5,15 +5,16 @@
 use super::linked;
 use std::path::Path;
 
-/// Returns why a library should not be opened, if others can write to it, or to a folder or link on
-/// its path; or to a library that it links to.
+/// Returns why a library should not be opened, if others can write to it, to a folder or link on
+/// its path, or to a library to which it links.
 #[cfg(unix)]
 pub(super) fn doubt(library: &Path) -> Option<String> {
     of_all(library, &[on_the_way::me()])
 }
 
-/// Why a library in a folder of the program's is not trusted, if it is not: [`doubt`] with the
-/// owner of the folder trusted too, since who owns the program can change it.
+/// Returns why a library in a folder of the program is not trusted, if it is not: [`doubt`] with
+/// the owner of the folder trusted too, since the owner of the program can change the program
+/// itself.
 #[cfg(unix)]
 pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
@@ -28,7 +29,7 @@ fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
     one(library).or_else(|| {
         let links = match linked::libraries(library) {
             Ok(links) => links.into_iter(),
-            // Whatever is trusted, this is refused when it is opened.
+            // An error here is reported when the library is opened.
             Err(_) => return None,
         };
         let doubted = links.filter_map(|path| {
@@ -64,7 +65,7 @@ mod on_the_way {
 
     /// Returns the effective user id.
     pub fn me() -> u32 {
-        // SAFETY: it has no arguments and cannot fail.
+        // SAFETY: the function has no arguments and cannot fail.
         unsafe { libc::geteuid() }
     }
 
@@ -101,7 +102,7 @@ mod on_the_way {
     }
 
     /// Follows a path from the root, link by link, and returns the first component that users other
-    /// than these owners, of whom the first is the user, and the administrator may change.
+    /// than these owners and the administrator may change. The first owner is the user.
     pub fn doubt(
         library: &Path,
         owners: &[u32],
@@ -128,7 +129,7 @@ mod on_the_way {
             if found.anybody_writes() && (end || !found.sticky()) {
                 return Some(open(&here, &found));
             }
-            // Others could add laws to a folder of laws, even if it is sticky.
+            // In a folder of laws, even a sticky one, others could add laws.
             let folder = here.parent().filter(|_| end);
             if let Some((path, folder)) = folder.and_then(|p| Some((p, place(p)?)))
                 && folder.anybody_writes()
@@ -234,7 +235,7 @@ mod on_the_way {
             let said = with(&below(0o777), "/tmp/a/b/law.so").unwrap();
             assert!(said.contains("write to /tmp/a (mode 0777)"), "{said}");
             assert_eq!(with(&below(0o1777), "/tmp/a/b/law.so"), None);
-            // The folder itself may not even be sticky: others could add laws beside this one.
+            // The folder itself must not even be sticky: others could add laws beside this one.
             let beside = [("/tmp/law.so", ME, 0o644, "")];
             for path in ["/tmp/law.so", "/tmp/../tmp/law.so"] {
                 assert!(with(&beside, path).unwrap().contains("/tmp (mode 1777)"));

@@ -1,4 +1,4 @@
-//! A watchdog for plugin calls: native code that hangs cannot be stopped, but it can be reported.
+//! A watchdog for plugin calls: native code that hangs cannot be stopped, but can be reported.
 
 use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, mpsc};
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// The current call of a thread.
 struct Slot {
-    /// Counter of call begins and ends: odd during a call.
+    /// Counter of the starts and ends of calls; it is odd during a call.
     turns: AtomicU64,
     /// The law being called; never freed.
     who: AtomicPtr<String>,
@@ -45,8 +45,8 @@ const CALLS: [&str; 7] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// Guard for a call in progress. Dropped without [`Inside::leave`], something unwinds out of the
-/// call, and the program ends.
+/// Guard for a call in progress. If it is dropped without [`Inside::leave`], something unwinds out
+/// of the call, and the program ends.
 #[must_use]
 pub(super) struct Inside;
 
@@ -69,7 +69,8 @@ impl Drop for Inside {
 /// Whether the program ends because something unwound out of a law.
 static UNWOUND: AtomicBool = AtomicBool::new(false);
 
-/// Whether an exception, or the end of its thread, was about to pass from a law into its caller.
+/// Returns whether an exception or the end of its thread was about to pass from a law to its
+/// caller.
 pub fn was_unwound() -> bool {
     UNWOUND.load(Ordering::SeqCst)
 }
@@ -79,7 +80,7 @@ pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
 
-/// Indices of calls beside those of [`Call`](super::function::Call).
+/// Indices of calls that are not in [`Call`](super::function::Call).
 pub(super) const VALIDATE: usize = 4;
 pub(super) const LOADING: usize = 5;
 pub(super) const FRACTURE_ENERGY: usize = 6;
@@ -106,7 +107,8 @@ impl Slot {
     }
 }
 
-/// Whom this thread calls, and what, while a call goes on. It takes no lock and no memory.
+/// Returns the law and the function that this thread is calling, if any. It takes no lock and
+/// allocates no memory.
 pub fn inside() -> Option<(&'static str, &'static str)> {
     let mine = MINE.try_with(|slot| *slot).ok()?;
     let called = mine.turns.load(Ordering::Relaxed) % 2 == 1;
@@ -161,11 +163,11 @@ impl Saved {
     }
 }
 
-/// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is
-/// not waited for longer.
+/// Time limit for the rescue actions: a stuck thread may hold a lock that they need, such as that
+/// of the allocator.
 pub const RESCUED_WITHIN: Duration = Duration::from_secs(10);
 
-/// Lets all rescues save what they can, beside a thread that is stuck or was stopped.
+/// Runs all rescue actions, while another thread is stuck or was stopped.
 pub fn save(who: &str) -> Saved {
     let rescues = {
         let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
@@ -182,13 +184,14 @@ pub fn save(who: &str) -> Saved {
     }
 }
 
-/// Whether no rescue is registered. It does not wait: a thread that was stopped may hold the list.
+/// Returns whether no rescue is registered. It does not wait, since a stopped thread may hold the
+/// list.
 pub fn nothing_to_save() -> bool {
     RESCUES.try_lock().is_ok_and(|rescues| rescues.is_empty())
 }
 
 /// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that
-/// exceeds the limit, and the result of the rescue actions.
+/// exceeds the limit, with the result of the rescue actions.
 ///
 /// # Errors
 /// The system cannot create a thread.

@@ -1,5 +1,5 @@
 //! The tribological circuit of a run: assignment of grains to first bodies, ejection zones, the
-//! mass ledger, and debris as it detaches.
+//! mass ledger, and debris when it detaches.
 
 use super::{Process, ProcessError};
 use crate::bodies::Bodies;
@@ -33,8 +33,8 @@ pub struct Zone {
     pub low: [f64; 3],
     /// Highest corner (m); infinity in unbounded directions.
     pub high: [f64; 3],
-    /// The body that carries it; its corners are then in the frame of that body, which may move but
-    /// not rotate.
+    /// Body that carries the zone; the corners are then in the frame of that body, which may move
+    /// but not rotate.
     pub carrier: Option<u32>,
     /// Fate of the grains in the zone.
     pub fate: EjectedFate,
@@ -73,15 +73,15 @@ pub struct Spec {
 /// Debris: grains that detached together.
 #[derive(Clone, Debug)]
 pub struct Debris {
-    /// Time at which it was detected (s).
+    /// Time at which the debris was detected (s).
     pub time: f64,
-    /// Identities of its grains.
+    /// Identities of the grains.
     pub grains: Vec<u64>,
     /// Mass (kg; kg/m in 2D).
     pub mass: f64,
     /// Centre of mass (m); the third component is zero in the plane.
     pub place: [f64; 3],
-    /// Index of the first body from which it detached.
+    /// Index of the first body from which the debris detached.
     pub base: u32,
     /// Fraction of sliding in the work on the bonds whose failure released it; see
     /// [`crate::contact::Life::mode_mix`].
@@ -315,16 +315,16 @@ impl GrainCircuit {
     }
 }
 
-/// How often the ledger of a circuit is updated.
+/// Intervals at which the ledger of a circuit is updated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intervals {
-    /// Steps between two updates.
+    /// Number of steps between two updates.
     pub every: u64,
-    /// Further steps between updates, where rows of a table are to show the state at their step.
+    /// Further intervals (steps) at which rows of a table need the current state.
     pub rows: Option<u64>,
 }
 
-/// The circuit as a process: from its start on it records the bonds of every step, and removes lost
+/// The circuit as a process: once started it records the bonds of every step, and removes lost
 /// grains between steps.
 #[derive(Clone, Debug)]
 pub struct CircuitProcess {
@@ -337,15 +337,15 @@ pub struct CircuitProcess {
 /// The part of a circuit that changes from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct AccountState {
-    /// None before it begins.
+    /// The circuit; `None` before its start.
     circuit: Option<GrainCircuit>,
-    /// Number of the last step whose bonds it recorded.
+    /// Number of the last step whose bonds were recorded.
     recorded: u64,
-    /// Number of the last step after which it was updated.
+    /// Number of the last step after which the circuit was updated.
     updated: u64,
 }
 
-/// No bond ties a grain to a first body of the circuit when it begins.
+/// No bond ties a grain to a first body of the circuit at its start.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no bond ties a grain to `{body}` when the circuit begins: let bonds be made before (circuit.start), let them reach it \
@@ -357,7 +357,7 @@ pub struct NoBonds {
 }
 
 impl CircuitProcess {
-    /// A circuit whose account begins after the first step that ends at a time (s) or later.
+    /// Creates a circuit that starts after the first step that ends at this time (s) or later.
     pub fn new(spec: Spec, start: f64, intervals: Intervals) -> Self {
         Self {
             spec,
@@ -367,17 +367,17 @@ impl CircuitProcess {
         }
     }
 
-    /// The circuit; none before it begins.
+    /// Returns the circuit; `None` before its start.
     pub fn circuit(&self) -> Option<&GrainCircuit> {
         self.state.circuit.as_ref()
     }
 
-    /// When the account begins (s).
+    /// Returns the start time (s).
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Whether it was brought up to date after so many steps.
+    /// Returns whether the circuit was updated after this number of steps.
     pub fn is_up_to_date(&self, steps: u64) -> bool {
         self.state.updated == steps
     }

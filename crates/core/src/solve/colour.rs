@@ -26,7 +26,8 @@ const BLOCKS: usize = 128;
 /// separately.
 const HUB: u32 = 16;
 
-/// Contacts of a task, and about what it takes to read the bodies of one and to colour it (ns).
+/// Number of contacts of a task, and approximate time to read the bodies of a contact and to colour
+/// it (ns).
 const CHUNK: usize = 4096;
 const READ: f64 = 4.0;
 const COLOUR: f64 = 15.0;
@@ -47,12 +48,12 @@ pub struct ContactOrder {
     places: Vec<u32>,
     pairs: Vec<[u32; 2]>,
     schedule: Schedule,
-    /// How often it was computed.
+    /// Number of times that the order was computed.
     changes: u64,
 }
 
 impl ContactOrder {
-    /// A number that changes with the contacts, their bodies or which of these move.
+    /// Returns a number that changes with the contacts, their bodies, or which bodies move.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -175,7 +176,7 @@ impl Hubs {
         }
     }
 
-    /// Returns whether a contact moves one of them.
+    /// Returns whether a contact moves a hub.
     #[inline]
     fn touch(&self, pair: &[u32; 2], movable: &[bool]) -> bool {
         self.any
@@ -193,7 +194,8 @@ fn moved(pair: &[u32; 2], movable: &[bool]) -> [Option<usize>; 2] {
 }
 
 impl Sorting<'_> {
-    /// Colours the blocks, without the contacts of hubs; returns colour and index of each, sorted.
+    /// Colours the blocks, without the contacts of hubs; returns colour and index of each block,
+    /// sorted.
     fn colour_blocks(&mut self, span: usize, hubs: &Hubs) -> Vec<(u32, u32)> {
         let Self {
             bodies,
@@ -260,7 +262,7 @@ impl Sorting<'_> {
         }
     }
 
-    /// Appends the contacts of hubs, in a block of their own, each a group.
+    /// Appends the contacts of hubs in a separate block, each in its own group.
     fn append_hubs(&mut self, hubs: &Hubs) {
         if !hubs.any {
             return;
@@ -280,12 +282,13 @@ impl Sorting<'_> {
 #[derive(Default)]
 struct ColourGroups {
     order: Vec<u32>,
-    /// Where each group ends in the order.
+    /// End of each group in the order.
     ends: Vec<u32>,
 }
 
 impl ColourGroups {
-    /// Appends the contacts of a part. `seen` is of all bodies; `mark` differs from part to part.
+    /// Appends the contacts of a part. `seen` has one entry per body; `mark` is different for each
+    /// part.
     fn add(
         &mut self,
         bodies: &[[u32; 2]],

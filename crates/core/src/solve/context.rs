@@ -1,5 +1,4 @@
-//! One solve of a step: what it is given, what earlier steps taught, and the runs of single methods
-//! that choices are made of.
+//! One solve of a step: its input, what was learned in earlier steps, and runs of single methods.
 
 use super::form::ContactForm;
 use super::local::solver::Method;
@@ -19,10 +18,10 @@ pub struct AutoState {
     /// Whether the interior point converged in the last step in which Newton failed; it is then
     /// tried first.
     pub(super) interior_first: bool,
-    /// How often the interior point is still to be skipped, and was to be skipped after its last
-    /// failure.
+    /// Number of times that the interior point is still to be skipped, and number of skips after
+    /// its last failure.
     skipped: [u32; 2],
-    /// When another solution is sought.
+    /// State of the search for second solutions.
     pub(super) search: Search,
 }
 
@@ -38,7 +37,7 @@ impl Default for AutoState {
 }
 
 impl AutoState {
-    /// When another solution is sought.
+    /// Returns the state of the search for second solutions.
     pub fn search(&self) -> &Search {
         &self.search
     }
@@ -56,7 +55,7 @@ impl AutoState {
         due
     }
 
-    /// Changes the patience by whether a method that factorises has solved the last problem.
+    /// Changes the patience by whether a factorising method solved the last problem.
     pub(super) fn adapt(&mut self, ended: bool) {
         self.patience *= if ended { 0.5 } else { 2.0 };
         self.patience = self.patience.clamp(1.0, 64.0);
@@ -70,7 +69,7 @@ impl AutoState {
     }
 }
 
-/// What a solve is given beside the problem.
+/// Input of a solve, in addition to the problem.
 pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
     pub(super) moments: &'a [MomentForm<S>],
@@ -117,7 +116,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Goes back to the impulses of the forms.
+    /// Restores the impulses of the forms.
     pub(super) fn start_anew(&self, problem: &mut Problem<S>) {
         let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
         let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();

@@ -59,20 +59,20 @@ pub struct Report {
     pub iterations: u32,
     /// Error, recomputed from the impulses at the end.
     pub error: f64,
-    /// Its parts.
+    /// Parts of the error.
     pub parts: ErrorParts,
     /// Whether the error is within the tolerance.
     pub converged: bool,
-    /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]:
-    /// the problem has no solution.
+    /// Whether the impulses grew until the velocities were lost in their rounding, see
+    /// [`Sums::drowned`]: the problem has no solution.
     pub unbounded: bool,
-    /// Whether another solution was found, of more energy, in which a loaded contact slides that
-    /// sticks in the one taken, or the reverse: the step has several.
+    /// Whether another solution with more energy was found, in which a loaded contact slides that
+    /// sticks in the accepted one, or the reverse: the step has several solutions.
     pub several: bool,
-    /// Whether a loaded contact began to slide in a set of contacts that was too large to seek
-    /// another solution, see [`Problem::is_not_searched`].
+    /// Whether a loaded contact began to slide in a set of contacts that was too large for a search
+    /// for another solution, see [`Problem::is_not_searched`].
     pub not_searched: bool,
-    /// Whether it was one of a body that bodies with imposed or controlled motion squeeze.
+    /// Whether that contact is of a body squeezed by bodies with imposed or controlled motion.
     pub pinched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
@@ -138,18 +138,18 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         while report.iterations < last {
             let momentum = acceleration.as_mut();
             let momentum = momentum.and_then(|a| a.momentum(problem, report.iterations));
-            // The iteration before a test is not relaxed, so that its impulses are admissible; nor
-            // is one with momentum, which takes the place of relaxation.
+            // The iteration before a test is not relaxed, so that its impulses are admissible; an
+            // iteration with momentum is not relaxed either.
             let plain = report.iterations + 1 == last || momentum.is_some();
             let relaxation = if plain { 1.0 } else { relaxation };
             sweep(problem, relaxation, options.parallel, momentum);
             report.iterations += 1;
         }
         let ended = report.iterations >= options.max_iterations;
-        // The velocities have accumulated rounding errors: convergence is decided with velocities
-        // recomputed from the impulses. The first tests, which often succeed, recompute them at
-        // once; so do all with large systems, where finding the velocities of all nodes costs the
-        // same in either way, and the pass over the other contacts little beside it.
+        // The velocities have accumulated rounding errors, so that convergence is decided with
+        // velocities recomputed from the impulses. The first tests, which often succeed, recompute
+        // them at once. So do all tests with large systems, where the velocities of all nodes cost
+        // the same in either case, and the pass over the other contacts little in comparison.
         let fresh = report.iterations <= every || large;
         if fresh {
             problem.reload(options.parallel);
@@ -217,8 +217,8 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
 }
 
 impl Report {
-    /// Adds another solve of the same step: iterations are summed, what was found of several
-    /// solutions is kept, the rest is taken from the last solve.
+    /// Adds another solve of the same step: iterations are summed, findings of several solutions
+    /// are kept, and the rest is taken from the last solve.
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
@@ -282,7 +282,7 @@ impl<S: Space> Problem<S> {
         self.moments.iter().for_each(|row| row.store(out));
     }
 
-    /// Restores them, and recomputes the velocities.
+    /// Restores the components, and recomputes the velocities.
     pub(super) fn restore(&mut self, mut from: &[f64]) {
         let from = &mut from;
         for rows in &mut self.rows {
@@ -294,8 +294,9 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Takes impulses and moments in the order pushed, and recomputes the velocities. A contact
-    /// without one (`None`, where both bodies are immovable) is solved for the current velocities.
+    /// Sets impulses and moments in the order pushed, and recomputes the velocities. A contact
+    /// without an impulse (`None`, where both bodies are immovable) is solved for the current
+    /// velocities.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
             match impulse {
@@ -312,7 +313,7 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Takes the impulses and moments of some contacts, and recomputes the velocities.
+    /// Sets the impulses and moments of some contacts, and recomputes the velocities.
     pub(super) fn adopt_some(&mut self, impulses: &[(u32, S::Vector)], moments: &[(u32, S::Spin)]) {
         for (k, impulse) in impulses {
             self.set(self.places[*k as usize], impulse);
@@ -333,7 +334,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Solves a contact that moves nothing for the current velocities.
+    /// Solves a contact between immovable bodies for the current velocities.
     fn solve_at_rest(&mut self, place: RowPlace) {
         let bodies = &mut self.solver_bodies;
         match place {
@@ -346,7 +347,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// rho of the natural map; 0 for a contact that moves nothing.
+    /// Returns rho of the natural map; 0 for a contact that moves nothing.
     fn rho(&self, place: RowPlace) -> f64 {
         match place {
             RowPlace::Row { kind, row } => {
@@ -356,8 +357,8 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Solves the contacts and moments that move nothing: their impulses follow from velocities
-    /// that are given, and methods that check the start first would leave them as they start.
+    /// Solves the contacts and moments that move nothing: their impulses follow from given
+    /// velocities, and methods that check the start first would leave them at their initial values.
     fn solve_held(&mut self) {
         for k in 0..self.places.len() {
             if self.rho(self.places[k]) == 0.0 {
@@ -429,7 +430,7 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     }
 }
 
-/// Solves every contact once; with momentum from impulses and velocities that it has moved on.
+/// Solves every contact once; with momentum from extrapolated impulses and velocities.
 fn sweep<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
@@ -481,8 +482,9 @@ mod tests {
     use crate::solve::form::ContactForm;
     use nalgebra::Vector2;
 
-    /// Over-relaxation is halved where the residual grows to more than four times the least, or
-    /// does not fall by a hundredth in twenty tests, and given up below 0.05.
+    /// The excess of the relaxation over 1 is halved where the residual grows to more than four
+    /// times the smallest one, or does not fall by a hundredth in twenty tests, and set to zero
+    /// below 0.05.
     #[test]
     fn caution_reduces_the_relaxation() {
         let mut caution = Caution::default();

@@ -12,8 +12,8 @@ use crate::geometry::space::Space;
 /// The contact problem of one step. Push the bodies, then the contacts.
 ///
 /// # Examples
-/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s
-/// downwards, and 0.001 m/s sideways, which is within what Coulomb friction with mu = 0.5 holds.
+/// A disk of 2 kg rests on an immovable plane. In a step of 1 ms gravity would accelerate it by
+/// 0.01 m/s downwards and 0.001 m/s sideways, which Coulomb friction with mu = 0.5 can hold.
 /// ```
 /// use fretwork_core::geometry::space::{Dim2, VectorLike};
 /// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
@@ -47,14 +47,14 @@ pub struct Problem<S: Space> {
     pub(super) masses: Vec<Mobility<S>>,
     /// Contacts between rigid bodies, by kind.
     pub(super) rows: [RowsOfKind<S>; KINDS],
-    /// Contacts with dynamical systems; they run after those above, in order.
+    /// Contacts with dynamical systems; the iteration visits them after the rows above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
     pub(super) tractions: Tractions,
-    /// The dynamical systems, as far as contacts see them.
+    /// The nodes of the dynamical systems on which contacts act.
     pub(super) systems: Vec<NodalSystem<S>>,
-    /// Memory of large systems that were solved before.
+    /// Memory of large systems of earlier problems.
     pub(super) loaded: Vec<LoadedPoints<S>>,
-    /// Moments of contacts that resist rotation; they run last, in order.
+    /// Moments of contacts that resist rotation; the iteration visits them last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<RowPlace>,
     /// Connected sets of the contacts, as last computed.
@@ -190,9 +190,9 @@ impl<S: Space> Problem<S> {
         (record.v, record.s * (1.0 / self.lengths[body]))
     }
 
-    /// Finds its connected sets, unless those that are known are of the same contacts: packings at
-    /// rest keep theirs from step to step. Takes them out of the problem, to which they are to be
-    /// given back.
+    /// Finds the connected sets, unless the stored sets belong to the same contacts: packings at
+    /// rest keep them from step to step. The sets are moved out of the problem, and must be
+    /// returned to it.
     pub(super) fn take_connected(&mut self) -> Connected {
         let of = self.contacts_of_rows();
         let known = std::mem::take(&mut self.connected);
@@ -214,8 +214,8 @@ impl<S: Space> Problem<S> {
         sets
     }
 
-    /// What distinguishes its contacts of rigid bodies from those of another step; `None` where
-    /// they are not sorted, or systems act.
+    /// Returns numbers that identify the contacts of rigid bodies of this step; `None` where they
+    /// are not sorted, or systems act.
     fn contacts_of_rows(&self) -> Option<[u64; KINDS]> {
         let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
         let known = self.rows.iter().all(sorted) && self.systems.is_empty();
@@ -223,7 +223,7 @@ impl<S: Space> Problem<S> {
         Some(rows.map(|rows| of_kind!(rows, rows => rows.changes())))
     }
 
-    /// Freedoms of the bodies of each connected set.
+    /// Returns the number of degrees of freedom of the bodies of each connected set.
     pub(super) fn freedoms(&self, sets: &Connected) -> Vec<usize> {
         let mut freedoms = vec![0; sets.len()];
         for (body, mobility) in (0..).zip(&self.masses) {
@@ -237,7 +237,7 @@ impl<S: Space> Problem<S> {
 
 #[cfg(test)]
 impl Problem<crate::geometry::space::Dim2> {
-    /// Bodies at rest of unit mass, inertia and length.
+    /// Creates a problem of bodies at rest of unit mass, inertia and length.
     pub(super) fn of_unit_bodies(count: usize) -> Self {
         use nalgebra::{Matrix1, Vector1, Vector2};
         let mut problem = Self::default();

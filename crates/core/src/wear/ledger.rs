@@ -132,7 +132,7 @@ impl Ledger {
             let (from, to, mass) = (rank(old), rank(*new), self.masses[k]);
             let f = &mut self.flows;
             let out = [&mut f.source, &mut f.ejected, &mut f.wear];
-            // A lost grain that is found again did not wear.
+            // A lost grain that reappears is not counted as wear.
             for step in out.into_iter().take(to).skip(from) {
                 step.add(1, mass);
             }

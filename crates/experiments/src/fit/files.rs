@@ -95,7 +95,7 @@ fn json(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) 
     })
 }
 
-/// All points that were run, with the reason where one failed.
+/// Returns all points that were run, with the reason where one failed.
 fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     let all = &found.evaluations;
     let mut columns = vec![
@@ -122,7 +122,7 @@ fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     Table { columns }
 }
 
-/// Measured and fitted values side by side.
+/// Returns measured and fitted values in columns.
 fn curves(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Table {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let target = &tests.target;

@@ -1,4 +1,4 @@
-//! Numbers that a run leaves: from `summary.json` or a column of `statistics.csv`.
+//! Numbers in the output of a run: from `summary.json` or a column of `statistics.csv`.
 
 use fretwork_observe::quantity::find;
 use fretwork_scene::source::nearest;
@@ -27,7 +27,7 @@ enum Take {
     Last,
 }
 
-/// A number that a run leaves, by its name.
+/// Name of a number in the output of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputName {
     /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with
@@ -40,7 +40,7 @@ impl OutputName {
     /// Parses a name.
     ///
     /// # Errors
-    /// What is wrong with it, as the end of a sentence.
+    /// Returns what is wrong with it, as the end of a sentence.
     pub fn parse(name: &str) -> Result<Self, String> {
         let name = name.trim();
         if name.is_empty() {
@@ -68,7 +68,7 @@ impl OutputName {
         })
     }
 
-    /// Its column of the statistics, if it is one.
+    /// Returns its column of the statistics, if it is one.
     pub fn column_name(&self) -> Option<&str> {
         match &self.place {
             Place::Summary(_) => None,
@@ -76,7 +76,7 @@ impl OutputName {
         }
     }
 
-    /// Its value in the folder of a run; `None` if the run has none (null).
+    /// Returns its value in the folder of a run; `None` if the run has none (null).
     pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
         match &self.place {
             Place::Summary(path) => {
@@ -99,7 +99,7 @@ impl OutputName {
         }
     }
 
-    /// Whether it is a result of one of these measures, known at the end of a run.
+    /// Returns whether it is a result of one of these measures, known at the end of a run.
     pub(super) fn measured(&self, measures: &[&str]) -> bool {
         let Place::Summary(path) = &self.place else {
             return false;
@@ -114,7 +114,7 @@ impl OutputName {
         group == "measures" && measures.iter().any(begins)
     }
 
-    /// Error message for the name of a group.
+    /// Returns the error message for the name of a group.
     pub(super) fn is_group(&self) -> String {
         format!(
             "it is not a number but a group; name one of its entries, as {}.NAME",
@@ -122,11 +122,12 @@ impl OutputName {
         )
     }
 
-    /// Error message for an output that a case does not have, with the nearest existing one.
+    /// Returns the error message for an output that a case does not have, with the nearest existing
+    /// one.
     pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
         let close = nearest(wanted, names.iter().map(String::as_str))
             .or_else(|| {
-                // Compare the last component alone, since parents may have been omitted.
+                // Only the last component is compared, since parents may have been omitted.
                 let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
                 names.iter().find(last).map(String::as_str)
             })
@@ -138,7 +139,7 @@ impl OutputName {
     }
 }
 
-/// List of the existing outputs.
+/// Lists the existing outputs.
 pub(super) fn listed(names: &[String], prefix: &str) -> String {
     let more = if prefix.is_empty() {
         ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
@@ -151,7 +152,7 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
     format!("there are {}{more}", names.join(", "))
 }
 
-/// Names of the columns, without units.
+/// Returns the names of the columns, without units.
 fn header(path: &Path) -> Vec<String> {
     let Ok(mut reader) = csv::Reader::from_path(path) else {
         return Vec::new();
@@ -163,7 +164,8 @@ fn header(path: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// Unit of a column of a table of statistics, `1` for pure numbers; `None` without such a column.
+/// Returns the unit of a column of a table of statistics, `1` for pure numbers; `None` without such
+/// a column.
 pub fn column_unit(path: &Path, name: &str) -> Option<String> {
     let mut reader = csv::Reader::from_path(path).ok()?;
     let headings = reader.headers().ok()?.clone();
@@ -175,7 +177,8 @@ pub fn column_unit(path: &Path, name: &str) -> Option<String> {
         })
 }
 
-/// Values of a column; only complete rows are read, since the table may still be written to.
+/// Returns the values of a column; only complete rows are read, since the table may still be
+/// written to.
 pub fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
     let place = header(path).iter().position(|n| n == name)?;
     let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;

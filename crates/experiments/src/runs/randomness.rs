@@ -1,4 +1,4 @@
-//! Whether the seed of a case changes its scene.
+//! Test whether the seed of a case changes its scene.
 
 use crate::load;
 use fretwork_core::in_dimension;
@@ -8,7 +8,7 @@ use fretwork_scene::{Built, Loaded};
 use crate::Error;
 use std::fmt::Write;
 
-/// Whether another seed gives another scene; it does if it gives none.
+/// Returns whether another seed gives another scene; also true if another seed gives no scene.
 ///
 /// # Errors
 /// The case does not take a seed.
@@ -22,7 +22,7 @@ pub fn seed_matters(loaded: &Loaded, scene: &Built, search: &SearchPath) -> Resu
     })
 }
 
-/// Hash of the positions, shapes and velocities, which a seed may change.
+/// Returns a hash of the positions, shapes and velocities, which a seed may change.
 fn drawn(built: &Built) -> u64 {
     let mut hash = Hasher(0xcbf2_9ce4_8422_2325);
     // Writing to the hash never fails.

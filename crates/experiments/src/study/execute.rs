@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// Runs that are still to be made, each once however many points need it.
+/// Returns the runs that are still to be made, each once even if several points need it.
 pub fn missing(plan: &Plan) -> Vec<Point> {
     let mut seen = BTreeSet::new();
     let open = plan.points().filter(|point| {
@@ -19,8 +19,8 @@ pub fn missing(plan: &Plan) -> Vec<Point> {
     open.collect()
 }
 
-/// Makes runs, several at a time; returns how many ended, each of which `watch` is called with. It
-/// ends early, without an error, when `stop` is set.
+/// Makes runs, several at a time, and calls `watch` with each; returns how many ended. It ends
+/// early, without an error, when `stop` is set.
 ///
 /// # Errors
 /// A run cannot be started.

@@ -1,11 +1,11 @@
-//! CSV files: tables that are written, points and measured curves that are read.
+//! CSV files: writing tables, reading points and measured curves.
 
 use super::cells::{guarded, unguarded};
 use super::{Cell, Table, Type};
 use crate::Error;
 use std::path::Path;
 
-/// How numbers that are not whole are written.
+/// Format of numbers that are not whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// With the fewest digits that read back to the same number: `0.001`.
@@ -14,7 +14,7 @@ pub enum Numbers {
     Exponents,
 }
 
-/// Writes a table; headings have units, `wear.Qs [kg/s]`, and what is not known is empty.
+/// Writes a table; headings have units, `wear.Qs [kg/s]`, and unknown values are empty.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -40,16 +40,16 @@ pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> 
     text().map_err(|e| Error::write(path, &e))
 }
 
-/// A file that was read.
+/// Content of a file.
 #[derive(Debug)]
 pub struct Texts {
-    /// Headings as they stand, `stress [MPa]`.
+    /// Headings as in the file, `stress [MPa]`.
     pub headings: Vec<String>,
     /// Rows, with a text for each column.
     pub rows: Vec<Vec<String>>,
 }
 
-/// A heading without its unit.
+/// Returns a heading without its unit.
 pub fn without_unit(heading: &str) -> &str {
     heading.split(" [").next().unwrap_or(heading).trim()
 }

@@ -1,5 +1,5 @@
-//! The table of a study as a Parquet file. Units stand in the metadata of the file, under `units`
-//! as JSON.
+//! The table of a study as a Parquet file. Units are in the metadata of the file, under `units` as
+//! JSON.
 
 use super::{Cell, Column, Table, Type as Kind};
 use crate::Error;
@@ -15,7 +15,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes a table; what is not known is null.
+/// Writes a table; unknown values are null.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -51,7 +51,7 @@ fn write_to(table: &Table, file: File) -> Result<(), ParquetError> {
     Ok(())
 }
 
-/// Each column may have nulls.
+/// Returns the type of a column, which may have nulls.
 fn field(column: &Column) -> Result<TypePtr, ParquetError> {
     let (physical, logical) = match column.kind {
         Kind::Real => (Physical::DOUBLE, None),
@@ -113,8 +113,7 @@ mod tests {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
-    /// What the reader of the same library gives back; tests/program/study reads files with another
-    /// reader.
+    /// This test reads the file with the same library; tests/program/study uses another reader.
     #[test]
     fn a_table_comes_back_with_nulls_and_units() {
         let table = Table {

@@ -15,7 +15,7 @@ use crate::runs::stored::{Status, summary};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Smallest noticed difference, as a fraction of the wanted error.
+/// Smallest difference that is noticed, as a fraction of the wanted error.
 const NOTICED: f64 = 0.01;
 
 /// Largest fraction of the budget for the two runs.
@@ -85,7 +85,7 @@ impl Trade {
     }
 }
 
-/// Description of an output's difference between two runs, if it is noticed.
+/// Describes an output's difference between two runs, if it is noticed.
 fn difference(output: &Output, one: &Path, other: &Path) -> Option<String> {
     let [a, b] = [one, other].map(|place| output.quantity.read(&summary(place), place));
     let (a, b) = (a?, b?);

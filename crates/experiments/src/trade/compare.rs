@@ -42,15 +42,15 @@ pub struct OwnError {
 pub struct Row {
     /// The setting.
     pub setting: Combination,
-    /// Its name.
+    /// Name of the setting.
     pub name: String,
     /// Number of seeds that ran.
     pub seeds: usize,
     /// Reason why it cannot be used, if any.
     pub failed: Option<String>,
-    /// Runs that say that they are not trustworthy.
+    /// Number of runs that report that they are not trustworthy.
     pub doubted: usize,
-    /// Words of their reasons, in order.
+    /// Keywords of their reasons, in order.
     pub doubts: BTreeSet<String>,
     /// Processor time of the steps per run (s).
     pub seconds: f64,
@@ -75,7 +75,8 @@ pub struct Comparison {
 }
 
 impl Row {
-    /// How many of its runs say that they are not trustworthy, and why; `None` where all are.
+    /// Describes how many of its runs report that they are not trustworthy, and why; `None` where
+    /// all are trustworthy.
     pub fn not_trustworthy(&self) -> Option<String> {
         let words: Vec<&str> = self.doubts.iter().map(String::as_str).collect();
         let (doubted, seeds) = (self.doubted, self.seeds);
@@ -146,7 +147,7 @@ impl Trade {
         self.done.range(from..=to).map(|((_, seed), r)| (*seed, r))
     }
 
-    /// Values of an output by seed.
+    /// Returns the values of an output by seed.
     fn values(&self, setting: &Combination, output: usize) -> BTreeMap<u64, f64> {
         let good = self.runs(setting).filter(|(_, r)| r.status == Status::Done);
         good.filter_map(|(seed, r)| {
@@ -166,7 +167,7 @@ impl Trade {
         }
     }
 
-    /// Differences seed by seed, as errors.
+    /// Returns the differences seed by seed, as errors.
     fn error(
         &self,
         o: usize,
@@ -320,8 +321,8 @@ impl Trade {
 /// be multiplied by a large factor.
 const NEAREST: f64 = 1.5;
 
-/// The level next to the reference's, of an ordered parameter: the first that is coarse enough for
-/// the estimate, otherwise the next one.
+/// Returns the level next to the reference's, for an ordered parameter: the first that is coarse
+/// enough for the estimate, otherwise the next one.
 pub fn neighbour(parameter: &Varied) -> Option<usize> {
     let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
     let mut coarser = parameter.reference + 1..parameter.levels.len();
@@ -331,14 +332,14 @@ pub fn neighbour(parameter: &Varied) -> Option<usize> {
         .or(Some(next))
 }
 
-/// Ratio of a level to the reference's level.
+/// Returns the ratio of a level to the reference's level.
 fn ratio(parameter: &Varied, level: usize) -> Option<f64> {
     Some(parameter.levels.get(level)?.number? / parameter.levels.get(parameter.reference)?.number?)
 }
 
-/// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own
-/// error. For first order e(rh) - e(h) = (r - 1) e(h), so 1/(r - 1), and at least 1 up to r = 2.
-/// `None` if the levels are too close.
+/// Returns the factor on the difference from a level `ratio` times as coarse that bounds the
+/// reference's own error. For first order e(rh) - e(h) = (r - 1) e(h), hence 1/(r - 1), and at
+/// least 1 up to r = 2. `None` if the levels are too close.
 fn weight(ratio: f64) -> Option<f64> {
     match ratio {
         r if r >= 2.0 => Some(1.0),

@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Cost = own (h0/h) (tol0/tol)^power, times the factor of each other form of the case.
+/// Cost of a setting: own (h0/h) (tol0/tol)^power, times the factor of each other form of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CostLaw {
     /// Duration of the case's own setting (s).
     pub own: f64,
     /// Exponent of the cost in the inverse of the tolerance.
     pub power: f64,
-    /// Cost of a form of the case over that of its own: parameter, level, factor.
+    /// Ratio of the cost of a form of the case to that of its own: parameter, level, factor.
     #[serde(default)]
     pub forms: Vec<(usize, usize, f64)>,
-    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is a
-    /// guess, and not stored.
+    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is
+    /// uncertain, and not stored.
     pub measured: bool,
 }
 
@@ -38,8 +38,8 @@ impl Default for CostLaw {
 }
 
 impl Trade {
-    /// Runs the case's own setting, its other forms and the finest setting for a short while each.
-    /// A run that ends within that time is done.
+    /// Runs the case's own setting, its other forms and the finest setting for a short time each. A
+    /// run that ends within that time counts as done.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -81,7 +81,7 @@ impl Trade {
         Ok(())
     }
 
-    /// Duration of a setting (s), and whether it was measured.
+    /// Returns the duration of a setting (s), and whether it was measured.
     fn probe_setting(
         &mut self,
         setting: &Combination,
@@ -110,7 +110,7 @@ impl Trade {
                 self.done.insert((setting.clone(), run.seed), finished);
                 return Ok((wall, true));
             }
-            // Steps are timed from the creation of the table; the time before is a constant.
+            // Steps are timed from the creation of the table; the time before it is constant.
             let begun = std::fs::metadata(&table).and_then(|m| m.created()).ok();
             let stepping = begun.and_then(|t| ended_at.duration_since(t).ok());
             let stepping = stepping.unwrap_or_else(|| started.elapsed()).as_secs_f64();
@@ -123,8 +123,8 @@ impl Trade {
         Ok((guess, false))
     }
 
-    /// Duration of a run (s): that of its other seeds, or the cost law, multiplied by its mean
-    /// error so far.
+    /// Returns the duration of a run (s): that of its other seeds, or the cost law, multiplied by
+    /// its mean error so far.
     pub fn seconds(&self, setting: &Combination) -> f64 {
         let ended = |r: &&Finished| r.status == Status::Done;
         let of = |setting: &Combination| -> Vec<f64> {
@@ -135,7 +135,7 @@ impl Trade {
         if !same.is_empty() {
             return same.iter().sum::<f64>() / same.len() as f64;
         }
-        // Correct by the case's own setting if it ran, otherwise by all that ran.
+        // The correction uses the case's own setting if it ran, otherwise all settings that ran.
         let own = Combination::own(&self.parameters);
         let ratios = |only: bool| -> Vec<f64> {
             self.done
@@ -151,7 +151,7 @@ impl Trade {
         self.cost_law(setting) * off.exp()
     }
 
-    /// Duration from the probes alone (s).
+    /// Returns the duration according to the probes alone (s).
     pub fn cost_law(&self, setting: &Combination) -> f64 {
         let step = shrink(setting, &self.parameters, Sense::Step);
         let tolerance = shrink(setting, &self.parameters, Sense::Tolerance);
@@ -160,7 +160,7 @@ impl Trade {
     }
 }
 
-/// Product of the cost factors of a setting's forms.
+/// Returns the product of the cost factors of a setting's forms.
 fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
     let here = forms
         .iter()
@@ -168,7 +168,8 @@ fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
     here.map(|(_, _, factor)| factor).product()
 }
 
-/// Ratio of the case's own step or tolerance to that of the setting; 1 if it is not varied.
+/// Returns the ratio of the case's own step or tolerance to that of the setting; 1 if it is not
+/// varied.
 fn shrink(setting: &Combination, parameters: &[Varied], sense: Sense) -> f64 {
     let of = |(k, level): (&Varied, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);

@@ -12,11 +12,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// Factor on the reference's duration after which another run is stopped as too slow. Wall time is
+/// Ratio to the reference's duration above which another run is stopped as too slow. Wall time is
 /// used, which other programs may affect.
 const PATIENCE: f64 = 3.0;
 
-/// Event for a progress display, of a setting and a seed.
+/// Event for a progress display, with a setting and a seed.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// A run begins, with its expected duration (s).
@@ -47,11 +47,12 @@ impl Trade {
         Ok(())
     }
 
-    /// Runs the reference, a coarser one where it fails.
+    /// Runs the reference, or a coarser one if it fails.
     fn run_reference(&mut self, stop: &AtomicBool, watch: Watch<'_>) -> Result<(), Error> {
         loop {
             let reference = Combination::reference(&self.parameters);
-            // Runs stopped as too slow for a finer reference may be the reference now.
+            // Runs that were stopped as too slow compared with a finer reference may be the
+            // reference now.
             self.done
                 .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
             self.batch(std::slice::from_ref(&reference), stop, watch)?;
@@ -158,8 +159,9 @@ struct Job {
 
 type Shared<'a> = Mutex<(&'a mut Trade, VecDeque<(Combination, u64)>)>;
 
-/// The next run that fits into the remaining time by the forecast; a setting is started only if all
-/// its seeds fit. The reference is always started, since nothing can be compared without it.
+/// Returns the next run that fits into the remaining time by the forecast; a setting is started
+/// only if all its seeds fit. The reference is always started, since nothing can be compared
+/// without it.
 fn take(shared: &Shared<'_>, reference: &Combination, stop: &AtomicBool) -> Option<Job> {
     let mut guard = shared.lock().ok()?;
     let (trade, queue) = &mut *guard;
@@ -168,7 +170,7 @@ fn take(shared: &Shared<'_>, reference: &Combination, stop: &AtomicBool) -> Opti
         let left = trade.left();
         let failed = |r: &Finished| r.status != Status::Done;
         let known = |s: &Combination| trade.done.range((s.clone(), 0)..=(s.clone(), u64::MAX));
-        // A setting with one failed seed is rejected, so its other seeds need not run.
+        // A setting with one failed seed is rejected, so that its other seeds need not run.
         if known(&setting).any(|(_, r)| failed(r)) {
             continue;
         }

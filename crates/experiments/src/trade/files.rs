@@ -31,7 +31,7 @@ pub fn write(trade: &Trade, answer: &Findings, out: &Path) -> Result<(String, bo
     let picture = out.join("trade.png");
     let drawn = draw(trade, found, &picture)?;
     if !drawn {
-        // A picture of an earlier trade would be mistaken for one of this.
+        // A picture of an earlier trade would be mistaken for one of this trade.
         let _ = std::fs::remove_file(&picture);
     }
     Ok((json, drawn))
@@ -103,8 +103,8 @@ fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool)
     })
 }
 
-/// One row per setting; errors are fractions of the reference's value or in the output's unit, as
-/// requested.
+/// Returns one row per setting; errors are fractions of the reference's value or in the output's
+/// unit, as requested.
 fn settings(trade: &Trade, found: &Comparison) -> Table {
     let rows = &found.rows;
     let reference = Combination::reference(&trade.parameters);

@@ -36,7 +36,7 @@ pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<
     };
     let levels: Vec<Level> = values.iter().map(level).collect();
     let before = loaded.source.sets();
-    // Compares the text of the case before and after: a value that does not change it is the case's
+    // The texts of the case before and after are compared: a value without effect is the case's
     // own.
     let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {

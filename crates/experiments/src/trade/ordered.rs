@@ -1,4 +1,4 @@
-//! Levels of a step or a tolerance, from the finest up, with what else they change.
+//! Levels of a step or a tolerance, from the finest up, with their further changes.
 
 use super::varied::{Sense, Varied};
 use crate::factor::Level;
@@ -6,7 +6,8 @@ use fretwork_scene::case::Case;
 
 /// Formats a number so that RON can read it.
 fn digits(x: f64) -> String {
-    // Powers of two of a decimal number have rounding noise at the end, which 12 digits remove.
+    // Products of a decimal number with powers of two have rounding errors at the end, which 12
+    // digits remove.
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
     if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
         format!("{rounded:e}")
@@ -24,8 +25,8 @@ pub(super) fn number(key: &str, x: f64) -> Level {
     }
 }
 
-/// Positive values including the case's own, from the finest up, each with the arguments of its
-/// level.
+/// Returns positive values including the case's own, from the finest up, each with the arguments of
+/// its level.
 fn ordered(
     name: &str,
     sense: Sense,
@@ -47,7 +48,7 @@ pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {
     let every = case.output.every as f64 * case.time.step;
     ordered("step", Sense::Step, case.time.step, values, |h| {
         let mut level = number("time.step", h);
-        // Keeps the case's interval between statistics rows in time.
+        // The interval in time between rows of the statistics is that of the case.
         let rows = (every / h).round().max(1.0);
         if rows != case.output.every as f64 {
             level.sets.push(format!("output.every={rows}"));
@@ -60,7 +61,7 @@ pub(super) fn tolerances(case: &Case, own: f64, values: Vec<f64>) -> Varied {
     ordered("tolerance", Sense::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
         if t < own {
-            // First-order methods need proportionally more iterations in the worst case.
+            // In the worst case methods of first order need proportionally more iterations.
             let most = f64::from(case.solver.max_iterations) * own / t;
             let most = most.min(f64::from(u32::MAX)).round();
             level.sets.push(format!("solver.max_iterations={most}"));

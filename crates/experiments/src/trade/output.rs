@@ -1,4 +1,4 @@
-//! Outputs that a study compares, each with the error wanted.
+//! Outputs that a trade compares, each with the wanted error.
 
 use crate::Error;
 use crate::runs::output::OutputName;
@@ -77,12 +77,12 @@ impl Output {
         })
     }
 
-    /// Its name.
+    /// Returns the name of the output.
     pub fn name(&self) -> &str {
         &self.quantity.name
     }
 
-    /// The error of a command line that names an output for which there is a reason to refuse it.
+    /// Creates the error for an argument that names an output which is refused.
     pub fn refused(&self, why: &str) -> Error {
         Error::Usage(format!("--output {}: {why}", self.name()))
     }

@@ -39,7 +39,7 @@ pub fn parameters(
     Ok(all)
 }
 
-/// Refuses a tolerance beside forms of the case that have another one.
+/// Refuses a varied tolerance together with forms of the case that have different tolerances.
 fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
     let sets = |k: &Varied, key: &str| {
         let mut sets = k.levels.iter().flat_map(|l| &l.sets);
@@ -58,7 +58,7 @@ fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
     )))
 }
 
-/// Builds the case with each value of a `--vary`, so that a wrong one is refused before any run.
+/// Builds the case with each value of a `--vary`, so that an invalid one is refused before any run.
 fn check_varied_cases(
     request: &Request,
     search: &SearchPath,
@@ -78,7 +78,7 @@ fn check_varied_cases(
     Ok(())
 }
 
-/// Whether a `--set` and a `--vary` have the same key.
+/// Returns whether a `--set` and a `--vary` have the same key.
 fn same_key(set: &str, vary: &str) -> bool {
     let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
     key(set) == key(vary)

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 /// Runs by setting and seed.
 pub type Ledger = BTreeMap<(Combination, u64), Finished>;
 
-/// A trade, as far as it has come.
+/// Current state of a trade.
 #[derive(Debug)]
 pub struct Trade {
     /// Title of the case.
@@ -61,7 +61,7 @@ pub struct Trade {
     pub started: Instant,
 }
 
-/// What a later trade in the same folder continues.
+/// Stored part of a trade, with which a later trade in the same folder continues.
 #[derive(Debug, Serialize, Deserialize)]
 struct StoredPlan {
     fingerprint: String,
@@ -83,7 +83,7 @@ pub struct Findings {
 }
 
 impl Trade {
-    /// The results of the runs so far; `interrupted` if more were planned.
+    /// Returns the results of the runs so far; `interrupted` if more were planned.
     pub fn answer(&self, interrupted: bool) -> Findings {
         let found = self.compare();
         Findings {
@@ -143,8 +143,8 @@ impl Trade {
         }
         self.probe(stop)?;
         self.fresh = self.done.len();
-        // Coarsen tolerance and step alternately, the tolerance first. Another form is the last to
-        // go: what it assumes is no question of accuracy.
+        // Tolerance and step are coarsened alternately, the tolerance first. Other forms are
+        // dropped last: their assumptions are not a matter of accuracy.
         while self.work(&self.first()) > 0.6 * self.budget.as_secs_f64() {
             let finest = self.parameters.iter_mut().filter(|k| k.may_be_coarser());
             let finest = finest
@@ -155,7 +155,8 @@ impl Trade {
         self.write_plan(stop)
     }
 
-    /// Levels finer than the reference's that were dropped because of the budget or a failed run.
+    /// Returns the levels finer than the reference's that were dropped because of the budget or a
+    /// failed run.
     pub fn dropped(&self) -> Vec<String> {
         let ran = |k: usize, l: usize| self.done.keys().any(|(s, _)| s.0[k] == l);
         let mut all = Vec::new();
@@ -169,7 +170,7 @@ impl Trade {
         all
     }
 
-    /// Stores the plan, unless it rests on a guess or on interrupted probes.
+    /// Stores the plan, unless it is based on an uncertain cost law or interrupted probes.
     pub(super) fn write_plan(&self, stop: &AtomicBool) -> Result<(), Error> {
         if !self.cost.measured || stop.load(Ordering::Relaxed) {
             return Ok(());
@@ -187,7 +188,7 @@ impl Trade {
         }
     }
 
-    /// Expected duration of settings over all seeds with parallel jobs (s).
+    /// Returns the expected duration of settings over all seeds with parallel jobs (s).
     pub fn work(&self, settings: &[Combination]) -> f64 {
         let one = |s: &Combination| self.seconds(s);
         settings.iter().map(one).sum::<f64>() * self.seeds.len() as f64 / self.jobs as f64
@@ -203,8 +204,8 @@ impl Trade {
         unique(all)
     }
 
-    /// Settings that change one parameter of the case's own setting, near levels first; no level
-    /// finer than the reference's.
+    /// Returns settings that change one parameter of the case's own setting, near levels first; no
+    /// level finer than the reference's.
     pub fn one_at_a_time(&self) -> Vec<Combination> {
         let own = Combination::own(&self.parameters);
         let most = self.parameters.iter().map(|k| k.levels.len()).max();
@@ -228,7 +229,7 @@ impl Trade {
         unique(all)
     }
 
-    /// Remaining budget (s).
+    /// Returns the remaining budget (s).
     pub(super) fn left(&self) -> f64 {
         (self.budget.as_secs_f64() - self.started.elapsed().as_secs_f64()).max(0.0)
     }

@@ -1,4 +1,4 @@
-//! What a trade varies by name: a preset derives its levels from the case's own value.
+//! Parameters that a trade varies by name: a preset derives its levels from the case's own value.
 //!
 //! The reference has the finest level that the budget allows for ordered parameters (step,
 //! tolerance), the first level of a `--vary`, and the case's own value of the others: at equal
@@ -39,25 +39,26 @@ pub const PRESETS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Whether a preset is varied by default; the number of grains changes the problem itself, not only
-/// the accuracy, and a run that chooses its settings is compared with them where that is asked for;
-/// another deformability is another model.
+/// Whether a preset is varied by default. Not varied by default are the number of grains, which
+/// changes the problem itself, the accuracy of a run that chooses its settings, and the
+/// deformability, which is another model.
 fn wanted_by_default(name: &str) -> bool {
     !matches!(name, "grains" | "accuracy" | "deformability")
 }
 
-/// Properties of the scene on which levels depend: how it is solved, and what may deform in it.
+/// Properties of the scene on which levels depend: its solvers, and its deformable bodies.
 #[derive(Debug)]
 pub struct Solving {
-    /// The solvers that support it.
+    /// Solvers that support the scene.
     pub methods: Vec<Method>,
-    /// Its tolerance.
+    /// Tolerance of the scene.
     pub tolerance: f64,
-    /// What its forms are made from.
+    /// Properties from which its forms are made.
     pub deformability: Deformability,
 }
 
-/// The parameters requested by name, or the default ones of the case, and those of `--vary`.
+/// Returns the parameters requested by name, or the default ones of the case, and those of
+/// `--vary`.
 ///
 /// # Errors
 /// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
@@ -110,7 +111,7 @@ fn unknown(name: &str) -> Error {
     ))
 }
 
-/// Levels of a preset, or the reason why it does not apply to the case.
+/// Returns the levels of a preset, or the reason why it does not apply to the case.
 fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, String> {
     let case = &loaded.case;
     let (levels, own) = match name {
@@ -156,7 +157,7 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, Stri
     })
 }
 
-/// Levels of a choice, and the index of the case's own.
+/// Levels without an order, and the index of the case's own.
 type Choices = (Vec<Level>, usize);
 
 fn solver_levels(case: &Case, methods: &[Method]) -> Result<Choices, String> {
@@ -203,14 +204,14 @@ fn coupling_levels(case: &Case) -> Result<Choices, String> {
     Ok((levels, own))
 }
 
-/// The case with step and tolerance as they are, and with those that the run chooses for an
+/// Returns the case with its step and tolerance, and with those that the run chooses for an
 /// accuracy.
 fn accuracy_levels(case: &Case) -> Choices {
     let level = |label: &str, set: String| Level::named(label, vec![set]);
     let mut levels = vec![level("fixed", "accuracy=None".into())];
     let shares = ["0.03", "0.01", "0.003", "0.001"];
     levels.extend(shares.map(|share| level(share, format!("accuracy={share}"))));
-    // What the case asks for may be another result, within other bounds.
+    // The case may request another result, within other bounds.
     let own = case.accuracy.as_ref().map_or(0, |_| levels.len());
     if case.accuracy.is_some() {
         levels.push(Level::named(AS_IN_THE_CASE, Vec::new()));
@@ -223,7 +224,7 @@ fn sweeps(method: Method) -> bool {
     matches!(method, Method::Auto | Method::Nlgs | Method::Anderson)
 }
 
-/// The first grains with a count, and that count.
+/// Returns the first grains with a count, and that count.
 fn counted(case: &Case) -> Option<(usize, usize)> {
     let count = |g: &GrainSpec| match g {
         GrainSpec::Lattice { count, .. } => Some(*count),

@@ -30,11 +30,11 @@ pub struct Request {
     pub case: PathBuf,
     /// `--set` arguments of all runs.
     pub sets: Vec<String>,
-    /// Outputs with the errors wanted, `NAME=ERROR`; those that the case has by default.
+    /// Outputs with the wanted errors, `NAME=ERROR`; by default those that the case has.
     pub outputs: Vec<String>,
     /// Exact values of outputs, `NAME=VALUE`.
     pub exact: Vec<String>,
-    /// Names of presets; those that suit the case by default.
+    /// Names of presets; by default those that suit the case.
     pub presets: Vec<String>,
     /// Values of the case with their levels, `KEY.PATH=A,B,C`.
     pub vary: Vec<String>,
@@ -53,11 +53,11 @@ pub struct Request {
 }
 
 impl Request {
-    /// Checks the request and makes the first runs: whether contacts are chaotic, and what
-    /// settings cost. Returns the lock on the folder of the results too.
+    /// Checks the request and makes the first runs, which show whether contacts are chaotic, and
+    /// what settings cost. Also returns the lock on the folder of the results.
     ///
     /// # Errors
-    /// The case or an argument is wrong, the budget is below one run, or nothing can be run.
+    /// The case or an argument is invalid, the budget is below one run, or nothing can be run.
     pub fn begin(
         &self,
         program: &Program,
@@ -97,7 +97,7 @@ impl Request {
         Ok((trade, lock))
     }
 
-    /// The trade before its first run, with the notes that its options call for.
+    /// Returns the trade before its first run, with notes on its options.
     fn trade(
         &self,
         loaded: &Loaded,

@@ -11,7 +11,7 @@ use fretwork_scene::{InputError, Loaded};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// The text of a field of a struct, on one line; `None` if the text leaves it out.
+/// Returns the text of a field of a struct, on one line; `None` if the text omits it.
 pub fn field(text: &str, name: &str) -> Option<String> {
     let tree = Tree::of(text);
     let node = tree.find(text, &[name.to_owned()]).ok()?;
@@ -29,7 +29,8 @@ fn fields(text: &str) -> BTreeSet<String> {
     keys.map(|key| text[key].to_owned()).collect()
 }
 
-/// The case without its name, description, seed and output files, which a trade does not compare.
+/// Returns the case without its name, description, seed and output files, which a trade does not
+/// compare.
 fn compared(case: &Case) -> Case {
     let mut case = case.clone();
     (case.name, case.doc, case.seed) = (String::new(), String::new(), 0);
@@ -37,11 +38,11 @@ fn compared(case: &Case) -> Case {
     case
 }
 
-/// The parameter `variant`, if there are any.
+/// Returns the parameter `variant`, if there are any variants.
 ///
 /// # Errors
-/// An argument is malformed or given twice, its file is wrong, lies elsewhere, or cannot be reached
-/// from the case by `--set`.
+/// An argument is malformed or given twice, its file is invalid, lies elsewhere, or cannot be
+/// reached from the case by `--set`.
 pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>, Error> {
     let mut levels: Vec<Level> = Vec::new();
     for argument in arguments {
@@ -78,7 +79,7 @@ pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>,
     Ok(Some(Varied::new("variant", Sense::Form, levels, own)))
 }
 
-/// The `--set` arguments that make another case of this one.
+/// Returns the `--set` arguments that change this case to another one.
 fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError> {
     let (mine, wanted) = (compared(&loaded.case), compared(&other.case));
     let texts = (mine.to_ron()?, wanted.to_ron()?);

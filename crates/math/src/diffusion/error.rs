@@ -1,23 +1,23 @@
-//! What makes a diffusion problem impossible to solve.
+//! Reasons why a diffusion problem cannot be solved.
 
 use thiserror::Error;
 
-/// Why a diffusion problem has no solution, or none was found.
+/// Reason why a diffusion problem has no solution, or none was found.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DiffusionError {
-    /// A number that may not occur.
+    /// A number is invalid.
     #[error("{what} of node {node} is {value:e}; expected {expected}")]
     Number {
-        /// What the number is.
+        /// Name of the number.
         what: &'static str,
         /// The node.
         node: usize,
         /// Its value.
         value: f64,
-        /// What it may be.
+        /// Valid values.
         expected: &'static str,
     },
-    /// A conductance that may not occur.
+    /// A conductance is invalid.
     #[error("the conductance between nodes {} and {} is {value:e}; it must be finite and not negative", nodes[0], nodes[1])]
     Conductance {
         /// Nodes of the edge.
@@ -32,7 +32,7 @@ pub enum DiffusionError {
     NoOutlet {
         /// The first node of the component.
         node: usize,
-        /// What flows in.
+        /// Total source.
         source_rate: f64,
     },
     /// The linear system could not be solved.

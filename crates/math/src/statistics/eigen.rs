@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-/// Upper bound of the rounds over all pairs of rows; large matrices usually need about ten.
+/// Upper limit of the rounds over all pairs of rows; large matrices usually need about ten.
 const MOST_ROUNDS: usize = 60;
 
 /// Returns the eigenvalues (n), unsorted, and the eigenvectors as columns (n x n) in their order.

@@ -111,7 +111,7 @@ impl Biaxial {
         Some(test)
     }
 
-    /// Distances between the faces along the two axes (m).
+    /// Returns the distances between the faces along the two axes (m).
     fn lengths(&self, run: &dyn RunView) -> [f64; 2] {
         let position = run.bodies().position;
         [0, 1].map(|k| {
@@ -132,22 +132,23 @@ impl Biaxial {
         }
     }
 
-    /// Volume of the grains (m^3; m^2 in 2D).
+    /// Returns the volume of the grains (m^3; m^2 in 2D).
     pub fn solid(&self) -> f64 {
         self.solid
     }
 
-    /// Mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
+    /// Returns the mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
     pub fn grain_mass(&self, run: &dyn RunView) -> f64 {
         let (grains, mass) = (run.grains(), run.bodies().mass);
         grains.iter().map(|b| mass[*b]).sum::<f64>() / grains.len().max(1) as f64
     }
 
-    /// Measured values for the last step.
+    /// Returns the measured values for the last step.
     pub fn state(&self, run: &dyn RunView) -> State {
         let lengths = self.lengths(run);
         let volume = lengths[0] * lengths[1];
-        // Grains push the low wall down the axis and the high wall up, with equal forces at rest.
+        // Grains push the low wall in the negative direction of the axis and the high wall in the
+        // positive one, with equal forces at rest.
         let received = run.received();
         let walls = [0, 1].map(|k| {
             let [low, high] = self.walls[k].map(|w| received[w.place][0][self.axes[k]]);
@@ -173,7 +174,7 @@ impl Biaxial {
         }
     }
 
-    /// Columns of the statistics.
+    /// Returns the columns of the statistics.
     pub fn columns() -> Vec<Column> {
         let c = Column::new;
         vec![
@@ -246,7 +247,7 @@ impl Observer for Biaxial {
 }
 
 impl State {
-    /// Values of [`Biaxial::columns`].
+    /// Returns the values of [`Biaxial::columns`].
     pub fn row(&self) -> Vec<f64> {
         let z = &self.coordination;
         vec![
@@ -266,7 +267,7 @@ impl State {
     }
 }
 
-/// Axis normal to the face of a wall.
+/// Returns the axis normal to the face of a wall.
 fn axis_of(run: &dyn RunView, name: &str) -> Option<usize> {
     let body = run.bodies().driven.iter().find(|d| d.name == name)?.body;
     let face = run.surfaces().iter().position(|f| f.body == body)?;

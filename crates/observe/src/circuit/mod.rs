@@ -1,5 +1,5 @@
-//! The tribological circuit as an observer: its columns, its events, and what it sums up. The
-//! account itself is a process, [`fretwork_core::process::circuit`].
+//! The tribological circuit as an observer: columns, events, and summary. The account itself is a
+//! process, [`fretwork_core::process::circuit`].
 
 mod summary;
 
@@ -40,7 +40,7 @@ impl BrokenBonds {
     }
 }
 
-/// Coordinates of the place of an event.
+/// Returns the columns of the coordinates of an event.
 fn place() -> [Column; 3] {
     ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
 }
@@ -151,17 +151,17 @@ pub struct CircuitAccount {
     state: Followed,
 }
 
-/// What it carries from step to step.
+/// State carried from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Followed {
-    /// Pieces that came loose, and grains of the largest.
+    /// Number of pieces that detached, and number of grains of the largest.
     pieces: u64,
     largest: usize,
-    /// Time, what passed by then, and the mass in the contact, at each update.
+    /// Time, accumulated flows, and the mass in the contact, at each update.
     series: Series<(f64, Flows, f64)>,
 }
 
-/// The circuit of a simulation; none before it begins.
+/// Returns the circuit of a simulation; `None` before its start.
 fn circuit(run: &dyn RunView) -> Option<&GrainCircuit> {
     run.process::<CircuitProcess>()?.circuit()
 }
@@ -199,7 +199,8 @@ impl CircuitAccount {
         }
     }
 
-    /// The colours of balls and pieces by where they are; none before the account begins.
+    /// Returns the colours of balls and pieces by their place in the circuit; `None` before its
+    /// start.
     fn paints(run: &dyn RunView) -> Vec<Paint> {
         let Some(circuit) = circuit(run) else {
             return Vec::new();
@@ -217,7 +218,7 @@ impl CircuitAccount {
         bodies.map(paint).collect()
     }
 
-    /// What the summary says.
+    /// Returns the summary.
     fn summary(&self, run: &dyn RunView, wall: Duration) -> Option<CircuitSummary> {
         let circuit = circuit(run)?;
         let end = self.state.series.last().map_or(self.start, |p| p.0);
@@ -366,7 +367,7 @@ impl Observer for CircuitAccount {
         }]
     }
 
-    /// Grains that came loose from first bodies are a source beside the wear law.
+    /// Grains that detached from first bodies are a source in addition to the wear law.
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let run = end.simulation;
         for name in ["Qs", "Qe", "Qw"] {

@@ -1,4 +1,4 @@
-//! What the tribological circuit says at the end of a run.
+//! Summary of the tribological circuit at the end of a run.
 
 use crate::quantity::unit::{MASS, ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part};
@@ -102,7 +102,7 @@ crate::described! {
     }
 }
 
-/// Adds what cases without a circuit lack.
+/// Marks the results that cases without a circuit do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
     let doc = "the tribological circuit; null without one";
@@ -137,7 +137,7 @@ impl CircuitSummary {
         }));
     }
 
-    /// Labels and sentences of the terminal.
+    /// Returns labels and sentences for the terminal.
     fn lines(&self) -> Vec<(&'static str, String)> {
         let (c, f, r) = (&self.contents, &self.flows, &self.rates);
         let tied: Vec<String> = self

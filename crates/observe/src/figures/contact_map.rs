@@ -5,9 +5,9 @@ use crate::picture::{OPEN, SLIPS, STICKS};
 use crate::tractions::{FacetTraction, SurfaceState, Zone};
 use nalgebra::Vector3;
 
-/// The maps of the contact of a surface: what sticks and slips with the tractions along the
-/// surface, pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of
-/// its points where these stand for equal areas, or else those of its facets.
+/// Returns the maps of the contact of a surface: stick and slip with the tangential tractions,
+/// pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of the
+/// points of the surface where these have equal tributary areas, otherwise those of its facets.
 pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart> {
     let touching = |k: &usize| state.zone[*k] != Zone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
@@ -68,12 +68,12 @@ pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart
     out
 }
 
-/// Figures need no more digits.
+/// Converts to single precision, which is enough for figures.
 fn single(p: [f64; 2]) -> [f32; 2] {
     p.map(|x| x as f32)
 }
 
-/// What sticks and slips at some points.
+/// Returns colours for stick and slip at some points.
 fn zones(state: &SurfaceState, points: &[usize]) -> Colours {
     let classes = [("sticks", STICKS), ("slips", SLIPS), ("open", OPEN)];
     let class = |k: &usize| match state.zone[*k] {
@@ -97,7 +97,7 @@ struct Local {
     shear: f64,
 }
 
-/// The two axes across the one that is nearest to the normal of the loaded part.
+/// Returns the two axes other than the one nearest to the normal of the loaded part.
 fn plane(state: &SurfaceState, loaded: &[usize]) -> Option<[usize; 2]> {
     let mut normal = Vector3::zeros();
     for k in loaded {
@@ -161,7 +161,7 @@ impl View<'_> {
         corners.iter().any(inside)
     }
 
-    /// Facets in the window: index, points, and corners.
+    /// Iterates over the facets in the window: index, points, and corners.
     fn facets(&self) -> impl Iterator<Item = (usize, &[u32; 3], [[f64; 2]; 3])> {
         let facets = self.state.surface.facets.as_chunks::<3>().0.iter();
         let all = facets.enumerate();
@@ -169,8 +169,8 @@ impl View<'_> {
             .filter(|(_, _, corners)| self.shows(corners))
     }
 
-    /// What belongs to each point, in pieces of which a point has several, and the point of each
-    /// piece.
+    /// Returns the cells of the points, in pieces of which a point has several, and the point of
+    /// each piece.
     fn points(&self) -> (Shapes, Vec<usize>) {
         let (mut cells, mut seen) = (Vec::new(), Vec::new());
         for (_, points, corners) in self.facets() {
@@ -190,8 +190,8 @@ impl View<'_> {
         (cells, seen)
     }
 
-    /// Tractions along the surface at some points, along both axes (Pa): their own, or means of the
-    /// facets around them.
+    /// Returns the tangential tractions at some points, along both axes (Pa): those of the points,
+    /// or means of the facets around them.
     fn around(&self, points: &[usize], own: bool) -> Vec<(usize, [f64; 2])> {
         let state = self.state;
         let mut sums = vec![(Vector3::zeros(), 0.0); state.zone.len()];
@@ -243,14 +243,14 @@ impl View<'_> {
     }
 }
 
-/// Where the cells around the corners of a triangle meet: the centre of its circumcircle, which
-/// gives squares on a grid, or the middle of its longest edge where that lies outside.
+/// Returns where the cells around the corners of a triangle meet: the centre of its circumcircle,
+/// which gives squares on a grid, or the middle of its longest edge where that centre lies outside.
 fn centre(corners: &[[f64; 2]; 3]) -> [f64; 2] {
     let squared = |i: usize, j: usize| {
         let [dx, dy] = [0, 1].map(|a| corners[i][a] - corners[j][a]);
         dx * dx + dy * dy
     };
-    // Edges opposite to the corners.
+    // The edges are opposite to the corners.
     let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
     let total: f64 = edges.iter().sum();
     let mut weights = [0, 1, 2].map(|k| (edges[k] * (total - 2.0 * edges[k])).max(0.0));

@@ -1,5 +1,5 @@
-//! Observes broken bonds: the energy that they released over what their laws declare, and whether
-//! the step resolved them.
+//! Observes broken bonds: the ratio of the released energy to the energy that their laws declare,
+//! and whether the step resolved them.
 
 mod summary;
 
@@ -20,21 +20,21 @@ use fretwork_scene::case::Case;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// Angles of opening, evenly from the normal to the tangent, at which areas of broken bonds are
-/// collected for laws that declare no energy.
+/// Number of opening angles, evenly spaced from the normal to the tangent, at which areas of broken
+/// bonds are collected for laws that declare no energy.
 const ANGLES: usize = 19;
-/// Reduced radius of the bond on the bench (m), where the scene has no contact any more.
+/// Reduced radius of the bond on the bench (m), where the scene has no contacts any more.
 const RADIUS: f64 = 1e-3;
-/// Share of rotation in the work on a bond from which its energy is compared with that of a pull
-/// that also turns it: what laws declare is that of openings.
+/// Share of rotation in the work on a bond above which its energy is compared with that of a pull
+/// that also rotates it: declared energies are those of openings.
 const TURNS: f64 = 1e-3;
-/// Bonds broken by rotation that are compared; the rest are not.
+/// Number of bonds broken by rotation that are compared.
 const TURNED: usize = 32;
-/// Speed at which critical openings are sought (m/s).
+/// Speed at which critical openings are searched (m/s).
 const SLOW: f64 = 1e-6;
 
-/// A bond that broke as it turned: its opening normal and across (m), twist and bending (rad),
-/// area, and what it released (J).
+/// A bond that broke in rotation: its normal and tangential opening (m), twist and bending (rad),
+/// area, and released energy (J).
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Turned {
     opening: [f64; 2],
@@ -52,13 +52,13 @@ struct Broken {
     /// Number of bonds that began at their gap.
     begun_open: u64,
     released: f64,
-    /// Part of it that is compared with what follows.
+    /// Part of the released energy that is compared.
     opened: f64,
-    /// What the law declares for those that opened; not a number where it declares nothing.
+    /// Energy that the law declares for bonds that opened; NaN where it declares none.
     declared: f64,
-    /// Their areas by angle.
+    /// Areas of these bonds by angle.
     areas: Vec<f64>,
-    /// Bonds that turned.
+    /// Bonds that broke in rotation.
     turned: Vec<Turned>,
 }
 
@@ -96,8 +96,8 @@ impl Broken {
         self.areas[low + 1] += b.area * share;
     }
 
-    /// What those that turned released, and what slow pulls to the same openings and rotations take
-    /// for them; `None` where a pull does not break a bond.
+    /// Returns the energy released by bonds in rotation, and the energy of slow pulls to the same
+    /// openings and rotations; `None` where a pull does not break a bond.
     fn by_turning_pulls(
         &self,
         law: &Interface,
@@ -118,7 +118,7 @@ impl Broken {
         Ok(Some(sums))
     }
 
-    /// What a slow pull takes for them.
+    /// Returns the energy of slow pulls for these bonds.
     fn by_slow_pulls(&self, bench: &mut Bench) -> Result<Option<f64>, LawError> {
         let mut sum = 0.0;
         for (k, area) in self.areas.iter().enumerate().filter(|(_, a)| **a > 0.0) {
@@ -136,7 +136,7 @@ impl Broken {
 #[derive(Clone, Debug)]
 pub struct Fracture {
     jumps: bool,
-    /// One an interface.
+    /// Broken bonds of each interface.
     broken: Vec<Broken>,
 }
 
@@ -162,7 +162,7 @@ impl Fracture {
             broken_at_once: share(broken.at_once, broken.broken),
             ..BondEnergies::default()
         };
-        // A law that fails on the bench leaves out what is sought there.
+        // Values from the bench are omitted for a law that fails on it.
         if broken.broken > 0 {
             if broken.declared.is_finite() {
                 (out.declared, out.reference) = (Some(broken.declared), Reference::Declared);

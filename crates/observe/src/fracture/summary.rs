@@ -8,20 +8,22 @@ use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
 use serde::Serialize;
 
-/// Relative difference of the released energy from that of the laws from which bonds count as not
+/// Relative difference of the released energy from that of the laws above which bonds count as not
 /// resolved.
 pub const WRONG_ENERGY: f64 = 0.05;
-/// Share of bonds that break within the step in which their damage begins, from which they count as
-/// not resolved.
+/// Share of bonds that break within the step in which their damage begins, above which bonds count
+/// as not resolved.
 pub const AT_ONCE: f64 = 0.1;
-/// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at
-/// once however small the step.
+/// Ratio of the opening at failure to that at peak traction below which a bond is brittle: it
+/// breaks within one step for any step length.
 const BRITTLE: f64 = 1.05;
-/// Slide over critical opening, in the steps in which they break, from which brittle bonds count as
-/// not resolved: the step, not the law, then decides which of several breaks.
+/// Ratio of displacement to critical opening, in the steps in which they break, above which brittle
+/// bonds count as not resolved: which of several bonds breaks then depends on the step, not on the
+/// law.
 const OVERSHOOT: f64 = 0.2;
-/// Slide per step over critical opening up to which a step resolves a bond, as in `fretwork check`:
-/// if damage is that at the start or end of the step, and if it is that at its middle.
+/// Ratio of displacement per step to critical opening up to which a step resolves a bond, as in
+/// `fretwork check`: if damage is that at the start or end of the step, and if it is that at its
+/// middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
 
 /// What the energy to break a bond is compared with.
@@ -138,7 +140,7 @@ impl FractureSummary {
         found.warn(text.map(|text| Warning::note("BONDS NOT RESOLVED", text)));
     }
 
-    /// Sentence for the terminal, for the released over the declared energy.
+    /// Returns the sentence for the terminal on the ratio of the released to the declared energy.
     fn sentence(&self, ratio: f64) -> String {
         let once = self.interfaces.iter().filter_map(|b| {
             let share = b.softening_at_once().filter(|s| *s > 0.0)?;
@@ -156,7 +158,7 @@ impl FractureSummary {
         text.join("; ")
     }
 
-    /// Says which bonds the step does not resolve, and what to change; `None` where it resolves
+    /// Returns which bonds the step does not resolve, and what to change; `None` where it resolves
     /// all, or nothing is known.
     pub fn warning(&self) -> Option<String> {
         if self.jumps {
@@ -196,7 +198,8 @@ impl FractureSummary {
 }
 
 impl BondEnergies {
-    /// Sets how far the bonds slid in a step, relative to their critical opening if it is known.
+    /// Sets the displacement of the bonds in a step, relative to their critical opening if it is
+    /// known.
     pub(crate) fn slide(&mut self, slides: &Slides) {
         let Some(critical) = self.critical_opening else {
             return;
@@ -214,19 +217,19 @@ impl BondEnergies {
         }
     }
 
-    /// Share of the bonds that broke within one step, where they should soften.
+    /// Returns the share of the bonds that broke within one step, where they should soften.
     fn softening_at_once(&self) -> Option<f64> {
         self.broken_at_once.filter(|_| !self.brittle())
     }
 
-    /// Slide over critical opening of brittle bonds in the steps in which they broke, if the step
-    /// does not resolve them.
+    /// Returns the displacement over the critical opening of brittle bonds in the steps in which
+    /// they broke, if the step does not resolve them.
     fn overshoot(&self) -> Option<f64> {
         self.slide_breaking
             .filter(|s| self.brittle() && *s > OVERSHOOT)
     }
 
-    /// Text for the warning, if the step does not resolve the bonds.
+    /// Returns the text of the warning, if the step does not resolve the bonds.
     fn unresolved(&self) -> Option<String> {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
         let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);

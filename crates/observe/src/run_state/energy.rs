@@ -1,4 +1,4 @@
-//! What the ledgers of energy and momentum say at the end of a run.
+//! Results of the ledgers of energy and momentum at the end of a run.
 
 use super::{BondsOfCase, NO_BONDS, NO_DAMAGE};
 use crate::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, MOMENTUM, ONE};
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// heat, above which it is not explained by rounding: ledgers close to 1e-9 and better, also over
 /// millions of steps.
 pub const LEDGER: f64 = 1e-6;
-/// Share of the energy taken by friction that friction may give back without a warning.
+/// Share of the energy dissipated by friction that friction may return without a warning.
 const GIVEN: f64 = 0.05;
 /// Energies below this fraction of the largest are omitted, as in the energy figure.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -98,7 +98,7 @@ pub(super) fn report(e: &Energy, momentum: Momentum, bonds: BondsOfCase, found: 
     found.part("momentum", &drift, "");
 }
 
-/// Short name of an entry of the ledger.
+/// Returns the short name of an entry of the ledger.
 fn label(name: &str) -> String {
     match name {
         "viscous" => "damping".to_owned(),
@@ -115,8 +115,8 @@ fn largest(e: &Energy) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// Sentences of the terminal: external work + gravity + kinetic energy at the start = dissipated +
-/// stored.
+/// Returns the sentences for the terminal: external work + gravity + kinetic energy at the start =
+/// dissipated + stored.
 fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)> {
     let largest = largest(e);
     let shown = |x: f64| x.is_nan() || x.abs() > NEGLIGIBLE * largest;
@@ -170,7 +170,7 @@ fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)
     out
 }
 
-/// Warnings of the ledger.
+/// Adds the warnings of the ledger.
 pub(super) fn warn(e: &Energy, found: &mut Findings) {
     let energies = [
         e.kinetic,
@@ -253,7 +253,8 @@ mod tests {
 
     #[test]
     fn energies_are_named_as_in_the_ledger_and_balance() {
-        // A fall: 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J in bonds.
+        // In this fall there are 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J
+        // in bonds.
         let mut e = Energy {
             external_work: 12.0,
             potential: -80.0,

@@ -8,11 +8,11 @@ use fretwork_scene::methods::{Demands, Service};
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Missed {
-    /// Their number.
+    /// Number of these steps.
     pub steps: u64,
-    /// The first of them.
+    /// Number of the first of these steps.
     pub first: u64,
-    /// Largest error of them.
+    /// Largest error in these steps.
     pub error: f64,
 }
 
@@ -29,8 +29,8 @@ impl Missed {
         self.error = self.error.max(report.error);
     }
 
-    /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if
-    /// all steps converged.
+    /// Returns advice to the user after `of` steps; proposes only solvers that the laws permit.
+    /// `None` if all steps converged.
     pub fn warning(&self, run: &dyn RunView, of: u64) -> Option<String> {
         let options = run.solver_in_force();
         let seen = self.seen(of, options.tolerance)?;
@@ -58,8 +58,8 @@ impl Missed {
         ))
     }
 
-    /// Description of the missed steps among `of`, and the first thing to change. `None` if all
-    /// steps converged.
+    /// Returns a description of the missed steps among `of`, and the first setting to change.
+    /// `None` if all steps converged.
     pub(super) fn seen(&self, of: u64, tolerance: f64) -> Option<String> {
         (self.steps > 0).then(|| {
             format!(

@@ -1,4 +1,4 @@
-//! The state of a run: what every run says of its steps, contacts, bonds, energies and its solver.
+//! The state of a run: results of every run on its steps, contacts, bonds, energies and its solver.
 
 mod driven;
 mod energy;
@@ -29,7 +29,7 @@ use fretwork_core::process::cycle::CycleClock;
 use fretwork_core::step::{ImpossibleMotions, StepReport};
 use fretwork_core::view::RunView;
 
-/// Broken bonds over bonds made.
+/// Returns broken bonds over bonds made.
 pub fn damage_ratio(run: &dyn RunView) -> f64 {
     let made = run.bonds_made();
     if made > 0 {
@@ -39,7 +39,7 @@ pub fn damage_ratio(run: &dyn RunView) -> f64 {
     }
 }
 
-/// What the simulation counts, between two steps.
+/// Counters of the simulation, between two steps.
 #[derive(Clone, Debug, Default)]
 struct Counts {
     steps: u64,
@@ -55,7 +55,7 @@ struct Counts {
 }
 
 impl Counts {
-    /// Of a simulation with so many contacts.
+    /// Creates the counters of a simulation with this number of contacts.
     fn of(run: &dyn RunView, contacts: usize) -> Self {
         Self {
             steps: run.steps(),
@@ -162,15 +162,16 @@ pub struct RunState {
     bonds: BondsOfCase,
     iterations: u64,
     couplings: u64,
-    /// Number of contacts in the last step; none before it.
+    /// Number of contacts in the last step; `None` before it.
     contacts: Option<usize>,
-    /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance
-    /// was reached.
+    /// Number of contacts with an impulse in the last step, iterations, error, and whether the
+    /// tolerance was reached.
     last: [f64; 5],
 }
 
 impl RunState {
-    /// Of a run from the current state of a simulation; its friction test may have cycles.
+    /// Creates the observer of a run from the current state of a simulation; its friction test may
+    /// have cycles.
     pub fn new(run: &dyn RunView, clock: Option<CycleClock>) -> Self {
         let options = &run.options().solver;
         Self {
@@ -234,7 +235,7 @@ impl RunState {
     }
 }
 
-/// What is said of motions that could not be obeyed.
+/// Fields of imposed motions that were impossible.
 const IMPOSSIBLE: [Field; 7] = [
     field(
         "squeezed_steps",

@@ -28,7 +28,7 @@ crate::described! {
 }
 
 impl Uncertainty {
-    /// Of what the observers found, with what repeated steps say.
+    /// Creates the estimates from the results of the observers and of repeated steps.
     pub fn new(found: &Findings, repeats: Repeats) -> Self {
         let mut all = Self::scattered(found);
         let energy = found.number("energy.friction");
@@ -43,7 +43,7 @@ impl Uncertainty {
         all
     }
 
-    /// Values, and their scatter within the run.
+    /// Returns the values, and their scatter within the run.
     fn scattered(found: &Findings) -> Self {
         let mut all = Self::default();
         let friction = found.get::<Friction>();
@@ -74,7 +74,7 @@ impl Uncertainty {
         all
     }
 
-    /// Adds the estimates, puts them to the quantities that they are of, and warns of large errors.
+    /// Adds the estimates to their quantities, and warns of large errors.
     pub fn report(&self, found: &mut Findings) {
         found.begin(Topic::Run, Role::Diagnostic);
         found.part("uncertainty", self, "");
@@ -120,7 +120,7 @@ impl Uncertainty {
     }
 }
 
-/// Puts in what repeated steps say of a result.
+/// Adds the results of repeated steps for a result.
 fn repeated(result: &mut Estimate, repeats: &Repeats, part: fn(&Effects) -> Option<Change>) {
     let size = result.value.map(f64::abs);
     let half = |effects: &Effects| Some(size? * part(effects)?.bound());

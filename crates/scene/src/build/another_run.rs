@@ -83,7 +83,7 @@ impl Builder<'_> {
         Ok((seeds, Others { k, of, grains }))
     }
 
-    /// Where a recorded grain is and how it moves.
+    /// Returns position and motion of a recorded grain.
     fn start(&self, k: usize, motion: &Motion) -> Result<Start, InputError> {
         // The orientation of a ball has no effect.
         let known = |numbers: &[f64; 4]| turned(self.dimension(), numbers, [0.0; 3]).is_some();
@@ -166,7 +166,7 @@ impl Builder<'_> {
         {
             return Err("its position, mass or inertia is not a valid number".to_owned());
         }
-        // Exactly one if the material is the same.
+        // The ratio is exactly one if the material is the same.
         let ratio = density / of.density;
         self.assembly
             .add_weighed(of.mass * ratio, &of.inertia, ratio, of.length, start)

@@ -11,8 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const MAX_BLOCKS: usize = 10_000;
 
 impl Builder<'_> {
-    /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for
-    /// other kinds of grains.
+    /// Returns the blocks of an arch between its radial joints, from right to left; an empty list
+    /// for other kinds of grains.
     pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block>, InputError> {
         let GrainSpec::Arch {
             blocks,
@@ -80,7 +80,8 @@ impl Builder<'_> {
     }
 }
 
-/// Centroid, area and polar moment of area about it of a ring sector between two angles.
+/// Returns centroid, area and polar moment of area about the centroid of a ring sector between two
+/// angles.
 fn ring_piece(inner: f64, outer: f64, from: f64, to: f64) -> ([f64; 2], f64, f64) {
     let (angle, middle) = (to - from, 0.5 * (from + to));
     let area = 0.5 * angle * (outer * outer - inner * inner);

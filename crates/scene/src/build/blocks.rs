@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 100_000;
-/// Limit on Lloyd iterations; beyond some hundred the cells no longer change visibly.
+/// Limit on Lloyd iterations; after a few hundred the cells no longer change visibly.
 const MAX_ROUNDS: usize = 1_000;
 /// Limit on cells times Lloyd iterations in 2D and 3D, which take some seconds. Building the cells
 /// counts as one iteration.
@@ -129,7 +129,7 @@ impl Builder<'_> {
         Ok((out, note))
     }
 
-    /// Makes the cells of a box; also returns a note on what was changed in them.
+    /// Creates the cells of a box; also returns a note on changes of the cells.
     fn cells_in_space(
         &self,
         here: &str,
@@ -201,7 +201,7 @@ impl Builder<'_> {
         self.fail(format!("{here}.{field}"), message)
     }
 
-    /// Makes a wall in running bond, course by course from the ground up and from left to right.
+    /// Creates a wall in running bond, course by course from the ground up and from left to right.
     pub(super) fn block_wall(
         &self,
         here: &str,

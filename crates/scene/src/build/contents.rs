@@ -7,10 +7,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 impl Loaded {
-    /// The case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and content of
-    /// each file that one of its texts names: materials, parameters, profiles, meshes, samples, and
-    /// the summary of another run. Two cases with equal contents are the same scene under the same
-    /// laws, without building it.
+    /// Returns the case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and
+    /// content of each file that one of its texts names: materials, parameters, profiles, meshes,
+    /// samples, and the summary of another run. Two cases with equal contents are the same scene
+    /// with the same laws, which is known without building it.
     ///
     /// # Errors
     /// The case cannot be written as text.
@@ -67,7 +67,8 @@ mod tests {
         grains: [List(material: "steel", grains: [(at: [0.0, 0.0], radius: 0.01)])],
     )"#;
 
-    /// Another spelling has the same contents; another value, or another text of a file, has not.
+    /// Another spelling has the same contents; another value, or another text of a file, has
+    /// different contents.
     #[test]
     fn contents_tell_cases_apart_and_not_spellings() {
         let folder = std::env::temp_dir().join(format!("fretwork-contents-{}", std::process::id()));

@@ -50,8 +50,7 @@ impl Builder<'_> {
     }
 
     /// Rejects half-spaces that are not parallel to a periodic axis. A half-space normal to the
-    /// axis is accepted: it is a wall of a case that was made periodic by `--set`, and it is
-    /// dropped.
+    /// axis is accepted: it is a wall of a case that became periodic by `--set`, and is removed.
     fn check_periods(&self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
         let periods = self.assembly.periodic().period;
         for (k, shape) in spec.shapes.iter().enumerate() {

@@ -56,7 +56,7 @@ impl Builder<'_> {
                     low,
                     high,
                 } => balls.extend(self.lattice(k, material, *count, *radius, [low, high])?),
-                // Made after the balls, which come first in memory.
+                // These are added after the balls, which come first in memory.
                 GrainSpec::Polygons { .. }
                 | GrainSpec::Arch { .. }
                 | GrainSpec::Polyhedra { .. }
@@ -151,7 +151,7 @@ impl Builder<'_> {
         Ok(list.into_iter().map(seed))
     }
 
-    /// The balls of a scene file; adds its walls, if they are wanted.
+    /// Returns the balls of a scene file; adds its walls, if they are requested.
     fn grains_of_scene(
         &mut self,
         k: usize,
@@ -193,8 +193,8 @@ impl Builder<'_> {
         }
     }
 
-    /// An angular velocity of the case (rad/s), about the third axis in the plane; zero where it is
-    /// left out.
+    /// Returns an angular velocity of the case (rad/s), in the plane about the third axis; zero
+    /// where it is omitted.
     pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<[f64; 3], InputError> {
         let count = if self.dimension() == 2 { 1 } else { 3 };
         if !values.is_empty() && values.len() != count {
@@ -207,7 +207,8 @@ impl Builder<'_> {
         Ok(self.about_axes(components(values).into()))
     }
 
-    /// An angular velocity about the axes, of numbers of which the first alone counts in the plane.
+    /// Returns an angular velocity about the axes, from numbers of which only the first is used in
+    /// the plane.
     pub(super) fn about_axes(&self, numbers: [f64; 3]) -> [f64; 3] {
         match self.dimension() {
             2 => [0.0, 0.0, numbers[0]],
@@ -215,7 +216,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The corner of a box as a vector; an error if it is missing.
+    /// Returns the corner of a box as a vector; an error if it is missing.
     pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<Vector3<f64>, InputError> {
         if corner.is_empty() {
             return Err(self.source.locate(

@@ -11,15 +11,16 @@ use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_elastic::half_space::{self, Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
 use std::collections::BTreeMap;
 
-/// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
-/// theta)/theta in a step, and near 1/2 single steps win energy.
+/// Smallest theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
+/// theta)/theta in a step, and near 1/2 single steps gain energy.
 const MIN_THETA: f64 = 0.55;
 
-/// Creepage of one surface over another that may come on top of rolling by one cell a step.
+/// Creepage of one surface over another that is permitted in addition to rolling by one cell per
+/// step.
 const MOST_CREEPAGE: f64 = 0.01;
 
 impl Builder<'_> {
-    /// The half-spaces of the case, in its order.
+    /// Returns the half-spaces of the case, in its order.
     pub(super) fn half_spaces(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
@@ -192,7 +193,7 @@ impl Builder<'_> {
         Ok(out)
     }
 
-    /// A surface that rolls passes no more than a cell in a step.
+    /// Checks that a rolling surface passes at most one cell per step.
     fn check_rolling(
         &self,
         here: &str,
@@ -211,7 +212,7 @@ impl Builder<'_> {
             } => amplitude.abs() + offset.abs(),
             TimeFunction::Table(points) => points.iter().fold(0.0, |m, p| p.1.abs().max(m)),
         };
-        // A small creepage on top of a velocity of one cell a step is no matter.
+        // A small creepage in addition to a velocity of one cell per step is permitted.
         if fastest * h > (1.0 + MOST_CREEPAGE) * grid.size[0] {
             let message = format!(
                 "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",

@@ -1,4 +1,4 @@
-//! Blocks as meshes of deformable bodies: their cells, and sides that are round.
+//! Blocks as meshes of deformable bodies: their cells, and their rounded sides.
 
 use super::Builder;
 use crate::case::{CoarsenSpec, LineSpec, MeshProfileSpec, RoundSpec};
@@ -7,11 +7,11 @@ use fretwork_elastic::AnyMesh;
 use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded};
 use fretwork_elastic::mesh::MeshError;
 
-/// Most points of a block along an axis, and at all.
+/// Largest number of points of a block along an axis, and in total.
 const MAX_LINE: f64 = 1e5;
 const MAX_POINTS: usize = 1_000_000;
 
-/// Options of a block besides its lines.
+/// Options of a block in addition to its lines.
 pub(super) struct BlockShape<'a> {
     pub(super) round: Option<&'a RoundSpec>,
     pub(super) profile: Option<&'a MeshProfileSpec>,
@@ -91,7 +91,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Cuts the cells of a grid whose points are moved.
+    /// Divides the cells of a grid whose points are moved.
     pub(super) fn mapped(
         &self,
         here: &str,
@@ -111,7 +111,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Bends a side of a block, and the points behind it less with depth.
+    /// Rounds a side of a block; the displacement of points behind it decreases with depth.
     fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<AnyMesh, InputError> {
         let up = self.dimension() - 1;
         let ends: Vec<[f64; 2]> = grid
@@ -156,7 +156,7 @@ impl Builder<'_> {
     }
 }
 
-/// The points of a line, or the field that is wrong and why.
+/// Returns the points of a line, or the invalid field and the reason.
 fn coordinates(line: &LineSpec) -> Result<Vec<f64>, (&'static str, String)> {
     let LineSpec {
         from,

@@ -73,7 +73,7 @@ impl Builder<'_> {
         Polyhedron::new(&points).map_err(|e| bad(e.to_string()))
     }
 
-    /// Makes a cuboid about the origin from the lengths of its edges (m).
+    /// Creates a cuboid about the origin from the lengths of its edges (m).
     pub(super) fn cuboid(
         &self,
         here: &str,

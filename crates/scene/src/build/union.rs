@@ -90,8 +90,8 @@ impl Builder<'_> {
         Ok(cluster.1.iter().map(ball).collect())
     }
 
-    /// Makes the balls of a plate with a hole, so close that no grain of their size passes between
-    /// them.
+    /// Returns the balls of a plate with a hole, so close that no grain of their size passes
+    /// between them.
     fn plate(
         &self,
         here: &str,

@@ -14,7 +14,7 @@ pub struct Difference {
     pub other: Option<String>,
 }
 
-/// The first difference between two texts, except below the dotted paths in `but`.
+/// Returns the first difference between two texts, except below the dotted paths in `but`.
 pub fn first_difference(one: &Source, other: &Source, but: &[&str]) -> Option<Difference> {
     let mut path = Vec::new();
     let nodes = [&one.tree().root, &other.tree().root].map(Option::as_ref);
@@ -42,7 +42,7 @@ fn compare(
     let [Some(a), Some(b)] = nodes else {
         return match nodes {
             [None, None] => None,
-            // A group that holds only ignored values equals an absent one.
+            // A group that contains only ignored values equals an absent one.
             [a, b] => {
                 let holds = |p: &&str| p.strip_prefix(&here).is_some_and(|r| r.starts_with('.'));
                 let group = a.or(b).and_then(Node::group);

@@ -57,7 +57,7 @@ impl Source {
         Some(self.error_in(&again, message).help("remove one of the two"))
     }
 
-    /// Line and column of a range, and the `--set` that contained it.
+    /// Returns line and column of a range, and the `--set` that contained it.
     pub(super) fn place_in_words(&self, span: &Range<usize>) -> String {
         let error = self.error_in(span, "");
         let (line, column) = error.position().unwrap_or_default();

@@ -36,8 +36,8 @@ pub(super) enum Step {
 }
 
 impl Source {
-    /// The text with the value at which ron stopped rewritten, and the byte that ron must pass for
-    /// the rewriting to be correct; `None` if no other notation applies.
+    /// Returns the text with the value at which ron stopped rewritten, and the byte that ron must
+    /// pass for the rewriting to be correct; `None` if no other notation applies.
     pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
         let node = self.stopped_at(error)?;
         let change = match (&error.code, &node.kind) {
@@ -71,7 +71,8 @@ impl Source {
             Change::List | Change::Tuple => node.span.start,
         };
         let mut other = self.clone();
-        // From the last one on, so that the positions of the others stay valid.
+        // Values are rewritten from the last one on, so that the positions of the others stay
+        // valid.
         for span in alike.iter().rev() {
             other.write(span, change);
         }
@@ -79,7 +80,7 @@ impl Source {
         Some((other, pass))
     }
 
-    /// The value that begins where ron stopped.
+    /// Returns the value that begins where ron stopped.
     fn stopped_at(&self, error: &SpannedError) -> Option<&Node> {
         let end = self.offset(&error.span.end);
         let rest = self.text.get(end..)?;

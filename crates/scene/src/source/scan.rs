@@ -58,12 +58,12 @@ impl<'a> Scanner<'a> {
         self.rest().chars().next()
     }
 
-    /// Byte range of the next character.
+    /// Returns the byte range of the next character.
     fn here(&self) -> Range<usize> {
         self.at..self.at + self.peek().map_or(0, char::len_utf8)
     }
 
-    /// Only the first error is kept, since later ones are mostly consequences of it.
+    /// Records an error. Only the first is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
         if self.fault.is_none() {
             self.fault = Some(SyntaxError {
@@ -294,7 +294,7 @@ impl<'a> Scanner<'a> {
                 Some(c @ (')' | ']' | '}')) => {
                     let message = format!("`{c}` does not close the `{opener}` before it");
                     self.fault(self.here(), message);
-                    // Not consumed: it most probably closes an outer group.
+                    // The bracket is not consumed: it most probably closes an outer group.
                     break;
                 }
                 Some(c @ (',' | ':')) => {
@@ -314,7 +314,7 @@ impl<'a> Scanner<'a> {
             match self.peek() {
                 Some(',') => self.at += 1,
                 Some(')' | ']' | '}') | None => {}
-                // A list has no names: the list was not closed before this one.
+                // A list has no names, so that an earlier list was not closed.
                 Some(':') if shape == Shape::List => {
                     let message = format!("this `{opener}` is not closed by `{closer}`");
                     self.fault(open..open + 1, message);
@@ -362,7 +362,7 @@ impl<'a> Scanner<'a> {
         Some(Entry { key, value })
     }
 
-    /// Byte range of a field name that is followed by a colon, if there is one.
+    /// Returns the byte range of a field name that is followed by a colon, if there is one.
     fn field_name(&mut self) -> Option<Range<usize>> {
         let start = self.at;
         if !self.peek().is_some_and(starts_word) || self.rest().starts_with("r\"") {

@@ -44,13 +44,13 @@ pub(super) struct Place {
 pub(super) struct SourceMap(Vec<SourceRange>);
 
 impl SourceMap {
-    /// The map of an unmodified file of this length.
+    /// Returns the map of an unmodified file of this length.
     pub fn whole(length: usize) -> Self {
         let from = Origin::File(0);
         Self(vec![SourceRange { length, from }])
     }
 
-    /// Location of a range of the text in use.
+    /// Returns the location of a range of the text in use.
     pub fn place(&self, span: &Range<usize>) -> Place {
         let (start, first) = self.range_at(span.start);
         match &first.from {
@@ -94,7 +94,8 @@ impl SourceMap {
         }
     }
 
-    /// The range that contains a byte (the last one, for the end of the text), and its start.
+    /// Returns the range that contains a byte (the last one, for the end of the text), and its
+    /// start.
     fn range_at(&self, at: usize) -> (usize, &SourceRange) {
         let mut start = 0;
         for piece in &self.0 {

@@ -102,7 +102,7 @@ pub struct Missing<'t> {
 }
 
 impl Missing<'_> {
-    /// The path with its first wrong component corrected, if a similar one exists.
+    /// Returns the path with its first wrong component corrected, if a similar one exists.
     pub fn correction(&self, path: &[String]) -> Option<Vec<String>> {
         let wrong = path.get(self.depth)?;
         let right = nearest(wrong, self.choices.iter().map(String::as_str))?;
@@ -175,7 +175,7 @@ impl Tree {
         Ok(node)
     }
 
-    /// The value that ends exactly at `offset`.
+    /// Returns the value that ends exactly at `offset`.
     pub(super) fn ending_at(&self, offset: usize) -> Option<&Node> {
         let mut node = self.root.as_ref()?;
         while node.span.end != offset {
@@ -196,7 +196,7 @@ impl Tree {
         Some(node)
     }
 
-    /// The dotted path of the value with this span; empty for the root.
+    /// Returns the dotted path of the value with this span; empty for the root.
     pub(super) fn path_of(&self, text: &str, span: &Range<usize>) -> Vec<String> {
         let mut path = Vec::new();
         let mut node = self.root.as_ref();
@@ -241,7 +241,7 @@ impl Tree {
 }
 
 impl Node {
-    /// The group, if the value is one.
+    /// Returns the group, if the value is one.
     pub fn group(&self) -> Option<&Group> {
         match &self.kind {
             Kind::Group(group) => Some(group),
@@ -249,7 +249,7 @@ impl Node {
         }
     }
 
-    /// The value inside any number of `Some(...)`.
+    /// Returns the value inside any number of `Some(...)`.
     pub fn unwrap_some(&self, text: &str) -> &Node {
         let mut node = self;
         while let Some(group) = node.group().filter(|group| group.is_some(text)) {
@@ -258,7 +258,7 @@ impl Node {
         node
     }
 
-    /// Range to mark: the whole value, or its head if it spans several lines.
+    /// Returns the range to mark: the whole value, or its head if it spans several lines.
     pub fn head(&self, text: &str) -> Range<usize> {
         match self.group() {
             Some(group) if text[self.span.clone()].contains('\n') => {
@@ -306,7 +306,7 @@ impl Node {
         }
     }
 
-    /// A field of this struct, or of the struct in this one-tuple.
+    /// Returns a field of this struct, or of the struct in this one-tuple.
     fn field(&self, text: &str, name: &str) -> Option<&Node> {
         let mut node = self;
         loop {
@@ -327,7 +327,7 @@ impl Node {
         }
     }
 
-    /// Valid components after this value in a path.
+    /// Returns valid components after this value in a path.
     pub(super) fn choices(&self, text: &str) -> Vec<String> {
         let node = self.unwrap_some(text);
         let Some(group) = node.group() else {
@@ -343,7 +343,7 @@ impl Node {
 }
 
 impl Group {
-    /// Whether this is `Some(x)`.
+    /// Returns whether this is `Some(x)`.
     pub fn is_some(&self, text: &str) -> bool {
         let named = self
             .name
@@ -352,7 +352,7 @@ impl Group {
         named && self.shape == Shape::Tuple && self.entries.len() == 1
     }
 
-    /// The index of the entry with this key, or in a list with this `name`.
+    /// Returns the index of the entry with this key, or in a list with this `name`.
     fn position(&self, text: &str, part: &str) -> Option<usize> {
         (0..self.entries.len()).find(|&index| {
             let entry = &self.entries[index];
@@ -361,7 +361,7 @@ impl Group {
         })
     }
 
-    /// The component that leads to an entry.
+    /// Returns the component that leads to an entry.
     fn component(&self, text: &str, index: usize) -> String {
         self.label(text, index).unwrap_or_else(|| index.to_string())
     }

@@ -20,28 +20,28 @@ pub enum FolderState {
 /// A saved state of a stopped run.
 #[derive(Debug)]
 pub struct ResumePoint {
-    /// Its results file, opened.
+    /// The results file of the stopped run, open for reading.
     pub results: PreviousResults,
     /// Number of the frame.
     pub number: u64,
-    /// Serialized state.
+    /// Serialized state of the last checkpoint.
     pub state: Vec<u8>,
-    /// The folder is this run's from then on, so that no other goes on from the same state.
+    /// Lock by which this run owns the folder, so that no other run continues from this state.
     pub lock: FolderLock,
 }
 
-/// The file that a run writes last, and removes before it starts: if it exists, all others are
-/// complete.
+/// Name of the file that a run writes last and removes before it starts: if it exists, all others
+/// are complete.
 pub const LAST: &str = "summary.json";
 
-/// Whether the run in a folder, with this identity, finished without an error.
+/// Whether the run with this identity in a folder finished without an error.
 fn finished(folder: &Path, identity: &str) -> bool {
     let text = std::fs::read_to_string(folder.join(LAST)).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
-/// Why the run in a folder, with this identity, ended, where it wrote that.
+/// Returns the reason why the run with this identity in a folder ended, if the run recorded one.
 fn ended(folder: &Path, identity: &str) -> Option<String> {
     let text = std::fs::read_to_string(folder.join(LAST)).ok()?;
     let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
@@ -49,18 +49,18 @@ fn ended(folder: &Path, identity: &str) -> Option<String> {
     ours.then(|| summary["stopped"].as_str().map(str::to_owned))?
 }
 
-/// What distinguishes a file from one written since: its length and time of writing.
+/// Length and modification time of a file, which distinguish it from a file written later.
 fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
     let data = std::fs::metadata(path).ok()?;
     Some((data.len(), data.modified().ok()?))
 }
 
-/// Searches a folder for a run with this identity. The folder is owned only where there is
-/// something to go on with: a finished run may lie where nobody writes.
+/// Searches a folder for a run with this identity. The folder is locked only if there is a state to
+/// continue from, since a finished run may be in a folder without write access.
 ///
 /// # Errors
-/// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to
-/// another version or case, or it has rows and no state.
+/// Another run is writing in the folder, a file cannot be read, its checkpoints are damaged, it
+/// belongs to another version or case, or it has rows but no state.
 pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
@@ -76,7 +76,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeErr
         };
         drop(reading);
         let lock = FolderLock::own(folder, RUN_LOCK)?;
-        // Between the two another run may have gone on from there.
+        // Another run may have continued in the folder between the search and the lock.
         if version(&path) == before {
             let (results, number, state) = *saved;
             return Ok(FolderState::State(ResumePoint {
@@ -89,7 +89,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeErr
     }
 }
 
-/// What a folder holds.
+/// Content of a folder.
 enum Seen {
     Nothing,
     Finished,
@@ -114,8 +114,8 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     let Some(frame) = frames.last() else {
         return Err(ResumeError::Damaged { path });
     };
-    // A sealed slot held a frame; one that was being written when the run was killed has no seal
-    // yet.
+    // A sealed slot contained a valid frame. A frame that was being written when the run was killed
+    // has no seal yet.
     let written = |slot: &&Option<Vec<u8>>| {
         slot.as_ref()
             .is_none_or(|bytes| bytes.iter().take(Frame::SEAL).any(|b| *b != 0))
@@ -139,8 +139,8 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     }
     let later = theirs.ends_later(identity);
     let name = frame.identity.clone();
-    // The results file is marked complete, and the summary of the same run shows that all others
-    // are.
+    // The results file is marked as complete, and the summary of this run shows that all other
+    // files are complete too.
     let is_finished =
         frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
     if !later && is_finished {
@@ -148,7 +148,7 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     }
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
     match states.next_back() {
-        // To start over would replace what the run recorded.
+        // Starting again would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),
         None if is_finished => Err(ResumeError::NoState {
             path,

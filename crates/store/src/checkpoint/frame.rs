@@ -1,4 +1,4 @@
-//! Frame: the bytes of a checkpoint, protected by a checksum.
+//! Frames: the bytes of a checkpoint, protected by a checksum.
 //!
 //! ```text
 //! 0  "FRETWORK"       8  format (u32)       12  kind (u32)         16  number of the frame (u64)
@@ -24,13 +24,13 @@ pub enum Kind {
 /// A checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Kind.
+    /// Kind of the frame.
     pub kind: Kind,
     /// Number of the frame in its run, increasing with time.
     pub number: u64,
     /// Format of the identity and the state, see [`Frame::FORMAT`].
     pub format: u32,
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the frame.
     pub version: String,
     /// Serialized identity of the run.
     pub identity: Vec<u8>,
@@ -43,11 +43,11 @@ const HASH: usize = 48;
 const BODY: usize = 80;
 
 impl Frame {
-    /// Form of identities and states that this program writes: one more whenever anything of them
-    /// changes.
+    /// Version of the format of identities and states that this program writes. It increases by one
+    /// with every change of their content.
     pub const FORMAT: u32 = 19;
 
-    /// First bytes of a frame, which are written when all others are on disk: zeros until then.
+    /// First bytes of a frame. They are zero until all other bytes are on disk.
     pub const SEAL: usize = MAGIC.len();
 
     /// Serializes the frame.

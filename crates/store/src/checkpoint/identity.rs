@@ -12,9 +12,9 @@ use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// Values of the case that may differ in a resumed run, since they do not affect the computation.
+/// Keys of the case that may differ in a resumed run, since they do not affect the computation.
 const FREE: [&str; 2] = ["output.checkpoint", "output.figures"];
-/// Value that may increase in a resumed run.
+/// Key whose value may increase in a resumed run.
 const END: &str = "time.end";
 
 /// Identity of a run.
@@ -30,7 +30,7 @@ pub struct Identity {
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
     plugins: Vec<(String, String)>,
-    /// SHA-256 of the built scene without the depths of its half-spaces of heat, which includes the
+    /// SHA-256 of the built scene without the depths of its thermal half-spaces. It includes the
     /// effect of files named in the case (profiles, meshes, samples).
     scene: String,
 }
@@ -70,7 +70,7 @@ impl Identity {
         hex(&Sha256::digest(bytes))
     }
 
-    /// Whether `now` is the same run with a later end.
+    /// Whether `now` describes the same run with a later end.
     pub fn ends_later(&self, now: &Self) -> bool {
         now.end > self.end
     }
@@ -128,9 +128,9 @@ impl Identity {
     }
 }
 
-/// A state in which half-spaces of heat have no depth. Their grids follow from what else is in an
-/// identity, except for the depth that a case does not give: it follows from `time.end`, and a run
-/// that is extended keeps the one that it began with.
+/// Returns a state whose thermal half-spaces have no depth. Their grids follow from the rest of an
+/// identity, except for a depth that the case does not give: that depth follows from `time.end`,
+/// and an extended run keeps the one with which it began.
 fn without_depths<S: Space>(state: &State<S>) -> Cow<'_, State<S>> {
     let deep = |node: &Node| matches!(node.store, Store::HalfSpace(_));
     let heat = state.heat.as_ref();
@@ -158,7 +158,7 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// Writer that hashes the text.
+/// Writer that hashes what is written to it.
 struct Hashed(Sha256);
 
 impl Write for Hashed {

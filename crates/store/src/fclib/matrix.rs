@@ -84,7 +84,7 @@ impl Stored {
         })
     }
 
-    /// The order of its triplets, if its indices are valid in one order only.
+    /// Returns the order of the triplets if their indices are valid in one order only.
     ///
     /// # Errors
     /// The indices are valid in neither order: one of them is outside the matrix.
@@ -178,7 +178,7 @@ impl Stored {
     }
 }
 
-/// Checks the number of rows and columns, and reads the storage code and the room for entries.
+/// Checks the number of rows and columns, and reads the storage code and the capacity for entries.
 fn read_sizes(
     source: &Source,
     name: &str,

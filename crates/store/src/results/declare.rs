@@ -69,7 +69,7 @@ impl Store {
         self.named(group.set_attr_typed(name, datatype, text.as_bytes().to_vec()))
     }
 
-    /// Writes integers as an attribute, a scalar if there is one.
+    /// Writes integers as an attribute; a single integer becomes a scalar.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -125,7 +125,8 @@ impl Store {
         self.named(describe(&dataset, unit, doc))
     }
 
-    /// Writes a column of pure numbers of one byte each, as VTK requires of kinds of cells.
+    /// Writes a column of dimensionless numbers of one byte each, as VTK requires for the types of
+    /// cells.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -208,7 +209,7 @@ fn text_attribute(dataset: &H5Dataset, name: &str, text: &str) -> hdf5::Result<(
     attribute.write_string(text)
 }
 
-/// Path of the parent, and name in it.
+/// Splits a path into that of the parent and the name in it.
 fn split(path: &str) -> (&str, &str) {
     match path.rsplit_once('/') {
         Some(("", name)) => ("/", name),

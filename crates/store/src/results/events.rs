@@ -11,7 +11,7 @@ pub(super) struct Events {
     name: &'static str,
     columns: Vec<Growing>,
     buffered: Vec<Vec<f64>>,
-    /// Column of which an event has any number of values.
+    /// Column with any number of values per event.
     list: Option<Growing>,
     buffered_list: Vec<f64>,
 }
@@ -51,7 +51,7 @@ impl Events {
         declared.collect()
     }
 
-    /// Whether it is the table of an event.
+    /// Whether this is the table of an event.
     pub fn is_of(&self, event: &Event) -> bool {
         self.name == event.table && self.columns.len() == event.row.len()
     }

@@ -1,7 +1,7 @@
-//! A file that grows in place by HDF5's single-writer multiple-reader protocol: first the rows are
-//! written, then their index, then their number, so that the file can be read at any moment.
+//! In-place growth of a file by HDF5's single-writer multiple-reader protocol: first the rows are
+//! written, then their index, then their number, so that the file can be read at any time.
 //!
-//! The crate syncs the file after each dataset of a flush, some 200 times for a results file.
+//! The HDF5 crate syncs the file after each dataset of a flush, about 200 times for a results file.
 //! In-place growth is therefore used only for files too large to be copied.
 
 use super::dataset::{Grown, to_bytes};
@@ -9,7 +9,7 @@ use hdf5::FileLocking;
 use hdf5::swmr::SwmrFileWriter;
 use std::path::Path;
 
-/// Writer of such a file; `None` once it is closed.
+/// Writer of a file that grows in place; `None` once it is closed.
 pub(super) struct Growth(Option<SwmrFileWriter>);
 
 impl Growth {

@@ -1,6 +1,6 @@
-//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: the unloaded
-//! points and the cells are in the file once, and every state refers to them; only the data change.
-//! A reader of the file moves the points by the field `displacement`.
+//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid. The unloaded
+//! points and the cells are stored once, and every state refers to them; only the data change. A
+//! reader of the file moves the points by the field `displacement`.
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 
@@ -8,7 +8,7 @@ use super::dataset::Growing;
 use super::declare::{FEW, MANY};
 use super::store::{ResultsError, Store};
 
-/// Kinds of cells of VTK by their number of corners: a line, a triangle, a tetrahedron.
+/// VTK types of cells by their number of corners: line, triangle, tetrahedron.
 const KINDS: [(usize, u8); 3] = [(2, 3), (3, 5), (4, 10)];
 
 /// A mesh, and the fields that it carries.
@@ -24,7 +24,7 @@ pub struct Mesh {
     pub corners: usize,
     /// Fields, in the order of their values.
     pub fields: Vec<Field>,
-    /// Identity of the body of each point and of each cell in a mesh of several bodies; empty
+    /// Identity of the body of each point and of each cell in a mesh of several bodies. Empty
     /// otherwise.
     pub bodies: [Vec<i64>; 2],
 }
@@ -40,7 +40,7 @@ pub struct Field {
     pub doc: &'static str,
     /// Numbers per value.
     pub width: usize,
-    /// Whether there is a value per cell; otherwise per point.
+    /// Whether there is one value per cell. Otherwise there is one per point.
     pub of_cells: bool,
 }
 
@@ -51,7 +51,7 @@ impl Mesh {
     }
 }
 
-/// A mesh that is declared in the file, to which states are appended.
+/// A mesh declared in the file, to which states are appended.
 #[derive(Debug)]
 pub struct MeshView {
     /// Time of each state (s).

@@ -46,16 +46,17 @@ impl PreviousResults {
         })
     }
 
-    /// Its path.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The bytes of its checkpoints, intact or not: empty where none was written, none where they
-    /// cannot be read.
+    /// Returns the bytes of its checkpoints, intact or not. A slot that was never written is empty;
+    /// there are none if they cannot be read.
     ///
     /// # Errors
-    /// The file has no checkpoints: it was written by an older version, or is not a results file.
+    /// The file has no checkpoints: it was written by an older version, or it is not a results
+    /// file.
     pub fn checkpoints(&self) -> Result<[Option<Vec<u8>>; 2], String> {
         let names = CHECKPOINTS.map(|name| name.trim_start_matches('/'));
         if !names
@@ -172,7 +173,7 @@ impl PreviousResults {
 }
 
 impl Results {
-    /// Copies the rows of a stopped run up to its checkpoint.
+    /// Rows of a stopped run are copied up to its checkpoint.
     ///
     /// # Errors
     /// The file cannot be written, or the rows are missing.

@@ -11,7 +11,7 @@ use std::path::Path;
 /// Reads the state with the index `frame`, or the last one, for a case of a dimension (2 or 3).
 ///
 /// # Errors
-/// The file is missing, not a results file, damaged, of the other dimension, without that state, or
+/// The file is missing, not a results file, damaged, of the other dimension, without this state, or
 /// without the shapes of its grains.
 pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State, StateError> {
     let unreadable = |reason: String| StateError::Unreadable {
@@ -65,9 +65,9 @@ const ROOT: &str = "views/grains";
 /// The grains of a file.
 struct Grains {
     reader: Reader,
-    /// Columns of the angular velocity.
+    /// Names of the columns of the angular velocity.
     spins: &'static [&'static str],
-    /// Columns of the orientation; empty if the file has none.
+    /// Names of the columns of the orientation; empty if the file has none.
     turns: &'static [&'static str],
 }
 
@@ -104,7 +104,7 @@ impl Grains {
         self.frame(asked, shaped).map_err(unreadable)
     }
 
-    /// Reads the state with an index that the file has.
+    /// Reads the state with an index that exists in the file.
     fn frame(&self, frame: usize, shaped: Option<Shaped>) -> Result<State, String> {
         let time = self
             .reader
@@ -118,7 +118,8 @@ impl Grains {
         let points = self.reader.numbers(&format!("{ROOT}/Points"), rows, 3)?;
         let place = |name: &str| format!("{ROOT}/PointData/{name}");
         let column = |name: &str| self.reader.numbers(&place(name), rows, 1);
-        // Columns absent from files of older versions, or of cases without such grains, are zero.
+        // Columns that are absent from files of older versions, or from cases without such grains,
+        // read as zero.
         let where_listed = |name: &str| match self.reader.has(&place(name)) {
             true => column(name),
             false => Ok(vec![0.0; count]),
@@ -191,7 +192,7 @@ impl Grains {
     }
 }
 
-/// Error for grains whose shapes the file does not have.
+/// Returns the error for grains whose shapes are not in the file.
 fn shapeless(frame: usize) -> String {
     format!(
         "state {frame} holds grains that are no balls, and the file does not say of what shape: it is of an older version; \
@@ -202,18 +203,18 @@ fn shapeless(frame: usize) -> String {
 /// Shapes of grains by the identity of the grain; `None` once taken.
 struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
 
-/// What is known of the shape of the grain of a row.
+/// What is known about the shape of the grain in a row.
 enum Known {
-    /// A shape, which this row is the first to have.
+    /// A shape that occurs for the first time in this row.
     First(Box<ShapedGrain>),
     /// A shape that was returned for an earlier row.
     Again,
-    /// No shape: a single ball.
+    /// The grain has no shape: it is a single ball.
     Not,
 }
 
 impl Sorted {
-    /// Gives each grain its balls and pieces.
+    /// Sorts the balls and pieces by grain.
     fn of(shaped: Shaped) -> Result<Self, String> {
         let mut grains: HashMap<u64, Option<Box<ShapedGrain>>> = HashMap::new();
         for body in shaped.bodies {
@@ -247,7 +248,7 @@ impl Sorted {
         Ok(Self(grains))
     }
 
-    /// Takes the shape of the grain of a row, and gives it the motion of that row.
+    /// Returns the shape of the grain in a row, with the motion of that row.
     fn take(&mut self, body: u64, motion: Motion) -> Known {
         match self.0.get_mut(&body).map(Option::take) {
             None => Known::Not,

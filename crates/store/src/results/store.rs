@@ -1,5 +1,5 @@
-//! The results file: declared once, then growing by rows that are buffered in memory and written at
-//! intervals.
+//! The results file: its contents are declared once; then it grows by rows that are buffered in
+//! memory and written at intervals.
 //!
 //! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is
 //! renamed over it. The named file is therefore always complete, and a flush takes one `fdatasync`.
@@ -28,10 +28,10 @@ const MAX_BUFFERED: usize = 8 << 20;
 /// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
-    /// Their folder no longer belongs to the run.
+    /// The folder of the results no longer belongs to the run.
     #[error(transparent)]
     Lock(#[from] LockError),
-    /// They cannot be written.
+    /// The results cannot be written.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
@@ -39,7 +39,7 @@ pub enum ResultsError {
         /// Reason.
         reason: String,
     },
-    /// An event is of no table that was declared.
+    /// An event belongs to no declared table.
     #[error(
         "an observer gave an event of {columns} values for the table `{table}`, which no observer declares with so many columns: let its \
          `event_tables` return the table"
@@ -47,10 +47,10 @@ pub enum ResultsError {
     UnknownEvent {
         /// Name of the table.
         table: &'static str,
-        /// Values of the event.
+        /// Number of values of the event.
         columns: usize,
     },
-    /// They cannot be read.
+    /// The results cannot be read.
     #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Read {
         /// The file.
@@ -71,9 +71,9 @@ impl ResultsError {
 
 /// An HDF5 file being written.
 pub struct Store {
-    /// Temporary path at which it is written.
+    /// Temporary path at which the file is written.
     part: PathBuf,
-    /// Its final path, once it is published.
+    /// Final path, once the file is published.
     name: Option<PathBuf>,
     /// The file, during the declarations.
     draft: Option<H5File>,
@@ -87,7 +87,7 @@ pub struct Store {
     buffered: usize,
     /// Size from which the file grows in place, in bytes.
     large: u64,
-    /// The lock by which its folder is owned.
+    /// The lock by which the folder is owned.
     lock: Option<FolderLock>,
 }
 
@@ -124,7 +124,7 @@ impl Store {
         })
     }
 
-    /// Sets the lock by which every write first checks that the folder is still the owned one.
+    /// Sets the lock, with which every write first checks that the folder is still owned.
     pub fn owned_by(&mut self, lock: FolderLock) {
         self.lock = Some(lock);
     }
@@ -280,14 +280,14 @@ impl Store {
             return Ok(());
         }
         match &mut self.growth {
-            // Written to the file, but not counted in it before the next flush.
+            // The rows are written to the file, but are not counted in it before the next flush.
             Some(growth) => {
                 let written = growth.write(&mut self.grown);
                 self.buffered = 0;
                 self.named(written)
             }
             None if self.name.is_none() => self.flush(),
-            // A partial state must not be visible: it waits for the flush.
+            // A partial state must not be visible, so the rows wait for the flush.
             None => Ok(()),
         }
     }
@@ -446,7 +446,8 @@ impl Store {
 
 impl Drop for Store {
     fn drop(&mut self) {
-        // Dropped without `close`: written data remains, and no errors are printed to the terminal.
+        // A file dropped without `close` keeps the written data, and no errors are printed to the
+        // terminal.
         if let Some(file) = self.draft.take() {
             let _ = file.close_no_sync();
         }

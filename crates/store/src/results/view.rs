@@ -41,20 +41,20 @@ pub struct Part {
     pub cells: Vec<Vec<i64>>,
     /// One column per field, one value per point (vertices) or cell.
     pub data: Vec<Vec<f64>>,
-    /// Integer fields, likewise.
+    /// Integer fields, with one value per point or cell.
     pub numbers: Vec<Vec<i64>>,
-    /// Vector fields, likewise, three numbers per value.
+    /// Vector fields, with three numbers per point or cell.
     pub vectors: Vec<Vec<f64>>,
 }
 
 /// The fields of a view, in the order of the columns of its [`Part`]s.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewColumns<'a> {
-    /// Of numbers.
+    /// Fields of real numbers.
     pub data: &'a [Column],
-    /// Of integers.
+    /// Fields of integers.
     pub numbers: &'a [Column],
-    /// Of vectors.
+    /// Fields of vectors.
     pub vectors: &'a [Column],
     /// Dimension of the run.
     pub dimension: usize,
@@ -175,7 +175,7 @@ impl View {
         time: f64,
         part: &Part,
     ) -> Result<(), ResultsError> {
-        // Offsets of this part, taken before anything is appended.
+        // The offsets of this part are taken before anything is appended.
         let first_cells: Vec<i64> = (0..4)
             .map(|k| store.rows(self.offsets[k]) as i64 - self.count)
             .collect();

@@ -1,4 +1,4 @@
-//! Arrays of numbers for the page: quantised, named, packed as gzip in base64.
+//! Arrays of numbers for the page: quantised, named, compressed with gzip and encoded in base64.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -8,13 +8,13 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::io::Write as _;
 
-/// How the numbers of an array are stored.
+/// Number format of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Kind {
-    /// Between the smallest and the largest, in 254 intervals.
+    /// 254 intervals between the smallest and the largest value.
     U8,
-    /// Between the smallest and the largest, in 65,534 intervals.
+    /// 65,534 intervals between the smallest and the largest value.
     U16,
     /// Integers below 2^32.
     U32,
@@ -34,13 +34,13 @@ struct Head {
     high: f64,
 }
 
-/// Named arrays: the head of each in JSON, then the numbers of all, each at a multiple of eight
-/// bytes.
+/// Named arrays: a JSON header for each, then the numbers of all arrays, each starting at a
+/// multiple of eight bytes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arrays {
     heads: Vec<Head>,
     bytes: Vec<u8>,
-    /// Names of arrays by the bits of their values, of those that were added to be found again.
+    /// Names of the arrays that can be found again, by the bits of their values.
     known: HashMap<Vec<u64>, String>,
 }
 
@@ -62,7 +62,7 @@ impl Arrays {
             low,
             high,
         });
-        // The largest code stands for what is not a number.
+        // The largest code represents a value that is not a number.
         let code = |v: f64, most: f64| match (v.is_finite(), high > low) {
             (false, _) => most,
             (true, false) => 0.0,
@@ -73,7 +73,8 @@ impl Arrays {
                 .bytes
                 .extend(values.iter().map(|v| code(*v, 255.0) as u8)),
             Kind::U16 => {
-                // Differences of neighbours are small: low and high bytes apart are packed better.
+                // Differences between neighbours are small: they compress better with low and high
+                // bytes stored separately.
                 let codes: Vec<u16> = values.iter().map(|v| code(*v, 65535.0) as u16).collect();
                 self.bytes.extend(codes.iter().map(|c| *c as u8));
                 self.bytes.extend(codes.iter().map(|c| (c >> 8) as u8));
@@ -90,7 +91,7 @@ impl Arrays {
         }
     }
 
-    /// Adds an array of numbers, unless the same is there; returns its name.
+    /// Adds an array of numbers unless an identical one exists; returns its name.
     pub fn number(&mut self, values: &[f64]) -> String {
         let bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
         if let Some(name) = self.known.get(&bits) {
@@ -108,7 +109,7 @@ impl Arrays {
         self.known.entry(bits).or_insert_with(|| name.to_owned());
     }
 
-    /// Leaves out the arrays that are the same in another set, bit by bit.
+    /// Removes the arrays that another set contains with identical bits.
     pub fn without_those_of(&self, other: &Self) -> Self {
         let theirs: HashMap<&str, (&Head, &[u8])> = other
             .parts()
@@ -145,7 +146,7 @@ impl Arrays {
         })
     }
 
-    /// All as one text: length of the heads, heads, numbers; gzip, base64.
+    /// Returns all arrays as one text: length of the headers, headers, numbers; gzip, base64.
     pub fn packed(&self) -> String {
         let mut heads = serde_json::to_vec(&self.heads).unwrap_or_default();
         while !(4 + heads.len()).is_multiple_of(8) {
@@ -159,7 +160,7 @@ impl Arrays {
     }
 }
 
-/// Bytes as gzip in base64. Writing to memory cannot fail.
+/// Returns bytes compressed with gzip and encoded in base64. Writing to memory cannot fail.
 pub(crate) fn gzip_base64(bytes: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::new(6));
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
@@ -186,7 +187,7 @@ mod tests {
         assert_eq!(parts, [("b".to_owned(), 3.5f64.to_le_bytes().to_vec())]);
         let codes: Vec<_> = first.parts().map(|(_, b)| b.to_vec()).collect();
         assert_eq!(codes[0], [0, 254, 255]);
-        // The range belongs to the array: the same codes over another range are another array.
+        // The range belongs to the array: equal codes over another range are another array.
         let mut third = Arrays::default();
         third.push("a", Kind::U8, &[0.0, 2.0, f64::NAN]);
         assert_eq!(third.without_those_of(&first).parts().count(), 1);

@@ -1,5 +1,5 @@
-//! Figures in a page: the charts that observers and other programs describe, as its scripts read
-//! them. Numbers stand packed beside them.
+//! Figures of a page: the charts that observers and other programs describe, in the form that the
+//! page's scripts read. Their numbers are packed separately.
 
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// Limit on the cells of a chart in a page.
 const MOST_CELLS: usize = 20_000;
 
-/// The figures that the observers of a run described, with numbers from its statistics.
+/// Returns the figures that the observers of a run described, with numbers from its statistics.
 pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>) -> Vec<Figure> {
     let text = std::fs::read_to_string(run.path.join(Figure::FILE));
     let parsed = text
@@ -46,8 +46,8 @@ pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
     charts.map(|(name, c)| chart(name, c, numbers)).collect()
 }
 
-/// The charts of several runs over each other: of each that has more than one curve the entries
-/// name run and curve, and of cycles the last is drawn.
+/// Returns the charts of several runs drawn over each other. If a chart has more than one curve,
+/// the legend gives run and curve; of a chart over cycles only the last cycle is drawn.
 pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
     let mut all: Vec<(&str, Chart)> = Vec::new();
     for (run, figure) in runs
@@ -116,7 +116,7 @@ pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// What to read in a chart, and under which conditions it holds.
+/// Explains how to read a chart, and under which conditions it holds.
 fn note(chart: &Chart) -> String {
     match (chart.note.as_str(), chart.subtitle.as_deref()) {
         ("", said) => said.unwrap_or_default().to_owned(),
@@ -188,7 +188,8 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// Double precision where rows are closer than single precision resolves, as times of long runs.
+/// Double precision is used where rows are closer than single precision resolves, such as the times
+/// of long runs.
 fn kind(values: &[f64]) -> Kind {
     let merges = |pair: &[f64]| pair[0] != pair[1] && pair[0] as f32 == pair[1] as f32;
     match values.windows(2).any(merges) {
@@ -197,8 +198,8 @@ fn kind(values: &[f64]) -> Kind {
     }
 }
 
-/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers
-/// are named after `prefix`.
+/// Returns the columns of the statistics of a run, any of which can be drawn over any other. The
+/// names of their arrays begin with `prefix`.
 pub(crate) fn columns(
     name: &str,
     prefix: &str,

@@ -1,4 +1,4 @@
-//! An intact bond conducts over its area, a broken one only by its force.
+//! An intact bond conducts over its area, a broken one in proportion to its force.
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters};
 
 parameters! {

@@ -55,7 +55,7 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
         )));
     };
     let simulation = loaded.build(&args.plugins.search()?)?.simulation;
-    // The median reduced radius of its contacts (m).
+    // Median reduced radius of the contacts of the interface (m).
     let radius = BondSites::of(simulation.view(), place).map(|b| b.radius);
     let law = simulation.laws()[place].clone();
     let laws: Vec<String> = law

@@ -24,10 +24,10 @@ pub(super) struct Row {
     pub friction: f64,
     pub tension_strength: f64,
     pub worn: f64,
-    /// Of the contact (Pa, K).
+    /// Pressure (Pa) and temperature (K) of the contact.
     pub pressure: f64,
     pub temperature: f64,
-    /// Thermal (W/K) and electrical (S).
+    /// Thermal (W/K) and electrical (S) conductance.
     pub conductance: f64,
     pub electric_conductance: f64,
 }
@@ -100,7 +100,7 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
                 .map_err(|e| Failure::Failed(e.to_string()))?[0];
             Ok(a.traction[0] * angle.cos() + a.traction[1] * angle.sin())
         };
-        // The first opening that carries the target, searched outwards from the previous one.
+        // Search outwards from the previous opening for the first one that carries the target.
         let (mut low, mut high, mut step) = (u, u, 1e-13f64.max(1e-3 * u));
         let mut found = false;
         while high < 1.0 {

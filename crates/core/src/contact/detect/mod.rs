@@ -72,7 +72,7 @@ impl LawTable {
 pub struct CollisionScene<'a, S: Space> {
     /// Collision shapes.
     pub shapes: &'a Shapes<S>,
-    /// The bodies that carry them.
+    /// Bodies of the shapes.
     pub bodies: &'a Bodies<S>,
     /// Laws of pairs of materials; pairs without one do not touch.
     pub laws: &'a LawTable,
@@ -99,8 +99,9 @@ impl<'a, S: Space> CollisionScene<'a, S> {
         velocities.zip(self.bodies.spin.iter().copied()).collect()
     }
 
-    /// Returns whether a surface rotates, with these velocities or spins of bodies, such that more
-    /// than its frame moves; the vertices of a surface that deforms are watched one by one.
+    /// Returns whether a surface rotates, with these velocities and spins of the bodies, so that
+    /// its points move relative to its origin. Surfaces that deform do not count: their vertices
+    /// are tracked one by one.
     fn sweeps(&self, surface: &Carried<S>, spin: &S::Spin) -> bool {
         let own = S::unrotate_spin(&self.bodies.rotation[surface.body as usize], spin);
         !surface.shape.deforms() && !surface.shape.is_unchanged_by(&own)
@@ -121,8 +122,8 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 /// Finds the contacts of this step at the current positions and carries their memory over.
 ///
 /// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `time` is
-/// that at the start of the step and `h` that since the last detection (s). Pairs are divided among
-/// several threads if `parallel`; the results are the same.
+/// the time at the start of the step and `h` the time since the last detection (s). Pairs are
+/// divided among several threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,

@@ -19,7 +19,7 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) frames: &'a [(S::Vector, S::Rotation)],
     /// Data of the balls.
     pub(super) ball_data: &'a [BallData<S>],
-    /// All pairs, and the pieces in them by their partners.
+    /// All candidate pairs, and the pieces that each ball or piece may touch.
     pub(super) pairs: &'a [(u32, u32)],
     pub(super) partners: &'a Partners,
 }
@@ -30,7 +30,7 @@ pub(super) struct Scratch<S: Space> {
     pub(super) points: Vec<ContactPoint<S::Vector>>,
     /// The old contact that each point continues.
     pub(super) matched: Vec<Option<usize>>,
-    /// Distance of a point from an old contact (m), and their places.
+    /// Distances between points and old contacts (m), with the indices of both.
     pub(super) distances: Vec<(f64, usize, usize)>,
     /// Points that become contacts, and the old contacts that they continue.
     pub(super) selected: Vec<(ContactPoint<S::Vector>, Option<usize>)>,
@@ -341,8 +341,8 @@ pub(super) struct BallData<S: Space> {
     radius: f64,
     body: u32,
     material: u16,
-    /// Whether it is a whole body with isotropic response, or belongs to a body at rest: contacts
-    /// of two such balls are central.
+    /// Whether the ball is a whole body with isotropic response, or belongs to a body at rest:
+    /// contacts of two such balls are central.
     simple: bool,
 }
 

@@ -15,7 +15,7 @@ const COST: f64 = 20.0;
 /// The neighbour list is built for this multiple of the spin of rotating surfaces.
 const TURNING: f64 = 1.5;
 
-/// Additional range around a body (m): that of its motion if it is fast, otherwise zero.
+/// Additional range around a body (m): its displacement in a step if it is fast, otherwise zero.
 fn widening(widened: &[f64], body: u32) -> f64 {
     widened.get(body as usize).copied().unwrap_or(0.0)
 }

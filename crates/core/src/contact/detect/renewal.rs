@@ -1,5 +1,5 @@
-//! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the
-//! old ones, so that a second list is not needed.
+//! Renewal of the contacts: the contacts of each pair are replaced where they are, with the memory
+//! of the old ones, so that a second list is not needed.
 
 use super::narrow::{BallData, Narrow};
 use super::partners::Partners;
@@ -15,7 +15,7 @@ const CHUNK: [usize; 2] = [512, 128];
 const COST: [f64; 2] = [15.0, 200.0];
 /// Approximate time to collect the data of a ball (ns).
 const BALL: f64 = 5.0;
-/// Tasks whose new contacts are kept at a time: a few megabytes.
+/// Number of tasks whose new contacts are kept at the same time: a few megabytes.
 const BATCH: usize = 64;
 
 /// A contact found in this step, without memory; the fields mean the same as in [`Contact`].
@@ -356,8 +356,8 @@ pub(super) fn renew_contacts<S: Space>(
     network.cores = cores;
 }
 
-/// Returns the place of the first contact whose pair is not before this one. It is probably near
-/// the start, hence the search by doubling.
+/// Returns the place of the first contact whose pair is not before `pair`. That place is probably
+/// near the start, hence the search by doubling.
 fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
     let before = |c: &Contact<S>| c.key.pair() < *pair;
     let mut end = 64;
@@ -420,8 +420,8 @@ impl<S: Space> TaskResult<S> {
     }
 }
 
-/// The list of contacts while it is renewed: the new ones, free places, and the old ones of later
-/// pairs.
+/// The list of contacts while it is renewed: the new ones, free places, and the old contacts of
+/// later pairs.
 struct Renewal<S: Space> {
     contacts: Vec<Contact<S>>,
     /// Number of new contacts.
@@ -452,7 +452,7 @@ impl<S: Space> Renewal<S> {
         }
         let (written, count) = (self.written, self.contacts.len());
         if written < count {
-            // The old contacts are moved once, to make room for this one and some more.
+            // The old contacts are moved once, to make room for this contact and some more.
             let room = 16 + count / 64;
             self.contacts.reserve_exact(room);
             self.contacts.resize(count + room, contact.clone());

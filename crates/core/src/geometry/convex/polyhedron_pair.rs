@@ -311,8 +311,7 @@ struct Crossing {
     feature: u64,
 }
 
-/// Returns the pair of edges with the greatest separation along their product; `None` if no pair
-/// counts.
+/// Uses a face of one of the two as the reference face.
 fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     let mut best: Option<Crossing> = None;
     for e in 0..a.topology().edges.len() {

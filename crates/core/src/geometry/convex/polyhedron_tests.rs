@@ -77,7 +77,7 @@ fn random(rng: &mut Pcg64) -> Polyhedron {
         .turned(&turn)
 }
 
-/// Distance by the GJK algorithm of the library.
+/// Returns the distance by the GJK algorithm of the library parry.
 fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let of = |p: &Polyhedron| {
         let points: Vec<Vector> = p
@@ -93,7 +93,8 @@ fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
         .distance
 }
 
-/// Smallest depth over all face normals and all products of edges (separating axes), negative.
+/// Returns the smallest depth over all face normals and all products of edges (separating axes),
+/// negative.
 fn depth(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let edges = |p: &Polyhedron| -> Vec<V> {
         (0..p.topology().edges.len())
@@ -276,14 +277,14 @@ fn capsules_side_by_side_crossed_and_on_a_box() {
             .iter()
             .all(|m| (m.gap - 0.05).abs() < 1e-14 && m.normal == V::z())
     );
-    // Standing on it: the lower end.
+    // The capsule stands on the block: its lower end touches.
     let standing = lying.turned(&UnitQuaternion::from_scaled_axis(V::y() * FRAC_PI_2));
     let points = met(&standing, &block, V::new(0.2, 0.1, 1.62), [0.1, 0.0], &FINE);
     assert!(
         points.len() == 1 && (points[0].gap - 0.02).abs() < 1e-14,
         "{points:?}"
     );
-    // Through it.
+    // The capsule passes through the block.
     let points = met(&standing, &block, V::new(0.2, 0.49, 0.0), [0.1, 0.0], &FINE);
     let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
     assert!((least + 0.11).abs() < 1e-14, "{points:?}");

@@ -18,8 +18,8 @@ const LITTLE: f64 = 0.01;
 pub struct Mode {
     /// Slope of the traction at the origin (Pa/m).
     pub stiffness: f64,
-    /// Largest traction (Pa) and its opening (m); `None` where traction rises to the end of the
-    /// search.
+    /// Largest traction (Pa) and the opening at which it occurs (m); `None` where traction rises to
+    /// the end of the search.
     pub peak: Option<(f64, f64)>,
     /// Opening (m) at which damage reaches 1, or beyond which the traction stays below a hundredth
     /// of the peak; `None` where neither happens.
@@ -100,7 +100,8 @@ impl Mode {
             points.chain(finely).chain(tail),
             true,
         )?;
-        // Two small openings: the damping traction is the same in both at equal speed, and cancels.
+        // Two small openings at the same speed have the same damping traction, which cancels in the
+        // difference.
         let small = [5e-4, 1e-3].map(|x| x * about);
         let start = path(bench, direction, speed, small.into_iter(), false)?;
         let stiffness = match start[..] {
@@ -181,7 +182,8 @@ pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, La
 mod tests {
     use super::*;
 
-    /// A path ends in failure with full damage, or with less than a hundredth of what it carried.
+    /// A path ends in failure at full damage, or where the traction is less than a hundredth of its
+    /// peak.
     #[test]
     fn a_path_is_broken_where_it_ends_in_failure() {
         let carries = (1.0, 100.0, 0.0);
@@ -193,7 +195,7 @@ mod tests {
             assert_eq!(broken(&[(0.0, 0.0, 0.0), carries, last]), end);
             assert_eq!(peak(&[(0.0, 0.0, 0.0), carries, last]), Some(carries));
         }
-        // What never carried cannot fail.
+        // A bond that never carried a traction cannot fail.
         assert_eq!(broken(&[(1.0, 0.0, 1.0)]), None);
         assert_eq!(broken(&[]), None);
     }

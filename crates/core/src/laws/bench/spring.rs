@@ -4,9 +4,9 @@
 use super::{Bench, Motion};
 use crate::laws::{Call, LawError};
 
-/// Smallest and largest overlap of a search, over the reduced radius.
+/// Smallest and largest overlap of a search, as fractions of the reduced radius.
 const RANGE: [f64; 2] = [1e-15, 1e3];
-/// Bisections of the logarithm of the overlap: a relative error of 1e-9.
+/// Number of bisections of the logarithm of the overlap: a relative error of 1e-9.
 const BISECTIONS: u32 = 40;
 
 /// The spring at an overlap (N, N/m; per metre of depth in 2D).
@@ -14,9 +14,9 @@ const BISECTIONS: u32 = 40;
 pub struct SpringAnswer {
     /// Normal force.
     pub force: f64,
-    /// Its slope.
+    /// Slope of the normal force.
     pub stiffness: f64,
-    /// Slope of the tangential force without any; 0 for a rigid tangential contact.
+    /// Slope of the tangential force at zero force; 0 for a rigid tangential contact.
     pub tangential: f64,
 }
 

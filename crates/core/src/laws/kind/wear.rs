@@ -37,7 +37,7 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
 }
 
 fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
+    // The volume that comes from a broken bond counts once, also in a cycle that represents many.
     let network = &mut *slot.network;
     let breaks = network
         .bond_breaks

@@ -55,7 +55,7 @@ pub struct LocalSweep<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> LocalSweep<'a, D> {
-    /// Forms the inverses of the diagonal; `None` where W cannot be had as a matrix.
+    /// Computes the inverses of the diagonal; `None` where W is not available as a matrix.
     pub fn new(form: &Form<'a, D>) -> Option<Self> {
         let w = form.w.matrix()?;
         Some(Self {

@@ -1,4 +1,4 @@
-//! What changes in a sweep: the impulses of contacts and the velocities of bodies.
+//! Data that change in a sweep: the impulses of contacts and the velocities of bodies.
 
 use super::solver_bodies::SolverBody;
 use crate::geometry::lane_space::{lanes_of, vector_of};
@@ -85,7 +85,7 @@ pub(in crate::solve) fn store<S: Space>(p: Parts<S>, out: &mut Vec<f64>) {
     out.extend((0..<S::T<f64>>::N).map(|k| p.t[k]));
 }
 
-/// Takes them from the front of `from`.
+/// Reads the components of an impulse from the front of `from`.
 pub(in crate::solve) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
     let (parts, rest) = from.split_at(1 + <S::T<f64>>::N);
     *from = rest;
@@ -105,7 +105,7 @@ pub(in crate::solve) struct RowState<S: Space, L: Lane = f64> {
 record!(RowState);
 
 impl<S: Space> RowState<S> {
-    /// With an impulse in world axes.
+    /// Creates the state from an impulse in world axes.
     pub fn new(normal: &S::Vector, impulse: &S::Vector) -> Self {
         let mut state = Self {
             n: lanes_of(normal),
@@ -137,7 +137,7 @@ pub(in crate::solve) struct Moving<S: Space, L: Lane = f64> {
 }
 record!(Moving);
 
-/// Its first numbers: in the plane four, which are written at once.
+/// First numbers of a body record: in the plane four, which are written at once.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Front<S: Space, L: Lane> {
@@ -165,7 +165,7 @@ impl<S: Space, L: Lane> Moving<S, L> {
         unsafe { from.part(|body| body.cast::<Moving<S>>()) }.read()
     }
 
-    /// Writes back the velocities of bodies that move: records of immovable ones may be shared.
+    /// Writes the velocities of movable bodies back: records of immovable ones may be shared.
     #[inline(always)]
     pub fn store(&self, to: &mut BatchMut<SolverBody<S>, L>) {
         let zero = L::all(0.0);

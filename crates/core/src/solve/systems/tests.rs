@@ -1,4 +1,4 @@
-//! Masses as nodes of systems against rigid bodies, and sweeps against products of W.
+//! Masses as nodes of systems compared with rigid bodies, and sweeps compared with products of W.
 
 use super::*;
 use crate::bodies::Nodes;
@@ -66,7 +66,7 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
         },
     };
     let mut forms = Vec::new();
-    // In the order in which the iteration takes them: contacts that share no body first.
+    // The contacts are in the order of the iteration: contacts that share no body come first.
     for (k, below) in [(0, 3), (2, 1), (1, 0)] {
         let form = form([k as u32, below as u32], Vector2::new(0.0, 1.0));
         if rigid {
@@ -79,7 +79,7 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
     (problem, forms)
 }
 
-/// The scale of the solver's error is the same for a mass that is a body and one that is a node.
+/// The scale of the solver's error is the same for a mass as a body and as a node.
 #[test]
 fn errors_of_nodes_and_bodies_are_measured_alike() {
     for norm in [Norm::Balance, Norm::Velocity] {
@@ -114,8 +114,8 @@ fn motions_of_nodes_count_as_those_of_bodies() {
 }
 
 /// A rigid disk and a fixed plane touch two systems of full compliance, which also touch each
-/// other, at weighted sums of nodes: relative velocities are the same from W as a matrix, from
-/// products without the matrix, and updated contact by contact.
+/// other, at weighted sums of nodes. Relative velocities are the same from W as a matrix, from
+/// products without the matrix, and from updates contact by contact.
 #[test]
 fn matrix_products_and_sweeps_agree() {
     let mut problem = Problem::<Dim2>::default();
@@ -123,7 +123,7 @@ fn matrix_products_and_sweeps_agree() {
     let disk = (Vector2::new(0.5, 0.5), Matrix1::new(30.0));
     problem.push_body(free(0), Vector1::new(1.5), disk.0, disk.1, length);
     for _ in 0..3 {
-        // The plane and the bodies that stand for the systems, which move with them.
+        // The plane and the bodies that represent the systems, which move with them.
         let (still, turned) = (Vector2::zeros(), Matrix1::zeros());
         problem.push_body(
             Vector2::new(9.0, 9.0),

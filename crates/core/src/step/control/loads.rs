@@ -1,5 +1,5 @@
-//! A step begins by applying the schedule: first the current phase, then removals, then gravity,
-//! loaded areas and drives; and ends the phase.
+//! A step begins by applying the schedule: the current phase, then removals, gravity, loaded areas
+//! and drives; it ends by ending the phase if due.
 
 use super::phases;
 use super::schedule::set_parameter;
@@ -17,7 +17,7 @@ pub(in crate::step) fn set_holder_drives<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Replaces the servos of what a phase drives anew by those of its drive.
+/// Replaces the servos of the degrees of freedom that a phase drives by those of its drives.
 fn replace_servos<S: Space>(s: &mut Simulation<S>, pushed: &Pushed, drive: &Dof) {
     let servos = Servo::of(&s.state.bodies, &s.shapes, pushed, drive);
     s.state.control.servos.retain(|s| s.pushed() != pushed);
@@ -122,13 +122,13 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
     s.state.bodies.engage_stages(soon);
 }
 
-/// What a condition of rest looks at: the grains, first bodies and dynamical systems of which
-/// nothing is imposed.
+/// Returns the motion that a condition of rest evaluates: that of grains, and of first bodies and
+/// dynamical systems without imposed motion.
 fn motion_of_free<S: Space>(s: &Simulation<S>) -> phases::UndrivenMotion {
     let bodies = &s.state.bodies;
     let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
     let moving = || (0..bodies.len()).filter(free);
-    // Work of gravity on a grain over its own diameter.
+    // The scale is the work of gravity on a grain over its diameter.
     let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
     let (systems, size) = s.state.systems.motion_of_free();
     phases::UndrivenMotion {

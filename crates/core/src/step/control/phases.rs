@@ -1,4 +1,4 @@
-//! Phases: the changes at the start of each, and the condition that ends it.
+//! Phases: the changes at the start of each phase, and its end condition.
 
 use super::GravityDrive;
 use crate::bodies::{Dof, HeldAxis};
@@ -14,11 +14,11 @@ pub enum Until {
     After(f64),
     /// After a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains has stayed below a bound; and that of first bodies and
-    /// dynamical systems of which nothing is imposed.
+    /// When the kinetic energy of the grains, and of first bodies and dynamical systems without
+    /// imposed motion, has stayed below a bound.
     AtRest {
-        /// Bound as a fraction of m g d, summed over them; d is twice
-        /// [`crate::bodies::DynamicalSystem::length`] of a system.
+        /// Bound as a fraction of m g d, summed over these bodies; for a system, d is twice
+        /// [`crate::bodies::DynamicalSystem::length`].
         #[serde(default)]
         share: Option<f64>,
         /// Bound as an energy (J; J/m in 2D).
@@ -38,7 +38,7 @@ pub struct Changes {
     /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time
     /// since the phase began.
     pub drives: Vec<(usize, usize, Dof)>,
-    /// Drives of what holds deformable bodies.
+    /// Drives of the holders of deformable bodies.
     pub holders: Vec<(HeldAxis, Dof)>,
     /// Gravity (m/s^2).
     pub gravity: Option<[f64; 3]>,
@@ -59,9 +59,9 @@ pub struct Phase {
     pub name: String,
     /// End condition; `None` for the end of the run.
     pub until: Option<Until>,
-    /// What changes at its start.
+    /// Changes at the start of the phase.
     pub changes: Changes,
-    /// Whether the same phase is repeated; only the last repetition is then drawn.
+    /// Whether the phase is repeated; only the last repetition is then drawn.
     pub recurs: bool,
 }
 
@@ -70,13 +70,13 @@ pub struct Phase {
 pub struct Begun {
     /// Name.
     pub name: String,
-    /// When it began (s).
+    /// Start of the phase (s).
     pub start: f64,
-    /// Steps completed before it.
+    /// Number of steps completed before the phase.
     pub first_step: u64,
-    /// When it ended (s); `None` while it runs.
+    /// End of the phase (s); `None` while it runs.
     pub end: Option<f64>,
-    /// Why it ended.
+    /// Reason for its end.
     #[serde(deserialize_with = "known")]
     pub ended_by: Option<Ending>,
 }
@@ -99,11 +99,11 @@ pub(super) struct Moment {
     pub h: f64,
 }
 
-/// Motion of the grains and of other bodies that nothing drives.
+/// Motion of the grains and of other bodies without imposed motion.
 pub(super) struct UndrivenMotion {
-    /// Their kinetic energy (J).
+    /// Kinetic energy of these bodies (J).
     pub kinetic: f64,
-    /// Sum of m g d over them (J).
+    /// Sum of m g d over these bodies (J).
     pub scale: f64,
 }
 
@@ -138,8 +138,8 @@ impl Clock {
         }
     }
 
-    /// When the phase ends at the latest (s), and the longest step (s) after which its end is
-    /// judged: infinite where there is none.
+    /// Returns the latest end of the phase (s), and the longest step (s) after which its end
+    /// condition is evaluated: infinite where there is none.
     pub fn bounds(&self, until: &Until) -> [f64; 2] {
         let Some(begun) = self.begun.last() else {
             return [f64::INFINITY; 2];
@@ -147,7 +147,7 @@ impl Clock {
         match until {
             Until::Time(t) => [*t, f64::INFINITY],
             Until::After(t) => [begun.start + t, f64::INFINITY],
-            // Which step is the last does not depend on times.
+            // A number of steps does not depend on times.
             Until::Steps(_) => [f64::INFINITY, 0.0],
             Until::AtRest { held, at_most, .. } => {
                 let rest = self.still_since.map_or(f64::INFINITY, |t| t + held);
@@ -207,7 +207,7 @@ mod tests {
         clock
     }
 
-    /// A phase that began at 3 s; one of rest has been so since 10 s.
+    /// A phase began at 3 s; a phase of rest has been at rest since 10 s.
     #[test]
     fn steps_end_with_phases() {
         let clock = begun(3.0);
@@ -237,7 +237,7 @@ mod tests {
     }
 
     /// Times are reached within half a step of 1 s; rest has to last for 2 s, and a motion in
-    /// between begins it anew.
+    /// between restarts that time.
     #[test]
     fn phases_end_when_their_conditions_say() {
         let now = |time: f64| Moment {
@@ -266,7 +266,7 @@ mod tests {
             at_most: Some(8.0),
         };
         let mut clock = begun(0.0);
-        // Below 0.5 times 4 J, and below 3 J.
+        // The bounds are 0.5 times 4 J, and 3 J.
         for (time, kinetic, end) in [
             (1.0, 1.5, None),
             (2.0, 2.5, None),

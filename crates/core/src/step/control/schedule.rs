@@ -1,4 +1,4 @@
-//! What acts from outside and changes in time, as far as steps have come in it.
+//! Progress of the external actions that change in time.
 
 use super::GravityDrive;
 use super::phases::{Begun, Clock, Phase};
@@ -21,7 +21,7 @@ pub struct Control<S: Space> {
     pub servos: Vec<Servo>,
     /// Bodies to remove: index among the driven bodies, and time (s).
     pub gates: Vec<(usize, f64)>,
-    /// Tolerance of the solver that a phase has set, in place of that of the options.
+    /// Tolerance of the solver set by a phase, which replaces that of the options.
     pub tolerance: Option<f64>,
     /// Parameters of contact laws that phases have set, by interface and parameter.
     pub(super) contact_parameters: BTreeMap<(usize, usize), f64>,
@@ -61,7 +61,8 @@ impl<S: Space> Control<S> {
         self.clock.turns()
     }
 
-    /// Whether it is at one of these phases, and sets no other parameters than these laws have.
+    /// Returns whether the schedule is at one of these phases, and sets only parameters that these
+    /// laws have.
     pub(in crate::step) fn fits(
         &self,
         phases: &[Phase],
@@ -79,7 +80,7 @@ impl<S: Space> Control<S> {
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
 
-    /// Gives contact laws the parameters that phases have set so far.
+    /// Sets the parameters of contact laws to the values of the phases so far.
     pub(in crate::step) fn set_parameters(&self, laws: &mut [Interface]) {
         for ((law, at), value) in &self.contact_parameters {
             set_parameter(laws, *law, *at, *value);
@@ -102,8 +103,8 @@ mod tests {
     use crate::laws::sample_laws::interface;
     use crate::step::Simulation;
 
-    /// A state that was read is refused where it names a phase, a body, an axis or a parameter that
-    /// the case has not. The case has no phases, a body that is driven along x and y, and a law
+    /// A state read from a file is refused where it names a phase, a body, an axis or a parameter
+    /// that the case does not have. The case has no phases, a body driven along x and y, and a law
     /// with one parameter.
     #[test]
     fn a_schedule_of_another_case_does_not_fit() {

@@ -1,16 +1,16 @@
-//! Where the impulses of contacts act.
+//! Positions at which the impulses of contacts act.
 
 use crate::contact::{Acts, Contact};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 use crate::threads::{map_chunks_mut, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
-/// About what it takes to look where a contact acts (ns).
+/// Approximate time to find where a contact acts (ns).
 const LOOK: f64 = 4.0;
 
-/// What of an interface acts across a gap.
+/// Parts of an interface that act across a gap.
 struct Across {
     spring: bool,
     attraction: bool,
@@ -18,8 +18,8 @@ struct Across {
 }
 
 /// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act
-/// on each other when they touch, on their surfaces: that these are apart at q_m is an error of the
-/// step. A bond, a spring or an attraction acts across the gap, or the overlap, that there is.
+/// on each other when they touch, on their surfaces: a gap at q_m is an error of the step. A bond,
+/// a spring or an attraction acts across the actual gap or overlap.
 pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
     let across = s.laws.iter().map(|law| Across {
         spring: law.compliant(),
@@ -27,7 +27,7 @@ pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
         bond: law.opens(),
     });
     let across: Vec<Across> = across.collect();
-    // What acts on surfaces does so from the start.
+    // Contacts are created with an action on the surfaces.
     let never = |a: &Across| !(a.spring || a.attraction || a.bond);
     if across.iter().all(never) {
         return;
@@ -64,8 +64,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use crate::laws::sample_laws::{bond, interface, sticky};
 
-    /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond
-    /// it; friction acts on the surfaces, also where another interface attracts.
+    /// An attraction without a bond acts in the middle of the gap, unless the contact is beyond the
+    /// alert distance; friction acts on the surfaces, also where another interface attracts.
     #[test]
     fn attraction_acts_across_the_gap() {
         for (law, acts) in [
@@ -87,7 +87,8 @@ mod tests {
         }
     }
 
-    /// A bond acts across its gap, a contact of the same interface without one on the surfaces.
+    /// A bond acts across its gap; a contact of the same interface without a bond acts on the
+    /// surfaces.
     #[test]
     fn a_bond_acts_across_its_gap() {
         let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);

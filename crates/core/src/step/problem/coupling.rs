@@ -47,9 +47,9 @@ impl Progress {
     }
 }
 
-/// Prepares and solves the step: once with explicit coupling and with damage predicted at its
-/// middle, otherwise until the damage used in the impulses is the one that the resulting openings
-/// give.
+/// Prepares and solves the step: once with explicit coupling or with damage predicted at the middle
+/// of the step, otherwise until the damage used in the impulses equals the damage that the
+/// resulting openings give.
 pub(super) fn couple<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,

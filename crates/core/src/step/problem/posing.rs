@@ -1,5 +1,5 @@
-//! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities
-//! taken over.
+//! The contact problem of a step is set up from bodies, contacts and laws, and solved, and its
+//! velocities are assigned to the bodies.
 
 use super::swerve::shift_of_gap;
 use super::{swerve, systems, turning};
@@ -11,12 +11,12 @@ use crate::solve::{self, ContactForm};
 use crate::step::{Simulation, StepError, StepReport};
 use crate::threads::{fill, map_chunks_of_two, worth_dividing};
 
-/// Bodies of a task.
+/// Number of bodies of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to adopt the velocity of a body (ns).
+/// Approximate time to set the velocity of a body (ns).
 const ADOPT: f64 = 5.0;
 
-/// Solves the contacts with the current forms, and again while dynamical systems linearise anew at
+/// Solves the contacts with the current forms, and again while dynamical systems are linearised at
 /// the velocities that they reach.
 pub(super) fn solve_contacts<S: Space>(
     s: &mut Simulation<S>,
@@ -25,7 +25,7 @@ pub(super) fn solve_contacts<S: Space>(
     report: &mut StepReport,
 ) -> Result<(), StepError> {
     loop {
-        // The solver knows the motion of bodies, laws that of their surfaces.
+        // The solver uses the motion of bodies, laws that of their surfaces.
         let (forms, contacts) = (&s.workspace.forms, &s.state.network.contacts);
         let of_laws = s.workspace.surfaces.forms_of_bodies(forms, contacts);
         let of_laws = of_laws.map(|forms| std::mem::replace(&mut s.workspace.forms, forms));

@@ -56,12 +56,12 @@ pub struct ThirdBody {
     row: Vec<f64>,
 }
 
-/// Below this fraction of the largest sliding velocity the motion is at a reversal, and no regime
+/// Fraction of the largest sliding velocity below which the motion is at a reversal, and no regime
 /// is determined.
 const TURNING: f64 = 1e-2;
 
-/// Name, unit and description of the columns; `stress_lateral` exists in 3D only, `temperature`
-/// where heat is computed.
+/// Returns name, unit and description of the columns; `stress_lateral` exists in 3D only,
+/// `temperature` where heat is computed.
 const COLUMNS: [(&str, &str, &str); 21] = [
     ("thickness", "m", "thickness of the third body"),
     ("solid_fraction", "", "solid fraction between the faces"),
@@ -187,14 +187,15 @@ impl ThirdBody {
         format!("{}_{part}", self.spec.name)
     }
 
-    /// Whether the next step ends after the start: it is the first that counts, as in a friction
-    /// test.
+    /// Returns whether the next step ends after the start: it is the first that counts, as in a
+    /// friction test.
     fn due(&self, run: &dyn RunView) -> bool {
         run.time() + run.options().scheme.h > self.spec.start
     }
 
-    /// The flow at the end (over the last complete cycle of the friction test, or the second half
-    /// of the time), the mass-weighted mean cluster size there, and a description of that interval.
+    /// Returns the flow at the end (over the last complete cycle of the friction test, or the
+    /// second half of the time), the mass-weighted mean cluster size there, and a description of
+    /// that interval.
     fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
         let all = self.history.whole().time;
         let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
@@ -302,7 +303,8 @@ impl Observer for ThirdBody {
         let mut now = LayerSnapshot::new(run, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
         if self.spent.counts() && run.time() > self.seen {
-            // Resistance to a reciprocating sliding keeps its sign.
+            // The sign of the resistance is that against the sliding, also if the sliding
+            // reciprocates.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
             for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
@@ -382,8 +384,8 @@ impl Observer for ThirdBody {
         }
         let load = self.spent.load;
         if let Some(mu) = self.spent.friction() {
-            // Energy stored by the grains and their bonds, or supplied by the bodies other than by
-            // sliding.
+            // This is the energy stored by the grains and their bonds, less that supplied by the
+            // bodies other than by sliding.
             for (part, value, doc) in [
                 (
                     "mu_from_forces",

@@ -65,7 +65,7 @@ pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
     })
 }
 
-/// Linear interpolation, constant beyond the ends.
+/// Interpolates linearly, constant beyond the ends.
 fn at(points: &[(f64, f64)], y: f64) -> f64 {
     let k = points.partition_point(|p| p.0 < y);
     match (k.checked_sub(1).map(|i| points[i]), points.get(k)) {
@@ -76,7 +76,7 @@ fn at(points: &[(f64, f64)], y: f64) -> f64 {
     }
 }
 
-/// R^2 of the least-squares line through points.
+/// Returns R^2 of the least-squares line through points.
 fn determination(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
@@ -106,7 +106,7 @@ impl Regime {
         }
     }
 
-    /// Name and criteria as a sentence.
+    /// Returns name and criteria as a sentence.
     pub fn describe(self, flow: Option<&Flow>, cluster: f64) -> String {
         let Some(f) = flow else {
             return "none: there is no sliding, or fewer than three bins lie in the interior"
@@ -149,16 +149,16 @@ mod tests {
         assert!((linear.interior - 0.8).abs() < 1e-12 && (linear.straight - 1.0).abs() < 1e-12);
         assert!((linear.slip_first - 0.025).abs() < 1e-12);
         assert_eq!(Regime::of(Some(&linear), 500.0), Regime::Couette);
-        // A plug that moves with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
+        // A plug moves with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
         let plug = profile(|_| 0.3);
         assert_eq!(Regime::of(Some(&plug), 500.0), Regime::Plug);
         assert!((plug.slip_first - 0.3).abs() < 1e-12 && (plug.slip_second - 0.7).abs() < 1e-12);
-        // All shear in a band in the middle: R^2 of a step is 3/4.
+        // All shear is in a band in the middle: R^2 of a step is 3/4.
         let step = profile(|y| if y < 0.5 { 0.0 } else { 1.0 });
         assert!((step.straight - 0.75).abs() < 0.01, "{}", step.straight);
         assert_eq!(Regime::of(Some(&step), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(Some(&step), 30.0), Regime::Agglomerated);
-        // Half of the sliding at a wall, the other half distributed uniformly: 40 % in the
+        // Half of the sliding is at a wall, the other half distributed uniformly: 40 % in the
         // interior.
         assert_eq!(Regime::of(Some(&profile(|y| 0.5 * y)), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(None, 1.0), Regime::None);

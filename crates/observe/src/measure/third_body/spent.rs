@@ -39,7 +39,7 @@ impl Place {
         Self::Others,
     ];
 
-    /// Its name, with those of the first bodies.
+    /// Returns the name, which contains those of the first bodies.
     pub fn name(self, between: &(String, String)) -> String {
         match self {
             Self::Grains => "grain_grain".to_owned(),
@@ -83,7 +83,7 @@ pub(super) struct Dissipation {
 }
 
 impl Dissipation {
-    /// An account that has not started.
+    /// Creates an account that has not started.
     pub fn new(bins: usize, grain: Vec<bool>) -> Self {
         Self {
             pending: vec![Energies::default(); bins],
@@ -108,8 +108,8 @@ impl Dissipation {
         self.ledger.is_some()
     }
 
-    /// Friction coefficient from the ledger: dissipated and stored energy, less the work of the
-    /// driven bodies other than by sliding, over the integral of P |V| dt.
+    /// Returns the friction coefficient from the ledger: dissipated and stored energy, less the
+    /// work of the driven bodies other than by sliding, over the integral of P |V| dt.
     pub fn friction(&self) -> Option<f64> {
         let (_, start, end) = self.ledger.as_ref()?;
         let other = end.other - start.other - self.work;
@@ -162,13 +162,13 @@ impl Dissipation {
         }
     }
 
-    /// Energies per bin since the last sample; resets them.
+    /// Returns the energies per bin since the last sample, and resets them.
     pub fn take(&mut self) -> Vec<Energies> {
         let none = vec![Energies::default(); self.pending.len()];
         std::mem::replace(&mut self.pending, none)
     }
 
-    /// Total energy.
+    /// Returns the total energy.
     pub fn total(&self) -> f64 {
         self.places.iter().flatten().sum()
     }

@@ -1,4 +1,4 @@
-//! Where the numbers come from, and how to cite them.
+//! Provenance of the numbers, and how to cite them.
 
 use super::results::clock;
 use super::{escape, hash};
@@ -6,7 +6,7 @@ use crate::html::folder::RunFolder;
 use crate::html::laws::{LawInfo, Loaded};
 use serde_json::Value;
 
-/// Version, identity, seed, steps.
+/// Table of the provenance: version, identity, seed, steps.
 pub(crate) fn provenance(run: &RunFolder) -> String {
     let s = &run.summary;
     let mut rows: Vec<(&str, String)> = vec![

@@ -5,7 +5,7 @@ use crate::html::folder::RunFolder;
 use fretwork_scene::inputs::{From, Input, of};
 use std::collections::BTreeMap;
 
-/// All inputs of a run, with a search.
+/// Table of all inputs of a run, with a search field.
 pub(crate) fn html(run: &RunFolder) -> String {
     let inputs = match of(&run.case_text) {
         Ok(inputs) => inputs,
@@ -58,7 +58,7 @@ fn text(run: &RunFolder) -> String {
     )
 }
 
-/// The inputs that differ between runs; columns are runs.
+/// Table of the inputs that differ between runs, one column per run.
 pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
     let mut paths: Vec<String> = Vec::new();
     let mut values: Vec<BTreeMap<String, Input>> = Vec::new();

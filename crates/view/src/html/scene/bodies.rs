@@ -1,12 +1,12 @@
-//! First bodies of a state: outlines in the plane, faces in space. A body that only moved without
-//! turning is its first state and a shift.
+//! First bodies of a state: outlines in 2D, faces in 3D. A body that moved without rotating is
+//! stored as its first state and a displacement.
 
 use super::states;
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
 
 const VIEW: &str = "bodies";
-/// Change of shape, relative to its size, below which an outline only moved.
+/// Change of shape, relative to the size, below which an outline is taken as moved only.
 const SAME: f64 = 1e-6;
 
 /// An outline or a face.
@@ -22,8 +22,8 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Adds the arrays of a state; `skip` says by identity and first point what other parts of the
-    /// page show.
+    /// Adds the arrays of a state. `skip` tells by identity and first point which bodies other
+    /// parts of the page show.
     pub fn read(
         &mut self,
         run: &RunFolder,
@@ -89,7 +89,8 @@ impl Bodies {
     }
 }
 
-/// Where the solid of an outline in the plane is: 0 on the right of it (open), 1 inside, 2 outside.
+/// Position of the solid relative to an outline in 2D: 0 on its right (open outline), 1 inside, 2
+/// outside.
 fn side(chain: &Chain, grains: &[[f64; 3]]) -> f64 {
     let (Some(first), Some(last)) = (chain.points.first(), chain.points.last()) else {
         return 0.0;
@@ -112,7 +113,7 @@ fn side(chain: &Chain, grains: &[[f64; 3]]) -> f64 {
     if around > 2 { 2.0 } else { 1.0 }
 }
 
-/// How far an outline moved, if it kept its shape.
+/// Returns the displacement of an outline that kept its shape.
 fn shift(from: &Chain, to: &Chain) -> Option<[f64; 3]> {
     let first = from.points.first()?;
     if from.points.len() != to.points.len() || from.body != to.body {
@@ -157,7 +158,7 @@ fn read(
         let range = usize::try_from(3 * bounds[0])
             .ok()
             .zip(usize::try_from(3 * bounds[1]).ok());
-        // Corners stand one cell after another, as they are written.
+        // Corners are stored one cell after another, in the order in which they are written.
         let chain = range.and_then(|(a, b)| points.get(a..b));
         let chain = chain.ok_or_else(|| format!("`views/{VIEW}` holds outlines without points"))?;
         let points: Vec<[f64; 3]> = chain.as_chunks::<3>().0.to_vec();

@@ -14,7 +14,7 @@ const ROOT: &str = "views/contacts";
 pub(super) struct Contacts(Vec<FieldInfo>);
 
 impl Contacts {
-    /// Finds the fields.
+    /// Finds the fields of contacts.
     pub fn find(run: &RunFolder) -> Self {
         Self(FieldInfo::numbers(run, &format!("{ROOT}/CellData")))
     }

@@ -1,4 +1,4 @@
-//! Grains of a state: balls and convex parts with their shapes, places, orientations and fields.
+//! Grains of a state: balls and convex parts with their shapes, positions, orientations and fields.
 
 use super::detail::Detail;
 use super::outline::{flat, solid};
@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
 const ROOT: &str = "views/grains/PointData";
-/// Fields that are used otherwise than as colours.
+/// Fields that define the geometry, and are not offered as colours.
 const OF_GEOMETRY: [&str; 7] = [
     "angle",
     "orientation_w",
@@ -20,7 +20,7 @@ const OF_GEOMETRY: [&str; 7] = [
     "orientation_y",
     "orientation_z",
     "removed",
-    // Name in older files.
+    // Older files use this name.
     "gone",
 ];
 
@@ -32,7 +32,7 @@ const SPEED: &str = "speed";
 pub(super) struct Grains {
     dimension: usize,
     fields: Vec<FieldInfo>,
-    /// Numbers of the convex parts of a body in the list of outlines, in the order of the view.
+    /// Indices of the convex parts of a body in the list of outlines, in the order of the view.
     parts: HashMap<u64, Vec<usize>>,
     pieces: Vec<ShapedPiece>,
     /// Identities of grains that other views show, as meshes.
@@ -44,7 +44,7 @@ pub(super) struct Grains {
 }
 
 impl Grains {
-    /// Reads what is the same in all states.
+    /// Reads what all states have in common.
     pub fn find(run: &RunFolder, meshed: HashSet<u64>) -> Result<Self, String> {
         let reader = &run.reader;
         let dimension = run.dimension();
@@ -168,7 +168,8 @@ impl Grains {
         Ok(squares.into_iter().map(f64::sqrt).collect())
     }
 
-    /// By row: 0 a ball, 1 nothing to draw here, 2 and up the number of its outline plus 2.
+    /// For each row: 0 for a ball, 1 for a grain that is not drawn here, otherwise the index of its
+    /// outline plus 2.
     fn shape_of_rows(&self, id: &[f64], corners: &[f64]) -> Vec<f64> {
         let mut seen: HashMap<u64, usize> = HashMap::new();
         let row = |(id, corners): (&f64, &f64)| {
@@ -187,8 +188,8 @@ impl Grains {
         id.iter().zip(corners).map(row).collect()
     }
 
-    /// The outlines of the convex parts about their centres: polygons in the plane, triangles in
-    /// space.
+    /// Returns the outlines of the convex parts about their centres: polygons in 2D, triangles in
+    /// 3D.
     fn push_outlines(&self, arrays: &mut Arrays) {
         if self.pieces.is_empty() {
             return;

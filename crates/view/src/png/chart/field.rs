@@ -8,7 +8,7 @@ use crate::png::scene::zone::zone_entry;
 use fretwork_observe::chart::{Colours, Field};
 use fretwork_observe::picture::{OPEN, Paint};
 
-/// Length of the longest arrow, and least distance of arrows, over the side of a plot.
+/// Length of the longest arrow, and least distance between arrows, relative to the side of a plot.
 const ARROW: f32 = 0.07;
 const BETWEEN: f32 = 0.035;
 
@@ -24,7 +24,7 @@ impl Layout<'_> {
             let points: Vec<[f32; 2]> = cell.iter().map(|p| place(*p)).collect();
             let colour = colour(field, k, top);
             page.polygon(&points, colour);
-            // An outline one pixel wide, so that no seam shows between neighbours.
+            // The outline is one pixel wide, so that no seam shows between neighbours.
             page.stroke(&points, true, 1.0, colour, None);
         }
         let mut drawn: Vec<[f32; 2]> = Vec::new();
@@ -36,13 +36,13 @@ impl Layout<'_> {
             }
             drawn.push(at);
             let by = [dx * ARROW * side, -dy * ARROW * side];
-            // Its middle is at the place.
+            // The middle of an arrow is at its point.
             let tail = [at[0] - 0.5 * by[0], at[1] - 0.5 * by[1]];
             arrow(page, tail, by, self.u);
         }
     }
 
-    /// Draws what the colours and the arrows say, below the axis.
+    /// Draws the meaning of the colours and the arrows below the axis.
     pub fn field_legend(&self, page: &mut Canvas) -> Result<(), DrawError> {
         let Some(field) = &self.chart.field else {
             return Ok(());
@@ -152,7 +152,7 @@ mod tests {
             let same = pixels.filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]);
             same.count()
         };
-        // Each is half of a plot, but for the arrow and the samples of the legend.
+        // Each zone takes half of the plot, except for the arrow and the samples of the legend.
         let [sticks, slips] = [STICKS, SLIPS].map(|c| count(c) as f64);
         assert!(
             slips > 1e5 && (sticks / slips - 1.0).abs() < 0.05,

@@ -41,7 +41,7 @@ impl Camera {
         camera
     }
 
-    /// Colours the grains by the layers in which they are now.
+    /// Colours the grains by the layers in which they are at present.
     pub fn assign_layers(&mut self, run: &dyn RunView) {
         if let Some(thickness) = self.layers {
             self.paints = layers(run, thickness);
@@ -112,8 +112,8 @@ impl Camera {
         w
     }
 
-    /// A picture, to be drawn later, by any thread; `None` where the dimension has no such picture,
-    /// and for charts, which are drawn by [`crate::draw_panels`].
+    /// Returns a picture that any thread can draw later. `None` if the dimension has no such
+    /// picture, and for charts, which are drawn by [`crate::draw_panels`].
     pub fn frame(
         &self,
         run: &dyn RunView,
@@ -185,7 +185,7 @@ impl Camera {
     /// The contacts drawn as lines (2D).
     fn lines(&self, run: &dyn RunView, shows: &Shows) -> Vec<Link> {
         match shows {
-            // A map of the bond states only: forces would cover it.
+            // A picture of the bond states shows no forces, which would cover it.
             Shows::Bonds => {
                 let bonds = links(run, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
@@ -193,7 +193,7 @@ impl Camera {
             }
             Shows::Chains(pairs) => forces(run, self.window, pairs),
             Shows::Scene if self.paints.is_empty() => links(run, self.window),
-            // The colours of grains carry the information: nothing is drawn over them.
+            // Nothing is drawn over the grains, since their colours carry the information.
             _ => Vec::new(),
         }
     }
@@ -250,8 +250,8 @@ fn pieces(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Outline>
     out
 }
 
-/// For each first body made of balls that is large in the window, an outline of its largest ball,
-/// which is hidden under its disk and carries the name.
+/// Returns, for each first body made of balls that is large in the window, an outline of its
+/// largest ball. The outline is hidden under the disk of the ball and carries the name.
 pub fn named_balls(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
@@ -285,7 +285,7 @@ pub fn named_balls(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// The periodic images of a point that are visible in the window.
+/// Returns the periodic images of a point that are visible in the window.
 fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64> {
     let Some(period) = period else { return vec![x] };
     let x = x - period * (x / period).floor();
@@ -327,13 +327,13 @@ fn paint(paints: &[Paint], ball: usize) -> Paint {
     paints.get(ball).copied().unwrap_or_default()
 }
 
-/// First bodies as closed polygons that extend beyond the window.
+/// Returns the first bodies as closed polygons that extend beyond the window.
 fn outlines(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     let period = run.periodic().period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
     let bodies = run.bodies();
-    // Those of deformable bodies are drawn as their elements.
+    // First bodies that are deformable are drawn as their elements.
     let shown =
         |body: u32| !bodies.removed[body as usize] && bodies.carrier(body as usize).is_none();
     let surfaces = run.surfaces().into_iter().enumerate();
@@ -394,8 +394,8 @@ fn outlines(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// The outside of a closed convex polyline that runs counter-clockwise: a square of size `far` with
-/// the polyline cut out, joined by a seam on the right.
+/// Returns the outside of a closed convex polyline that runs counter-clockwise: a square of size
+/// `far` with the polyline cut out, joined by a seam on the right.
 fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
     let ring = &chain[..chain.len() - 1];
     let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));

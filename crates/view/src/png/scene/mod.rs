@@ -97,7 +97,7 @@ pub struct Frame {
     pub disks: Vec<Disk>,
     /// Interactions, drawn over the grains.
     pub links: Vec<Link>,
-    /// What sticks and slips, drawn over all others.
+    /// Sticking and slipping zones, drawn over everything else.
     pub zones: Vec<ZoneLine>,
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
     pub scale: Option<ColourScale>,
@@ -143,7 +143,7 @@ impl Frame {
         let lines = joined(&self.caption, "   ·   ", TEXT * u, room);
         let title = if self.title.is_empty() { 0.0 } else { 42.0 * u };
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
-        // Under the field: the colour bar and the scale bar, then the legend of the links.
+        // Below the field are the colour bar and the scale bar, then the legend of the links.
         let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
         let marked = !(self.links.is_empty() && self.zones.is_empty());
         let line = if self.scale.is_none() || marked {
@@ -202,7 +202,7 @@ impl Frame {
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
             if body.element {
-                // An outline one pixel wide, so that no seam shows between neighbours.
+                // The outline is one pixel wide, so that no seam shows between neighbours.
                 field.polygon(&polygon, fill);
                 field.stroke(&polygon, true, 1.0, fill, None);
                 continue;
@@ -220,7 +220,7 @@ impl Frame {
             let inner = radius - (1.3 * u).min(0.3 * radius);
             field.disk(at, radius, |_, distance| {
                 let t = (distance - inner + 0.5).clamp(0.0, 1.0);
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 let mixed = |i: usize| grain[i] + t * (edge[i] - grain[i]);
                 [mixed(0), mixed(1), mixed(2)]
             });
@@ -250,7 +250,7 @@ impl Frame {
         }
     }
 
-    /// Grains that overlap the field, with centre and radius in pixels.
+    /// Returns the grains that overlap the field, with centre and radius in pixels.
     fn seen(&self, field: &Canvas, map: &Place) -> Vec<(&Disk, [f32; 2], f32)> {
         let disks = self.disks.iter();
         disks
@@ -307,7 +307,7 @@ impl Frame {
     }
 }
 
-/// Centre and radius of a disk in pixels, if it overlaps the field.
+/// Returns centre and radius of a disk in pixels, if it overlaps the field.
 fn pixels(disk: &Disk, field: &Canvas, map: &Place) -> Option<([f32; 2], f32)> {
     let at = map.point(disk.centre);
     let r = (disk.radius * map.scale) as f32;
@@ -316,8 +316,8 @@ fn pixels(disk: &Disk, field: &Canvas, map: &Place) -> Option<([f32; 2], f32)> {
     (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((at, r))
 }
 
-/// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm
-/// exceeds single precision.
+/// Returns a body clipped to the field and a margin, in pixels. Without clipping, a wheel of 0.5 m
+/// around a field of 0.1 mm exceeds single precision.
 fn visible(points: &[[f64; 2]], field: &Canvas, map: &Place) -> Vec<[f32; 2]> {
     let margin = 8.0 / map.scale;
     let (width, height) = (

@@ -40,7 +40,7 @@ impl Raster {
 
     /// Draws a lit sphere.
     pub fn sphere(&mut self, [x, y, z]: Corner, radius: f64, base: Rgb) {
-        // Light from the upper left in front of the picture; unit length.
+        // The light comes from the upper left in front of the picture; the vector has unit length.
         const LIGHT: [f32; 3] = [-0.45, -0.6, 0.661];
         // The smallest spheres remain visible.
         let radius = radius.max(0.75);
@@ -71,7 +71,7 @@ impl Raster {
                 // The rim is darkened as well, so that equal spheres are distinguishable.
                 let light = (0.5 + 0.54 * facing) * (0.62 + 0.38 * nz.sqrt());
                 let gleam = 36.0 * facing.powi(24);
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 let lit = |c: f32| (light * c + gleam).min(255.0) as u8;
                 *pixel = [lit(base[0]), lit(base[1]), lit(base[2])];
             }
@@ -127,7 +127,8 @@ impl Raster {
         (self.colour, self.depth) = (pixels, depths);
     }
 
-    /// Number of pixels that a convex polygon covers, and of those with something behind it.
+    /// Returns the number of pixels that a convex polygon covers, and of those in front of
+    /// something.
     pub fn hidden(&self, corners: &[Corner]) -> (usize, usize) {
         let (mut covered, mut hidden) = (0, 0);
         self.scan(corners, |at, depth| {
@@ -177,8 +178,8 @@ impl Raster {
         }
     }
 
-    /// Halves the resolution, by the mean of four pixels; width, height, and rows of red, green and
-    /// blue.
+    /// Halves the resolution by the mean of four pixels. Returns width, height, and rows of red,
+    /// green and blue.
     pub fn halved(&self) -> (usize, usize, Vec<Rgb>) {
         let (width, height) = (self.width / 2, self.height / 2);
         let mut out = Vec::with_capacity(width * height);
@@ -188,14 +189,14 @@ impl Raster {
             out.extend(upper.iter().zip(lower).map(|([a, b], [c, d])| {
                 let of = |p: &Rgb, i: usize| u16::from(p[i]);
                 let mean = |i: usize| ((of(a, i) + of(b, i) + of(c, i) + of(d, i) + 2) / 4) as u8;
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 [mean(0), mean(1), mean(2)]
             }));
         }
         (width, height, out)
     }
 
-    /// Width, height, and rows of red, green and blue.
+    /// Returns width, height, and rows of red, green and blue.
     pub fn pixels(self) -> (usize, usize, Vec<Rgb>) {
         (self.width, self.height, self.colour)
     }
@@ -215,7 +216,7 @@ fn tinted(under: Rgb, colour: Rgb, share: f32) -> Rgb {
     [mixed(0), mixed(1), mixed(2)]
 }
 
-/// Depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.
+/// Returns the depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.
 fn plane(corners: &[Corner]) -> Option<[f64; 3]> {
     let mut n = [0.0; 3];
     for (k, p) in corners.iter().enumerate() {

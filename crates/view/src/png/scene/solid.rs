@@ -238,8 +238,8 @@ impl SolidScene {
         seen
     }
 
-    /// For a normal: its component towards the viewer, and the light from the upper left in front
-    /// of the picture.
+    /// Returns for a normal its component towards the viewer, and its illumination from the upper
+    /// left in front of the picture.
     fn light(&self, n: &[f64; 3]) -> (f64, f64) {
         const LIGHT: [f64; 3] = [-0.45, 0.6, 0.661];
         let ([x, y], z) = self.view.project(*n);
@@ -263,7 +263,7 @@ struct Edge {
     crease: bool,
 }
 
-/// The edges of polygons, and the smooth part to which each polygon belongs.
+/// Returns the edges of polygons, and the index of the smooth part of each polygon.
 fn joined(polygons: &[Vec<[f64; 3]>], normals: &[[f64; 3]]) -> (Vec<Edge>, Vec<usize>) {
     let all = || polygons.iter().flatten().flatten().copied();
     let size = all()
@@ -418,7 +418,7 @@ mod tests {
         let alone = middle(Vec::new(), 3.0);
         let blue = |c: [u8; 3]| c[2] > c[0] + 40;
         assert!(blue(alone));
-        // In front of the wall, behind it, behind a grain with corners.
+        // The three points are in front of the wall, behind it, and behind a grain with corners.
         assert_eq!(middle(vec![wall(true)], -3.0), alone);
         let veiled = middle(vec![wall(true)], 3.0);
         assert!(blue(veiled) && veiled != alone, "{veiled:?}");
