@@ -14,12 +14,12 @@ use pyo3::prelude::*;
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// How an observer ends a run.
+/// Reason why an observer ends a run.
 #[derive(Debug)]
 pub(crate) enum Wish {
-    /// It asks for an end, with a reason.
+    /// The observer requests an end, with a reason.
     Stop(String),
-    /// It raised an exception.
+    /// The observer raised an exception.
     Raised(PyErr),
 }
 
@@ -39,7 +39,7 @@ impl Wishes {
         }
     }
 
-    /// Why the run is to stop, if it is.
+    /// Returns the reason why the run is to stop, if there is one.
     pub(crate) fn reason(&self) -> Option<String> {
         self.lock().as_ref().map(|wish| match wish {
             Wish::Stop(reason) => reason.clone(),
@@ -47,7 +47,7 @@ impl Wishes {
         })
     }
 
-    /// The exception that an observer raised, if one did.
+    /// Returns the exception that an observer raised, if one did.
     pub(crate) fn exception(&self) -> Option<PyErr> {
         match self.lock().take() {
             Some(Wish::Raised(error)) => Some(error),
@@ -56,7 +56,7 @@ impl Wishes {
     }
 }
 
-/// What Python says of a column: name, unit, explanation.
+/// Name, unit and explanation of a column, as Python gives them.
 type ColumnLine = (String, String, String);
 
 /// An observer in Python.
@@ -66,7 +66,7 @@ pub(crate) struct PythonObserver {
     name: String,
     every: u64,
     columns: Vec<Column>,
-    /// Values of the columns as it last gave them.
+    /// Last values of the columns.
     latest: Vec<f64>,
     wishes: Wishes,
 }
@@ -145,7 +145,7 @@ impl Observer for PythonObserver {
             let result = self.object.bind(py).call_method0("save")?;
             result.extract::<Vec<u8>>()
         });
-        // Without it there is no checkpoint; the one before stays.
+        // If this fails there is no new checkpoint, and the previous one is kept.
         let carried = carried.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
             CodeError::other("states of observers")
@@ -168,8 +168,8 @@ impl Observer for PythonObserver {
     }
 }
 
-/// A text that lasts: columns name their units for the whole life of a program. Each text is kept
-/// once.
+/// Returns a static copy of a text, since columns name their units for the whole life of the
+/// program. Each text is stored once.
 fn lasting(text: String) -> &'static str {
     static KEPT: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut kept = KEPT.lock().unwrap_or_else(|e| e.into_inner());

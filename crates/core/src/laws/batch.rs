@@ -44,7 +44,7 @@ pub(super) enum CallChecks {
     /// Values that are not finite or out of range, and writes just beyond a column, are errors.
     #[default]
     Run,
-    /// As `Run`, but without the check of ranges, which certification makes itself.
+    /// The checks of `Run` without that of ranges, which certification makes itself.
     Lenient,
     /// The checks of `Run`; every call is made twice in guarded memory.
     Guarded(Box<Guarded>),

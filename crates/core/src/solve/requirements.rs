@@ -10,9 +10,9 @@ use crate::geometry::space::Space;
 pub enum Operator {
     /// Contact by contact, with velocities updated in place and the diagonal blocks.
     Sweep,
-    /// As products with all impulses at once.
+    /// Products of W with all impulses at once.
     Products,
-    /// As a matrix, or as a factorisation of it.
+    /// The matrix W, or a factorisation of it.
     #[default]
     Matrix,
 }
