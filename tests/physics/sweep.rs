@@ -1,4 +1,4 @@
-//! The sweep of Gauss-Seidel gives the same bits on any number of threads.
+//! The Gauss-Seidel sweep gives bit-identical results on any number of threads.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, solve, sweeps};
@@ -64,7 +64,7 @@ fn bits<S: Space>(p: &Problem<S>) -> Vec<u64> {
 
 fn check<S: Space>(side: u32) {
     let mut one = lattice::<S>(side);
-    // Many blocks of 512 contacts and more.
+    // The scene has many blocks of 512 contacts and more.
     assert!(one.contacts() > 20_000);
     prepare(&mut one);
     sweeps(&mut one, 20, 1.2, false);
