@@ -10,12 +10,12 @@ use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 
-/// The file of a case, by its name below `cases`.
+/// Returns the file of a case, by its name below `cases`.
 pub(crate) fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"))
 }
 
-/// A case of the repository, by its name below `cases`, with changes as those of `--set`.
+/// Reads a case of the repository, by its name below `cases`, with changes like those of `--set`.
 pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> Loaded {
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_owned()).collect();
     load(&file(name), &sets).unwrap_or_else(|e| panic!("{e}"))
@@ -27,7 +27,7 @@ pub(crate) fn loaded_text(text: &str) -> Loaded {
     loaded.unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// The scene of a case, with what its files declare.
+/// Builds the scene of a case, with the declarations of its files.
 pub(crate) fn built(loaded: &Loaded) -> Built {
     let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}"))
@@ -49,7 +49,7 @@ pub(crate) fn text<S: Space>(text: &str) -> Simulation<S> {
     simulation(&loaded_text(text))
 }
 
-/// Runs a scene to its end in a folder of its own, which is left for `look` and then removed.
+/// Runs a scene to its end in a separate folder, which `look` evaluates and which is then removed.
 pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) -> Summary {
     let out = TempFolder::new("finished");
     let options = RunOptions {
@@ -61,7 +61,7 @@ pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) 
     summary
 }
 
-/// [`finished`] with a case of the repository, without repeated steps.
+/// Does as [`finished`] with a case of the repository, without repeated steps.
 pub(crate) fn ran(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let loaded = loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
     finished(&loaded, built(&loaded), look)
