@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 /// The file of a study or a fit, with its text for the location of errors.
 #[derive(Debug)]
 pub struct SpecFile<T> {
-    /// Its contents.
+    /// Contents of the file.
     pub spec: T,
-    /// Its text.
+    /// Text of the file.
     pub source: Source,
     /// Path of the file.
     pub path: PathBuf,

@@ -79,7 +79,7 @@ impl ScarSummary {
 /// Observes the scars.
 #[derive(Clone, Debug)]
 pub struct Scars {
-    /// Their names.
+    /// Names of the scars.
     names: Vec<String>,
 }
 
@@ -179,7 +179,7 @@ pub fn table(run: &dyn RunView, scar: usize) -> String {
     let mut rows: Vec<([f64; 3], f64)> = vertices.map(|v| (v.at, v.depth)).collect();
     let repeated = rows.first().map(|r| r.1);
     rows.extend(run.scar_end(scar).zip(repeated));
-    // From left to right, independent of the orientation of the profile.
+    // The points go from left to right, independent of the orientation of the profile.
     if dimension == 2 && sign < 0.0 {
         rows.reverse();
     }

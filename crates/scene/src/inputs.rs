@@ -26,7 +26,7 @@ pub struct Input {
     pub value: String,
     /// SI unit, empty for pure numbers and texts.
     pub unit: &'static str,
-    /// Where the value comes from.
+    /// Origin of the value.
     pub from: From,
 }
 

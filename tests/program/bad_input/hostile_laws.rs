@@ -69,7 +69,7 @@ fn a_library_that_exits_or_crashes_when_it_is_loaded() {
     assert!(line("coulomb ").contains("friction"), "{listed}");
 }
 
-/// Its pages are mapped but missing: the dynamic linker receives a signal.
+/// The pages of the library are mapped but missing: the dynamic linker receives a signal.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_library_that_is_cut_short() {

@@ -75,7 +75,7 @@ fn with_a_depth_the_bits_are_those_of_a_run_with_the_later_end() {
         [
             "heat.bodies.rail.store.depth=Some(2e-2)",
             "output.checkpoint=Steps(50)",
-            // Their times follow from the first end.
+            // The times of views and frames follow from the first end.
             "output.frames=0",
             "output.views=0",
             end,

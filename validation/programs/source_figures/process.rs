@@ -29,7 +29,7 @@ pub struct Step {
 /// A run.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Its steps.
+    /// Steps of the run.
     pub steps: Vec<Step>,
     /// Contact problem of the last step.
     pub last: Option<LocalProblem>,

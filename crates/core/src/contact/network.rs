@@ -148,7 +148,7 @@ pub struct Contact<S: Space> {
     pub normal: S::Vector,
     /// Vectors from each body's centre to its surface at the contact (m).
     pub arms: [S::Vector; 2],
-    /// Where its impulse acts, see [`Self::levers`].
+    /// Point at which the impulse acts, see [`Self::levers`].
     pub acts: Acts,
     /// Reduced radius r1 r2/(r1 + r2) (m).
     pub radius: f64,
@@ -179,7 +179,7 @@ pub struct Contact<S: Space> {
     pub spring: Spring<S>,
 }
 
-/// Where two bodies touch.
+/// Geometry of a contact between two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactGeometry<S: Space> {
     /// Gap (m), positive when open.

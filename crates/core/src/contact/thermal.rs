@@ -3,7 +3,7 @@
 use crate::bodies::Nodes;
 use std::sync::Arc;
 
-/// Where the heat of a contact enters a body.
+/// Nodes at which the heat of a contact enters a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeatSide {
     /// The body is insulated.
@@ -32,7 +32,7 @@ pub struct MaterialPair {
 pub struct ContactTemperature {
     /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
     pub temperature: [f64; 3],
-    /// Where heat enters the candidate and the antagonist.
+    /// Nodes at which heat enters the candidate and the antagonist.
     pub sides: [HeatSide; 2],
     /// Index of its materials in [`ContactHeat::pairs`].
     pub pair: u32,

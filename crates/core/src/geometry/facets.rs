@@ -240,7 +240,7 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
 pub struct Ridge {
     /// Ends (m), in the direction of the side of its first facet.
     pub ends: [V; 2],
-    /// Their names.
+    /// Names of the ends.
     pub names: [u64; 2],
     /// The first facet.
     pub facet: u32,

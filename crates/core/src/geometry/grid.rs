@@ -171,7 +171,7 @@ impl<V: VectorLike> Levels<V> {
         if grid.crowd() <= CROWDED {
             return one(grid);
         }
-        // From large to small, as far as there are balls.
+        // The levels go from large to small balls, as far as there are balls.
         let class = |radius: f64| {
             let ratio = width(widest) / width(radius);
             // The exponent is monotonic in the ratio: a lower level contains no larger ball.

@@ -120,10 +120,10 @@ pub struct Fan<V> {
 /// A facet of a surface that deforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingFacet {
-    /// Its D vertices, by their places in [`Surface::moving_vertices`]: outside is where they are
-    /// anticlockwise, in the plane on their left.
+    /// D vertices of the facet, as indices into [`Surface::moving_vertices`]. Seen from outside
+    /// they are counter-clockwise; in 2D the outside is on their left.
     pub vertices: [u32; 3],
-    /// The facets on the other side of its edges, in the plane before and after it.
+    /// The facets beyond its edges; in 2D the facets before and after it.
     pub beside: [Option<u32>; 3],
 }
 

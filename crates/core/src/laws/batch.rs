@@ -117,7 +117,7 @@ impl LawBatch {
         self.run(loaded, info, degradation, call)
     }
 
-    /// Checks that all that a call wrote is finite and in its range.
+    /// Checks that all values that a call wrote are finite and in their range.
     fn check_outputs(
         &mut self,
         loaded: &Loaded,

@@ -50,7 +50,7 @@ pub enum End {
 /// Output of a child process.
 #[derive(Debug)]
 pub struct ChildOutput {
-    /// Its messages in order.
+    /// Messages of the child in order.
     pub messages: Vec<Value>,
     /// How it ended.
     pub end: End,

@@ -113,7 +113,8 @@ mod linux {
     use std::path::{Path, PathBuf};
     use std::sync::OnceLock;
 
-    /// What the linker will do with a library, by its file and the files to which it links.
+    /// Prediction of what the linker will do with a library, from its file and the files to which
+    /// it links.
     #[derive(Debug, Default)]
     pub struct Walk {
         /// Libraries that the linker will find in folders that the law names.

@@ -90,9 +90,9 @@ impl<'a> Output<'a> {
 pub enum Range {
     /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
     NotNegative,
-    /// From 0 to 1: damage, normal restitution.
+    /// Values from 0 to 1: damage, normal restitution.
     Share,
-    /// From -1 to 1: tangential restitution.
+    /// Values from -1 to 1: tangential restitution.
     Signed,
 }
 

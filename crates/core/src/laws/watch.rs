@@ -141,7 +141,7 @@ pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
     Ready(number)
 }
 
-/// What was saved when the program ended early.
+/// Result of saving when the program ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Saved {
     /// All rows and a summary are on disk.

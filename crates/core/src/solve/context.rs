@@ -10,7 +10,7 @@ use super::standard;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// What `auto` learned from previous steps.
+/// State that `auto` carries from step to step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
     /// Factor on the number of iterations before Newton.

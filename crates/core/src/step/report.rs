@@ -1,4 +1,4 @@
-//! What a step reports.
+//! Report of a step.
 
 use crate::laws::Totals;
 use crate::solve;

@@ -76,7 +76,7 @@ pub struct State<S: Space> {
     pub worn_through: Option<WornThrough>,
     /// Temperatures and the account of heat; `None` where none is computed.
     pub heat: Option<HeatState>,
-    /// What the automatic choice of the solver learned from earlier steps.
+    /// State of the automatic choice of the solver.
     pub(super) auto_state: AutoState,
 }
 

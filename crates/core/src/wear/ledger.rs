@@ -14,7 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Where a grain is.
+/// Location of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GrainPlace {
     /// Connected by a path of bonds to the first body of this index.
@@ -80,15 +80,15 @@ impl MassByPlace {
 /// Flows accumulated since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
-    /// From first bodies to the contact, source.
+    /// Amount moved from first bodies to the contact, source.
     pub source: Amount,
-    /// From the contact to first bodies, by newly formed bonds.
+    /// Amount moved from the contact to first bodies, by newly formed bonds.
     pub attached: Amount,
-    /// From the contact to ejection zones.
+    /// Amount moved from the contact to ejection zones.
     pub ejected: Amount,
-    /// From ejection zones back to the contact.
+    /// Amount moved from ejection zones back to the contact.
     pub recirculated: Amount,
-    /// From ejection zones to lost, wear.
+    /// Amount moved from ejection zones to lost, wear.
     pub wear: Amount,
 }
 

@@ -213,7 +213,7 @@ impl<S: Space> ElasticGrain<S> {
         Ok(grain)
     }
 
-    /// Finds where the vertices are in the frame.
+    /// Computes the positions of the vertices in the frame.
     fn place_vertices(&mut self) {
         let model = &self.model;
         let moved = model.shape.of_vertices(&self.state.amplitudes);

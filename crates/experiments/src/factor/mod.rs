@@ -1,5 +1,5 @@
-//! What varies in an experiment: a factor converts a number of its range, or a level, to changes of
-//! the case.
+//! Factors of an experiment: each converts a number of its range, or a level, to changes of the
+//! case.
 
 mod spec;
 

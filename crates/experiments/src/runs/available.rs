@@ -61,7 +61,7 @@ impl AvailableQuantities {
         why
     }
 
-    /// SI unit of an output, `1` for pure numbers; empty where it is known of a run only.
+    /// Returns the SI unit of an output, `1` for pure numbers; empty if only a run gives it.
     pub fn unit(&self, output: &OutputName) -> String {
         let unit = match output.column_name() {
             Some(name) => {

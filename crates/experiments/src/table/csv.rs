@@ -8,9 +8,9 @@ use std::path::Path;
 /// Format of numbers that are not whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
-    /// With the fewest digits that read back to the same number: `0.001`.
+    /// The fewest digits that read back to an equal number: `0.001`.
     Plain,
-    /// With exponents: `1e-3`.
+    /// Scientific notation: `1e-3`.
     Exponents,
 }
 

@@ -1,4 +1,4 @@
-//! From the unit interval to the values of a factor.
+//! Maps the unit interval to the values of a factor.
 
 use super::DesignError;
 

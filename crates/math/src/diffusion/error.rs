@@ -12,7 +12,7 @@ pub enum DiffusionError {
         what: &'static str,
         /// The node.
         node: usize,
-        /// Its value.
+        /// Value of the number.
         value: f64,
         /// Valid values.
         expected: &'static str,
@@ -22,7 +22,7 @@ pub enum DiffusionError {
     Conductance {
         /// Nodes of the edge.
         nodes: [usize; 2],
-        /// Its value.
+        /// Value of the conductance.
         value: f64,
     },
     /// A source into nodes from which no path leads anywhere.

@@ -25,7 +25,7 @@ pub enum BoundsError {
     Range {
         /// The parameter.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
     /// An order names a parameter that does not exist.

@@ -47,7 +47,7 @@ pub enum ResidualError {
     Measurement {
         /// Name of the test.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
     /// The simulated curve is wrong.
@@ -55,7 +55,7 @@ pub enum ResidualError {
     Simulated {
         /// Name of the test.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
     /// The number of curves is not that of the tests, or the number of values not that of the

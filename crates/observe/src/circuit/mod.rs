@@ -25,7 +25,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Observes the bonds that break: an event each.
+/// Observes the bonds that break, and records an event for each.
 #[derive(Clone, Copy, Debug)]
 pub struct BrokenBonds {
     count: u64,

@@ -77,8 +77,8 @@ pub(crate) fn damage_ratio(known: &Estimate) -> Output {
     Output::figure("damage_ratio", [chart], 1)
 }
 
-/// The loops of a fretting test, its friction coefficient, and the forces on the tested body over
-/// time.
+/// Returns the loops of a fretting test, its friction coefficient, and the forces on the tested
+/// body over time.
 pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     let mut out = Vec::new();
     if cycles.oscillates() {

@@ -74,7 +74,7 @@ pub const COURSE: &str = "it describes the course of the run, not a result of th
 /// Form of a quantity on the terminal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Wording {
-    /// Its value, with half-widths, and a remark, which may be empty.
+    /// Value with half-widths, and a remark, which may be empty.
     Value(String),
     /// A separate sentence, with its label.
     Sentence(String, String),
@@ -90,7 +90,7 @@ pub struct Quantity {
     pub path: Vec<Step>,
     /// Number, text, flag or null; an empty list or object where there is nothing to list.
     pub value: Value,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: Unit,
     /// One line of explanation.
     pub doc: String,

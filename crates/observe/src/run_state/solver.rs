@@ -92,7 +92,7 @@ impl SolverSummary {
         reasons.chain(several).collect()
     }
 
-    /// Rigid bodies that overlap.
+    /// Returns the warning about overlaps of rigid bodies.
     fn overlap(&self) -> Option<String> {
         (self.overlap_max > OVERLAP).then(|| {
             let left = if self.overlap_after > OVERLAP {

@@ -15,7 +15,7 @@ pub struct ElasticSpec {
     pub name: String,
     /// Name of its material in this case; its file has the properties `young` and `poisson`.
     pub material: String,
-    /// Its mesh.
+    /// Mesh of the body.
     pub mesh: MeshSpec,
     /// Measure of strain; small strain by default.
     #[serde(default)]
@@ -43,7 +43,7 @@ pub struct ElasticSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub wears: Option<WearSpec>,
-    /// Its damping; none by default.
+    /// Damping of the body; none by default.
     #[serde(default)]
     pub damping: Rayleigh,
 }
@@ -163,12 +163,12 @@ pub struct MeshProfileSpec {
 pub enum ProfileShape {
     /// A wave with a crest at the origin of the mesh.
     Wave {
-        /// Its amplitude (m).
+        /// Amplitude of the wave (m).
         amplitude: f64,
-        /// Its length along x (m).
+        /// Wavelength along x (m).
         #[serde(default = "straight")]
         x: f64,
-        /// Its length along y (3D, m): a product of both waves.
+        /// Wavelength along y (3D, m): the surface is a product of both waves.
         #[serde(default = "straight")]
         y: f64,
     },

@@ -18,7 +18,7 @@ pub struct ElasticGrainSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub elements: Option<usize>,
-    /// Their damping; none by default.
+    /// Damping of the grains; none by default.
     #[serde(default)]
     pub damping: Rayleigh,
 }

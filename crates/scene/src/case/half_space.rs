@@ -101,12 +101,12 @@ pub enum HalfSpaceProfile {
     },
     /// A wave with a crest at the origin.
     Wave {
-        /// Its amplitude (m).
+        /// Amplitude of the wave (m).
         amplitude: f64,
-        /// Its length along x (m).
+        /// Wavelength along x (m).
         #[serde(default = "straight")]
         x: f64,
-        /// Its length along y (3D, m): a product of both waves.
+        /// Wavelength along y (3D, m): the surface is a product of both waves.
         #[serde(default = "straight")]
         y: f64,
     },

@@ -125,7 +125,7 @@ pub struct FaceSpec {
 /// Store of the heat of a first body.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub enum StoreSpec {
-    /// Its temperature is constant.
+    /// The temperature of the body is constant.
     #[default]
     Fixed,
     /// No heat enters it: all heat of its contacts goes to the other side.

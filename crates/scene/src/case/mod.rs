@@ -248,7 +248,7 @@ pub struct BodySpec {
     pub name: String,
     /// Name of its material in this case.
     pub material: String,
-    /// Its shapes.
+    /// Shapes of the body.
     pub shapes: Vec<ShapeSpec>,
     /// Position of its frame (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

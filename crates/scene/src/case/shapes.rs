@@ -116,7 +116,7 @@ pub enum ShapeSpec {
     Box {
         /// Edge lengths (m).
         size: (f64, f64, f64),
-        /// Its centre (m).
+        /// Centre of the shape (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
         /// Rotation vector (rad) about its centre.

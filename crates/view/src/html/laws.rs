@@ -13,7 +13,7 @@ pub struct LawInfo {
     pub doc: String,
     /// Paper or DOI.
     pub reference: String,
-    /// Its parameters.
+    /// Parameters of the law.
     pub parameters: Vec<LawParameter>,
 }
 

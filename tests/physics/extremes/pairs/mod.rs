@@ -58,7 +58,7 @@ enum Made {
 struct Wall {
     name: &'static str,
     made: Made,
-    /// Its shapes, or its fields if it deforms.
+    /// Shapes of the wall, or its fields if it deforms.
     shapes: String,
     /// Origin of its frame: along x, out of plane and upwards (m).
     origin: [f64; 3],

@@ -132,7 +132,7 @@ fn a_disk_in_a_groove_touches_two_faces() {
         assert!((contact.normal - Vector2::new(side * half, half)).norm() < 1e-15);
         assert!(contact.gap.abs() < 1e-15 && !contact.vertex_contact);
         assert_eq!((contact.radius, contact.bodies), (0.5, [0, 1]));
-        // From either centre to the same point of the flank.
+        // The arms go from either centre to one point of the flank.
         let place = Vector2::new(-side * 0.5 * half, 0.5 * half);
         let from_disk = place - s.state.bodies.position[0];
         assert!((contact.arms[0] - from_disk).norm() < 1e-15);

@@ -288,7 +288,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         of_lead: false,
         share: 0.0,
     };
-    // Where the opposite side is above a corner of the reference side.
+    // Returns the point of the opposite side above a corner of the reference side.
     let over = |t: f64, corner: usize| {
         let s = ((t - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
         let at = low.1 + (high.1 - low.1) * s;

@@ -97,7 +97,7 @@ enum Closest {
 }
 
 impl CorePair<'_, Dim3> {
-    /// Takes a face of one of the two as the reference face.
+    /// Uses a face of one of the two as the reference face.
     fn lead(&self, PairFace { of_candidate, face }: PairFace) -> Lead<'_> {
         let ([a, b], apart) = (self.cores, self.apart);
         let (own, other, apart) = if of_candidate {
@@ -304,14 +304,15 @@ fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, 
 struct Crossing {
     /// Signed distance along the axis (m).
     depth: f64,
-    /// From `b` to `a`.
+    /// Unit normal from `b` to `a`.
     normal: V,
     /// Nearest points of the two lines (m).
     points: [V; 2],
     feature: u64,
 }
 
-/// Uses a face of one of the two as the reference face.
+/// Returns the pair of edges with the greatest separation along their product; `None` if no pair
+/// counts.
 fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     let mut best: Option<Crossing> = None;
     for e in 0..a.topology().edges.len() {
@@ -389,7 +390,7 @@ struct NearestEdgePoints {
     edges: [usize; 2],
     /// On `a` and on `b` (m).
     points: [V; 2],
-    /// From `b` to `a` (m).
+    /// Difference of the points, from `b` to `a` (m).
     difference: V,
 }
 

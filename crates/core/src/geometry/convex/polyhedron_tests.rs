@@ -197,8 +197,8 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
         assert!((p.normal - V::z()).norm() < 1e-15 && (p.gap - 0.05).abs() < 1e-14);
         assert!((PI * p.share * p.share - 1.0).abs() < 1e-13);
     }
-    // Of equal width: no corner is outside the other face by more than the slack; names do not
-    // depend on the noise.
+    // The bodies have equal width: no corner is outside the other face by more than the slack, and
+    // names do not depend on the noise.
     let names = |points: &[ContactPoint<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
     let known = names(&met(&top, &top, V::new(0.0, 0.0, 2.0), [0.0; 2], &FINE));
     for shift in [0.0, 1e-12, -1e-9, 5e-7] {

@@ -39,7 +39,7 @@ impl std::fmt::Debug for Factors {
 }
 
 struct Component {
-    /// Its rows in K, increasing.
+    /// Rows of the factor in K, increasing.
     rows: Vec<usize>,
     /// Scaling by powers of two: rows and columns are scaled to about one before the LU, so that a
     /// tiny pivot indicates a singular matrix, not small units.
@@ -60,7 +60,7 @@ impl Factors {
     /// The matrix is numerically singular.
     ///
     /// # Panics
-    /// Where it is not square.
+    /// Panics if the matrix is not square.
     pub fn new(k: &Csr) -> Result<Self, Singular> {
         assert_eq!(k.rows, k.columns, "a square matrix");
         let mut local = vec![0; k.rows];

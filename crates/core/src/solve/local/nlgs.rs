@@ -11,7 +11,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// Order in which contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
-    /// From first to last.
+    /// The first to the last contact.
     #[default]
     Forward,
     /// Forwards, then backwards.

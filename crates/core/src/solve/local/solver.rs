@@ -165,7 +165,7 @@ pub struct Outcome {
     pub p: Vec<f64>,
     /// Velocities W p + q of that iterate.
     pub u: Vec<f64>,
-    /// Its [`field_error`].
+    /// Error of the iterate, see [`field_error`].
     pub error: f64,
     /// The larger of two additional errors, not contained in `error`, that must be within the
     /// tolerance too: violation of Signorini's law hidden by friction, and unbounded impulses. See

@@ -42,9 +42,9 @@ use thiserror::Error;
 /// A run of a fit: one seed, or the mean over as many seeds as all other runs have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Its parameters in unit coordinates, within [0, 1] (see [`Bounds::folded`]).
+    /// Parameters in unit coordinates, within [0, 1] (see [`Bounds::folded`]).
     pub point: Vec<f64>,
-    /// Its values where they are measured (see
+    /// Simulated values at the measured points (see
     /// [`Target::simulated`](super::residuals::Target::simulated)).
     pub simulated: Vec<f64>,
 }
@@ -52,9 +52,9 @@ pub struct Run {
 /// The measured values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data<'a> {
-    /// Standard deviations; `None` to estimate a common one from the deviations of the model.
+    /// Measured values.
     pub measured: &'a [f64],
-    /// Their standard deviations; `None` to estimate one for all from how far the model lies off.
+    /// Standard deviations; `None` to estimate a common one from the deviations of the model.
     pub sigma: Option<&'a [f64]>,
     /// Weights in the fit; `None` for 1.
     pub weights: Option<&'a [f64]>,

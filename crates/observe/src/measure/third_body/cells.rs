@@ -16,7 +16,7 @@ pub(super) struct Cell {
     pub space: f64,
     /// Volume of grains in it.
     pub volume: f64,
-    /// Their mass (kg; kg/m).
+    /// Mass of these grains (kg; kg/m).
     pub mass: f64,
     /// Mass times depth over the thickness.
     pub height: f64,

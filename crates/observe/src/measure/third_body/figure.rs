@@ -10,7 +10,7 @@ use crate::figures::history;
 pub(super) struct Figure<'a> {
     /// The whole time.
     pub whole: &'a Block,
-    /// Its time slices.
+    /// Time slices of the measure.
     pub slices: &'a [Block],
     /// The first bodies.
     pub between: &'a (String, String),

@@ -20,7 +20,7 @@ pub(super) struct Gap {
     pub closest_point: f64,
     /// 1 if depth increases with the coordinate, -1 if it decreases.
     pub side: f64,
-    /// Its thickness (m).
+    /// Thickness of the layer (m).
     pub thickness: f64,
     /// Area of a section (m^2; m in 2D).
     pub section: f64,
