@@ -14,7 +14,7 @@ pub struct Site {
     /// Time since the contact formed (s).
     pub age: f64,
     /// Time for which the contact has carried a compressive impulse without interruption (s).
-    pub pressed: f64,
+    pub compression_time: f64,
     /// Bond elongation (m).
     pub opening: [f64; 3],
     /// Rotation of the bond (rad): twist about n, bending about t1 and t2. In two dimensions the

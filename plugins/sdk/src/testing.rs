@@ -283,7 +283,7 @@ pub fn friction_at<L: ContactLaw>(law: &L, velocity: [f64; 3]) -> f64 {
 }
 
 /// Returns a contact in 3D under a compressive force (N), over 1 m^2 and a step of 1 s.
-pub fn pressed(force: f64) -> Site {
+pub fn compressed(force: f64) -> Site {
     Site {
         impulse: [force, 0.0, 0.0],
         area: 1.0,

@@ -86,7 +86,7 @@ impl ContactLaw for RateAndState {
 mod tests {
     use super::*;
 
-    fn pressed(v: f64, h: f64) -> Site {
+    fn compressed(v: f64, h: f64) -> Site {
         Site {
             velocity: [0.0, 0.6 * v, -0.8 * v],
             impulse: [1.0, 0.0, 0.0],
@@ -97,7 +97,7 @@ mod tests {
 
     fn after(law: &RateAndState, v: f64, h: f64, psi: f64) -> f64 {
         let mut state = [psi];
-        law.commit(&pressed(v, h), &mut state);
+        law.commit(&compressed(v, h), &mut state);
         state[0]
     }
 
@@ -114,7 +114,7 @@ mod tests {
     fn a_velocity_step_is_the_textbook_one() {
         for law in both() {
             let v = 10.0 * law.v_0;
-            let mu = |psi| law.friction(&pressed(v, 1e-3), &[psi]).mu - law.mu_0;
+            let mu = |psi| law.friction(&compressed(v, 1e-3), &[psi]).mu - law.mu_0;
             assert!((mu(0.0) - 0.02303).abs() < 5e-6);
             let mut psi = 0.0;
             for _ in 0..40_000 {
@@ -132,7 +132,7 @@ mod tests {
                 let psi = -ratio.ln();
                 let v = ratio * law.v_0;
                 assert!((after(&law, v, 0.37, psi) - psi).abs() < 1e-13);
-                let mu = law.friction(&pressed(v, 1.0), &[psi]).mu;
+                let mu = law.friction(&compressed(v, 1.0), &[psi]).mu;
                 assert!((mu - (0.6 - 0.005 * ratio.ln())).abs() < 1e-13);
             }
         }
@@ -182,7 +182,7 @@ mod tests {
         let mut state = [0.7];
         let open = Site {
             impulse: [0.0; 3],
-            ..pressed(1.0, 1.0)
+            ..compressed(1.0, 1.0)
         };
         aging.commit(&open, &mut state);
         assert_eq!(state, [0.7]);
@@ -196,7 +196,7 @@ mod tests {
                     for psi in [-1e300, -800.0, 0.0, 800.0, 1e300] {
                         let site = Site {
                             velocity: [v; 3],
-                            ..pressed(0.0, h)
+                            ..compressed(0.0, h)
                         };
                         let mut state = [psi];
                         law.commit(&site, &mut state);

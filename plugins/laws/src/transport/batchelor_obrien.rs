@@ -47,7 +47,7 @@ impl TransportLaw for BatchelorObrien {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     fn site(force: f64, dimension: u32) -> Site {
         Site {
@@ -55,7 +55,7 @@ mod tests {
             conductivity: 50.0,
             resistivity: 2e-7,
             dimension,
-            ..pressed(force)
+            ..compressed(force)
         }
     }
 

@@ -71,7 +71,7 @@ impl TransportLaw for OxideFilm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn slip_breaks_the_film_and_time_restores_it() {
@@ -103,7 +103,7 @@ mod tests {
             resistivity: 2e-7,
             conductivity: 50.0,
             temperature: 293.15,
-            ..pressed(1.0)
+            ..compressed(1.0)
         };
         let at = |covered: f64| 1.0 / law.conductance(&site, &mut [covered]).electric;
         assert!((at(0.0) / 5.605e-3 - 1.0).abs() < 1e-3);

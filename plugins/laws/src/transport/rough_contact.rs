@@ -59,7 +59,7 @@ impl TransportLaw for RoughContact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K) the spots have 1.25 50 1e5 1e-2.85 =
     /// 8828 W/(m^2 K), the gas has 0.026/3.37e-6 = 7715 W/(m^2 K).
@@ -70,7 +70,7 @@ mod tests {
             area: 1e-6,
             conductivity: 50.0,
             resistivity: 2e-7,
-            ..pressed(2.6e6 * 1e-6)
+            ..compressed(2.6e6 * 1e-6)
         };
         let g = law.conductance(&site, &mut []);
         assert!(

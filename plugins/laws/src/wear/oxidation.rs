@@ -43,13 +43,13 @@ impl WearLaw for Oxidation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     fn volume(law: &Oxidation, temperature: f64, slip: f64) -> f64 {
         let site = Site {
             temperature,
             slip,
-            ..pressed(26.0)
+            ..compressed(26.0)
         };
         law.volume(&site, &mut [])
     }

@@ -45,7 +45,7 @@ impl WearLaw for ThermalArchard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn wears_more_when_hot() {
@@ -58,7 +58,7 @@ mod tests {
             let site = Site {
                 temperature,
                 slip: 1e-3,
-                ..pressed(20.0)
+                ..compressed(20.0)
             };
             law.volume(&site, &mut [])
         };

@@ -1,8 +1,8 @@
 //! Cost of the plugin interface: one law in a loop and behind the interface, and its share of a
 //! fretting step.
 //!
-//! `cargo bench --bench border`. First the damage law of Monerie, Acary and Cangemi runs in a loop
-//! over the columns; then the loop runs behind the C interface, called as a run calls it. One
+//! `cargo bench --bench plugin_calls`. First the damage law of Monerie, Acary and Cangemi runs in a
+//! loop over the columns; then the loop runs behind the C interface, called as a run calls it. One
 //! thread.
 
 use fretwork::laws::{Call, Kind};
@@ -42,8 +42,8 @@ fn main() {
         opening_broken: parameters[3],
     };
     println!(
-        "{:>8} {:>16} {:>16} {:>14}",
-        "contacts", "compiled ns/c", "called ns/c", "border ns/call"
+        "{:>8} {:>16} {:>16} {:>17}",
+        "contacts", "compiled ns/c", "called ns/c", "interface ns/call"
     );
     let mut call = 0.0;
     for n in [1usize, 10, 100, 1000, 10_000, 100_000] {
@@ -104,7 +104,7 @@ fn main() {
             call = loaded - compiled;
         }
         println!(
-            "{n:>8} {:>16.2} {:>16.2} {:>14.0}",
+            "{n:>8} {:>16.2} {:>16.2} {:>17.0}",
             compiled / n as f64,
             loaded / n as f64,
             loaded - compiled

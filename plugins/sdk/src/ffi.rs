@@ -108,7 +108,7 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             area: at(b.area, k),
             radius: at(b.radius, k),
             age: at(b.age, k),
-            pressed: at(b.pressed, k),
+            compression_time: at(b.pressed, k),
             rotation: [
                 at(b.rotation_n, k),
                 at(b.rotation_t1, k),
