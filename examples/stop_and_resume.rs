@@ -7,13 +7,13 @@
 
 use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{Run, RunOptions, stopped};
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Runs a case in a folder to its end or to a number of steps, and resumes a stopped run. Returns
 /// the reason why it stopped, if it did.
-fn run(loaded: &Loaded, out: &Path, until: Option<u64>) -> Result<Option<String>, String> {
+fn run(loaded: &LoadedCase, out: &Path, until: Option<u64>) -> Result<Option<String>, String> {
     let options = RunOptions {
         out: out.to_owned(),
         threads: 1,

@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// An [`InputError`] with file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     fretwork_scene::load(path, sets).map(reading_records)
 }
 
@@ -24,7 +24,7 @@ pub fn load_text(
     text: &str,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     fretwork_scene::load_text(name, text, folder, sets).map(reading_records)
 }
 
@@ -37,16 +37,16 @@ pub fn load_reader(
     from: impl Read,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     fretwork_scene::load_reader(name, from, folder, sets).map(reading_records)
 }
 
 #[cfg(feature = "results")]
-fn reading_records(loaded: Loaded) -> Loaded {
+fn reading_records(loaded: LoadedCase) -> LoadedCase {
     loaded.reading_records(crate::record::results::state::read)
 }
 
 #[cfg(not(feature = "results"))]
-fn reading_records(loaded: Loaded) -> Loaded {
+fn reading_records(loaded: LoadedCase) -> LoadedCase {
     loaded
 }

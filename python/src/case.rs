@@ -6,7 +6,7 @@ use crate::paths;
 use crate::search::search_path;
 use fretwork::cli;
 use fretwork::scene::source::{Names, Tree, nearest, split_path};
-use fretwork::scene::{Case as CaseSpec, InputError, Loaded, check, load, load_text};
+use fretwork::scene::{Case as CaseSpec, InputError, LoadedCase, check, load, load_text};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[pyclass(module = "fretwork._fretwork", name = "CaseData", from_py_object)]
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    pub(crate) loaded: Loaded,
+    pub(crate) loaded: LoadedCase,
 }
 
 /// Label and text of the lines of `fretwork check`.

@@ -4,8 +4,8 @@
 
 use crate::search::search_path;
 use fretwork::certify::certify_in_child;
-use fretwork::laws::search::Place;
-use fretwork::laws::{Field, Kind, LawError, Plugin, SearchPath};
+use fretwork::laws::search::LawLocation;
+use fretwork::laws::{Kind, LawError, LawField, Plugin, SearchPath};
 use fretwork::program;
 use fretwork::scene::source::nearest;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -199,8 +199,8 @@ fn values(law: &Plugin, given: &[(String, f64)]) -> PyResult<Vec<f64>> {
 }
 
 fn describe(law: &Plugin) -> Value {
-    let fields = |fields: &[Field]| -> Vec<Value> {
-        let one = |f: &Field| {
+    let fields = |fields: &[LawField]| -> Vec<Value> {
+        let one = |f: &LawField| {
             // JSON has no infinity.
             let finite = |x: f64| x.is_finite().then_some(x);
             json!({
@@ -217,10 +217,10 @@ fn describe(law: &Plugin) -> Value {
     })
 }
 
-fn unusable(kind: Kind, name: &str, place: &Place, e: &LawError) -> Value {
+fn unusable(kind: Kind, name: &str, place: &LawLocation, e: &LawError) -> Value {
     let path = match place {
-        Place::Library(path) => path.display().to_string(),
-        Place::BuiltIn => String::new(),
+        LawLocation::Library(path) => path.display().to_string(),
+        LawLocation::BuiltIn => String::new(),
     };
     json!({ "kind": kind.word(), "name": name, "path": path, "error": e.to_string() })
 }

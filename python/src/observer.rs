@@ -6,7 +6,7 @@
 //! `fretwork/_observers.py`.
 
 use crate::simulation::Simulation;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::statistics::Column;
 use fretwork::record::{Observer, RunView};
 use fretwork::step::StepReport;
@@ -140,7 +140,7 @@ impl Observer for PythonObserver {
         self.latest.clone()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         let carried = Python::attach(|py| {
             let result = self.object.bind(py).call_method0("save")?;
             result.extract::<Vec<u8>>()
@@ -148,12 +148,12 @@ impl Observer for PythonObserver {
         // If this fails there is no new checkpoint, and the previous one is kept.
         let carried = carried.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
-            CodeError::other("states of observers")
+            EncodingError::other("states of observers")
         })?;
         encode(&(&self.latest, carried))
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), EncodingError> {
         let (latest, carried): (Vec<f64>, Vec<u8>) = decode(bytes)?;
         self.latest = latest;
         let done = Python::attach(|py| -> PyResult<()> {
@@ -163,7 +163,7 @@ impl Observer for PythonObserver {
         });
         done.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
-            CodeError::other("states of observers")
+            EncodingError::other("states of observers")
         })
     }
 }

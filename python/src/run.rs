@@ -11,7 +11,7 @@ use fretwork::laws::watch::{self, Saved};
 use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
-use fretwork::scene::{Built, InputError, Loaded};
+use fretwork::scene::{Built, InputError, LoadedCase};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -188,7 +188,7 @@ fn show(py: Python<'_>, shared: &Shared, progress: &Py<PyAny>) -> PyResult<()> {
 
 /// A run before its start.
 struct Task {
-    loaded: Loaded,
+    loaded: LoadedCase,
     options: RunOptions,
     resume: bool,
     observers: Vec<PythonObserver>,

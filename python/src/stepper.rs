@@ -2,7 +2,7 @@
 
 use fretwork::AnySimulation;
 use fretwork::record::{Observers, run_observers};
-use fretwork::scene::{Built, Loaded, processes};
+use fretwork::scene::{Built, LoadedCase, processes};
 use fretwork::step::{StepError, StepReport};
 
 /// Time and step of a simulation.
@@ -24,7 +24,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    pub(crate) fn new(loaded: &Loaded, built: Built, threads: usize) -> Self {
+    pub(crate) fn new(loaded: &LoadedCase, built: Built, threads: usize) -> Self {
         let mut simulation = built.simulation;
         simulation.options_mut().solver.parallel = threads > 1;
         processes::install(&loaded.case, simulation.setup());

@@ -19,7 +19,7 @@ use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Built, Loaded, load, sampling};
+use crate::scene::{Built, LoadedCase, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
@@ -61,7 +61,7 @@ fn line_of(label: &str, text: &str) -> String {
 pub type CheckLine = (String, String);
 
 /// Estimates the time of a run from steps that are computed for half a second.
-pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
+pub fn run_time(loaded: &LoadedCase, built: Built) -> CheckLine {
     let mut text = Trial::of(&loaded.case, built).text();
     if loaded.case.accuracy.is_some() {
         text += "; with time.step throughout, where the run chooses its steps";
@@ -86,7 +86,7 @@ fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
 
 /// Returns what `fretwork check` prints about a case below its title, except the [run
 /// time](run_time). Deformable bodies are timed if `timed`.
-pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
+pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> {
     let (case, simulation) = (&loaded.case, &built.simulation);
     let s = simulation.view();
     let mut out = Vec::new();
@@ -251,7 +251,7 @@ fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
 }
 
 /// Pressure and inertial number of a biaxial test, for a square sample.
-fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str, String)) {
+fn biaxial_groups(loaded: &LoadedCase, s: &AnySimulation, line: &mut impl FnMut(&str, String)) {
     let case = &loaded.case;
     let Some((spec, test)) = case
         .biaxial
@@ -298,7 +298,12 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
 }
 
 /// Dimensionless groups of a friction test.
-fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMut(&str, String)) {
+fn groups(
+    loaded: &LoadedCase,
+    s: &AnySimulation,
+    largest: f64,
+    line: &mut impl FnMut(&str, String),
+) {
     let (case, bodies) = (&loaded.case, s.bodies());
     let Some(test) = &case.friction else { return };
     let Some(driven) = bodies.driven_named(&test.body) else {

@@ -54,7 +54,7 @@ fn no_memory(bytes: usize) -> String {
 #[cfg(unix)]
 mod posix {
     use super::FAILED;
-    use crate::laws::watch::{self, RESCUED_WITHIN, Saved};
+    use crate::laws::watch::{self, RESCUED_WITHIN, RescueOutcome};
     use crate::out_of_memory;
     use libc::c_int;
     use std::cell::Cell;
@@ -88,7 +88,11 @@ mod posix {
     const RESERVED: usize = 8 << 20;
     /// Result of the rescue; 0 while it is running.
     static SAVED: AtomicUsize = AtomicUsize::new(0);
-    const SAVED_AS: [Saved; 3] = [Saved::All, Saved::Some, Saved::Nothing];
+    const SAVED_AS: [RescueOutcome; 3] = [
+        RescueOutcome::All,
+        RescueOutcome::Some,
+        RescueOutcome::Nothing,
+    ];
 
     thread_local! {
         /// Whether this thread is saving what was recorded.
@@ -147,7 +151,10 @@ mod posix {
         // A library that ends the program while it is being loaded holds a lock of the dynamic
         // linker, for which a new thread would wait.
         if watch::nothing_to_save() {
-            put(&[&format!("error: {who}; {}\n", Saved::Nothing.words())]);
+            put(&[&format!(
+                "error: {who}; {}\n",
+                RescueOutcome::Nothing.words()
+            )]);
             super::now(FAILED);
         }
         // The thread-local variables of the calling thread are already destroyed, so another thread
@@ -155,8 +162,10 @@ mod posix {
         let (done, saved) = std::sync::mpsc::sync_channel(1);
         let thread = who.clone();
         let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&thread)));
-        let saved = rescue.map_or(Saved::Some, |_| {
-            saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
+        let saved = rescue.map_or(RescueOutcome::Some, |_| {
+            saved
+                .recv_timeout(RESCUED_WITHIN)
+                .unwrap_or(RescueOutcome::Some)
         });
         let text = format!("error: {who}; {}\n", saved.words());
         put(&[&text]);
@@ -226,7 +235,7 @@ mod posix {
 
     /// Asks the other thread to save what was recorded, and waits for it, without taking a lock or
     /// allocating memory.
-    fn rescued(why: &Why) -> Saved {
+    fn rescued(why: &Why) -> RescueOutcome {
         WHY.store(std::ptr::from_ref(why).cast_mut(), Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);
         // SAFETY: `write` is async-signal-safe.
@@ -237,7 +246,7 @@ mod posix {
             waits -= 1;
         }
         let saved = SAVED.load(Ordering::SeqCst).checked_sub(1);
-        saved.map_or(Saved::Some, |k| SAVED_AS[k.min(2)])
+        saved.map_or(RescueOutcome::Some, |k| SAVED_AS[k.min(2)])
     }
 
     fn pause() {

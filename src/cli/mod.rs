@@ -27,7 +27,7 @@ pub use fretwork_view::{ReportError, compare as compare_runs};
 
 use crate::certify::{CERTIFY_IN_CHILD, certify_requested};
 use crate::experiments::Program;
-use crate::laws::watch::{Saved, watch};
+use crate::laws::watch::{RescueOutcome, watch};
 use crate::laws::{LawError, SearchPath, child, library, loading};
 use crate::record::{RunError, check_names};
 use crate::scene::InputError;
@@ -219,7 +219,7 @@ fn watch_laws(limit: Option<Duration>) -> Result<(), Failure> {
     let Some(limit) = limit else {
         return Ok(());
     };
-    watch(limit, |who, saved: Saved| {
+    watch(limit, |who, saved: RescueOutcome| {
         let left = saved.words();
         output::report(&format!(
             "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"

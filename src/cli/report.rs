@@ -86,7 +86,7 @@ fn law(path: &SearchPath, kind: &str, name: &str) -> Option<LawInfo> {
         return None;
     }
     let plugin = path.find(kind, name).ok().filter(|p| path.is_own(p))?;
-    let parameter = |f: &crate::laws::Field| LawParameter {
+    let parameter = |f: &crate::laws::LawField| LawParameter {
         name: f.name.clone(),
         unit: f.unit.clone(),
         default: f.default,

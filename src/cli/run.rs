@@ -9,7 +9,7 @@ use crate::record::{self, Run, RunError, RunOptions, Summary};
 use crate::scene::build::Origin;
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
-use crate::scene::{Built, Loaded, load};
+use crate::scene::{Built, LoadedCase, load};
 use crate::step::StepError;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -134,7 +134,7 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 
 /// Runs or resumes a case; `None` if the run is already finished.
 fn run_case(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: Built,
     options: &RunOptions,
     args: &RunArgs,
@@ -209,7 +209,7 @@ fn run_case(
 }
 
 /// Location in the case of the law or the body that ended a run, as the end of a sentence.
-pub fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
+pub fn place(loaded: &LoadedCase, origins: &[Origin], error: &RunError) -> Option<String> {
     let (path, what) = match error {
         RunError::Step(StepError::Law { source, .. }) => {
             let (kind, name) = source.law()?;

@@ -6,10 +6,10 @@ use crate::cases::files;
 use crate::mutate;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::checkpoint::Frame;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::record::fclib;
 use fretwork::record::results::{PreviousResults, state};
-use fretwork::scene::{Loaded, load};
+use fretwork::scene::{LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::State;
 use rand::RngExt;
@@ -163,7 +163,7 @@ fn damaged_shapes() {
     });
 }
 
-fn loaded(case: &Path) -> Loaded {
+fn loaded(case: &Path) -> LoadedCase {
     load(case, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -4,7 +4,7 @@ use crate::scene;
 use fretwork::geometry::space::Space;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
-use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
+use fretwork::scene::{Dim2, Dim3, LoadedCase, load_text};
 use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
 use fretwork_observe::summary::Summary;
 use std::path::Path;
@@ -38,7 +38,7 @@ fn without_files() -> [String; 4] {
     .map(String::from)
 }
 
-fn run(loaded: &Loaded) -> Summary {
+fn run(loaded: &LoadedCase) -> Summary {
     scene::finished(loaded, scene::built(loaded), |_| {})
 }
 

@@ -5,7 +5,7 @@ use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::Problem;
 use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, Options, solve};
+use fretwork::solve::{AutoState, SolverOptions, solve};
 
 const RADIUS: f64 = 0.1;
 
@@ -102,11 +102,11 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
 /// Velocities and spins (times the radius) of the bodies by a method.
 fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec<f64> {
     let (mut problem, forms) = pile::<S>(stiff, blocks);
-    let options = Options {
+    let options = SolverOptions {
         tolerance,
         max_iterations: 100_000,
         method,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let report = solve(
         &mut problem,

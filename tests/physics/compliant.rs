@@ -457,7 +457,7 @@ fn damped_bonds_on_springs_keep_the_ledger() {
             steps(&mut s, (0.2 / step) as usize);
             let e = s.state.energy;
             let bonds = s.state.network.memory.iter().flat_map(|m| &m.bonds);
-            let lost: f64 = bonds.map(|b| b.life.viscous).sum();
+            let lost: f64 = bonds.map(|b| b.energies.viscous).sum();
             assert!(
                 lost > 1e-3 * e.initial_kinetic,
                 "bonds lost {lost:e}: {e:?}"

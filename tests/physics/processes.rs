@@ -4,7 +4,7 @@
 
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::process::{Process, ProcessError};
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::scene::CaseBuilder;
 use fretwork::scene::case::{GrainSpec, InterfaceSpec, OneGrain};
 use fretwork::shipped::search_path;
@@ -25,11 +25,11 @@ impl<S: Space> Process<S> for Counter {
         Ok(())
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.0)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.0 = decode(from)?;
         Ok(())
     }

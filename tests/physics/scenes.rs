@@ -6,14 +6,14 @@ use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use fretwork::step::Simulation;
 use fretwork_observe::picture::Shows;
 use std::path::Path;
 
 const G: f64 = 9.81;
 
-fn case<S: Space>(name: &str, sets: &[&str]) -> (Loaded, Simulation<S>) {
+fn case<S: Space>(name: &str, sets: &[&str]) -> (LoadedCase, Simulation<S>) {
     let loaded = scene::loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
     let simulation = scene::simulation(&loaded);
     (loaded, simulation)
@@ -263,7 +263,7 @@ fn end_walls_make_a_narrow_drum_steeper() {
 }
 
 /// Returns the picture of a scene in its present state: its red, green and blue pixels.
-fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
+fn pictured(s: &Simulation<Dim3>, loaded: &LoadedCase, name: &str) -> Vec<[u8; 3]> {
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
     let camera = Camera::new(s, &loaded.case.output);

@@ -2,7 +2,7 @@
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, solve, sweeps};
-use fretwork::solve::{ContactForm, Options, Problem};
+use fretwork::solve::{ContactForm, Problem, SolverOptions};
 
 /// Balls of a square lattice, pressed down on a floor: `side` to the power of the dimension.
 fn lattice<S: Space>(side: u32) -> Problem<S> {
@@ -68,13 +68,13 @@ fn check<S: Space>(side: u32) {
     assert!(one.contacts() > 20_000);
     prepare(&mut one);
     sweeps(&mut one, 20, 1.2, false);
-    let whole = Options {
+    let whole = SolverOptions {
         max_iterations: 30,
         parallel: true,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let mut solved = lattice::<S>(side);
-    let alone = Options {
+    let alone = SolverOptions {
         parallel: false,
         ..whole
     };

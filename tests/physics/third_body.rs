@@ -10,7 +10,7 @@ use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary};
-use fretwork::scene::{Loaded, load_text};
+use fretwork::scene::{LoadedCase, load_text};
 use fretwork::step::Simulation;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -39,7 +39,7 @@ fn case(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn opened(text: &str) -> Result<Loaded, String> {
+fn opened(text: &str) -> Result<LoadedCase, String> {
     load_text("test.ron", text, Path::new("."), &[]).map_err(|e| e.to_string())
 }
 

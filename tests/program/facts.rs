@@ -1,7 +1,7 @@
 //! Statements of pages about the program, and of its help about files, are compared with the
 //! program and the files.
 
-use fretwork::laws::{Kind, Place};
+use fretwork::laws::{Kind, LawLocation};
 use fretwork::shipped::built_in;
 use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
@@ -104,7 +104,10 @@ fn helps_name_files_that_are_there_and_every_kind_of_law() {
 #[test]
 fn pages_know_how_many_laws_there_are() {
     let laws = search_path().laws();
-    let own = laws.iter().filter(|law| law.2 == Place::BuiltIn).count();
+    let own = laws
+        .iter()
+        .filter(|law| law.2 == LawLocation::BuiltIn)
+        .count();
     let own = own.max(built_in().names().count());
     let listed = answer(&["law", "list"]);
     for (kind, name) in built_in().names() {

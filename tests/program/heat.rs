@@ -7,11 +7,11 @@ use fretwork::record::heat::HeatChecks;
 use fretwork::record::statistics::Table;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary, run_observers};
-use fretwork::scene::{Built, Loaded};
+use fretwork::scene::{Built, LoadedCase};
 use std::process::Command;
 use std::time::Duration;
 
-fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
+fn built(case: &str, sets: &[&str]) -> (LoadedCase, Built) {
     let fixed = ["output.figures=false", "uncertainty.repeats=0"];
     let sets = [&fixed[..], sets].concat();
     let loaded = scene::loaded(&format!("verification/thermal/{case}"), &sets);
@@ -19,7 +19,7 @@ fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
     (loaded, built)
 }
 
-fn ran((loaded, built): (Loaded, Built)) -> Summary {
+fn ran((loaded, built): (LoadedCase, Built)) -> Summary {
     scene::finished(&loaded, built, |_| {})
 }
 

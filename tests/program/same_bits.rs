@@ -4,7 +4,7 @@
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::{Space, VectorLike};
-use fretwork::scene::{Loaded, load, load_text};
+use fretwork::scene::{LoadedCase, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::threads::divide_loops_from;
@@ -23,7 +23,7 @@ fn cases() -> Vec<PathBuf> {
     cases
 }
 
-fn built(loaded: &Loaded) -> AnySimulation {
+fn built(loaded: &LoadedCase) -> AnySimulation {
     let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
@@ -54,7 +54,7 @@ fn stepped<S: Space>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Ve
     (bits, s.state.steps)
 }
 
-fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
+fn bits(loaded: &LoadedCase, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -96,7 +96,7 @@ fn all_cases_repeat(time: Duration, more_threads: &[usize]) {
 }
 
 /// A case in which grains of all shapes fall fast on a surface, and over each other.
-fn falling(dimension: usize, floor: &str, period: &str) -> Loaded {
+fn falling(dimension: usize, floor: &str, period: &str) -> LoadedCase {
     let mut grains = [String::new(), String::new(), String::new()];
     for k in 0..48u32 {
         let t = f64::from(k);

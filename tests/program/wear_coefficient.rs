@@ -1,7 +1,7 @@
 //! Wear coefficients from K and the hardness of the materials: wear depends on the steel.
 
 use fretwork::scene::material::{Material, Sourced};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -20,7 +20,7 @@ fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<B
         &format!("interfaces.0.parameters.wear={wear}"),
     ]
     .map(str::to_owned);
-    let mut loaded: Loaded = load(&path, &sets).map_err(|e| e.to_string())?;
+    let mut loaded: LoadedCase = load(&path, &sets).map_err(|e| e.to_string())?;
     for (name, hardness) in ["soft", "hard"].into_iter().zip(hardness) {
         let sourced = |value, unit: &str| Sourced {
             value,

@@ -5,7 +5,7 @@
 use crate::temp::TempFolder;
 use fretwork::geometry::space::Space;
 use fretwork::record::{RunOptions, Summary, run};
-use fretwork::scene::{Built, Loaded, load, load_text};
+use fretwork::scene::{Built, LoadedCase, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
@@ -16,25 +16,25 @@ pub(crate) fn file(name: &str) -> PathBuf {
 }
 
 /// Reads a case of the repository, by its name below `cases`, with changes like those of `--set`.
-pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> Loaded {
+pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> LoadedCase {
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_owned()).collect();
     load(&file(name), &sets).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A case in text.
-pub(crate) fn loaded_text(text: &str) -> Loaded {
+pub(crate) fn loaded_text(text: &str) -> LoadedCase {
     let loaded = load_text("test.ron", text, Path::new("."), &[]);
     loaded.unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 /// Builds the scene of a case, with the declarations of its files.
-pub(crate) fn built(loaded: &Loaded) -> Built {
+pub(crate) fn built(loaded: &LoadedCase) -> Built {
     let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The simulation of a case.
-pub(crate) fn simulation<S: Space>(loaded: &Loaded) -> Simulation<S> {
+pub(crate) fn simulation<S: Space>(loaded: &LoadedCase) -> Simulation<S> {
     let simulation = loaded.build_in(&search_path());
     simulation.unwrap_or_else(|e| panic!("{e}"))
 }
@@ -50,7 +50,7 @@ pub(crate) fn text<S: Space>(text: &str) -> Simulation<S> {
 }
 
 /// Runs a scene to its end in a separate folder, which `look` evaluates and which is then removed.
-pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) -> Summary {
+pub(crate) fn finished(loaded: &LoadedCase, built: Built, look: impl FnOnce(&Path)) -> Summary {
     let out = TempFolder::new("finished");
     let options = RunOptions {
         out: out.to_owned(),

@@ -57,8 +57,8 @@
 pub mod assembly;
 pub mod bodies;
 pub mod certify;
-pub mod code;
 pub mod contact;
+pub mod encoding;
 pub mod energy;
 pub mod geometry;
 pub mod heat;

@@ -42,7 +42,7 @@ pub mod trade;
 pub use case::{build, load};
 pub use error::Error;
 
-use fretwork_scene::{Built, InputError, Loaded};
+use fretwork_scene::{Built, InputError, LoadedCase};
 
 /// Parts of the program that experiments need for its runs.
 #[derive(Clone, Debug)]
@@ -52,5 +52,5 @@ pub struct Program {
     /// Arguments of each run for the same plugins.
     pub plugins: Vec<String>,
     /// Refuses a case whose run has two columns or two files of the same name.
-    pub check_names: fn(&Loaded, &Built) -> Result<(), InputError>,
+    pub check_names: fn(&LoadedCase, &Built) -> Result<(), InputError>,
 }

@@ -14,7 +14,7 @@ use super::tractions::{SurfaceState, loaded, signed};
 use super::warning::Warning;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::bodies::{DeformedMesh, Holder, von_mises};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::laws::AreaRule;
 use fretwork_core::view::{RunView, SystemView};
 use fretwork_scene::case::Case;
@@ -316,14 +316,14 @@ impl Observer for Deformable {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         let nearest = self.nearest.state();
         let resolutions: Vec<_> = self.resolutions.iter().map(Resolution::state).collect();
         let kept = (&self.distortions, &self.borders, self.grains, nearest);
         encode(&(kept, resolutions))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         let (nearest, resolutions): (_, Vec<resolution::State>);
         (
             (self.distortions, self.borders, self.grains, nearest),

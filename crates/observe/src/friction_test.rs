@@ -13,7 +13,7 @@ use super::run_state::damage_ratio;
 use super::statistics::Column;
 use super::wear::WearSummary;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
@@ -177,11 +177,11 @@ impl Observer for FrictionTest {
         figures::friction_test(&self.state.cycles, known)
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

@@ -13,7 +13,7 @@ use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
 use checks::{ContactShares, checks};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
@@ -345,11 +345,11 @@ impl Observer for HeatObserver {
         surfaces.chain(["heat.png".to_owned()]).collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

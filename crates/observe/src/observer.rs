@@ -10,7 +10,7 @@ use super::picture::Picture;
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::{Column, Table};
 use super::summary::Uncertainty;
-use fretwork_core::code::CodeError;
+use fretwork_core::encoding::EncodingError;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::{RunControl, RunView};
 use std::fmt::Debug;
@@ -170,7 +170,7 @@ pub trait Observer: Debug + Send {
     ///
     /// # Errors
     /// The state cannot be encoded.
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         Ok(Vec::new())
     }
 
@@ -178,7 +178,7 @@ pub trait Observer: Debug + Send {
     ///
     /// # Errors
     /// The bytes do not encode its state.
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, _: &[u8]) -> Result<(), EncodingError> {
         Ok(())
     }
 
@@ -378,7 +378,7 @@ impl Observers {
     ///
     /// # Errors
     /// A state cannot be encoded.
-    pub fn save(&self) -> Result<Vec<ObserverState>, CodeError> {
+    pub fn save(&self) -> Result<Vec<ObserverState>, EncodingError> {
         let list = self.list.iter();
         list.map(|o| Ok((o.name(), o.save()?))).collect()
     }
@@ -387,10 +387,10 @@ impl Observers {
     ///
     /// # Errors
     /// The states belong to other observers.
-    pub fn restore(&mut self, from: &[ObserverState]) -> Result<(), CodeError> {
+    pub fn restore(&mut self, from: &[ObserverState]) -> Result<(), EncodingError> {
         let names = self.list.iter().map(|o| o.name());
         if !names.eq(from.iter().map(|(name, _)| name.clone())) {
-            return Err(CodeError::other("observers"));
+            return Err(EncodingError::other("observers"));
         }
         let mut pairs = self.list.iter_mut().zip(from);
         pairs.try_for_each(|(observer, (_, bytes))| observer.restore(bytes))

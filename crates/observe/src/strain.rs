@@ -10,7 +10,7 @@
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
 use crate::observer::Observer;
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::geometry::grid::{Balls, pairs};
 use fretwork_core::view::RunView;
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -138,11 +138,11 @@ impl Observer for LocalShear {
         }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.strain)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.strain = decode(from)?;
         Ok(())
     }

@@ -9,7 +9,7 @@ use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WOR
 use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::StepReport;
 use fretwork_core::threads::{map_ranges, worth_dividing};
@@ -304,11 +304,11 @@ impl Observer for Wear {
         vec![Output::figure("worn_volume", [chart], 1)]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

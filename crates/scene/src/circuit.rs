@@ -4,7 +4,7 @@
 use super::case::Case;
 use super::source::{ValidationError, nearest};
 use fretwork_core::laws::{Interface, Kind};
-use fretwork_core::process::circuit::{EjectedFate, Spec, Zone};
+use fretwork_core::process::circuit::{CircuitParameters, EjectionOutcome, Zone};
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
@@ -219,7 +219,7 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), ValidationError> {
 
 /// Returns the circuit's specification in terms of the built scene; the case must have been
 /// checked.
-pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
+pub fn install(case: &Case, s: &dyn RunView) -> Option<CircuitParameters> {
     let circuit = case.circuit.as_ref()?;
     let index = |name: &String| s.bodies().driven_named(name).map(|d| d.body);
     let ties = tying(case, circuit).unwrap_or_default();
@@ -229,11 +229,11 @@ pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
         low: components(&z.low),
         high: components(&z.high),
         carrier: z.carried_by.as_ref().and_then(index),
-        fate: z
+        outcome: z
             .lost_after
-            .map_or(EjectedFate::Stays, EjectedFate::LostAfter),
+            .map_or(EjectionOutcome::Stays, EjectionOutcome::LostAfter),
     });
-    Some(Spec {
+    Some(CircuitParameters {
         bases: circuit.bases.iter().filter_map(index).collect(),
         interfaces: ties.into_iter().filter(opens).map(|i| i as u16).collect(),
         zones: zones.collect(),

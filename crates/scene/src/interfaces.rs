@@ -11,7 +11,7 @@ use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::laws::{
-    AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
+    AreaRule, BondRule, Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath,
 };
 use fretwork_core::view::RunView;
 use std::collections::{BTreeMap, BTreeSet};
@@ -310,7 +310,7 @@ fn build_interface(
         }
     }
     let none = BTreeMap::new();
-    let mut laws: Vec<Loaded> = Vec::new();
+    let mut laws: Vec<LoadedLaw> = Vec::new();
     for (kind, name) in laws_of(spec) {
         let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
         let own = spec.parameters.get(kind).unwrap_or(&none);
@@ -343,7 +343,7 @@ fn load_law(
     plugin: Plugin,
     (numbers, coefficient): (&BTreeMap<&str, GivenNumber<'_>>, Option<&WearCoefficient>),
     (sides, spec): (&Sides<'_>, &InterfaceSpec),
-) -> Result<Loaded, InterfaceError> {
+) -> Result<LoadedLaw, InterfaceError> {
     let (kind, name) = (plugin.kind, plugin.name.as_str());
     let slot = kind.word();
     for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
@@ -377,7 +377,7 @@ fn load_law(
     plugin
         .validate(&parameters)
         .map_err(|e| ValidationError::new(slot, e.to_string()))?;
-    Ok(Loaded::new(plugin, parameters))
+    Ok(LoadedLaw::new(plugin, parameters))
 }
 
 fn find_law(

@@ -6,7 +6,7 @@ use super::material::{self, Given, Sourced};
 use super::source::{ValidationError, nearest};
 use super::units;
 use super::wear_coefficient::{self, WearCoefficient};
-use fretwork_core::laws::{Kind, Loaded, Plugin};
+use fretwork_core::laws::{Kind, LoadedLaw, Plugin};
 use std::collections::BTreeMap;
 
 /// An error in the case or in its parameter file.
@@ -79,7 +79,7 @@ pub(super) fn properties_of_sides<'a>(
 }
 
 /// Returns `mu` of the contact law, if it has one.
-pub(super) fn friction_of(laws: &[Loaded]) -> Option<f64> {
+pub(super) fn friction_of(laws: &[LoadedLaw]) -> Option<f64> {
     let contact = laws.iter().find(|l| l.plugin.kind == Kind::CONTACT)?;
     let place = contact
         .plugin

@@ -1,6 +1,6 @@
 //! Solvers that support a case, determined before it runs.
 
-use fretwork_core::laws::demand::{LawRequirements, Requirement};
+use fretwork_core::laws::requirements::{LawRequirements, Requirement};
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::solve::{Features, refusal};
 use fretwork_core::view::RunView;
@@ -35,7 +35,9 @@ impl Demands {
             [1e-3, 1.0]
         };
         let ask = |law: &fretwork_core::laws::Interface| {
-            let demand = law.demand(simulation.dimension() as u32, &radii).ok();
+            let demand = law
+                .solver_requirements(simulation.dimension() as u32, &radii)
+                .ok();
             (law.name.clone(), demand)
         };
         Self(simulation.laws().iter().map(ask).collect())
@@ -67,7 +69,7 @@ impl Demands {
                     let most = turns.max(pulls);
                     (most, refusal(most == turns, most == pulls))
                 }
-                None => (Requirement::Unseen, refusal(true, true)),
+                None => (Requirement::NotObserved, refusal(true, true)),
             };
             let Some(reason) = reason else { continue };
             match requirement {
@@ -80,7 +82,7 @@ impl Demands {
                         "may be refused, interface `{name}` requires it in some contacts: {reason}"
                     ));
                 }
-                Requirement::Unseen => {
+                Requirement::NotObserved => {
                     may = may.or(Some(format!(
                         "may be refused, the laws of interface `{name}` decide at run time and did not require it in the sampled contacts: {reason}"
                     )));
@@ -106,7 +108,7 @@ mod tests {
 
     #[test]
     fn refuses_what_is_certain_and_warns_of_the_rest() {
-        use Requirement::{Always, Never, Sometimes, Unseen};
+        use Requirement::{Always, Never, NotObserved, Sometimes};
         for method in Method::ALL.iter().copied() {
             assert_eq!(service(Never, Never, method), Service::Serves);
             let other = !matches!(method, Method::Newton | Method::Interior);
@@ -118,8 +120,8 @@ mod tests {
             Service::May(t) | Service::Refuses(t) => t,
         };
         assert!(text(service(Sometimes, Never, Method::Newton)).contains("some contacts"));
-        assert!(text(service(Unseen, Never, Method::Newton)).contains("sampled contacts"));
-        let both = service(Unseen, Always, Method::Interior);
+        assert!(text(service(NotObserved, Never, Method::Newton)).contains("sampled contacts"));
+        let both = service(NotObserved, Always, Method::Interior);
         assert!(matches!(both, Service::Refuses(t) if t.contains("cohesion")));
         let failed = Demands(vec![("a".into(), None)]);
         assert!(matches!(failed.service(Method::Newton), Service::May(_)));

@@ -6,7 +6,7 @@ use super::case::{BodySpec, Case};
 use super::holders;
 use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
-use fretwork_core::bodies::pressure::Pushed;
+use fretwork_core::bodies::pressure::ServoTarget;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
 use fretwork_core::view::{RunSetup, RunView};
 use serde::{Deserialize, Serialize};
@@ -374,8 +374,8 @@ pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), Validatio
         };
         for (dof, drive) in body.ordered(dimension).iter().enumerate() {
             let name = BodySpec::names(dimension)[dof];
-            let pushed = Pushed::Body(place, dof);
-            s.add_pressures(&pushed, drive)
+            let target = ServoTarget::Body(place, dof);
+            s.add_pressures(&target, drive)
                 .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
         }
         if let Some(time) = body.vanishes {
@@ -387,8 +387,8 @@ pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), Validatio
             let (Some(drive), Some(held)) = (drive, holders::find(case, s, &holder, axis)) else {
                 continue;
             };
-            let pushed = Pushed::Holder(held);
-            s.add_pressures(&pushed, drive).map_err(|m| {
+            let target = ServoTarget::Holder(held);
+            s.add_pressures(&target, drive).map_err(|m| {
                 ValidationError::new(format!("{path}.{}", ["x", "y", "z"][axis]), m)
             })?;
         }
@@ -422,18 +422,18 @@ fn changes(case: &Case, spec: &PhaseSpec, s: &dyn RunSetup) -> Result<Changes, V
     for (name, redriven) in &spec.drives {
         for (dof, k, drive) in redriven.given(s.dimension()) {
             let Some(k) = k else { continue };
-            let pushed = match (place(s, name), holders::find(case, s, name, k)) {
+            let target = match (place(s, name), holders::find(case, s, name, k)) {
                 (Some(place), _) => {
                     drives.push((place, k, drive.clone()));
-                    Pushed::Body(place, k)
+                    ServoTarget::Body(place, k)
                 }
                 (None, Some(holder)) => {
                     held.push((holder.clone(), drive.clone()));
-                    Pushed::Holder(holder)
+                    ServoTarget::Holder(holder)
                 }
                 (None, None) => continue,
             };
-            s.check_pressures(&pushed, drive)
+            s.check_pressures(&target, drive)
                 .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
         }
     }

@@ -1,5 +1,5 @@
 //! Grains of a recorded state of another run. The reader of the record belongs to a higher layer
-//! and is passed in, see [`crate::Loaded::reading_records`].
+//! and is passed in, see [`crate::LoadedCase::reading_records`].
 
 use std::path::{Path, PathBuf};
 

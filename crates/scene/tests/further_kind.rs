@@ -11,7 +11,7 @@ use fretwork_core::in_dimension;
 use fretwork_core::laws::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};
-use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, Loaded, SearchPath};
+use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, LoadedLaw, SearchPath};
 use fretwork_core::step::Simulation;
 use fretwork_scene::load;
 use std::path::PathBuf;
@@ -206,7 +206,7 @@ fn its_laws_are_found_validated_and_certified_as_any_other() {
         "{error}"
     );
     // An interface has at most one law of each kind.
-    let law = |kind, name| Loaded::with_defaults(path.find(kind, name).unwrap());
+    let law = |kind, name| LoadedLaw::with_defaults(path.find(kind, name).unwrap());
     let one = || law(Kind::CONTACT, "coulomb");
     let two = fretwork_core::laws::Interface::new("two", [one(), one()]);
     assert!(two.unwrap_err().to_string().contains("two contact laws"));

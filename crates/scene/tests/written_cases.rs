@@ -6,7 +6,7 @@
     reason = "a test fails by a panic"
 )]
 
-use fretwork_scene::{Loaded, load, load_reader, load_text};
+use fretwork_scene::{LoadedCase, load, load_reader, load_text};
 use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {
@@ -27,7 +27,7 @@ fn shipped() -> Vec<PathBuf> {
 }
 
 /// Checks that text and value agree: the text is read again, and written again.
-fn written(loaded: &Loaded) {
+fn written(loaded: &LoadedCase) {
     let path = loaded.path.display();
     let text = loaded
         .case

@@ -6,7 +6,7 @@ use super::{meshes, shapes};
 use fretwork_core::view::{FieldInfo, FieldKind, FieldValues, GrainFields, RunView};
 use fretwork_observe::Observers;
 use fretwork_observe::statistics::Column;
-use fretwork_scene::build::Loaded;
+use fretwork_scene::build::LoadedCase;
 use fretwork_scene::recorded::ShapedGrain;
 
 /// References to the built scene.
@@ -23,7 +23,12 @@ pub struct Made<'a> {
 }
 
 /// Content of the file before the first step, with the columns and tables of the observers.
-pub fn header(loaded: &Loaded, built: &Made<'_>, run: &RunFacts, observers: &Observers) -> Header {
+pub fn header(
+    loaded: &LoadedCase,
+    built: &Made<'_>,
+    run: &RunFacts,
+    observers: &Observers,
+) -> Header {
     let simulation = built.simulation;
     let dimension = simulation.dimension();
     let grains = simulation.grain_fields(with(simulation, loaded.case.circuit.is_some()));
@@ -98,7 +103,7 @@ pub fn bytes(run: &dyn RunView, circuit: bool) -> [usize; 2] {
 pub fn append(
     results: &mut Results,
     run: &dyn RunView,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
     let mut grains = grains(run, loaded.case.circuit.is_some());

@@ -2,7 +2,7 @@
 
 use crate::bodies::Dof;
 use crate::laws::Interface;
-use crate::laws::demand::{LawRequirements, Requirement};
+use crate::laws::requirements::{LawRequirements, Requirement};
 use crate::record::{meshes, views};
 use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
@@ -132,9 +132,9 @@ impl Features {
         let demands = Demands::of(s);
         let names = |which: fn(&LawRequirements) -> Requirement| {
             let each = demands.each().filter_map(|(name, demand)| {
-                match demand.map_or(Requirement::Unseen, which) {
+                match demand.map_or(Requirement::NotObserved, which) {
                     Requirement::Never => None,
-                    Requirement::Unseen => Some(format!("{name}?")),
+                    Requirement::NotObserved => Some(format!("{name}?")),
                     _ => Some(name.to_owned()),
                 }
             });

@@ -3,7 +3,7 @@
 use super::CheckLine;
 use super::load::Load;
 use crate::heat::{Heat, Node, Store};
-use crate::laws::bench::{Bench, Motion};
+use crate::laws::bench::{Bench, BenchMotion};
 use crate::laws::{Interface, Kind};
 use crate::scene::case::Case;
 use crate::{AnySimulation, RunView};
@@ -218,9 +218,9 @@ fn conduction(
     let mut bench = Bench::new(law.clone(), s.dimension() as u32, reduced)
         .of_material([conductivity, a.pair_resistivity(b)]);
     let force = pressure * diameter.powi(s.dimension() as i32 - 1);
-    let motion = Motion {
+    let motion = BenchMotion {
         pressure: force / bench.area(),
-        ..Motion::default()
+        ..BenchMotion::default()
     };
     let mut state = [bench.fresh()];
     let Ok(answers) = bench.step(&mut state, &[motion], case.time.step) else {

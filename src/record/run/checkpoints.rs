@@ -3,7 +3,7 @@
 use super::clear;
 use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
-use crate::record::code::{CodeError, decode, encode};
+use crate::record::encoding::{EncodingError, decode, encode};
 use crate::step::ProcessState;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
@@ -112,12 +112,12 @@ impl Recorder<'_> {
     /// which then replaces the old one.
     pub(super) fn restore(&mut self, stop: ResumePoint) -> Result<(), RunError> {
         let path = stop.results.path().to_owned();
-        let refused = |source: CodeError| ResumeError::State {
+        let refused = |source: EncodingError| ResumeError::State {
             path: path.clone(),
             source,
         };
         let restored = self.simulation.restore(&stop.state).map_err(refused)?;
-        let other = || refused(CodeError::other("bodies or laws"));
+        let other = || refused(EncodingError::other("bodies or laws"));
         let state: RunLoopState<'_> = decode(restored.ok_or_else(other)?).map_err(refused)?;
         let processes = self.simulation.restore_processes(&state.processes);
         processes.map_err(refused)?;

@@ -7,7 +7,7 @@
 
 use super::end::{self, LAST};
 use super::{Recorder, RunError};
-use crate::laws::watch::{self, Ready};
+use crate::laws::watch::{self, RescueGuard};
 use crate::record::results::Results;
 use crate::record::statistics::Table;
 use crate::record::summary::{Summary, Uncertainty};
@@ -33,7 +33,7 @@ struct UnsavedOutputs {
 /// The shared slot that holds the outputs during a step.
 pub(super) struct EmergencySave {
     outputs: Arc<Mutex<Option<UnsavedOutputs>>>,
-    _ready: Ready,
+    _ready: RescueGuard,
 }
 
 impl EmergencySave {

@@ -1,7 +1,7 @@
 //! Errors of a run.
 
 use crate::record::checkpoint::ResumeError;
-use crate::record::code::CodeError;
+use crate::record::encoding::EncodingError;
 use crate::record::results::ResultsError;
 use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
@@ -73,7 +73,7 @@ pub enum RunError {
     Resume(#[from] ResumeError),
     /// A checkpoint failed.
     #[error("cannot make a checkpoint: {0}")]
-    Checkpoint(#[from] CodeError),
+    Checkpoint(#[from] EncodingError),
 }
 
 impl RunError {

@@ -36,7 +36,7 @@ use super::summary::{RunFacts, Summary, Uncertainty};
 use super::views;
 use crate::scene::case::Case;
 use crate::scene::processes;
-use crate::scene::{Built, Loaded};
+use crate::scene::{Built, LoadedCase};
 use crate::step::StepReport;
 use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
@@ -114,7 +114,7 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 /// ```
 #[derive(Debug)]
 pub struct Run<'a> {
-    loaded: &'a Loaded,
+    loaded: &'a LoadedCase,
     built: Built,
     options: &'a RunOptions,
     stop: Option<ResumePoint>,
@@ -124,7 +124,7 @@ pub struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// Returns a run of a case from its start.
-    pub fn new(loaded: &'a Loaded, built: Built, options: &'a RunOptions) -> Self {
+    pub fn new(loaded: &'a LoadedCase, built: Built, options: &'a RunOptions) -> Self {
         Self {
             loaded,
             built,
@@ -190,7 +190,7 @@ impl<'a> Run<'a> {
 /// # Errors
 /// The errors are those of [`Run::execute`].
 pub fn run(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: Built,
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
@@ -206,7 +206,7 @@ pub fn run(
 /// # Errors
 /// The state cannot be read, is damaged, or belongs to another version or case.
 pub fn stopped(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: &Built,
     options: &RunOptions,
 ) -> Result<FolderState, RunError> {
@@ -215,7 +215,7 @@ pub fn stopped(
 
 /// Returns the observers that a run of a case has, for a program that steps without a run. Its
 /// processes must be [installed](processes::install) before.
-pub fn run_observers(loaded: &Loaded, s: &dyn RunView) -> Observers {
+pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))
 }
@@ -227,7 +227,7 @@ pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
 
 /// A run in progress.
 struct Recorder<'a> {
-    loaded: &'a Loaded,
+    loaded: &'a LoadedCase,
     out: PathBuf,
     simulation: AnySimulation,
     observers: Observers,
@@ -509,7 +509,7 @@ impl<'a> Recorder<'a> {
 /// Creates the results file under a temporary name, which it keeps until it has content.
 fn create_results(
     part: &Path,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: &Built,
     facts: &RunFacts,
     observers: &Observers,

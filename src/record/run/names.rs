@@ -5,7 +5,7 @@ use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
-use crate::scene::{Built, Loaded};
+use crate::scene::{Built, LoadedCase};
 use fretwork_observe::Observers;
 use fretwork_store::folder_lock::RUN_LOCK;
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ type Twice = (&'static str, String);
 ///
 /// # Errors
 /// The error reports the name, at the line of the case that gives it.
-pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunError> {
+pub(super) fn check(loaded: &LoadedCase, observers: &Observers) -> Result<(), RunError> {
     let Some((what, name)) = twice(observers) else {
         return Ok(());
     };
@@ -40,7 +40,7 @@ pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunErr
 ///
 /// # Errors
 /// The error reports the name, at the line of the case that gives it.
-pub fn check_names(loaded: &Loaded, built: &Built) -> Result<(), InputError> {
+pub fn check_names(loaded: &LoadedCase, built: &Built) -> Result<(), InputError> {
     let twice = twice(&run_observers(loaded, built.simulation.view()));
     let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
     error.map_or(Ok(()), Err)
@@ -67,7 +67,7 @@ fn twice(observers: &Observers) -> Option<Twice> {
 
 /// Returns the error at the line of the case that gives a name; `None` if the name belongs to an
 /// observer of the library's user.
-fn at_line(loaded: &Loaded, what: &str, name: &str) -> Option<InputError> {
+fn at_line(loaded: &LoadedCase, what: &str, name: &str) -> Option<InputError> {
     let message = format!("another {what} is named `{name}`; take another name here");
     let path = path(&loaded.case, name)?;
     Some(loaded.source.locate(ValidationError::new(path, message)))

@@ -1,9 +1,9 @@
 //! Metadata of a run: the certification of its laws, and the density of its first bodies.
 
 use crate::certify::{Certificate, certify_in_child, certify_parameters};
-use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
+use crate::laws::{Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
-use crate::scene::build::Loaded;
+use crate::scene::build::LoadedCase;
 
 /// Returns the laws of a run, each listed once, and whether each passes certification with its
 /// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
@@ -78,7 +78,7 @@ struct Key {
 }
 
 impl Key {
-    fn of(law: &Law) -> Self {
+    fn of(law: &LoadedLaw) -> Self {
         Self {
             kind: law.plugin.kind,
             name: law.plugin.name.clone(),
@@ -95,7 +95,7 @@ struct Known {
 }
 
 impl Known {
-    fn certified(&mut self, law: &Law, partner: Option<&Law>) -> bool {
+    fn certified(&mut self, law: &LoadedLaw, partner: Option<&LoadedLaw>) -> bool {
         let key = (Key::of(law), partner.map(Key::of));
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
@@ -104,7 +104,8 @@ impl Known {
         // tested in a separate process. The shipped laws are certified by the project's tests.
         let own = |p: &Plugin| self.path.is_own(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
-        type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
+        type Test =
+            fn(&Plugin, &[f64], Option<&LoadedLaw>, &SearchPath) -> Result<Certificate, LawError>;
         let test: Test = if trusted {
             certify_parameters
         } else {
@@ -118,7 +119,7 @@ impl Known {
 }
 
 /// Returns the density of the first bodies, for wear expressed as mass.
-pub(super) fn density_of(loaded: &Loaded, any: bool) -> f64 {
+pub(super) fn density_of(loaded: &LoadedCase, any: bool) -> f64 {
     let material = loaded.case.bodies.first().map(|b| b.material.as_str());
     match (any, material) {
         (true, Some(name)) => loaded.density(name).unwrap_or(0.0),

@@ -11,7 +11,7 @@
 
 use super::*;
 use cpu_time::ThreadTime;
-use fretwork::solve::Options;
+use fretwork::solve::SolverOptions;
 use nalgebra::Vector2;
 
 /// The usual benchmark of a rail and a wheel: G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under
@@ -227,7 +227,7 @@ fn defaults_have_the_pressure_of_each_point() {
     let [tight, default] = [false, true].map(|default| {
         let mut s = pressed(Counter::Steel, 8, 4, 0.0);
         if default {
-            s.options.solver = Options::default();
+            s.options.solver = SolverOptions::default();
         }
         go(&mut s, 12);
         tractions(&s, 8)

@@ -6,7 +6,7 @@ use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::Problem;
 use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, MomentForm, Options, solve};
+use fretwork::solve::{AutoState, MomentForm, SolverOptions, solve};
 
 /// Number of pairs of bodies, more than a register has lanes.
 const PAIRS: usize = 21;
@@ -199,11 +199,11 @@ fn every_method<S: Space>(answer: Answer, moves: Moves, central: bool, moment: b
             forms,
             moments,
         } = posed::<S>(answer, moves, central, moment);
-        let options = Options {
+        let options = SolverOptions {
             tolerance: 1e-8,
             max_iterations: 20_000,
             method,
-            ..Options::default()
+            ..SolverOptions::default()
         };
         let report = solve(
             &mut problem,

@@ -10,7 +10,7 @@ mod stiffening;
 use crate::extremes::bench::{G, Sketch, ball, floor, grains, place, plane, volume};
 use crate::stepping::{closes, go, near, steps};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::{Simulation, State};
 use spring::{Spring, Touching};
 

@@ -3,9 +3,9 @@
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -28,7 +28,7 @@ fn text(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn loaded(dimension: usize, lines: &str) -> Loaded {
+fn loaded(dimension: usize, lines: &str) -> LoadedCase {
     scene::loaded_text(&text(dimension, lines))
 }
 

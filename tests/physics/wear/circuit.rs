@@ -71,7 +71,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
         account.record_bonds(&s);
         for b in &s.state.network.bond_breaks {
             when.push(s.state.time);
-            cost += b.life.fracture;
+            cost += b.energies.fracture;
         }
         account.update(&mut s);
     }

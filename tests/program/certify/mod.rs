@@ -3,8 +3,8 @@
 
 use fretwork::certify::{Certificate, CheckOutcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::bench::{Bench, Motion};
-use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
+use fretwork::laws::bench::{Bench, BenchMotion};
+use fretwork::laws::{Interface, Kind, LoadedLaw, Plugin, SearchPath};
 use fretwork::scene::load;
 use fretwork::shipped::{built_in, search_path};
 use fretwork::step::Simulation;
@@ -18,7 +18,7 @@ fn certificate(plugin: &Plugin) -> Certificate {
 }
 
 fn broken(certificate: &Certificate) -> Vec<&str> {
-    let failed = |l: &&fretwork::certify::Line| l.outcome == CheckOutcome::Fail;
+    let failed = |l: &&fretwork::certify::CheckResult| l.outcome == CheckOutcome::Fail;
     certificate
         .lines
         .iter()
@@ -109,7 +109,7 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
     let laws = path.laws();
     let loaded = |kind: Kind, name: &str| {
         let plugin = path.find(kind, name).unwrap_or_else(|e| panic!("{e}"));
-        Loaded::with_defaults(plugin)
+        LoadedLaw::with_defaults(plugin)
     };
     let (mut pairs, mut refused) = (0, 0);
     for (_, cohesion, _) in laws.iter().filter(|l| l.0 == Kind::COHESION) {
@@ -131,9 +131,9 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
             let (mut work, mut last) = (0.0, (0.0, 0.0, 0.0));
             for k in 1..=4000 {
                 let u = 2e-5 * (f64::from(k) / 4000.0 * 6.0).sin().abs() * f64::from(k) / 4000.0;
-                let motion = Motion {
+                let motion = BenchMotion {
                     opening: [0.6 * u, 0.8 * u, 0.0],
-                    ..Motion::default()
+                    ..BenchMotion::default()
                 };
                 let a = bench
                     .step(&mut state, &[motion], 1e-4)
@@ -260,7 +260,7 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
 #[test]
 fn convergence_is_not_a_matter_of_chance() {
     let path = search_path();
-    let open = |kind| Loaded::with_defaults(path.find(kind, "mac").unwrap());
+    let open = |kind| LoadedLaw::with_defaults(path.find(kind, "mac").unwrap());
     let (cohesion, damage) = (open(Kind::COHESION), open(Kind::DAMAGE));
     assert_eq!(damage.plugin.parameters[0].name, "w");
     for k in 0..12 {

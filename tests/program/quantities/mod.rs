@@ -11,7 +11,7 @@ use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
 use fretwork::record::statistics::Column;
 use fretwork::record::{Observer, Observers, Run, RunEnd, RunOptions, RunView, Summary};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::StepReport;
 use fretwork_experiments::runs::output::OutputName;
@@ -79,7 +79,7 @@ impl Observer for Summit {
     }
 }
 
-fn cradle() -> (Loaded, Built) {
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let sets = ["time.end=0.01", "output.frames=0", "output.figures=false"].map(str::to_owned);
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));

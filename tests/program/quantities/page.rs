@@ -2,7 +2,7 @@
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
 use fretwork::record::quantity::{Role, Topic};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard;
 use std::collections::BTreeMap;
@@ -32,7 +32,7 @@ const FOR_COLUMNS: [(&str, &[&str]); 5] = [
 /// Path, units in 3D and 2D, explanation, and whether it describes the course of the run.
 pub type Declared = (String, [String; 2], String, bool);
 
-fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
+fn add(loaded: &LoadedCase, built: &Built, all: &mut Vec<Declared>) {
     let found = standard::declared(&loaded.case, built.simulation.view());
     let spelled =
         |unit: fretwork::record::quantity::Unit| [3, 2].map(|d| unit.symbol(d).to_owned());
@@ -58,7 +58,7 @@ fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
     all.extend(now.chain(later).filter(|d| !chosen(&d.0)));
 }
 
-fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
+fn built(case: &str, sets: &[&str]) -> (LoadedCase, Built) {
     let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     let loaded = load(path.as_ref(), &sets).unwrap_or_else(|e| panic!("{e}"));
@@ -89,7 +89,7 @@ fn columns() -> BTreeMap<String, Columns> {
     let mut all: BTreeMap<String, Columns> = BTreeMap::new();
     let cases = CASES.map(|case| (case, &[][..]));
     for (case, sets) in cases.into_iter().chain(FOR_COLUMNS) {
-        let (Loaded { case, .. }, built) = built(case, sets);
+        let (LoadedCase { case, .. }, built) = built(case, sets);
         let measures: Vec<&str> = case.measures.iter().map(|m| m.name()).collect();
         let bodies = case.bodies.iter().map(|b| b.name.as_str());
         let bodies = bodies.chain(case.elastic.iter().map(|b| b.name.as_str()));

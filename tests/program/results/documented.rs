@@ -4,7 +4,7 @@ use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::statistics_columns;
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard::declared;
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ fn documented() -> BTreeSet<String> {
     words.map(str::to_owned).collect()
 }
 
-fn missing(loaded: &Loaded, built: &Built, page: &BTreeSet<String>) -> Vec<String> {
+fn missing(loaded: &LoadedCase, built: &Built, page: &BTreeSet<String>) -> Vec<String> {
     let case = &loaded.case;
     // Names that a case chose are BODY and NAME in the page.
     let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));

@@ -5,14 +5,14 @@ use super::folder;
 use fretwork::fields::{Field, id_fields};
 use fretwork::geometry::space::{Dim3, Space};
 use fretwork::record::{RunOptions, run};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use hdf5::H5File;
 use std::path::Path;
 
 /// Registers two fields, runs the case and reads their values in the last state.
-fn ran<S: Space>(loaded: &Loaded, mut built: Built, out: &Path) {
+fn ran<S: Space>(loaded: &LoadedCase, mut built: Built, out: &Path) {
     let s = built.simulation.get_mut::<S>().unwrap();
     let age = |s: &Simulation<S>, c: &fretwork::contact::Contact<S>| s.state.time - c.formed_at;
     let age = Field::number("age", "s", "time since the contact formed", age);

@@ -7,7 +7,7 @@ use fretwork::fields::{FieldList, Fields, orientation};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{MeshField, of_bodies, of_grains, of_surfaces};
 use fretwork::record::{RunOptions, run, statistics_columns};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use hdf5::H5File;
 use std::collections::{BTreeMap, BTreeSet};
@@ -69,7 +69,7 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
 }
 
 /// The columns of `statistics.csv`, of `/statistics` and of the observers are equal.
-fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
+fn statistics_agree(loaded: &LoadedCase, built: Built, out: &Path) {
     let columns = statistics_columns(&loaded.case, built.simulation.view());
     let dimension = built.simulation.dimension();
     let options = RunOptions {

@@ -6,7 +6,7 @@ use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::process::{Process, ProcessError};
 use fretwork::record::checkpoint::FolderState;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::output::Output;
 use fretwork::record::quantity::Findings;
 use fretwork::record::quantity::unit::METRE;
@@ -14,7 +14,7 @@ use fretwork::record::results::PreviousResults;
 use fretwork::record::statistics::Column;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, RunView, Summary, stopped};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
 use std::ops::ControlFlow;
@@ -62,11 +62,11 @@ impl Observer for MeanGap {
         vec![Output::Text { file, text }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&(self.sum, self.steps))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         (self.sum, self.steps) = decode(from)?;
         Ok(())
     }
@@ -96,11 +96,11 @@ impl<S: Space> Process<S> for Push {
         Ok(())
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.given)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.given = decode(from)?;
         Ok(())
     }
@@ -109,7 +109,7 @@ impl<S: Space> Process<S> for Push {
 const SETS: [&str; 2] = ["output.checkpoint=Never", "output.frames=2"];
 
 /// Newton's cradle with a push on the middle ball.
-fn cradle() -> (Loaded, Built) {
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build(&search_path());

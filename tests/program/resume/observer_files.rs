@@ -5,13 +5,13 @@
 use super::common::{Folder, files, same};
 use crate::scene;
 use fretwork::record::checkpoint::FolderState;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::output::Output;
 
 use fretwork::record::{
     Observer, Paint, Picture, Run, RunEnd, RunOptions, RunView, Shows, Summary, stopped,
 };
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::step::StepReport;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -62,11 +62,11 @@ impl Observer for Speeds {
         vec!["speeds.csv".to_owned()]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.rows)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.rows = decode(from)?;
         Ok(())
     }
@@ -80,7 +80,7 @@ const SETS: [&str; 4] = [
 ];
 
 /// Newton's cradle, 600 steps.
-fn cradle() -> (Loaded, Built) {
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
     let built = scene::built(&loaded);

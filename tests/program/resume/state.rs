@@ -2,7 +2,7 @@
 
 use fretwork::AnySimulation;
 use fretwork::geometry::space::{Dim2, Space};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;

@@ -1,6 +1,6 @@
 //! Numbers of pairs of grains in a scene, counted before any pair is stored.
 
-use super::Parts;
+use super::SceneParts;
 use crate::contact::detect::{LawTable, centre};
 use crate::geometry::grid::{self, Balls};
 use crate::geometry::space::{Space, VectorLike};
@@ -20,7 +20,7 @@ pub struct Pile {
     pub pairs: f64,
 }
 
-impl<S: Space> Parts<S> {
+impl<S: Space> SceneParts<S> {
     /// Radii of all balls, and of the bounding balls of the convex parts (m).
     pub(super) fn all_radii(&self) -> Vec<f64> {
         let pieces = self.shapes.pieces.iter().map(|p| p.bound);

@@ -11,7 +11,7 @@ mod system;
 mod union;
 
 pub use checks::Pile;
-pub use parts::{AnyParts, Parts};
+pub use parts::{AnySceneParts, SceneParts};
 pub use recorded::RecordedPiece;
 pub use system::AnySystem;
 pub use union::AnyUnion;
@@ -27,7 +27,7 @@ use std::fmt::Debug;
 
 /// Position and motion of a body at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct InitialState {
     /// Position (m).
     pub position: [f64; 3],
     /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
@@ -39,7 +39,7 @@ pub struct Start {
 }
 
 /// Index of a material and its density (kg/m^3).
-pub type Filling = (u16, f64);
+pub type MaterialDensity = (u16, f64);
 
 /// Moments of inertia of a first body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub enum Inertia {
 
 /// Mass and inertia of a body of several shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Weight {
+pub enum MassProperties {
     /// A grain: mass and inertia of the shapes, at a density (kg/m^3).
     Grain(f64),
     /// A first body: mass (kg; kg/m in 2D) and moments of inertia.
@@ -63,11 +63,11 @@ pub enum Weight {
 
 /// A body of one convex part.
 #[derive(Clone, Debug)]
-pub struct Block {
+pub struct ConvexBody {
     /// The part.
     pub part: AnyPart,
     /// Start of the body; the position is that of the centre of mass.
-    pub start: Start,
+    pub start: InitialState,
     /// Volume (m^3; m^2 in 2D).
     pub volume: f64,
     /// Moment of inertia about the centre of mass at unit density (m^5; m^4 in 2D); `None` for that
@@ -77,13 +77,13 @@ pub struct Block {
     pub offset: [f64; 3],
 }
 
-impl Block {
+impl ConvexBody {
     /// Returns a block of one part at rest.
     pub fn of(part: AnyPart) -> Self {
         Self {
-            start: Start {
+            start: InitialState {
                 position: part.centre(),
-                ..Start::default()
+                ..InitialState::default()
             },
             volume: part.volume(),
             inertia: None,
@@ -118,14 +118,20 @@ pub trait Assembly: Debug + Send {
     fn worn_names(&self) -> Vec<&str>;
 
     /// Adds a ball of a radius (m) as a grain; returns its index.
-    fn add_ball(&mut self, radius: f64, of: Filling, start: &Start) -> u32;
+    fn add_ball(&mut self, radius: f64, of: MaterialDensity, start: &InitialState) -> u32;
     /// Adds a fixed plane as a first body, with its outward unit normal.
     fn add_wall(&mut self, name: String, at: [f64; 3], normal: [f64; 3], material: u16);
     /// Adds a body of several shapes, where `start` gives the frame of the shapes; returns its
     /// index.
-    fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32;
+    fn add_union(
+        &mut self,
+        union: AnyUnion,
+        mass_properties: MassProperties,
+        material: u16,
+        start: &InitialState,
+    ) -> u32;
     /// Adds a grain of one convex part; returns its index.
-    fn add_block(&mut self, block: Block, of: Filling) -> u32;
+    fn add_block(&mut self, block: ConvexBody, of: MaterialDensity) -> u32;
     /// Adds a grain of a mass (kg; kg/m in 2D), with a tensor of inertia in its axes, row by row
     /// (kg m^2; in 2D the first entry alone, kg m), which is multiplied by `factor`, and a length
     /// (m). Returns its index.
@@ -138,7 +144,7 @@ pub trait Assembly: Debug + Send {
         inertia: &[f64; 9],
         factor: f64,
         length: f64,
-        start: &Start,
+        start: &InitialState,
     ) -> Result<u32, String>;
     /// Adds a ball to a body, at an offset in its frame (m).
     ///
@@ -171,7 +177,7 @@ pub trait Assembly: Debug + Send {
     fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile>;
 
     /// The bodies and shapes in their dimension.
-    fn parts(&mut self) -> AnyParts<'_>;
+    fn parts(&mut self) -> AnySceneParts<'_>;
     /// Builds the simulation; also returns, for each dynamical system, the index of the surface
     /// that it has added, if any.
     fn into_simulation(
@@ -186,8 +192,8 @@ pub trait Assembly: Debug + Send {
 /// Returns an empty scene in a dimension.
 pub fn empty(dimension: usize, periodic: Periodic) -> Box<dyn Assembly> {
     match dimension {
-        2 => Box::new(Parts::<Dim2>::new(periodic)),
-        _ => Box::new(Parts::<Dim3>::new(periodic)),
+        2 => Box::new(SceneParts::<Dim2>::new(periodic)),
+        _ => Box::new(SceneParts::<Dim3>::new(periodic)),
     }
 }
 

@@ -61,13 +61,13 @@ impl AnyUnion {
 }
 
 /// A surface, and its offset in the frame of its body (m).
-type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+type PlacedSurface<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 
 /// Balls, convex parts and surfaces that move together.
 pub(super) struct Union<S: Space> {
     pub balls: Vec<(S::Vector, f64)>,
     pub parts: Vec<ConvexPart<S>>,
-    pub surfaces: Vec<Placed<S>>,
+    pub surfaces: Vec<PlacedSurface<S>>,
 }
 
 impl<S: Space> Union<S> {

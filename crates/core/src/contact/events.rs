@@ -30,13 +30,13 @@ pub struct Break {
     /// Damage at the start of the step in which the bond broke.
     pub damage_before: f64,
     /// Energy history.
-    pub life: Life,
+    pub energies: BondEnergies,
 }
 
 /// Energy history of a bond since its formation (J; J/m in 2D): the work done on it equals stored
 /// energy plus fracture energy plus viscous dissipation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Life {
+pub struct BondEnergies {
     /// Work done on the bond by normal opening, by sliding, and by rotation.
     pub work: [f64; 3],
     /// Fracture energy released by damage, less [`Self::given`].
@@ -50,7 +50,7 @@ pub struct Life {
     pub friction: f64,
 }
 
-impl Life {
+impl BondEnergies {
     /// Returns the fraction of rotation in the work of opening, sliding and rotation; recovered
     /// work does not count.
     pub fn turning(&self) -> f64 {
@@ -97,7 +97,7 @@ impl ContactDissipation {
 
 /// Wear at one contact in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loss {
+pub struct ContactWear {
     /// Index of the contact in [`super::Network::contacts`].
     pub contact: u32,
     /// Volume (m^3; m^3/m in 2D).

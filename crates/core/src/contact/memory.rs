@@ -1,6 +1,6 @@
 //! Memory of bonded contacts: opening, damage, and the laws' internal variables.
 
-use super::events::Life;
+use super::events::BondEnergies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub struct Bond<S: Space> {
     /// Stored energy (J; J/m in 2D).
     pub energy: f64,
     /// Energy history.
-    pub life: Life,
+    pub energies: BondEnergies,
 }
 
 impl<S: Space> Bond<S> {
@@ -51,7 +51,7 @@ impl<S: Space> Bond<S> {
 
 /// How far intact bonds opened or slid per step, over all steps and bonds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Slides {
+pub struct SlideStatistics {
     /// Number of steps of bonds.
     pub steps: u64,
     /// Sum of the displacements (m).
@@ -65,7 +65,7 @@ pub struct Slides {
     pub released: f64,
 }
 
-impl Slides {
+impl SlideStatistics {
     /// Adds one step of a bond: its displacement (m), and the energy that damage released (J; J/m
     /// in 2D).
     #[inline]
@@ -121,7 +121,7 @@ pub struct Memory<S: Space> {
     /// Number of bonds broken so far.
     pub broken: u64,
     /// How far bonds opened or slid in a step.
-    pub slides: Slides,
+    pub slides: SlideStatistics,
     free: Vec<u32>,
 }
 
@@ -214,7 +214,7 @@ mod tests {
     /// Steps of 1, 2 and 6 m that release 3, 0 and 1 J: 3 m on average, and (3 + 6)/4 m by energy.
     #[test]
     fn slides_have_a_mean_by_steps_and_one_by_energy() {
-        let mut slides = Slides::default();
+        let mut slides = SlideStatistics::default();
         slides.add(2.0, 0.0);
         assert_eq!(
             (slides.mean(), slides.mean_by_released()),
@@ -227,7 +227,7 @@ mod tests {
             (Some(3.0), Some(2.25))
         );
         assert_eq!((slides.steps, slides.largest), (3, 6.0));
-        assert_eq!(Slides::default().mean(), None);
+        assert_eq!(SlideStatistics::default().mean(), None);
     }
 
     /// A released slot is the next one that is allocated, with a new bond.

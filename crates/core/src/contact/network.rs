@@ -1,6 +1,6 @@
 //! Contacts of the current step, and the state carried over from the previous one.
 
-use super::events::{Break, ContactDissipation, Loss};
+use super::events::{Break, ContactDissipation, ContactWear};
 use super::memory::{BondState, Memory};
 use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
@@ -111,7 +111,7 @@ impl ShapeIndex {
 /// Where the impulse of a contact acts. The impulse acts at one point for both bodies, even where a
 /// gap or an overlap separates their surfaces, so that it gives them no angular momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Acts {
+pub enum ActionPoint {
     /// On either surface: of rigid bodies that touch within the step, and of two surfaces that
     /// deform, whose forces act at their nodes.
     #[default]
@@ -149,7 +149,7 @@ pub struct Contact<S: Space> {
     /// Vectors from each body's centre to its surface at the contact (m).
     pub arms: [S::Vector; 2],
     /// Point at which the impulse acts, see [`Self::levers`].
-    pub acts: Acts,
+    pub action_point: ActionPoint,
     /// Reduced radius r1 r2/(r1 + r2) (m).
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
@@ -225,11 +225,11 @@ impl<S: Space> Contact<S> {
     pub fn levers(&self) -> [S::Vector; 2] {
         let [i, j] = self.arms;
         let across = |share: f64| self.normal * (share * self.gap);
-        match self.acts {
-            Acts::Surfaces => [i, j],
-            Acts::Middle => [i - across(0.5), j + across(0.5)],
-            Acts::Candidate => [i, j + across(1.0)],
-            Acts::Antagonist => [i - across(1.0), j],
+        match self.action_point {
+            ActionPoint::Surfaces => [i, j],
+            ActionPoint::Middle => [i - across(0.5), j + across(0.5)],
+            ActionPoint::Candidate => [i, j + across(1.0)],
+            ActionPoint::Antagonist => [i - across(1.0), j],
         }
     }
 
@@ -298,7 +298,7 @@ pub struct Network<S: Space> {
     pub dissipation: Option<Vec<ContactDissipation>>,
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
-    pub losses: Option<Vec<Loss>>,
+    pub losses: Option<Vec<ContactWear>>,
     /// Temperatures and conductances of the contacts in the last step; `None` where no heat is
     /// computed.
     #[serde(skip)]
@@ -462,7 +462,7 @@ impl<S: Space> Network<S> {
             torn: 0.0,
             damaged: bond.damage >= 1.0,
             damage_before,
-            life: bond.life,
+            energies: bond.energies,
         });
     }
 

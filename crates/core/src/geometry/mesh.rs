@@ -11,14 +11,14 @@ use rstar::{AABB, RTree};
 use std::collections::HashMap;
 
 type V = Vector3<f64>;
-pub(super) type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+pub(super) type TriangleBox = GeomWithData<Rectangle<[f64; 3]>, u32>;
 
 /// Triangles with shared corners, anticlockwise seen from the open side.
 #[derive(Debug)]
 pub struct Mesh {
     pub(super) points: Vec<V>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) tree: RTree<Placed>,
+    pub(super) tree: RTree<TriangleBox>,
     /// Triangles adjacent to each triangle at its edges, starting at its first corner.
     beside: Vec<[Option<u32>; 3]>,
     /// Whether the points move.
@@ -63,11 +63,11 @@ pub enum MeshError {
 pub const MAX_TRIANGLES: usize = 1 << 28;
 
 /// Bounding boxes of the triangles.
-fn boxes(points: &[V], triangles: &[[u32; 3]]) -> RTree<Placed> {
+fn boxes(points: &[V], triangles: &[[u32; 3]]) -> RTree<TriangleBox> {
     let placed = triangles.iter().enumerate().map(|(k, t)| {
         let corners = t.map(|c| <[f64; 3]>::from(points[c as usize]));
         let bounds = AABB::from_points(&corners);
-        Placed::new(Rectangle::from_aabb(bounds), k as u32)
+        TriangleBox::new(Rectangle::from_aabb(bounds), k as u32)
     });
     RTree::bulk_load(placed.collect())
 }

@@ -3,7 +3,7 @@
 
 use super::facets;
 use super::mesh::Mesh;
-use super::recede::{Recede, Shares, Vertex};
+use super::recede::{Recede, Vertex, VertexShares};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
@@ -87,7 +87,7 @@ impl Recede<Dim3> for Mesh {
         tributary.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn shares(&self, closest_point: &V) -> Shares {
+    fn shares(&self, closest_point: &V) -> VertexShares {
         let mut best = (f64::INFINITY, u32::MAX, [0.0; 3]);
         let place: [f64; 3] = (*closest_point).into();
         for (found, apart) in self.tree.nearest_neighbor_iter_with_distance_2(place) {

@@ -29,6 +29,6 @@ pub use fretwork_math::diffusion::{
 };
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
-pub use model::{BodyNodes, Heat, HeatShares, Imposed, Partition};
+pub use model::{BodyNodes, Heat, HeatShares, ImposedHeatFlow, Partition};
 pub use pieces::{PieceAxis, Pieces};
 pub use state::HeatState;

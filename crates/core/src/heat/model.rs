@@ -102,7 +102,7 @@ impl BodyNodes {
 
 /// A heat flow from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Imposed {
+pub struct ImposedHeatFlow {
     /// Returns the body whose removal isolates the node; `None` for finite elements, which are not
     /// removed.
     pub body: Option<u32>,
@@ -131,7 +131,7 @@ pub struct Heat {
     /// finite elements.
     pub first_bodies: Vec<(String, Range<usize>)>,
     /// Heat flows imposed from outside.
-    pub imposed: Vec<Imposed>,
+    pub imposed: Vec<ImposedHeatFlow>,
     /// Temperature of bodies without nodes whose contacts have none either (K).
     pub initial: f64,
     /// Shares of dissipation that become heat.

@@ -6,7 +6,7 @@ use super::columns::BatchColumns;
 use super::error::LawError;
 use super::function::Call;
 use super::guarded::{self, Guarded};
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::library::Plugin;
 use super::range::{ColumnRange, Largest, settle};
 use super::step_info::StepInfo;
@@ -56,7 +56,7 @@ impl LawBatch {
     /// Calls a function of a law with the columns, and checks what it wrote.
     pub fn run(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: Call,
@@ -107,7 +107,7 @@ impl LawBatch {
     /// Sets the outputs to zero, then calls a function of a law as [`Self::run`] does.
     pub fn run_afresh(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: Call,
@@ -120,7 +120,7 @@ impl LawBatch {
     /// Checks that all values that a call wrote are finite and in their range.
     fn check_outputs(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         plugin: &Plugin,
         call: Call,
     ) -> Result<(), LawError> {

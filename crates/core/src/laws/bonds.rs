@@ -7,7 +7,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{BondAfter, MotionSource, Source, store_states};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::{MomentStep, SolvedStep, Totals, Velocities};
 use crate::contact::{Bond, Contact, Network};
@@ -48,7 +48,7 @@ struct BondOpenings<'a, S: Space> {
 
 impl<S: Space> BondOpenings<'_, S> {
     /// Returns the laws that act on bonds.
-    fn laws(&self) -> Vec<&Loaded> {
+    fn laws(&self) -> Vec<&LoadedLaw> {
         let law = self.source.law;
         law.cohesion().into_iter().chain(law.damage()).collect()
     }
@@ -156,7 +156,7 @@ impl LawEvaluator {
     ) -> Result<(), LawError> {
         self.place_moments(index, network, step);
         let moment_places = &self.moment_places;
-        let laws: Vec<&Loaded> = law.cohesion().into_iter().chain(law.damage()).collect();
+        let laws: Vec<&LoadedLaw> = law.cohesion().into_iter().chain(law.damage()).collect();
         let members = &self.members[index].bonded;
         let divide = self.divides(members.len(), BOND);
         let batches = members.chunks(chunk_size(BATCH)).collect();
@@ -396,13 +396,13 @@ fn store_bonds<S: Space>(
         let memory = &mut network.memory[index];
         let bond = &mut memory.bonds[slot];
         (bond.opening_n, bond.opening_t) = end.opening;
-        bond.life.work[0] -= end.work[0];
-        bond.life.work[1] -= end.work[1];
-        bond.life.friction += end.friction[0];
+        bond.energies.work[0] -= end.work[0];
+        bond.energies.work[1] -= end.work[1];
+        bond.energies.friction += end.friction[0];
         if memory.rotates {
             memory.rotations[slot] = end.rotation;
-            bond.life.work[2] -= end.work[2];
-            bond.life.friction -= end.friction[1];
+            bond.energies.work[2] -= end.work[2];
+            bond.energies.friction -= end.friction[1];
         }
         let mut damage = end.damage;
         if !predicted {
@@ -430,8 +430,8 @@ fn store_bonds<S: Space>(
         let fracture = (bond.energy - start) + (stop - kept);
         totals.viscous += viscous;
         totals.fracture += fracture;
-        bond.life.viscous += viscous;
-        bond.life.fracture += fracture;
+        bond.energies.viscous += viscous;
+        bond.energies.fracture += fracture;
         if let Some(dissipation) = &mut network.dissipation {
             dissipation[*at].viscous += viscous;
             dissipation[*at].fracture += fracture;

@@ -1,7 +1,7 @@
 //! The columns of a batch: they are collected from the network, passed to plugins, and read back.
 
 use super::function::Call;
-use super::interface::Loaded;
+use super::interface::LoadedLaw;
 use super::kind::Kind;
 pub use super::outputs::{Outputs, Triple};
 use super::step_info::StepInfo;
@@ -311,7 +311,7 @@ impl BatchColumns {
     /// Runs `call` with the batch of these columns.
     pub fn with_batch<R>(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: impl FnOnce(&FwBatch) -> R,

@@ -6,7 +6,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{MotionSource, Source, store_states};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::kind::{Domain, Kind};
 use super::outputs::Outputs;
 use super::slot::SlotCommit;
@@ -66,14 +66,14 @@ impl LawEvaluator {
         let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
         // A law without internal variables is called only where heat or current flows.
         let conducts = network.thermal.as_ref().map(|t| t.conducts);
-        let idle = |l: &&Loaded| {
+        let idle = |l: &&LoadedLaw| {
             let remembers = l.variables() > 0 && conducts.is_some();
             l.plugin.kind == Kind::TRANSPORT && !remembers && conducts != Some(true)
         };
-        let slots: Vec<&Loaded> = slots
+        let slots: Vec<&LoadedLaw> = slots
             .filter(|l| (sees_slip(l) || l.variables() > 0) && !idle(l))
             .collect();
-        let all = |l: &&Loaded| l.plugin.kind.spec().domain == Domain::All;
+        let all = |l: &&LoadedLaw| l.plugin.kind.spec().domain == Domain::All;
         let (of_all, of_near): (Vec<_>, Vec<_>) = slots.into_iter().partition(all);
         let members = std::mem::take(&mut self.members[index]);
         // Laws that act on the same contacts share the columns.
@@ -193,19 +193,19 @@ impl LawEvaluator {
 struct SlotGroup<'a> {
     law: &'a Interface,
     index: usize,
-    slots: &'a [&'a Loaded],
+    slots: &'a [&'a LoadedLaw],
     members: &'a [usize],
 }
 
 /// Returns whether a law receives slip and friction work: its outputs are not used at the start of
 /// a step.
-fn sees_slip(law: &Loaded) -> bool {
+fn sees_slip(law: &LoadedLaw) -> bool {
     !law.plugin.kind.spec().functions.contains(&Call::Prepare)
 }
 
 /// Returns whether a law receives friction work that is not negative: where the velocity reverses
 /// within a step, friction gives work back, which is deducted from the work of later steps.
-fn is_paid(law: &Loaded) -> bool {
+fn is_paid(law: &LoadedLaw) -> bool {
     law.plugin.kind == Kind::WEAR
 }
 

@@ -4,7 +4,7 @@
 
 /// Floating-point control of this thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FloatControl(registers::Control);
+pub(super) struct FloatControl(registers::ControlWords);
 
 impl FloatControl {
     /// The control in force now.
@@ -30,13 +30,13 @@ mod registers {
 
     /// MXCSR without its exception flags, and the control word of the x87 unit, which `long double`
     /// in C uses.
-    pub type Control = (u32, u16);
+    pub type ControlWords = (u32, u16);
 
     /// Exception flags of MXCSR.
     const FLAGS: u32 = 0x3f;
 
     #[inline]
-    pub fn read() -> Control {
+    pub fn read() -> ControlWords {
         let (mut mxcsr, mut x87) = (0u32, 0u16);
         // SAFETY: both instructions store to places of their size, and change no register.
         unsafe {
@@ -49,7 +49,7 @@ mod registers {
     }
 
     #[cold]
-    pub fn write((mxcsr, x87): Control) {
+    pub fn write((mxcsr, x87): ControlWords) {
         // SAFETY: the loaded values are valid control words, for which the surrounding code was
         // compiled.
         unsafe {
@@ -66,10 +66,10 @@ mod registers {
     use std::arch::asm;
 
     /// FPCR; exception flags are in another register.
-    pub type Control = u64;
+    pub type ControlWords = u64;
 
     #[inline]
-    pub fn read() -> Control {
+    pub fn read() -> ControlWords {
         let control: u64;
         // SAFETY: the instruction reads a register that every thread may read.
         unsafe { asm!("mrs {}, fpcr", out(reg) control, options(nomem, nostack, preserves_flags)) };
@@ -77,7 +77,7 @@ mod registers {
     }
 
     #[cold]
-    pub fn write(control: Control) {
+    pub fn write(control: ControlWords) {
         // SAFETY: the value was read from the register, and the surrounding code was compiled for
         // it.
         unsafe { asm!("msr fpcr, {}", in(reg) control, options(nostack, preserves_flags)) };
@@ -87,11 +87,11 @@ mod registers {
 /// On other processors the control register is not known.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod registers {
-    pub type Control = ();
+    pub type ControlWords = ();
 
-    pub fn read() -> Control {}
+    pub fn read() -> ControlWords {}
 
-    pub fn write((): Control) {}
+    pub fn write((): ControlWords) {}
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

@@ -6,7 +6,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{Source, store_states};
 use super::history::LawHistory;
-use super::interface::{BondOpening, Interface, Loaded};
+use super::interface::{BondOpening, Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::Velocities;
 use crate::contact::Network;
@@ -112,34 +112,34 @@ impl LawEvaluator {
         network: &Network<S>,
     ) -> Vec<Vec<usize>> {
         #[derive(Clone, Copy, PartialEq)]
-        enum Concerned {
+        enum InitialisedContacts {
             None,
             New,
             All,
         }
         let both = laws.iter().zip(due);
-        let of_laws: Vec<Concerned> = both
+        let of_laws: Vec<InitialisedContacts> = both
             .map(|(law, due)| {
                 if *due || law.healing.is_some() {
-                    Concerned::All
+                    InitialisedContacts::All
                 } else if law.variables_of_contacts() > 0 {
-                    Concerned::New
+                    InitialisedContacts::New
                 } else {
-                    Concerned::None
+                    InitialisedContacts::None
                 }
             })
             .collect();
         let mut concerned = vec![Vec::new(); laws.len()];
-        if of_laws.iter().all(|law| *law == Concerned::None) {
+        if of_laws.iter().all(|law| *law == InitialisedContacts::None) {
             return concerned;
         }
         let divide = worth_dividing(self.parallel, network.contacts.len(), LOOK);
         let parts = map_chunks(divide, &network.contacts, CHUNK, |first, contacts| {
             let contacts = contacts.iter().zip(first..);
             let found = contacts.filter(|(contact, _)| match of_laws[contact.law as usize] {
-                Concerned::None => false,
-                Concerned::New => contact.memory().is_none(),
-                Concerned::All => true,
+                InitialisedContacts::None => false,
+                InitialisedContacts::New => contact.memory().is_none(),
+                InitialisedContacts::All => true,
             });
             let found = found.map(|(contact, k)| (contact.law as usize, k));
             found.collect::<Vec<_>>()
@@ -182,8 +182,8 @@ impl LawEvaluator {
                 };
                 let bond = &mut network.memory[index].bonds[slot];
                 bond.energy = energy * bond.area;
-                bond.life.given += bond.energy;
-                bond.life.fracture -= bond.energy;
+                bond.energies.given += bond.energy;
+                bond.energies.fracture -= bond.energy;
                 network.torn_energy -= bond.energy;
             }
         };
@@ -206,7 +206,7 @@ impl LawEvaluator {
             return Ok(());
         }
         let still = Velocities::still(&network.contacts);
-        let laws: Vec<&Loaded> = law.loaded().collect();
+        let laws: Vec<&LoadedLaw> = law.loaded().collect();
         let batches = new.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source::new(law, index, network, info);

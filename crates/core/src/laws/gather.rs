@@ -2,7 +2,7 @@
 
 use super::batch::LawBatch;
 use super::columns::Contents;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::{SolvedStep, Velocities};
 use crate::contact::{Bond, Contact, Memory, Network};
@@ -154,7 +154,7 @@ impl LawBatch {
         source: &Source<'_, S>,
         members: &[usize],
         before: &Velocities<S>,
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
     ) {
         let compliant = source.law.compliant();
         self.fill(
@@ -190,7 +190,7 @@ impl LawBatch {
         source: &Source<'_, S>,
         members: &[usize],
         motion: &MotionSource<'_, S>,
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
     ) {
         self.fill(
             source,
@@ -208,7 +208,7 @@ impl LawBatch {
         &mut self,
         source: &Source<'_, S>,
         members: &[usize],
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
         after: bool,
         mut of: impl FnMut(usize, &Contact<S>, Option<&Bond<S>>, S::Spin) -> Values<S>,
     ) {
@@ -335,7 +335,7 @@ impl LawBatch {
     }
 
     /// Returns the new internal variables of some laws, one column after the other.
-    pub(super) fn new_states(&self, laws: &[&Loaded]) -> Vec<f64> {
+    pub(super) fn new_states(&self, laws: &[&LoadedLaw]) -> Vec<f64> {
         let count: usize = laws.iter().map(|l| l.variables()).sum();
         let mut states = Vec::with_capacity(count * self.columns.n);
         for loaded in laws {
@@ -353,7 +353,7 @@ impl LawBatch {
 pub(super) fn store_states<S: Space>(
     network: &mut Network<S>,
     index: usize,
-    laws: &[&Loaded],
+    laws: &[&LoadedLaw],
     members: &[usize],
     states: &[f64],
 ) {

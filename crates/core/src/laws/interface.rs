@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// A plugin with the values of its parameters, in the order of its schema.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedLaw {
     /// The plugin.
     pub plugin: Arc<Plugin>,
     /// Values, one per parameter.
@@ -21,7 +21,7 @@ pub struct Loaded {
     pub first_variable: usize,
 }
 
-impl Loaded {
+impl LoadedLaw {
     /// Creates a law with these values of its parameters, in the order of its schema.
     pub fn new(plugin: Plugin, parameters: Vec<f64>) -> Self {
         Self {
@@ -122,7 +122,7 @@ pub struct Interface {
     /// Area of a contact.
     pub area: AreaRule,
     /// Laws, at most one of each kind, sorted by kind; the contact law comes first.
-    slots: Vec<Loaded>,
+    slots: Vec<LoadedLaw>,
     /// Flags of the cohesion law.
     cohesion_flags: u64,
 }
@@ -135,7 +135,7 @@ impl Interface {
     /// There is no contact law, two laws have the same kind, or slots do not fit together.
     pub fn new(
         name: impl Into<String>,
-        laws: impl IntoIterator<Item = Loaded>,
+        laws: impl IntoIterator<Item = LoadedLaw>,
     ) -> Result<Self, LawError> {
         let mut law = Self {
             name: name.into(),
@@ -155,7 +155,7 @@ impl Interface {
     ///
     /// # Errors
     /// The slots do not fit together.
-    pub fn with(mut self, law: Loaded) -> Result<Self, LawError> {
+    pub fn with(mut self, law: LoadedLaw) -> Result<Self, LawError> {
         self.slots.retain(|l| l.plugin.kind != law.plugin.kind);
         self.slots.push(law);
         self.arrange()?;
@@ -166,7 +166,7 @@ impl Interface {
     ///
     /// # Errors
     /// No contact law is left, or the slots do not fit together.
-    pub fn retain(mut self, keep: impl FnMut(&Loaded) -> bool) -> Result<Self, LawError> {
+    pub fn retain(mut self, keep: impl FnMut(&LoadedLaw) -> bool) -> Result<Self, LawError> {
         self.slots.retain(keep);
         self.arrange()?;
         Ok(self)
@@ -224,28 +224,28 @@ impl Interface {
     }
 
     /// The law of a kind.
-    pub fn law(&self, kind: Kind) -> Option<&Loaded> {
+    pub fn law(&self, kind: Kind) -> Option<&LoadedLaw> {
         self.slots.iter().find(|l| l.plugin.kind == kind)
     }
 
     /// The contact law.
-    pub fn contact(&self) -> &Loaded {
+    pub fn contact(&self) -> &LoadedLaw {
         // `arrange` refuses an interface whose first slot is not a contact law.
         &self.slots[0]
     }
 
     /// Returns the cohesion law: traction against opening.
-    pub fn cohesion(&self) -> Option<&Loaded> {
+    pub fn cohesion(&self) -> Option<&LoadedLaw> {
         self.law(Kind::COHESION)
     }
 
     /// Returns the damage law.
-    pub fn damage(&self) -> Option<&Loaded> {
+    pub fn damage(&self) -> Option<&LoadedLaw> {
         self.law(Kind::DAMAGE)
     }
 
     /// Returns the wear law.
-    pub fn wear(&self) -> Option<&Loaded> {
+    pub fn wear(&self) -> Option<&LoadedLaw> {
         self.law(Kind::WEAR)
     }
 
@@ -257,12 +257,12 @@ impl Interface {
     }
 
     /// Iterates over the laws, in the order in which they are evaluated.
-    pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
+    pub fn loaded(&self) -> impl Iterator<Item = &LoadedLaw> {
         self.slots.iter()
     }
 
     /// Whether a law acts on intact bonds; else on contacts.
-    pub fn acts_on_bonds(&self, law: &Loaded) -> bool {
+    pub fn acts_on_bonds(&self, law: &LoadedLaw) -> bool {
         match law.plugin.kind.spec().domain {
             Domain::Bonds => true,
             Domain::ByOpening => law.has(FLAG_OPENING),
@@ -272,14 +272,14 @@ impl Interface {
 
     /// Returns the number of internal variables over all slots.
     pub fn variables(&self) -> usize {
-        self.loaded().map(Loaded::variables).sum()
+        self.loaded().map(LoadedLaw::variables).sum()
     }
 
     /// Returns the number of internal variables of the laws that act on every contact, bonded or
     /// not.
     pub fn variables_of_contacts(&self) -> usize {
         let on_contacts = self.loaded().filter(|l| !self.acts_on_bonds(l));
-        on_contacts.map(Loaded::variables).sum()
+        on_contacts.map(LoadedLaw::variables).sum()
     }
 
     /// Iterates over the columns of the internal variables of bonds.
@@ -328,11 +328,11 @@ impl Interface {
 
     /// Returns whether a law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
-        self.loaded().any(Loaded::reads_temperatures)
+        self.loaded().any(LoadedLaw::reads_temperatures)
     }
 
     /// Returns the transport law: conductances for heat and current.
-    pub fn transport(&self) -> Option<&Loaded> {
+    pub fn transport(&self) -> Option<&LoadedLaw> {
         self.law(Kind::TRANSPORT)
     }
 

@@ -7,8 +7,8 @@ use super::kind::Kind;
 use super::linked::{LawCode, LibraryOpening};
 use super::loading::{self, Library};
 use super::names::name_is_valid;
-use super::outside::{self, Disturbed};
-use super::plugin_table::{Field, fields, read_table, text};
+use super::outside::{self, DisturbedState};
+use super::plugin_table::{LawField, fields, read_table, text};
 use super::watch;
 use fretwork_abi as abi;
 use serde_json::{Value, json};
@@ -44,9 +44,9 @@ pub struct Plugin {
     /// Exponent m of psi = (1 - D)^m psi_0.
     pub degradation: f64,
     /// Schema of the parameters.
-    pub parameters: Vec<Field>,
+    pub parameters: Vec<LawField>,
     /// Schema of the internal variables.
-    pub variables: Vec<Field>,
+    pub variables: Vec<LawField>,
     /// File of the library, or of the program for a built-in law.
     pub path: PathBuf,
     /// SHA-256 of that file, in hexadecimal; with [links](Self::links), of the list of all sums.
@@ -58,7 +58,7 @@ pub struct Plugin {
     pub(super) table: abi::FwPlugin,
     pub(super) label: watch::Label,
     /// Records, shared by all clones, of what the law changed.
-    pub(super) disturbed: Arc<Disturbed>,
+    pub(super) disturbed: Arc<DisturbedState>,
 }
 
 // SAFETY: the table is read only, and the ABI requires every function to be callable from any
@@ -102,7 +102,7 @@ impl Plugin {
             return Err(refuse(loading::CHANGED.to_owned()));
         }
         let loading = watch::label(format!("the plugin {}", path.display()));
-        let disturbed = Disturbed::default();
+        let disturbed = DisturbedState::default();
         // A name without a folder would be searched for where the system has its libraries.
         let absolute = std::path::absolute(path).map_err(|e| refuse(e.to_string()))?;
         let opening = LibraryOpening::begin();

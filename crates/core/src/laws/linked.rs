@@ -67,7 +67,7 @@ fn sum(path: &Path) -> std::io::Result<String> {
 /// A sentence: where the linker looks depends on the machine.
 pub(super) fn libraries(library: &Path) -> Result<Vec<PathBuf>, String> {
     #[cfg(target_os = "linux")]
-    let found = linux::Walk::of(library).map(|walk| walk.found);
+    let found = linux::LinkPlan::of(library).map(|plan| plan.found);
     #[cfg(not(target_os = "linux"))]
     let found = {
         let _ = library;
@@ -98,7 +98,7 @@ impl LibraryOpening {
     /// the folders that the law names.
     pub fn check(self, library: &Path) -> Result<(), String> {
         #[cfg(target_os = "linux")]
-        linux::Walk::of(library)?.check(&self.before, &linux::loaded())?;
+        linux::LinkPlan::of(library)?.check(&self.before, &linux::loaded())?;
         let _ = library;
         Ok(())
     }
@@ -116,7 +116,7 @@ mod linux {
     /// Prediction of what the linker will do with a library, from its file and the files to which
     /// it links.
     #[derive(Debug, Default)]
-    pub struct Walk {
+    pub struct LinkPlan {
         /// Libraries that the linker will find in folders that the law names.
         pub found: Vec<PathBuf>,
         /// Folders that the law names.
@@ -142,7 +142,7 @@ mod linux {
         "tls", "x86_64", "haswell", "xeon_phi", "avx512_1", "aarch64",
     ];
 
-    impl Walk {
+    impl LinkPlan {
         /// Examines a library that has not been opened.
         pub fn of(library: &Path) -> Result<Self, String> {
             Self::beside(library, program())
@@ -151,7 +151,7 @@ mod linux {
         /// Examines the links of a library, given the names that are loaded already.
         fn beside(library: &Path, loaded: &BTreeSet<Vec<u8>>) -> Result<Self, String> {
             let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-            let mut walk = Self::default();
+            let mut plan = Self::default();
             // Libraries are compared by their place: folders such as `$ORIGIN/../lib` give one file
             // many names.
             let mut seen = BTreeSet::new();
@@ -160,7 +160,7 @@ mod linux {
             while let Some((path, above)) = left.pop() {
                 let Some(needs) = std::fs::read(&path)
                     .ok()
-                    .and_then(|bytes| Needs::read(&bytes))
+                    .and_then(|bytes| DynamicSection::read(&bytes))
                 else {
                     continue;
                 };
@@ -184,7 +184,7 @@ mod linux {
                     if loaded.contains(name) {
                         continue;
                     }
-                    walk.names.insert(name.clone());
+                    plan.names.insert(name.clone());
                     let name = Path::new(OsStr::from_bytes(name));
                     let file = if name.components().count() > 1 {
                         Some(name.to_owned()).filter(|p| p.is_file())
@@ -199,14 +199,14 @@ mod linux {
                         && seen
                             .insert(std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone()))
                     {
-                        walk.found.push(file.clone());
+                        plan.found.push(file.clone());
                         left.push((file, inherited.clone()));
                     }
                 }
-                walk.folders.extend(search);
+                plan.folders.extend(search);
             }
-            walk.found.sort();
-            Ok(walk)
+            plan.found.sort();
+            Ok(plan)
         }
 
         /// Compares the prediction with the libraries of the process before and after opening.
@@ -363,13 +363,13 @@ mod linux {
 
     /// Content of the dynamic section of an ELF file about the libraries that it needs.
     #[derive(Debug, Default)]
-    struct Needs {
+    struct DynamicSection {
         names: Vec<Vec<u8>>,
         rpath: Option<Vec<u8>>,
         runpath: Option<Vec<u8>>,
     }
 
-    impl Needs {
+    impl DynamicSection {
         /// Reads the bytes of a 64-bit little-endian file; `None` if the file has another format or
         /// is damaged.
         fn read(bytes: &[u8]) -> Option<Self> {
@@ -457,17 +457,17 @@ mod linux {
         fn needs_are_read_from_a_program() {
             let own = std::env::current_exe().unwrap();
             let bytes = std::fs::read(&own).unwrap();
-            let needs = Needs::read(&bytes).unwrap();
+            let needs = DynamicSection::read(&bytes).unwrap();
             let libc = needs.names.iter().find(|n| n.starts_with(b"libc."));
             let libc = libc.unwrap_or_else(|| panic!("{needs:?}"));
             let process = names(&loaded());
             assert!(process.contains(libc), "{process:?}");
-            let with = Walk::beside(&own, &process).unwrap();
+            let with = LinkPlan::beside(&own, &process).unwrap();
             assert!(with.found.is_empty() && !with.names.contains(libc));
-            let without = Walk::beside(&own, &BTreeSet::new()).unwrap();
+            let without = LinkPlan::beside(&own, &BTreeSet::new()).unwrap();
             assert!(without.names.contains(libc), "{without:?}");
             for length in [0, 5, 40, 100, 1000] {
-                assert!(Needs::read(&bytes[..length]).is_none());
+                assert!(DynamicSection::read(&bytes[..length]).is_none());
             }
         }
 
@@ -496,7 +496,7 @@ mod linux {
             let [read, variant] = [&folder, &inner].map(|f| f.join("libx.so"));
             std::fs::write(&read, "read").unwrap();
             std::fs::write(&variant, "variant").unwrap();
-            let walk = Walk {
+            let plan = LinkPlan {
                 found: vec![read.clone()],
                 folders: [folder.clone()].into(),
                 names: [b"libx.so".to_vec()].into(),
@@ -505,7 +505,7 @@ mod linux {
                 let owned = |list: &[&PathBuf]| -> Vec<PathBuf> {
                     list.iter().map(|p| (*p).clone()).collect()
                 };
-                walk.check(&owned(before), &owned(now))
+                plan.check(&owned(before), &owned(now))
             };
             assert_eq!(said(&[], &[&read]), Ok(()));
             // Another law loaded it.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Records of what laws changed in the state of their callers, which was restored.
 #[derive(Debug, Default)]
-pub(super) struct Disturbed {
+pub(super) struct DisturbedState {
     /// The floating-point control changed while the library was loaded.
     pub loading: AtomicBool,
     /// The floating-point control changed in a call.

@@ -7,7 +7,7 @@ use std::ptr;
 
 /// A parameter or an internal variable.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct LawField {
     /// Name.
     pub name: String,
     /// SI unit.
@@ -82,7 +82,7 @@ pub(super) unsafe fn fields(
     first: *const abi::FwField,
     n: usize,
     what: &str,
-) -> Result<Vec<Field>, String> {
+) -> Result<Vec<LawField>, String> {
     const MAX_FIELDS: usize = 256;
     if n > MAX_FIELDS {
         return Err(format!(
@@ -109,7 +109,7 @@ pub(super) unsafe fn fields(
             if !f.default.is_finite() || f.minimum.is_nan() || f.maximum.is_nan() {
                 return Err(format!("its {what} `{name}` has a default that is not finite or a range that is not a number"));
             }
-            Ok(Field {
+            Ok(LawField {
                 unit: read(f.unit)?,
                 doc: read(f.doc)?,
                 name,

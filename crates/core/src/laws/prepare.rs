@@ -7,7 +7,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{Source, contact_area};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::outputs::Outputs;
 use super::spring::SpringForm;
 use super::step_info::StepInfo;
@@ -105,7 +105,7 @@ struct Request<'a, S: Space> {
     info: &'a StepInfo,
     before: &'a Velocities<S>,
     contact: ContactRequest,
-    cohesion: Option<&'a Loaded>,
+    cohesion: Option<&'a LoadedLaw>,
     /// Whether the damage at the middle of the step is predicted.
     predicts: bool,
 }
@@ -320,7 +320,7 @@ impl LawBatch {
                 *damage = 0.5 * (bond.damage + (bond.step_damage + *damage));
             }
         }
-        let mut acting: Vec<&Loaded> = Vec::with_capacity(2);
+        let mut acting: Vec<&LoadedLaw> = Vec::with_capacity(2);
         if let ContactRequest::Each = request.contact {
             acting.push(law.contact());
         }

@@ -1,6 +1,6 @@
 //! Laws for unit tests, simple enough that their outputs are known in closed form.
 
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::library::Plugin;
 use crate::contact::Contact;
 use crate::contact::network::{ContactGeometry, Key};
@@ -13,10 +13,10 @@ use nalgebra::Vector2;
 use std::path::Path;
 
 /// Loads the law of a table, with the defaults of its parameters.
-fn loaded(table: *const abi::FwPlugin) -> Loaded {
+fn loaded(table: *const abi::FwPlugin) -> LoadedLaw {
     // SAFETY: a static table of the wrapper.
     let plugin = unsafe { Plugin::from_table(table, Path::new("a test"), "", true) };
-    Loaded::with_defaults(plugin.unwrap())
+    LoadedLaw::with_defaults(plugin.unwrap())
 }
 
 /// Declares a law: its parameters, further entries of its plugin table, and the function that loads
@@ -39,7 +39,7 @@ macro_rules! sample {
         }
 
         $(#[$doc])*
-        pub(crate) fn $name() -> Loaded {
+        pub(crate) fn $name() -> LoadedLaw {
             plugin_table!($kind $law);
             loaded(TABLE.table())
         }
@@ -168,7 +168,7 @@ impl TransportLaw for Constant {
 }
 
 /// Creates an interface of friction and other laws.
-pub(crate) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
+pub(crate) fn interface(laws: impl IntoIterator<Item = LoadedLaw>) -> Interface {
     let laws = std::iter::once(coulomb()).chain(laws);
     Interface::new("test", laws).unwrap()
 }

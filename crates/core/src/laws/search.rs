@@ -20,7 +20,7 @@ pub struct SearchPath {
 
 /// Location of a law.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
+pub enum LawLocation {
     /// In a library.
     Library(PathBuf),
     /// In the program itself.
@@ -99,8 +99,8 @@ impl SearchPath {
         pin: Option<&str>,
     ) -> Result<Plugin, LawError> {
         let path = match self.place(kind, name) {
-            Some(Place::Library(path)) => path,
-            Some(Place::BuiltIn) => return self.linked_in(kind, name, pin),
+            Some(LawLocation::Library(path)) => path,
+            Some(LawLocation::BuiltIn) => return self.linked_in(kind, name, pin),
             None => return Err(self.unknown(kind, name)),
         };
         let plugin = self.open_pinned(&path, pin)?;
@@ -115,15 +115,15 @@ impl SearchPath {
     }
 
     /// Returns the location of the law of this kind and name, without opening it.
-    fn place(&self, kind: Kind, name: &str) -> Option<Place> {
+    fn place(&self, kind: Kind, name: &str) -> Option<LawLocation> {
         if !name_is_valid(name) {
             return None;
         }
         if self.built_in.names().any(|law| law == (kind, name)) {
-            return Some(Place::BuiltIn);
+            return Some(LawLocation::BuiltIn);
         }
         let mut files = self.folders.iter().map(|f| f.join(file_name(kind, name)));
-        files.find(|p| p.is_file()).map(Place::Library)
+        files.find(|p| p.is_file()).map(LawLocation::Library)
     }
 
     fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
@@ -143,10 +143,15 @@ impl SearchPath {
     ///
     /// # Errors
     /// Returns the reason why the law cannot be used.
-    pub fn open_law(&self, kind: Kind, name: &str, place: &Place) -> Result<Plugin, LawError> {
+    pub fn open_law(
+        &self,
+        kind: Kind,
+        name: &str,
+        place: &LawLocation,
+    ) -> Result<Plugin, LawError> {
         match place {
-            Place::Library(path) => self.open(path),
-            Place::BuiltIn => self.linked_in(kind, name, None),
+            LawLocation::Library(path) => self.open(path),
+            LawLocation::BuiltIn => self.linked_in(kind, name, None),
         }
     }
 
@@ -155,7 +160,7 @@ impl SearchPath {
     pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
         let mut libraries = Vec::new();
         for (kind, name, pin) in laws {
-            if let Some(Place::Library(path)) = self.place(kind, name)
+            if let Some(LawLocation::Library(path)) = self.place(kind, name)
                 && self.doubt(&path).is_none()
             {
                 libraries.push((path, pin));
@@ -204,15 +209,15 @@ impl SearchPath {
 
     /// Lists all laws by the names under which they are found, sorted and without opening them:
     /// libraries by their file names (with `_` as `-`), and built-in laws.
-    pub fn laws(&self) -> Vec<(Kind, String, Place)> {
-        let mut out: Vec<(Kind, String, Place)> = Vec::new();
-        let mut add = |kind: Kind, name: String, place: Place| {
+    pub fn laws(&self) -> Vec<(Kind, String, LawLocation)> {
+        let mut out: Vec<(Kind, String, LawLocation)> = Vec::new();
+        let mut add = |kind: Kind, name: String, place: LawLocation| {
             if !out.iter().any(|(k, n, _)| *k == kind && *n == name) {
                 out.push((kind, name, place));
             }
         };
         for (kind, name) in self.built_in.names() {
-            add(kind, name.to_owned(), Place::BuiltIn);
+            add(kind, name.to_owned(), LawLocation::BuiltIn);
         }
         for folder in &self.folders {
             let Ok(entries) = std::fs::read_dir(folder) else {
@@ -222,7 +227,7 @@ impl SearchPath {
                 if let Some((kind, name)) = parse(&path)
                     && path.is_file()
                 {
-                    add(kind, name, Place::Library(path));
+                    add(kind, name, LawLocation::Library(path));
                 }
             }
         }
@@ -233,7 +238,7 @@ impl SearchPath {
     /// Lists the laws that are libraries.
     pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
         let libraries = self.laws().into_iter().filter_map(|law| match law {
-            (kind, name, Place::Library(path)) => Some((kind, name, path)),
+            (kind, name, LawLocation::Library(path)) => Some((kind, name, path)),
             _ => None,
         });
         libraries.collect()

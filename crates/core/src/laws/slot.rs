@@ -1,6 +1,6 @@
 //! Data of a kind's function at the end of a step.
 
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::outputs::Outputs;
 use super::step_result::{SolvedStep, Totals};
 use crate::contact::Network;
@@ -13,7 +13,7 @@ pub struct SlotCommit<'a, S: Space> {
     /// The interface.
     pub interface: &'a Interface,
     /// The law, one of its slots.
-    pub law: &'a Loaded,
+    pub law: &'a LoadedLaw,
     /// All contacts.
     pub network: &'a mut Network<S>,
     /// Results of the solve for each contact, in the order of the network, with time and scheme.

@@ -25,7 +25,7 @@ pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
 
 #[cfg(unix)]
 fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
-    let one = |path: &Path| on_the_way::doubt(path, owners, on_the_way::Place::of);
+    let one = |path: &Path| on_the_way::doubt(path, owners, on_the_way::FileStatus::of);
     one(library).or_else(|| {
         let links = match linked::libraries(library) {
             Ok(links) => links.into_iter(),
@@ -71,14 +71,14 @@ mod on_the_way {
 
     /// Owner, permissions and target of a file, folder or link; links are not followed.
     #[derive(Clone, Debug)]
-    pub struct Place {
+    pub struct FileStatus {
         pub owner: u32,
         pub mode: u32,
         /// Target of a link.
         pub link: Option<PathBuf>,
     }
 
-    impl Place {
+    impl FileStatus {
         pub fn of(path: &Path) -> Option<Self> {
             let known = path.symlink_metadata().ok()?;
             let link = known.is_symlink().then(|| path.read_link().ok()).flatten();
@@ -106,7 +106,7 @@ mod on_the_way {
     pub fn doubt(
         library: &Path,
         owners: &[u32],
-        place: impl Fn(&Path) -> Option<Place>,
+        place: impl Fn(&Path) -> Option<FileStatus>,
     ) -> Option<String> {
         /// Maximum number of links; a circular path fails when it is opened.
         const LINKS: usize = 40;
@@ -153,7 +153,7 @@ mod on_the_way {
         None
     }
 
-    fn open(path: &Path, found: &Place) -> String {
+    fn open(path: &Path, found: &FileStatus) -> String {
         format!(
             "anybody may write to {} (mode {:04o}), so it may not be what you put there; take that right away (chmod o-w), or say \
              --trust-plugins if you know who writes there",
@@ -162,7 +162,7 @@ mod on_the_way {
         )
     }
 
-    fn foreign(path: &Path, found: &Place, me: u32) -> String {
+    fn foreign(path: &Path, found: &FileStatus, me: u32) -> String {
         format!(
             "{} belongs to user {}, who may change it, and you are user {me}; copy the library to a folder of your own, or say \
              --trust-plugins if you trust that user",
@@ -180,10 +180,10 @@ mod on_the_way {
 
         /// A tree of places: owner, mode, target of a link.
         fn doubt_in(places: &[(&str, u32, u32, &str)], library: &str) -> Option<String> {
-            let tree: BTreeMap<PathBuf, Place> = places
+            let tree: BTreeMap<PathBuf, FileStatus> = places
                 .iter()
                 .map(|(path, owner, mode, link)| {
-                    let place = Place {
+                    let place = FileStatus {
                         owner: *owner,
                         mode: *mode,
                         link: (!link.is_empty()).then(|| link.into()),

@@ -48,9 +48,9 @@ pub(super) struct Label(&'static String);
 /// Guard for a call in progress. If it is dropped without [`Inside::leave`], something unwinds out
 /// of the call, and the program ends.
 #[must_use]
-pub(super) struct Inside;
+pub(super) struct CallGuard;
 
-impl Inside {
+impl CallGuard {
     /// The call came back.
     #[inline]
     pub fn leave(self) {
@@ -59,7 +59,7 @@ impl Inside {
     }
 }
 
-impl Drop for Inside {
+impl Drop for CallGuard {
     fn drop(&mut self) {
         UNWOUND.store(true, Ordering::SeqCst);
         std::process::abort();
@@ -86,14 +86,14 @@ pub(super) const LOADING: usize = 5;
 pub(super) const FRACTURE_ENERGY: usize = 6;
 
 /// Marks the start of a call, by its index in `CALLS`.
-pub(super) fn enter(label: Label, call: usize) -> Inside {
+pub(super) fn enter(label: Label, call: usize) -> CallGuard {
     MINE.with(|slot| {
         let text = std::ptr::from_ref(label.0).cast_mut();
         slot.who.store(text, Ordering::Relaxed);
         slot.call.store(call, Ordering::Relaxed);
         slot.turns.fetch_add(1, Ordering::Relaxed);
     });
-    Inside
+    CallGuard
 }
 
 impl Slot {
@@ -122,9 +122,9 @@ static RESCUES: Mutex<Vec<(u64, Rescue)>> = Mutex::new(Vec::new());
 
 /// Guard that keeps a rescue action registered.
 #[derive(Debug)]
-pub struct Ready(u64);
+pub struct RescueGuard(u64);
 
-impl Drop for Ready {
+impl Drop for RescueGuard {
     fn drop(&mut self) {
         let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
         rescues.retain(|(number, _)| *number != self.0);
@@ -133,17 +133,17 @@ impl Drop for Ready {
 
 /// Registers an action that saves a run when a law hangs. It runs on a thread of its own while the
 /// law is stuck, receives a description of the stuck call, and returns whether it saved something.
-pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
+pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> RescueGuard {
     static NUMBERS: AtomicU64 = AtomicU64::new(0);
     let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
     let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
     rescues.push((number, Box::new(save)));
-    Ready(number)
+    RescueGuard(number)
 }
 
 /// Result of saving when the program ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Saved {
+pub enum RescueOutcome {
     /// All rows and a summary are on disk.
     All,
     /// Not all could be written.
@@ -152,7 +152,7 @@ pub enum Saved {
     Nothing,
 }
 
-impl Saved {
+impl RescueOutcome {
     /// Describes the result in a sentence fragment.
     pub fn words(self) -> &'static str {
         match self {
@@ -168,7 +168,7 @@ impl Saved {
 pub const RESCUED_WITHIN: Duration = Duration::from_secs(10);
 
 /// Runs all rescue actions, while another thread is stuck or was stopped.
-pub fn save(who: &str) -> Saved {
+pub fn save(who: &str) -> RescueOutcome {
     let rescues = {
         let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
         std::mem::take(&mut *all)
@@ -178,9 +178,9 @@ pub fn save(who: &str) -> Saved {
         .into_iter()
         .filter_map(|(_, save)| save(who).then_some(()));
     match (count, saved.count()) {
-        (0, _) => Saved::Nothing,
-        (count, saved) if saved == count => Saved::All,
-        _ => Saved::Some,
+        (0, _) => RescueOutcome::Nothing,
+        (count, saved) if saved == count => RescueOutcome::All,
+        _ => RescueOutcome::Some,
     }
 }
 
@@ -197,7 +197,7 @@ pub fn nothing_to_save() -> bool {
 /// The system cannot create a thread.
 pub fn watch(
     limit: Duration,
-    stuck: impl FnOnce(&str, Saved) + Send + 'static,
+    stuck: impl FnOnce(&str, RescueOutcome) + Send + 'static,
 ) -> std::io::Result<()> {
     let (call, calls) = mpsc::sync_channel::<String>(1);
     let (done, saved) = mpsc::sync_channel(1);
@@ -242,8 +242,10 @@ pub fn watch(
             "{label} has not come back from {at} for {:.1} s",
             limit.as_secs_f64()
         );
-        let saved = call.send(who.clone()).map_or(Saved::Some, |()| {
-            saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
+        let saved = call.send(who.clone()).map_or(RescueOutcome::Some, |()| {
+            saved
+                .recv_timeout(RESCUED_WITHIN)
+                .unwrap_or(RescueOutcome::Some)
         });
         stuck(&who, saved);
     };

@@ -68,7 +68,7 @@ pub enum SlidingPart {
 
 /// Force and sliding distance of a rubbed body, over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drive {
+pub struct SlidingStep {
     /// Tangential force that moves the body (N; N/m in 2D).
     pub force: f64,
     /// Sliding distance over the step (m), signed.
@@ -77,7 +77,7 @@ pub struct Drive {
     pub at: f64,
 }
 
-impl Drive {
+impl SlidingStep {
     /// Returns the work over the step (J; J/m in 2D) with the force at its middle, which is
     /// interpolated between this force and that of the previous step (N; N/m): the sum over a loop
     /// is its area.
@@ -103,10 +103,10 @@ pub struct SlidingBody {
 impl SlidingBody {
     /// Returns force and sliding distance of its drive in the last step; for a deformable body
     /// those of the holder that moves it.
-    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> Drive {
+    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> SlidingStep {
         let h = s.options.scheme.h;
         match self.part {
-            SlidingPart::Driven(place) => Drive {
+            SlidingPart::Driven(place) => SlidingStep {
                 force: -s.state.received[place].0[self.along] / h,
                 slide: h * step_velocity(s, place)[self.along],
                 at: 0.5,
@@ -114,7 +114,7 @@ impl SlidingBody {
             SlidingPart::System { system, holder } => {
                 let holders = s.state.systems.get(system).map(|s| s.holders());
                 let held = holders.as_ref().and_then(|h| h.get(holder));
-                held.map_or_else(Drive::default, |held| Drive {
+                held.map_or_else(SlidingStep::default, |held| SlidingStep {
                     force: held.force,
                     slide: h * held.velocity,
                     at: held.at,

@@ -4,9 +4,9 @@
 use super::cycle::{CycleClock, SlidingBody};
 pub use super::jump_summary::{Jump, JumpPoint, JumpSummary};
 use super::{Process, ProcessError};
-use crate::code::{CodeError, decode, encode};
 use crate::contact::Bond;
-use crate::contact::events::Life;
+use crate::contact::events::BondEnergies;
+use crate::encoding::{EncodingError, decode, encode};
 use crate::geometry::recede::Vertex;
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepReport};
@@ -417,11 +417,11 @@ impl<S: Space> Process<S> for Jumps {
         self.spec.cycles.is_some_and(|n| self.represented >= n)
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(self)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         *self = decode(from)?;
         Ok(())
     }
@@ -437,7 +437,7 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     }
     all.push(vec![worn_third]);
     // Broken bonds count as damage 1; a slot without a bond has no damage.
-    let held = |b: &Bond<S>| match b.damage < 1.0 || b.life != Life::default() {
+    let held = |b: &Bond<S>| match b.damage < 1.0 || b.energies != BondEnergies::default() {
         true => b.damage,
         false => 0.0,
     };

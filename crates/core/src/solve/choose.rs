@@ -15,7 +15,7 @@ use super::form::ContactForm;
 
 use super::local::auto::{factorisations_before_newton, sweeps_per_factorisation};
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
@@ -59,7 +59,7 @@ pub fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
-    options: &Options,
+    options: &SolverOptions,
     auto_state: &mut AutoState,
 ) -> Report {
     let context = SolveContext {

@@ -34,7 +34,7 @@ const COLOUR: f64 = 15.0;
 
 /// Colouring state of a body: the last visitor, and the colours in use.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct BodyColours {
     by: u32,
     taken: u32,
 }
@@ -121,7 +121,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
     let mut sorting = Sorting {
         bodies,
         movable,
-        seen: vec![Seen::default(); movable.len()],
+        seen: vec![BodyColours::default(); movable.len()],
         order: Vec::with_capacity(bodies.len()),
         schedule: Schedule::default(),
     };
@@ -141,7 +141,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
 struct Sorting<'a> {
     bodies: &'a [[u32; 2]],
     movable: &'a [bool],
-    seen: Vec<Seen>,
+    seen: Vec<BodyColours>,
     order: Vec<u32>,
     schedule: Schedule,
 }
@@ -203,7 +203,7 @@ impl Sorting<'_> {
             seen,
             ..
         } = self;
-        seen.fill(Seen::default());
+        seen.fill(BodyColours::default());
         let mut blocks: Vec<(u32, u32)> = Vec::new();
         for (block, pairs) in bodies.chunks(span).enumerate() {
             let own = || {
@@ -234,7 +234,7 @@ impl Sorting<'_> {
     /// threads.
     fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs, parallel: bool) {
         let (bodies, movable) = (self.bodies, self.movable);
-        let memory = || (vec![Seen::default(); movable.len()], 0);
+        let memory = || (vec![BodyColours::default(); movable.len()], 0);
         let divide = worth_dividing(parallel, bodies.len(), COLOUR);
         let grouped = map_with_memory(divide, blocks.len(), memory, |(seen, mark), k| {
             let first = blocks[k].1 as usize * span;
@@ -293,7 +293,7 @@ impl ColourGroups {
         &mut self,
         bodies: &[[u32; 2]],
         movable: &[bool],
-        seen: &mut [Seen],
+        seen: &mut [BodyColours],
         part: impl Iterator<Item = usize>,
         mark: u32,
     ) {
@@ -306,7 +306,7 @@ impl ColourGroups {
             for body in pair.into_iter().flatten() {
                 let seen = &mut seen[body];
                 if seen.by != mark {
-                    *seen = Seen { by: mark, taken: 0 };
+                    *seen = BodyColours { by: mark, taken: 0 };
                 }
                 taken |= seen.taken;
             }

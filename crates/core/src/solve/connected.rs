@@ -8,7 +8,7 @@ const NONE: u32 = u32::MAX;
 
 /// The connected sets of the contacts of a problem, valid until the contacts change.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Connected {
+pub(super) struct ConnectedSets {
     /// The contacts for which the sets were found: the numbers of the orders of their rows
     /// ([`ContactOrder::changes`](super::colour::ContactOrder::changes)).
     pub of: Option<[u64; KINDS]>,
@@ -26,7 +26,7 @@ pub(super) struct Connected {
     pub of_several_controlled: Vec<usize>,
 }
 
-impl Connected {
+impl ConnectedSets {
     /// Finds the sets from the bodies that move and the pairs in contact.
     pub fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
         let mut parent: Vec<u32> = (0..moves.len() as u32).collect();
@@ -130,7 +130,7 @@ mod tests {
     fn what_does_not_move_connects_nothing() {
         let moves = [false, true, true, true, true, true, true, false];
         let touching = [[0, 1], [2, 1], [4, 3], [0, 4], [3, 7], [5, 0], [0, 7]];
-        let sets = Connected::new(&moves, |found| touching.into_iter().for_each(found));
+        let sets = ConnectedSets::new(&moves, |found| touching.into_iter().for_each(found));
         assert_eq!(sets.len(), 3);
         let of = [0, 1, 2, 3, 4, 5, 6, 7].map(|b| sets.of_body(b));
         let (a, b, c) = (Some(0), Some(1), Some(2));
@@ -148,7 +148,7 @@ mod tests {
             .map(|k| (k * 83) % 199)
             .map(|k| [k + 1, k])
             .collect();
-        let sets = Connected::new(&moves, |found| links.iter().copied().for_each(found));
+        let sets = ConnectedSets::new(&moves, |found| links.iter().copied().for_each(found));
         assert_eq!((sets.len(), sets.contacts(0)), (1, 199));
     }
 }

@@ -2,10 +2,10 @@
 
 use super::form::ContactForm;
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::row::MomentForm;
-use super::search::Search;
+use super::search::SecondSearch;
 use super::standard;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub struct AutoState {
     /// its last failure.
     skipped: [u32; 2],
     /// State of the search for second solutions.
-    pub(super) search: Search,
+    pub(super) search: SecondSearch,
 }
 
 impl Default for AutoState {
@@ -31,14 +31,14 @@ impl Default for AutoState {
             patience: 1.0,
             interior_first: false,
             skipped: [0; 2],
-            search: Search::default(),
+            search: SecondSearch::default(),
         }
     }
 }
 
 impl AutoState {
     /// Returns the state of the search for second solutions.
-    pub fn search(&self) -> &Search {
+    pub fn search(&self) -> &SecondSearch {
         &self.search
     }
 
@@ -73,13 +73,13 @@ impl AutoState {
 pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
     pub(super) moments: &'a [MomentForm<S>],
-    pub(super) options: &'a Options,
+    pub(super) options: &'a SolverOptions,
 }
 
 impl<S: Space> SolveContext<'_, S> {
     /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
     pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
-        let options = Options {
+        let options = SolverOptions {
             accelerated,
             max_iterations: most,
             ..*self.options

@@ -158,7 +158,7 @@ impl<S: Space> MomentumIteration<S> {
 #[cfg(test)]
 mod tests {
     use crate::geometry::space::{Dim2, VectorLike};
-    use crate::solve::{ContactForm, Options, Problem, nlgs};
+    use crate::solve::{ContactForm, Problem, SolverOptions, nlgs};
     use nalgebra::{Matrix1, Vector1, Vector2};
 
     /// A column of `count` disks of 1 kg on a floor, each with velocity -1 m/s without contacts.
@@ -192,9 +192,9 @@ mod tests {
         for friction in [0.0, 0.3] {
             let sweeps = [100, 200, 400].map(|count| {
                 let mut problem = column(count, friction);
-                let options = Options {
+                let options = SolverOptions {
                     tolerance: 1e-12,
-                    ..Options::default()
+                    ..SolverOptions::default()
                 };
                 let report = nlgs::solve(&mut problem, &options);
                 assert!(report.converged);
@@ -220,11 +220,11 @@ mod tests {
                     // A sideways velocity that increases with height lets some contacts slide.
                     body.0.x = drift + 0.5 * k as f64;
                 }
-                let options = Options {
+                let options = SolverOptions {
                     tolerance: 1e-12,
                     max_iterations: 1_000_000,
                     accelerated,
-                    ..Options::default()
+                    ..SolverOptions::default()
                 };
                 let report = nlgs::solve(&mut problem, &options);
                 assert!(report.converged, "{report:?}");

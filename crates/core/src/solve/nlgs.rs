@@ -17,7 +17,7 @@ use crate::geometry::space::Space;
 
 /// Solver options.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct SolverOptions {
     /// Error to reach.
     pub tolerance: f64,
     /// Norm of the error, see [`super::error`].
@@ -37,7 +37,7 @@ pub struct Options {
     pub parallel: bool,
 }
 
-impl Default for Options {
+impl Default for SolverOptions {
     fn default() -> Self {
         Self {
             tolerance: 1e-4,
@@ -83,7 +83,7 @@ pub struct Report {
 }
 
 /// Sorts the rows, computes velocities from the current impulses, and evaluates the error.
-pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &SolverOptions) -> Report {
     if problem.contacts() == 0 {
         return Report {
             converged: true,
@@ -96,7 +96,10 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
 }
 
 /// Computes velocities from the current impulses and evaluates the error.
-pub(super) fn check_convergence<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn check_convergence<S: Space>(
+    problem: &mut Problem<S>,
+    options: &SolverOptions,
+) -> Report {
     let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
@@ -114,7 +117,7 @@ pub(super) fn check_convergence<S: Space>(problem: &mut Problem<S>, options: &Op
 }
 
 /// Iterates in place until the problem is solved or the iteration limit is reached.
-pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub fn solve<S: Space>(problem: &mut Problem<S>, options: &SolverOptions) -> Report {
     if problem.contacts() == 0 {
         return Report {
             converged: true,
@@ -129,7 +132,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let mut acceleration = options
         .accelerated
         .then(|| Acceleration::new(problem, every, options.parallel));
-    let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
+    let (mut relaxation, mut caution) = (options.relaxation, RelaxationControl::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
     let mut next = every.div_ceil(2);
@@ -233,12 +236,12 @@ impl Report {
 
 /// Controls the relaxation. Over-relaxation has no convergence proof with friction; where the
 /// residual grows or cycles, it is reduced.
-struct Caution {
+struct RelaxationControl {
     least: f64,
     tests: u32,
 }
 
-impl Default for Caution {
+impl Default for RelaxationControl {
     fn default() -> Self {
         Self {
             least: f64::INFINITY,
@@ -247,7 +250,7 @@ impl Default for Caution {
     }
 }
 
-impl Caution {
+impl RelaxationControl {
     /// Growth of the squared residual that triggers a reduction.
     const GROWTH: f64 = 4.0;
     /// Number of tests without a reduction of the squared residual by a hundredth that triggers a
@@ -487,7 +490,7 @@ mod tests {
     /// below 0.05.
     #[test]
     fn caution_reduces_the_relaxation() {
-        let mut caution = Caution::default();
+        let mut caution = RelaxationControl::default();
         for residual in [1.0, 0.5, 1.9, 0.4] {
             assert_eq!(caution.next_relaxation(residual, 1.5), 1.5);
         }

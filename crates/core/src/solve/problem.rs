@@ -1,6 +1,6 @@
 //! The contact problem of a step: bodies as velocity records, contacts as rows.
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::form::{ContactForm, ContactSolution, Mobility, RowPlace};
 use super::kinds::{KINDS, RowsOfKind, of_kind};
 use super::loaded::LoadedPoints;
@@ -58,7 +58,7 @@ pub struct Problem<S: Space> {
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<RowPlace>,
     /// Connected sets of the contacts, as last computed.
-    pub(super) connected: Connected,
+    pub(super) connected: ConnectedSets,
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
@@ -81,7 +81,7 @@ impl<S: Space> Default for Problem<S> {
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            connected: Connected::default(),
+            connected: ConnectedSets::default(),
             compliant: false,
             of_kind: Default::default(),
             controlled: Vec::new(),
@@ -193,14 +193,14 @@ impl<S: Space> Problem<S> {
     /// Finds the connected sets, unless the stored sets belong to the same contacts: packings at
     /// rest keep them from step to step. The sets are moved out of the problem, and must be
     /// returned to it.
-    pub(super) fn take_connected(&mut self) -> Connected {
+    pub(super) fn take_connected(&mut self) -> ConnectedSets {
         let of = self.contacts_of_rows();
         let known = std::mem::take(&mut self.connected);
         if of.is_some() && known.of == of && known.controlled == self.controlled {
             return known;
         }
         let movable = self.movable(false);
-        let mut sets = Connected::new(&movable, |found| {
+        let mut sets = ConnectedSets::new(&movable, |found| {
             for rows in &self.rows {
                 of_kind!(rows, rows => rows.pairs().iter().for_each(|pair| found(*pair)));
             }
@@ -224,7 +224,7 @@ impl<S: Space> Problem<S> {
     }
 
     /// Returns the number of degrees of freedom of the bodies of each connected set.
-    pub(super) fn freedoms(&self, sets: &Connected) -> Vec<usize> {
+    pub(super) fn freedoms(&self, sets: &ConnectedSets) -> Vec<usize> {
         let mut freedoms = vec![0; sets.len()];
         for (body, mobility) in (0..).zip(&self.masses) {
             if let Some(set) = sets.of_body(body) {

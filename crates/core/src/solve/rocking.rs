@@ -2,7 +2,7 @@
 //! errors of one set are not balanced by other sets, which it does not touch. It is computed where
 //! the sums over all contacts are within the tolerance.
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::error::{Scale, Sums};
 use super::kinds::of_kind;
 use super::problem::Problem;
@@ -33,7 +33,7 @@ pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Sca
 
 fn of_sets<S: Space>(
     problem: &mut Problem<S>,
-    sets: &Connected,
+    sets: &ConnectedSets,
     sums: &Sums,
     scale: &Scale,
 ) -> f64 {
@@ -87,7 +87,7 @@ fn of_sets<S: Space>(
 /// Returns the sums of each set but one.
 fn apart<S: Space>(
     problem: &mut Problem<S>,
-    sets: &Connected,
+    sets: &ConnectedSets,
     without: Option<usize>,
 ) -> Vec<(Sums, Scale)> {
     let mut out = vec![(Sums::default(), Scale::default()); sets.len()];

@@ -179,7 +179,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         (before, factor): (&mut [Parts<S>], f64),
     ) {
         assert_eq!(before.len(), self.rows.len());
-        let before = Shared(before.as_mut_ptr());
+        let before = SharedRows(before.as_mut_ptr());
         self.pass(solver_bodies, parallel, |rows, range| {
             // SAFETY: there are as many entries as rows; blocks are disjoint, and each is run once.
             let before = unsafe { before.slice(range) };
@@ -210,7 +210,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
             schedule.contacts() == count,
             "rows are sorted before they are visited"
         );
-        let rows = Shared(self.rows.as_mut_ptr());
+        let rows = SharedRows(self.rows.as_mut_ptr());
         let pairs = self.order.pairs();
         schedule.run(worth_dividing(parallel, count, ORDERED), |block| {
             // SAFETY: blocks are disjoint, and each is run once.
@@ -293,7 +293,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         found: impl Fn(&V, usize) -> T + Sync,
     ) -> Vec<T> {
         let count = self.rows.len();
-        let rows = Shared(self.rows.as_mut_ptr());
+        let rows = SharedRows(self.rows.as_mut_ptr());
         let pairs = self.pairs();
         map_ranges(
             worth_dividing(parallel, count, VISIT),
@@ -314,12 +314,12 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
 }
 
 /// Rows accessed by several threads, each in its own part.
-struct Shared<R>(*mut R);
+struct SharedRows<R>(*mut R);
 
 // SAFETY: each part is used by one thread.
-unsafe impl<R: Send> Sync for Shared<R> {}
+unsafe impl<R: Send> Sync for SharedRows<R> {}
 
-impl<R> Shared<R> {
+impl<R> SharedRows<R> {
     /// # Safety
     /// No one else may use the rows at these places meanwhile.
     #[inline(always)]

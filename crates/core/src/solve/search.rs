@@ -10,9 +10,9 @@ const PASSED: i32 = 8;
 
 /// State of the searches for a second solution.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Search {
+pub struct SecondSearch {
     /// Waiting times of the sets that slid, by their first body.
-    waits: BTreeMap<u32, Wait>,
+    backoffs: BTreeMap<u32, Backoff>,
     /// Sets of which another solve ended in a solution in this step.
     #[serde(default)]
     searched: BTreeSet<u32>,
@@ -20,24 +20,28 @@ pub struct Search {
 
 /// Waiting time after searches without a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Wait {
+struct Backoff {
     /// Steps until the next search; negative where nothing slid since then.
     left: i32,
     /// Number of steps that are skipped.
     passed: i32,
 }
 
-impl Search {
+impl SecondSearch {
     /// Begins a step.
     pub fn begin_step(&mut self) {
         self.searched.clear();
-        self.waits.values_mut().for_each(|wait| wait.left -= 1);
-        self.waits.retain(|_, wait| wait.left >= -PASSED);
+        self.backoffs
+            .values_mut()
+            .for_each(|backoff| backoff.left -= 1);
+        self.backoffs.retain(|_, backoff| backoff.left >= -PASSED);
     }
 
     /// Returns whether a set is to be searched in this step.
     pub fn is_due(&self, set: u32) -> bool {
-        self.waits.get(&set).is_none_or(|wait| wait.left <= 0)
+        self.backoffs
+            .get(&set)
+            .is_none_or(|backoff| backoff.left <= 0)
     }
 
     /// Returns whether another solve of a set ended in a solution in this step.
@@ -53,12 +57,12 @@ impl Search {
     /// Records the result of a search.
     pub fn learn(&mut self, set: u32, found: bool) {
         if found {
-            self.waits.remove(&set);
+            self.backoffs.remove(&set);
             return;
         }
-        let wait = self.waits.entry(set).or_default();
-        wait.passed = (2 * wait.passed).clamp(1, PASSED);
-        wait.left = wait.passed + 1;
+        let backoff = self.backoffs.entry(set).or_default();
+        backoff.passed = (2 * backoff.passed).clamp(1, PASSED);
+        backoff.left = backoff.passed + 1;
     }
 }
 
@@ -70,7 +74,7 @@ mod tests {
     /// whatever is solved in between.
     #[test]
     fn searches_are_put_off_by_steps() {
-        let mut search = Search::default();
+        let mut search = SecondSearch::default();
         let (mut last, mut passed) = (None, Vec::new());
         for step in 0..35 {
             search.begin_step();
@@ -93,6 +97,6 @@ mod tests {
         for _ in 0..20 {
             search.begin_step();
         }
-        assert_eq!(search, Search::default(), "it is forgotten");
+        assert_eq!(search, SecondSearch::default(), "it is forgotten");
     }
 }

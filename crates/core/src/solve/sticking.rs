@@ -21,15 +21,15 @@
 //! systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved
 //! again, it is reported ([`Problem::is_not_searched`]).
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::context::{AutoState, SolveContext};
 use super::form::{ContactForm, ContactSolution};
 
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::row::MomentForm;
-use super::search::Search;
+use super::search::SecondSearch;
 use crate::geometry::space::{Space, VectorLike};
 use crate::lanes::LaneVector;
 use std::collections::{BTreeMap, BTreeSet};
@@ -75,22 +75,25 @@ const NONE: u32 = u32::MAX;
 
 /// State of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Does {
+enum ContactStatus {
     /// It carries no load and does not slide, or separates.
     Nothing,
     /// It carries a load without sliding.
-    Holds,
+    Sticks,
     /// It slides, and slid at the start of the step.
-    GoesOn,
+    KeepsSliding,
     /// It slides, and was not in contact at the start of the step.
-    New,
+    SlidesNew,
     /// It slides, and held at the start of the step.
-    Begins,
+    StartsSliding,
 }
 
-impl Does {
+impl ContactStatus {
     fn slides(self) -> bool {
-        matches!(self, Self::GoesOn | Self::New | Self::Begins)
+        matches!(
+            self,
+            Self::KeepsSliding | Self::SlidesNew | Self::StartsSliding
+        )
     }
 }
 
@@ -102,15 +105,15 @@ struct SlidingSet {
 }
 
 /// Result of a second solve.
-struct Sought<S: Space> {
+struct SecondSolve<S: Space> {
     /// Whether the second solve converged.
     answered: bool,
     /// The other solution, if it has less energy.
-    other: Option<Other<S>>,
+    other: Option<OtherSolution<S>>,
 }
 
-/// A solution of a set.
-struct Other<S: Space> {
+/// Another solution of a set.
+struct OtherSolution<S: Space> {
     report: Report,
     impulses: Vec<(u32, S::Vector)>,
     moments: Vec<(u32, S::Spin)>,
@@ -153,21 +156,30 @@ fn at_bound<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>) -> bo
 }
 
 /// Returns the state of a contact, where relative velocities below `least` are errors.
-fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f64) -> Does {
+fn status<S: Space>(
+    problem: &Problem<S>,
+    k: u32,
+    form: &ContactForm<S>,
+    least: f64,
+) -> ContactStatus {
     let [opens, slip] = parts(problem, form);
     let loaded = problem.normal(problem.places[k as usize]) > 0.0;
     if opens > least || form.friction == 0.0 {
-        return Does::Nothing;
+        return ContactStatus::Nothing;
     }
     if slip <= least || !at_bound(problem, k, form) {
-        return if loaded { Does::Holds } else { Does::Nothing };
+        return if loaded {
+            ContactStatus::Sticks
+        } else {
+            ContactStatus::Nothing
+        };
     }
     if form.normal.dot(&form.impulse) <= 0.0 {
-        Does::New
+        ContactStatus::SlidesNew
     } else if held_by(form, &form.impulse, HELD) {
-        Does::Begins
+        ContactStatus::StartsSliding
     } else {
-        Does::GoesOn
+        ContactStatus::KeepsSliding
     }
 }
 
@@ -234,7 +246,7 @@ impl<S: Space> Problem<S> {
         &mut self,
         forms: &[ContactForm<S>],
         begin: &[usize],
-        search: &Search,
+        search: &SecondSearch,
     ) -> [bool; 2] {
         let sets = self.take_connected();
         let freedoms = self.freedoms(&sets);
@@ -290,7 +302,7 @@ impl<S: Space> SolveContext<'_, S> {
                 && self.is_sought(problem, &set.contacts, due)
                 && many()
             {
-                let Sought { answered, other } = self.lower(problem, &set.contacts);
+                let SecondSolve { answered, other } = self.lower(problem, &set.contacts);
                 if answered {
                     auto_state.search.answered(set.name);
                 }
@@ -351,7 +363,7 @@ impl<S: Space> SolveContext<'_, S> {
 
     /// Returns the sets of [`LARGE`] contacts in which a body squeezed by controlled bodies
     /// begins to slide, or slides and was not squeezed before.
-    fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
+    fn letting_go(&self, problem: &Problem<S>, sets: &ConnectedSets) -> BTreeSet<usize> {
         let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
         let several = &sets.of_several_controlled;
         let begins = |k: &usize| {
@@ -376,15 +388,18 @@ impl<S: Space> SolveContext<'_, S> {
         let least = least_slip(problem, of.iter().map(form));
         let all: Vec<_> = of
             .iter()
-            .map(|k| does(problem, *k, form(k), least))
+            .map(|k| status(problem, *k, form(k), least))
             .collect();
-        let some = |what: Does| all.contains(&what);
-        let begins = some(Does::Begins) && (due || of.len() <= SMALL);
-        begins || due && (some(Does::New) || some(Does::GoesOn) && some(Does::Holds))
+        let some = |what: ContactStatus| all.contains(&what);
+        let begins = some(ContactStatus::StartsSliding) && (due || of.len() <= SMALL);
+        begins
+            || due
+                && (some(ContactStatus::SlidesNew)
+                    || some(ContactStatus::KeepsSliding) && some(ContactStatus::Sticks))
     }
 
     /// Searches another solution of a set, with less energy than the present one.
-    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> Sought<S> {
+    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> SecondSolve<S> {
         let mut alone = Problem::default();
         let mut bodies = BTreeMap::new();
         let mut body = |b: u32| {
@@ -414,7 +429,7 @@ impl<S: Space> SolveContext<'_, S> {
         for form in &moments {
             alone.push_moment(form, &forms[form.contact as usize]);
         }
-        let options = Options {
+        let options = SolverOptions {
             tolerance: FINER * self.options.tolerance,
             parallel: false,
             ..*self.options
@@ -435,7 +450,7 @@ impl<S: Space> SolveContext<'_, S> {
         alone.adopt(&now, &now_turned);
         let (answered, lower) = context.find_lower(&mut alone);
         let Some((report, differs)) = lower else {
-            return Sought {
+            return SecondSolve {
                 answered,
                 other: None,
             };
@@ -443,9 +458,9 @@ impl<S: Space> SolveContext<'_, S> {
         let impulses = of.iter().enumerate();
         let impulses = impulses.map(|(k, of)| (*of, alone.solution(k).impulse));
         let moments = turned.iter().zip(&alone.moments);
-        Sought {
+        SecondSolve {
             answered,
-            other: Some(Other {
+            other: Some(OtherSolution {
                 report,
                 impulses: impulses.collect(),
                 moments: moments.map(|(k, row)| (*k, row.moment())).collect(),
@@ -460,7 +475,7 @@ impl<S: Space> SolveContext<'_, S> {
     fn find_lower(&self, alone: &mut Problem<S>) -> (bool, Option<(Report, bool)>) {
         let before = self.energy(alone)[0];
         let least = least_slip(alone, self.forms.iter());
-        let did = self.all_do(alone, least);
+        let did = self.statuses(alone, least);
         self.start_anew(alone);
         let tolerance = 0.3 * self.options.tolerance;
         let of_contacts = OF_CONTACT * self.forms.len().min(MOST) as u32;
@@ -473,9 +488,9 @@ impl<S: Space> SolveContext<'_, S> {
         if !other.converged && is_lower(alone, LOWER) {
             other.add(&self.sweep(alone, true, most));
         }
-        let does = self.all_do(alone, least);
-        let differs = |(a, b): (&Does, &Does)| {
-            a.slides() && *b == Does::Holds || b.slides() && *a == Does::Holds
+        let does = self.statuses(alone, least);
+        let differs = |(a, b): (&ContactStatus, &ContactStatus)| {
+            a.slides() && *b == ContactStatus::Sticks || b.slides() && *a == ContactStatus::Sticks
         };
         let one_differs = did.iter().zip(&does).any(differs);
         let by = if one_differs { LOWER_HOLDS } else { LOWER };
@@ -486,16 +501,16 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Returns the states of the contacts of a problem; contacts without a load do not hold.
-    fn all_do(&self, problem: &Problem<S>, least: f64) -> Vec<Does> {
+    fn statuses(&self, problem: &Problem<S>, least: f64) -> Vec<ContactStatus> {
         let normal = |k: u32| problem.normal(problem.places[k as usize]);
         let count = self.forms.len() as u32;
         let largest = (0..count).map(normal).fold(0.0, f64::max);
         let of = |k: u32| {
             let form = &self.forms[k as usize];
-            let what = does(problem, k, form, least);
+            let what = status(problem, k, form, least);
             // Sliding contacts may have lost their load to the others.
-            if what == Does::Holds && normal(k) <= LOADED * largest {
-                Does::Nothing
+            if what == ContactStatus::Sticks && normal(k) <= LOADED * largest {
+                ContactStatus::Nothing
             } else {
                 what
             }
@@ -504,10 +519,10 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Uses the solutions of sets, unless all contacts together do not converge with them.
-    fn take(&self, problem: &mut Problem<S>, report: &mut Report, found: &[Other<S>]) {
+    fn take(&self, problem: &mut Problem<S>, report: &mut Report, found: &[OtherSolution<S>]) {
         let mut saved = Vec::new();
         problem.store(&mut saved);
-        let list = |of: &Other<S>| of.impulses.clone();
+        let list = |of: &OtherSolution<S>| of.impulses.clone();
         let impulses: Vec<_> = found.iter().flat_map(list).collect();
         let moments: Vec<_> = found.iter().flat_map(|of| of.moments.clone()).collect();
         problem.adopt_some(&impulses, &moments);

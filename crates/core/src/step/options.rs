@@ -29,7 +29,7 @@ pub struct Options {
     /// The time scheme.
     pub scheme: Scheme,
     /// The solver. Phases may set another tolerance, see [`super::Simulation::solver_in_force`].
-    pub solver: solve::Options,
+    pub solver: solve::SolverOptions,
     /// Number of steps of the case that a step spans in addition to its own; 0 unless it has grown,
     /// see [`super::Simulation::span_steps`].
     pub grown: u32,

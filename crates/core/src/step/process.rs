@@ -2,7 +2,7 @@
 
 pub use super::error::ProcessError;
 use super::{Simulation, StepReport};
-use crate::code::CodeError;
+use crate::encoding::EncodingError;
 use crate::geometry::space::Space;
 use std::any::Any;
 use std::fmt::Debug;
@@ -103,7 +103,7 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     ///
     /// # Errors
     /// The state cannot be encoded.
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         Ok(Vec::new())
     }
 
@@ -111,7 +111,7 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     ///
     /// # Errors
     /// The bytes are of something else.
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, _: &[u8]) -> Result<(), EncodingError> {
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 //! restored.
 
 use super::{Options, Simulation, State, control};
-use crate::code::CodeError;
+use crate::encoding::EncodingError;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 
@@ -22,12 +22,12 @@ pub enum RepeatError {
     },
     /// A process cannot be saved or restored.
     #[error("the state of a process cannot be saved or put back for repeated steps: {0}")]
-    Code(#[from] CodeError),
+    Code(#[from] EncodingError),
 }
 
 /// All data of a simulation that steps may change, to restore it.
 #[derive(Debug)]
-pub struct Saved<S: Space> {
+pub struct SavedSimulation<S: Space> {
     state: State<S>,
     options: Options,
     laws: Vec<Interface>,
@@ -65,7 +65,7 @@ impl<S: Space> Simulation<S> {
     ///
     /// # Errors
     /// A state cannot be encoded.
-    pub fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+    pub fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError> {
         let list = self.processes.iter();
         list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
     }
@@ -76,10 +76,10 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// The states belong to other processes, or one cannot be read; processes before it are then
     /// restored already.
-    pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+    pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError> {
         let names = self.processes.iter().map(|p| p.name());
         if !names.eq(from.iter().map(|(name, _)| name.as_str())) {
-            return Err(CodeError::other("processes"));
+            return Err(EncodingError::other("processes"));
         }
         let mut pairs = self.processes.iter_mut().zip(from);
         pairs.try_for_each(|(process, (_, bytes))| process.restore(bytes))
@@ -149,9 +149,9 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Copies all data that steps may change.
-    fn save(&self) -> Result<Saved<S>, RepeatError> {
+    fn save(&self) -> Result<SavedSimulation<S>, RepeatError> {
         self.repeatable()?;
-        Ok(Saved {
+        Ok(SavedSimulation {
             processes: self.save_processes()?,
             state: self.state.clone(),
             options: self.options,
@@ -159,7 +159,7 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
+    fn put_back(&mut self, saved: SavedSimulation<S>) -> Result<(), RepeatError> {
         let worn = self.state.scars.iter().zip(&saved.state.scars);
         let worn: Vec<bool> = worn.map(|(now, then)| !now.same_depths(then)).collect();
         self.state = saved.state;

@@ -34,7 +34,7 @@ pub struct StepReport {
     /// an impulse.
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
-    pub projected: Option<Projected>,
+    pub projected: Option<ProjectionReport>,
     /// Imposed motions that no solution can follow, if there were any.
     pub impossible: Option<Box<Impossible>>,
     /// Deepest overlap at detection, after a projection, see
@@ -70,7 +70,7 @@ pub struct Agreement {
 
 /// Result of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projected {
+pub struct ProjectionReport {
     /// Deepest penetration before it, as a fraction of the smaller body's length.
     pub before: f64,
     /// Deepest penetration left.

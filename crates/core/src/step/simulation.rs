@@ -94,9 +94,9 @@ impl<S: Space> Simulation<S> {
 
     /// Returns the options of the solver, with the tolerance that the current phase has set, if
     /// any.
-    pub fn solver_in_force(&self) -> solve::Options {
+    pub fn solver_in_force(&self) -> solve::SolverOptions {
         let given = self.options.solver;
-        solve::Options {
+        solve::SolverOptions {
             tolerance: self.state.control.tolerance.unwrap_or(given.tolerance),
             ..given
         }

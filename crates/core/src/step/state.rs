@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// State of a simulation between two steps; see [`super::Simulation::restore`].
 ///
 /// ```
-/// use fretwork_core::code::{CodeError, decode, encode};
+/// use fretwork_core::encoding::{EncodingError, decode, encode};
 /// use fretwork_core::geometry::space::Dim2;
 /// use fretwork_core::step::{Simulation, StepError};
 ///

@@ -6,7 +6,8 @@ use crate::bodies::Dof;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
 use crate::heat::{
-    BodyNodes, Heat, HeatShares, HeatState, Imposed, Node, Partition, Store, ThermalMaterial,
+    BodyNodes, Heat, HeatShares, HeatState, ImposedHeatFlow, Node, Partition, Store,
+    ThermalMaterial,
 };
 use crate::laws::Interface;
 use crate::laws::sample_laws::{bond, constant, interface, sticky};
@@ -160,7 +161,7 @@ fn a_bond_swings_as_the_midpoint_rule_says() {
         let network = &s.state.network;
         let kept = &network.memory[0].bonds[0];
         assert!((kept.opening_n - opening).abs() < 1e-14 && kept.intact());
-        assert!((kept.life.work[0] - stored).abs() < 1e-14);
+        assert!((kept.energies.work[0] - stored).abs() < 1e-14);
         assert_eq!((network.bonds_made(), network.bonds_broken()), (1, 0));
     }
 }
@@ -253,7 +254,7 @@ fn two_disks_come_to_one_temperature() {
         let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
         let mut s = Simulation::of_disks(&disks).with_law(interface([constant()]));
         s.options.scheme = Scheme { h: H, theta: 0.5 };
-        let imposed = vec![Imposed {
+        let imposed = vec![ImposedHeatFlow {
             body: None,
             node: 0,
             flow: 5.0,

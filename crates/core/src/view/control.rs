@@ -1,7 +1,7 @@
 //! Stepping a simulation, and saving and restoring its state.
 
 use super::RunView;
-use crate::code::{CodeError, decode_first, encode};
+use crate::encoding::{EncodingError, decode_first, encode};
 use crate::geometry::space::{Space, VectorLike, spin_about};
 use crate::solve::local::LocalProblem;
 use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, StepReport};
@@ -52,24 +52,24 @@ pub trait RunControl: RunView + Send {
     ///
     /// # Errors
     /// The state cannot be serialised.
-    fn save(&self) -> Result<Vec<u8>, CodeError>;
+    fn save(&self) -> Result<Vec<u8>, EncodingError>;
     /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns
     /// the bytes after it, or `None` if the state belongs to another case. See
     /// [`Simulation::restore`].
     ///
     /// # Errors
     /// The bytes are not a state.
-    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError>;
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, EncodingError>;
     /// The states of the processes.
     ///
     /// # Errors
     /// A state cannot be serialised.
-    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError>;
+    fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError>;
     /// Restores the states of the processes.
     ///
     /// # Errors
     /// The states belong to other processes.
-    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError>;
     /// Calls `trial`, which may make steps and change options, and restores the state before it;
     /// see [`Simulation::repeat`].
     ///
@@ -164,17 +164,17 @@ impl<S: Space> RunControl for Simulation<S> {
         self.local_problem()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
-    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError> {
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, EncodingError> {
         let (state, rest) = decode_first(bytes)?;
         Ok(self.restore(state).then_some(rest))
     }
-    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+    fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError> {
         self.save_processes()
     }
-    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError> {
         self.restore_processes(from)
     }
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError> {

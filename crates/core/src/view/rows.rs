@@ -1,7 +1,7 @@
 //! Rows of a view: plain data with three components.
 
 use crate::bodies::{Carrier, Driven};
-use crate::contact::{BondState, Key, Slides};
+use crate::contact::{BondState, Key, SlideStatistics};
 use crate::geometry::space::{VectorLike, Vectors};
 use nalgebra::Vector3;
 
@@ -218,5 +218,5 @@ pub struct BondCounts {
     /// Number of bonds broken so far.
     pub broken: u64,
     /// How far bonds opened or slid in a step.
-    pub slides: Slides,
+    pub slides: SlideStatistics,
 }

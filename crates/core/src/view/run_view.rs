@@ -12,11 +12,11 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{Heat, HeatState};
 use crate::laws::Interface;
 use crate::momentum::Momentum;
-use crate::process::cycle::{Drive, SlidingBody};
+use crate::process::cycle::{SlidingBody, SlidingStep};
 use crate::process::expansion::ThermalExpansion;
 use crate::process::jump::{JumpSummary, Jumps};
 use crate::solve;
-use crate::step::control::{Begun, GravityDrive, StepBounds};
+use crate::step::control::{GravityDrive, StartedPhase, StepBounds};
 use crate::step::fields::GrainPart;
 use crate::step::{Options, RepeatError, Simulation};
 use std::any::{Any, TypeId};
@@ -37,7 +37,7 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     fn options(&self) -> &Options;
     /// Returns the options of the solver, with the tolerance that the current phase has set, if
     /// any.
-    fn solver_in_force(&self) -> solve::Options;
+    fn solver_in_force(&self) -> solve::SolverOptions;
     /// Returns the tolerance of the solver that the current phase has set, if any.
     fn phase_tolerance(&self) -> Option<f64>;
     /// Whether steps can be repeated.
@@ -59,7 +59,7 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     /// Returns the names of the phases of the case, in order.
     fn phase_names(&self) -> Vec<&str>;
     /// Returns the phases begun so far, in order.
-    fn begun(&self) -> &[Begun];
+    fn begun(&self) -> &[StartedPhase];
     /// Returns the acceleration of gravity (m/s^2).
     fn gravity(&self) -> [f64; 3];
     /// Returns the time dependence of gravity.
@@ -96,7 +96,7 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
 
     /// Returns force and sliding distance of the drive of a rubbed body in the last step, and the
     /// mean normal force of its contacts over the step (N; N/m in 2D), positive in compression.
-    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64);
+    fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64);
     /// Returns the summary of the cycle jumps so far; `None` where the case has none.
     fn jump_summary(&self) -> Option<JumpSummary>;
     /// Returns the process of a type, the first where there are several; see
@@ -143,7 +143,7 @@ impl<S: Space> RunView for Simulation<S> {
     fn options(&self) -> &Options {
         &self.options
     }
-    fn solver_in_force(&self) -> solve::Options {
+    fn solver_in_force(&self) -> solve::SolverOptions {
         self.solver_in_force()
     }
     fn phase_tolerance(&self) -> Option<f64> {
@@ -173,7 +173,7 @@ impl<S: Space> RunView for Simulation<S> {
             .map(|phase| phase.name.as_str())
             .collect()
     }
-    fn begun(&self) -> &[Begun] {
+    fn begun(&self) -> &[StartedPhase] {
         self.state.control.begun()
     }
     fn gravity(&self) -> [f64; 3] {
@@ -225,7 +225,7 @@ impl<S: Space> RunView for Simulation<S> {
         Some((&expansion.coefficient, systems))
     }
 
-    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64) {
+    fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64) {
         (body.drive(self), body.normal_force(self))
     }
     fn jump_summary(&self) -> Option<JumpSummary> {

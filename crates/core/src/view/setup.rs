@@ -2,11 +2,11 @@
 
 use super::RunControl;
 use crate::bodies::Dof;
-use crate::bodies::pressure::{Pushed, Servo};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::contact::detect;
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{ExpandingSystem, Heat, HeatState};
-use crate::process::circuit::{CircuitProcess, Intervals, Spec};
+use crate::process::circuit::{CircuitParameters, CircuitProcess, Intervals};
 use crate::process::cycle::{CycleClock, SlidingBody};
 use crate::process::expansion::ThermalExpansion;
 use crate::process::heat::HeatFlow;
@@ -34,12 +34,12 @@ pub trait RunSetup: RunControl {
     ///
     /// # Errors
     /// A wall is missing or not plane, or no length is defined along an axis.
-    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    fn check_pressures(&self, target: &ServoTarget, drive: &Dof) -> Result<(), String>;
     /// Adds the pressures of a drive.
     ///
     /// # Errors
     /// The errors of [`RunSetup::check_pressures`].
-    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    fn add_pressures(&mut self, target: &ServoTarget, drive: &Dof) -> Result<(), String>;
     /// Measures the loaded areas of all pressures.
     fn measure_areas(&mut self);
     /// Lets a surface recede by wear, every `every` steps, in the frame of its body; it is worn
@@ -59,7 +59,7 @@ pub trait RunSetup: RunControl {
     /// Adds jumps over cycles; see [`Jumps::new`].
     fn add_jumps(&mut self, spec: JumpSpec, clock: CycleClock, test: SlidingBody, steps: [u64; 2]);
     /// Adds the tribological circuit, which starts at a time (s).
-    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals);
+    fn add_circuit(&mut self, spec: CircuitParameters, start: f64, intervals: Intervals);
     /// Returns the first point of a deformable body that is farther behind a surface with which it
     /// interacts than the alert distance. Points are searched up to twice the length of their body
     /// in the plane, and up to `sizes` times their own size in space, where the cost of a search
@@ -73,11 +73,11 @@ impl<S: Space> RunSetup for Simulation<S> {
         self.state.control.gravity = self.state.gravity;
         self.state.control.gravity_drive = drive;
     }
-    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
-        Servo::of(&self.state.bodies, &self.shapes, pushed, drive).map(drop)
+    fn check_pressures(&self, target: &ServoTarget, drive: &Dof) -> Result<(), String> {
+        Servo::of(&self.state.bodies, &self.shapes, target, drive).map(drop)
     }
-    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
-        let servos = Servo::of(&self.state.bodies, &self.shapes, pushed, drive)?;
+    fn add_pressures(&mut self, target: &ServoTarget, drive: &Dof) -> Result<(), String> {
+        let servos = Servo::of(&self.state.bodies, &self.shapes, target, drive)?;
         self.state.control.servos.extend(servos);
         Ok(())
     }
@@ -113,7 +113,7 @@ impl<S: Space> RunSetup for Simulation<S> {
         let jumps = Jumps::new(spec, clock, test, steps, self);
         self.add_process(jumps);
     }
-    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals) {
+    fn add_circuit(&mut self, spec: CircuitParameters, start: f64, intervals: Intervals) {
         self.add_process(CircuitProcess::new(spec, start, intervals));
     }
     fn point_behind(&self, sizes: f64) -> Option<PointBehind> {

@@ -94,7 +94,7 @@ pub struct Flows {
 
 /// The ledger.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct MassLedger {
     masses: Vec<f64>,
     places: Vec<GrainPlace>,
     start: MassByPlace,
@@ -104,7 +104,7 @@ pub struct Ledger {
     pub flows: Flows,
 }
 
-impl Ledger {
+impl MassLedger {
     /// Creates a ledger for grains of these masses (kg; kg/m in 2D) at these places.
     pub fn new(masses: Vec<f64>, places: Vec<GrainPlace>) -> Self {
         let start = MassByPlace::count(&places, &masses);
@@ -214,7 +214,7 @@ mod tests {
         let masses: Vec<f64> = (0..500).map(|_| rng.random_range(1e-9..1e-6)).collect();
         let total: f64 = masses.iter().sum();
         let first = places(&mut rng, 500);
-        let mut ledger = Ledger::new(masses, first);
+        let mut ledger = MassLedger::new(masses, first);
         for _ in 0..200 {
             let next = places(&mut rng, 500);
             ledger.update(&next);
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_grain_that_flies_out_at_once_passes_every_flow() {
-        let mut ledger = Ledger::new(vec![2.0], vec![GrainPlace::Tied(0)]);
+        let mut ledger = MassLedger::new(vec![2.0], vec![GrainPlace::Tied(0)]);
         ledger.update(&[GrainPlace::Lost]);
         let one = Amount {
             grains: 1,
@@ -250,7 +250,7 @@ mod tests {
         // A first body with sufficient mass.
         let n = 8 * most;
         let mut places = vec![GrainPlace::Tied(0); n];
-        let mut ledger = Ledger::new(vec![1.0; n], places.clone());
+        let mut ledger = MassLedger::new(vec![1.0; n], places.clone());
         let (mut loose, mut lost, mut due) = (0, 0, [0.0f64; 2]);
         let tau = 1.0 / (cs + ce);
         let level = cs * most as f64 * tau;

@@ -3,7 +3,7 @@
 use crate::load;
 use fretwork_core::in_dimension;
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 
 use crate::Error;
 use std::fmt::Write;
@@ -12,7 +12,11 @@ use std::fmt::Write;
 ///
 /// # Errors
 /// The case does not take a seed.
-pub fn seed_matters(loaded: &Loaded, scene: &Built, search: &SearchPath) -> Result<bool, Error> {
+pub fn seed_matters(
+    loaded: &LoadedCase,
+    scene: &Built,
+    search: &SearchPath,
+) -> Result<bool, Error> {
     let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
     let sets = [loaded.source.sets(), &[other_seed]].concat();
     let other = load(&loaded.path, &sets)?;

@@ -10,7 +10,7 @@ use crate::runs::output::OutputName;
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
-use fretwork_scene::{Built, InputError, Loaded};
+use fretwork_scene::{Built, InputError, LoadedCase};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -63,7 +63,7 @@ pub struct Plan {
     /// Launcher of the runs.
     pub launcher: Launcher,
     /// The case with the changes of all runs.
-    pub base: Loaded,
+    pub base: LoadedCase,
     known: Known,
 }
 
@@ -345,7 +345,7 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
 /// Returns the requested outputs, or those that the case has, with their units.
 fn outputs(
     read: &StudyFile,
-    base: &Loaded,
+    base: &LoadedCase,
     scene: &Built,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
     let available = AvailableQuantities::of(&base.case, scene);
@@ -378,7 +378,7 @@ fn outputs(
 /// are few, so that an invalid level is refused before any run.
 fn check_levels(
     read: &StudyFile,
-    base: &Loaded,
+    base: &LoadedCase,
     factors: &[Factor],
     first: &[String],
     search: &SearchPath,

@@ -4,10 +4,10 @@ use super::ordered::{steps, tolerances};
 use super::varied::{Sense, Varied};
 use crate::factor::Level;
 use crate::{Error, load};
-use fretwork_scene::{Loaded, invisible_characters};
+use fretwork_scene::{LoadedCase, invisible_characters};
 
 /// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
-pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<Varied, Error> {
+pub(super) fn listed(loaded: &LoadedCase, tolerance: f64, argument: &str) -> Result<Varied, Error> {
     let form = || {
         Error::Usage(format!(
             "--vary {argument}: expected key.path=a,b,c with two values or more, the finest first"

@@ -7,7 +7,7 @@ use super::variant::variants;
 use super::varied::{Sense, Varied};
 use crate::{Error, load};
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::Loaded;
+use fretwork_scene::LoadedCase;
 
 /// The varied parameters, each level of which gives a case that can be built.
 ///
@@ -15,7 +15,7 @@ use fretwork_scene::Loaded;
 /// An argument or a level is wrong.
 pub fn parameters(
     request: &Request,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     search: &SearchPath,
     solving: &Solving,
 ) -> Result<Vec<Varied>, Error> {

@@ -13,7 +13,7 @@ use crate::factor::{AS_IN_THE_CASE, Level};
 use fretwork_core::laws::Kind;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Coupling;
-use fretwork_scene::Loaded;
+use fretwork_scene::LoadedCase;
 use fretwork_scene::case::{Case, GrainSpec};
 use fretwork_scene::source::nearest;
 
@@ -63,7 +63,7 @@ pub struct Solving {
 /// # Errors
 /// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
 pub fn presets(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     solving: &Solving,
     names: &[String],
     vary: &[String],
@@ -112,7 +112,7 @@ fn unknown(name: &str) -> Error {
 }
 
 /// Returns the levels of a preset, or the reason why it does not apply to the case.
-fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, String> {
+fn preset(loaded: &LoadedCase, solving: &Solving, name: &str) -> Result<Varied, String> {
     let case = &loaded.case;
     let (levels, own) = match name {
         "step" => {

@@ -15,7 +15,7 @@ use crate::{Error, Program, build, load};
 use fretwork_core::solve::local::solver::Method;
 use fretwork_scene::methods::{Demands, Service};
 use fretwork_scene::most_steps::most_steps;
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 use fretwork_store::folder_lock::FolderLock;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -100,7 +100,7 @@ impl Request {
     /// Returns the trade before its first run, with notes on its options.
     fn trade(
         &self,
-        loaded: &Loaded,
+        loaded: &LoadedCase,
         launcher: Launcher,
         parameters: Vec<Varied>,
         outputs: Vec<Output>,
@@ -154,7 +154,7 @@ struct Facts {
 }
 
 impl Facts {
-    fn of(loaded: &Loaded, built: &Built) -> Self {
+    fn of(loaded: &LoadedCase, built: &Built) -> Self {
         let demands = Demands::of(built.simulation.view());
         let serves =
             |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;

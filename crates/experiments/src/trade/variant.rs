@@ -7,7 +7,7 @@ use crate::factor::Level;
 use crate::load;
 use fretwork_scene::case::Case;
 use fretwork_scene::source::{Source, Tree};
-use fretwork_scene::{InputError, Loaded};
+use fretwork_scene::{InputError, LoadedCase};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn compared(case: &Case) -> Case {
 /// # Errors
 /// An argument is malformed or given twice, its file is invalid, lies elsewhere, or cannot be
 /// reached from the case by `--set`.
-pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>, Error> {
+pub fn variants(loaded: &LoadedCase, arguments: &[String]) -> Result<Option<Varied>, Error> {
     let mut levels: Vec<Level> = Vec::new();
     for argument in arguments {
         let wrong = |why: &str| Error::Usage(format!("--variant {argument}: {why}"));
@@ -80,7 +80,7 @@ pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>,
 }
 
 /// Returns the `--set` arguments that change this case to another one.
-fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError> {
+fn difference(loaded: &LoadedCase, other: &LoadedCase) -> Result<Vec<String>, InputError> {
     let (mine, wanted) = (compared(&loaded.case), compared(&other.case));
     let texts = (mine.to_ron()?, wanted.to_ron()?);
     let before = loaded.source.sets();

@@ -16,7 +16,7 @@ use super::quantity::Findings;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::geometry::space::ball_volume;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
@@ -236,11 +236,11 @@ impl Observer for Biaxial {
         vec![figures::biaxial::charts(self.start)]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.reference)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.reference = decode(from)?;
         Ok(())
     }

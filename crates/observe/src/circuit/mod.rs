@@ -17,7 +17,7 @@ use super::statistics::Column;
 use super::steady;
 use super::wear::show_flows;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
 use fretwork_core::view::RunView;
 use fretwork_core::wear::ledger::{Flows, GrainPlace, Ledger};
@@ -115,14 +115,14 @@ impl Observer for BrokenBonds {
                 at[0],
                 at[1],
                 at[2],
-                b.life.mode_mix(),
+                b.energies.mode_mix(),
                 b.opening[0],
                 b.opening[1],
                 b.area,
-                b.life.work.iter().sum(),
-                b.life.fracture,
-                b.life.viscous,
-                b.life.friction,
+                b.energies.work.iter().sum(),
+                b.energies.fracture,
+                b.energies.viscous,
+                b.energies.friction,
                 f64::from(u8::from(!b.damaged)),
             ];
             events.push(Event {
@@ -134,11 +134,11 @@ impl Observer for BrokenBonds {
         events
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.count)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.count = decode(from)?;
         Ok(())
     }
@@ -401,11 +401,11 @@ impl Observer for CircuitAccount {
         summary.map(figure).into_iter().collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

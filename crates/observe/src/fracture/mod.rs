@@ -3,13 +3,13 @@
 
 mod summary;
 
-pub use summary::{AT_ONCE, BondEnergies, FractureSummary, Reference, WRONG_ENERGY};
+pub use summary::{AT_ONCE, FractureSummary, InterfaceBonds, Reference, WRONG_ENERGY};
 
 use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::Break;
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::laws::bench::Bench;
 use fretwork_core::laws::bench::scale::Mode;
 use fretwork_core::laws::{Interface, LawError};
@@ -70,10 +70,10 @@ impl Broken {
         }
         self.broken += 1;
         self.at_once += u64::from(b.damage_before <= 0.0);
-        self.begun_open += u64::from(b.life.given > 0.0);
-        let released = b.life.fracture + b.life.given;
+        self.begun_open += u64::from(b.energies.given > 0.0);
+        let released = b.energies.fracture + b.energies.given;
         self.released += released;
-        if b.life.turning() > TURNS {
+        if b.energies.turning() > TURNS {
             if self.turned.len() < TURNED {
                 self.turned.push(Turned {
                     opening: b.opening,
@@ -149,18 +149,18 @@ impl Fracture {
         }
     }
 
-    fn energies(&self, run: &dyn RunView, place: usize) -> BondEnergies {
+    fn energies(&self, run: &dyn RunView, place: usize) -> InterfaceBonds {
         let (law, broken) = (&run.laws()[place], &self.broken[place]);
         let sites = BondSites::of(run, place);
         let radius = sites.as_ref().map_or(RADIUS, |s| s.radius);
         let mut bench = Bench::new(law.clone(), run.dimension() as u32, radius);
-        let mut out = BondEnergies {
+        let mut out = InterfaceBonds {
             interface: law.name.clone(),
             broken: broken.broken,
             torn: broken.torn,
             released: broken.released,
             broken_at_once: share(broken.at_once, broken.broken),
-            ..BondEnergies::default()
+            ..InterfaceBonds::default()
         };
         // Values from the bench are omitted for a law that fails on it.
         if broken.broken > 0 {
@@ -231,7 +231,7 @@ impl Observer for Fracture {
         let run = end.simulation;
         let laws = run.laws().iter().enumerate();
         let bonded = laws.filter(|(k, law)| run.bonds_of(*k).made > 0 && law.opens());
-        let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(run, k)).collect();
+        let interfaces: Vec<InterfaceBonds> = bonded.map(|(k, _)| self.energies(run, k)).collect();
         if interfaces.is_empty() {
             found.begin(Topic::Damage, Role::Detail);
             let doc = "energy that broken bonds released, over what their laws declare; null without bonds";
@@ -241,11 +241,11 @@ impl Observer for Fracture {
         FractureSummary::new(interfaces, self.jumps, run.options()).report(found);
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.broken)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.broken = decode(from)?;
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::quantity::unit::{ENERGY, METRE, ONE, WORD};
 use crate::quantity::{Findings, Role, Topic, number, part};
 use crate::warning::Warning;
-use fretwork_core::contact::Slides;
+use fretwork_core::contact::SlideStatistics;
 use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
 use serde::Serialize;
@@ -42,7 +42,7 @@ pub enum Reference {
 crate::described! {
     /// Bonds of one interface.
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-    pub struct BondEnergies {
+    pub struct InterfaceBonds {
         /// Name of the interface.
         pub interface: String => WORD,
         /// Bonds that damage broke.
@@ -96,7 +96,7 @@ crate::described! {
         /// where they are `comparable`; null without any.
         pub released_over_declared: Option<f64> => ONE,
         /// The interfaces that made bonds.
-        pub interfaces: Vec<BondEnergies> = part::<BondEnergies>(),
+        pub interfaces: Vec<InterfaceBonds> = part::<InterfaceBonds>(),
         /// Whether cycles were skipped: damage then grows by more than what the energies of a step
         /// say, and nothing is compared.
         pub jumps: bool => WORD,
@@ -110,7 +110,7 @@ crate::described! {
 impl FractureSummary {
     /// Summarises the bonds of some interfaces in a run with these options; `jumps` is whether
     /// cycles were skipped.
-    pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, options: &Options) -> Self {
+    pub fn new(interfaces: Vec<InterfaceBonds>, jumps: bool, options: &Options) -> Self {
         let resolved = match options.coupling {
             Coupling::Midpoint => RESOLVED[1],
             Coupling::Explicit | Coupling::Implicit { .. } => RESOLVED[0],
@@ -164,13 +164,16 @@ impl FractureSummary {
         if self.jumps {
             return None;
         }
-        let texts = self.interfaces.iter().filter_map(BondEnergies::unresolved);
+        let texts = self
+            .interfaces
+            .iter()
+            .filter_map(InterfaceBonds::unresolved);
         let texts: Vec<String> = texts.collect();
         if texts.is_empty() {
             return None;
         }
         let resolved_or_brittle =
-            |b: &BondEnergies| b.overshoot().is_some() || b.unresolved().is_none();
+            |b: &InterfaceBonds| b.overshoot().is_some() || b.unresolved().is_none();
         let brittle = self.interfaces.iter().all(resolved_or_brittle);
         let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
         let slide = slides.fold(0.0, f64::max);
@@ -197,10 +200,10 @@ impl FractureSummary {
     }
 }
 
-impl BondEnergies {
+impl InterfaceBonds {
     /// Sets the displacement of the bonds in a step, relative to their critical opening if it is
     /// known.
-    pub(crate) fn slide(&mut self, slides: &Slides) {
+    pub(crate) fn slide(&mut self, slides: &SlideStatistics) {
         let Some(critical) = self.critical_opening else {
             return;
         };
@@ -272,7 +275,7 @@ mod tests {
     use super::*;
 
     fn brittle(slide: f64, comparable: bool) -> FractureSummary {
-        let bonds = BondEnergies {
+        let bonds = InterfaceBonds {
             interface: "grains".to_owned(),
             broken: 10,
             critical_opening: Some(2e-6),
@@ -280,7 +283,7 @@ mod tests {
             slide_breaking: Some(slide),
             released_over_declared: Some(1.4),
             comparable,
-            ..BondEnergies::default()
+            ..InterfaceBonds::default()
         };
         FractureSummary::new(vec![bonds], false, &Options::default())
     }

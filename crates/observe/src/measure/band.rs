@@ -7,7 +7,7 @@
 
 use super::{grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
@@ -123,12 +123,12 @@ impl Observer for Band {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&self.strain)
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&self.strain)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        self.strain = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        self.strain = encoding::decode(from)?;
         Ok(())
     }
 

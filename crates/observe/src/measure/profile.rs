@@ -5,7 +5,7 @@
 
 use super::grains;
 use crate::chart::{Axis, Chart, Series, Style};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::statistics::Column;
@@ -168,12 +168,12 @@ impl Observer for Profile {
         Vec::new()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(self.samples, self.heated, &self.slices))
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&(self.samples, self.heated, &self.slices))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.samples, self.heated, self.slices) = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        (self.samples, self.heated, self.slices) = encoding::decode(from)?;
         Ok(())
     }
 

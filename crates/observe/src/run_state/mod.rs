@@ -20,8 +20,8 @@ use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::energy::Energy;
 use fretwork_core::laws::Interface;
 use fretwork_core::momentum::Momentum;
@@ -384,7 +384,7 @@ impl Observer for RunState {
         ]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&(
             &self.solver,
             &self.impossible,
@@ -393,7 +393,7 @@ impl Observer for RunState {
         ))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         (
             self.solver,
             self.impossible,

@@ -5,7 +5,7 @@ use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Topic, field, quantity};
 use crate::statistics::Column;
 use crate::warning::{NOT_REACHED, Warning};
-use fretwork_core::step::control::Begun;
+use fretwork_core::step::control::StartedPhase;
 use fretwork_core::view::RunView;
 
 /// Fields of a phase that began.
@@ -19,7 +19,7 @@ const PHASE: [Field; 5] = [
 
 /// Returns start and end of a phase; for a repeated phase the start of the first and the end of the
 /// last.
-fn times(begun: &[Begun], phase: &Begun) -> (String, String) {
+fn times(begun: &[StartedPhase], phase: &StartedPhase) -> (String, String) {
     let same = || begun.iter().filter(|q| q.name == phase.name);
     let end = same().next_back().and_then(|last| last.end);
     let end = end.map_or_else(|| "the end of the run".to_owned(), |t| quantity(t, "s"));

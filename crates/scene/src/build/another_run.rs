@@ -6,7 +6,7 @@ use super::{Builder, Origin};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
-use fretwork_core::assembly::{Filling, RecordedPiece, Start, turned};
+use fretwork_core::assembly::{InitialState, MaterialDensity, RecordedPiece, turned};
 use nalgebra::Vector3;
 
 /// Grains other than single balls, from one entry of `grains`.
@@ -14,7 +14,7 @@ pub(super) struct Others {
     /// Index of the entry in the list.
     k: usize,
     /// Material index, and its density (kg/m^3).
-    of: Filling,
+    of: MaterialDensity,
     /// The grains.
     grains: Vec<ShapedGrain>,
 }
@@ -84,7 +84,7 @@ impl Builder<'_> {
     }
 
     /// Returns position and motion of a recorded grain.
-    fn start(&self, k: usize, motion: &Motion) -> Result<Start, InputError> {
+    fn start(&self, k: usize, motion: &Motion) -> Result<InitialState, InputError> {
         // The orientation of a ball has no effect.
         let known = |numbers: &[f64; 4]| turned(self.dimension(), numbers, [0.0; 3]).is_some();
         if let Some(numbers) = motion.rotation.as_ref().filter(|r| !known(r)) {
@@ -93,7 +93,7 @@ impl Builder<'_> {
             );
             return Err(self.fail(format!("grains.{k}.results"), message));
         }
-        Ok(Start {
+        Ok(InitialState {
             position: motion.at,
             rotation: motion.rotation,
             velocity: motion.velocity,
@@ -121,8 +121,8 @@ impl Builder<'_> {
     fn shaped_grain(
         &mut self,
         grain: ShapedGrain,
-        mut start: Start,
-        (material, density): Filling,
+        mut start: InitialState,
+        (material, density): MaterialDensity,
     ) -> Result<(), String> {
         let first = match (grain.balls.first(), grain.pieces.first()) {
             (Some(ball), _) => ball.offset,
@@ -156,7 +156,12 @@ impl Builder<'_> {
     }
 
     /// Adds a body with its recorded mass and inertia, scaled if the density differs.
-    fn weighing(&mut self, of: &ShapedBody, start: &Start, density: f64) -> Result<u32, String> {
+    fn weighing(
+        &mut self,
+        of: &ShapedBody,
+        start: &InitialState,
+        density: f64,
+    ) -> Result<u32, String> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let numbers = [of.mass, of.density, of.length];
         let axes = if self.dimension() == 2 { 1 } else { 3 };

@@ -3,7 +3,7 @@
 use super::Builder;
 use crate::case::{Edges, GrainSpec};
 use crate::source::InputError;
-use fretwork_core::assembly::{Block, Start};
+use fretwork_core::assembly::{ConvexBody, InitialState};
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -13,7 +13,7 @@ const MAX_BLOCKS: usize = 10_000;
 impl Builder<'_> {
     /// Returns the blocks of an arch between its radial joints, from right to left; an empty list
     /// for other kinds of grains.
-    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block>, InputError> {
+    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<ConvexBody>, InputError> {
         let GrainSpec::Arch {
             blocks,
             radius,
@@ -57,7 +57,7 @@ impl Builder<'_> {
                 corner(inner, to),
             ];
             let part = self.polygon(here, &corners, 0.0)?;
-            let block = Block::of(part);
+            let block = ConvexBody::of(part);
             let (at, volume, inertia) = match edges {
                 Edges::Straight => (Vector3::from(block.start.position), block.volume, None),
                 Edges::Curved => {
@@ -65,13 +65,13 @@ impl Builder<'_> {
                     (Vector3::new(x, y, 0.0), volume, Some(inertia))
                 }
             };
-            out.push(Block {
+            out.push(ConvexBody {
                 volume,
                 inertia,
                 offset: (Vector3::from(block.start.position) - at).into(),
-                start: Start {
+                start: InitialState {
                     position: (centre + at).into(),
-                    ..Start::default()
+                    ..InitialState::default()
                 },
                 part: block.part,
             });

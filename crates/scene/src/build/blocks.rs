@@ -6,7 +6,7 @@ use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{InputError, ValidationError};
-use fretwork_core::assembly::Block;
+use fretwork_core::assembly::ConvexBody;
 use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use nalgebra::Vector3;
@@ -25,7 +25,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &VoronoiSpec,
-    ) -> Result<Vec<Block>, InputError> {
+    ) -> Result<Vec<ConvexBody>, InputError> {
         let here = format!("grains.{k}");
         let low = self.corner(&format!("{here}.low"), &spec.low)?;
         let high = self.corner(&format!("{here}.high"), &spec.high)?;
@@ -93,7 +93,7 @@ impl Builder<'_> {
         spec: &VoronoiSpec,
         [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block>, String), InputError> {
+    ) -> Result<(Vec<ConvexBody>, String), InputError> {
         let corners = Corners {
             low: low.xy(),
             high: high.xy(),
@@ -116,7 +116,7 @@ impl Builder<'_> {
                 let message = "a cell with several very short sides lost its shape; take another `seed`, or some `rounds`";
                 self.fail(here, message)
             })?;
-            out.push(Block::of(part));
+            out.push(ConvexBody::of(part));
         }
         let note = match tiling.merged {
             0 => String::new(),
@@ -136,7 +136,7 @@ impl Builder<'_> {
         spec: &VoronoiSpec,
         [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block>, String), InputError> {
+    ) -> Result<(Vec<ConvexBody>, String), InputError> {
         let (size, periodic) = (spec.size, self.assembly.periodic());
         let corners = Corners { low, high };
         let tiling = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
@@ -157,7 +157,11 @@ impl Builder<'_> {
                 (cell.points, cell.faces)
             };
             let core = Polyhedron::from_faces(points, faces).map_err(|_| short())?;
-            out.push(Block::of(self.polyhedron(here, &core, spec.rounding)?));
+            out.push(ConvexBody::of(self.polyhedron(
+                here,
+                &core,
+                spec.rounding,
+            )?));
         }
         let note = match tiling.moved {
             0 => String::new(),
@@ -206,7 +210,7 @@ impl Builder<'_> {
         &self,
         here: &str,
         spec: &BlockWallSpec,
-    ) -> Result<Vec<Block>, InputError> {
+    ) -> Result<Vec<ConvexBody>, InputError> {
         let at = self.vector(&format!("{here}.at"), &spec.at)?;
         let wide = self.length(&format!("{here}.block.0"), spec.block.0)?;
         let high = self.length(&format!("{here}.block.1"), spec.block.1)?;
@@ -246,7 +250,7 @@ impl Builder<'_> {
             };
             let mut left = 0.0;
             for width in widths {
-                let mut block = Block::of(self.brick(here, width, thick, high)?);
+                let mut block = ConvexBody::of(self.brick(here, width, thick, high)?);
                 let middle = [left + 0.5 * width, 0.5 * thick, low + 0.5 * high];
                 let middle = match self.dimension() {
                     2 => Vector3::new(middle[0], middle[2], 0.0),

@@ -1,12 +1,12 @@
 //! Complete content of a case: its own text in normal form, and the content of the files that it
 //! names.
 
-use super::Loaded;
+use super::LoadedCase;
 use crate::source::{InputError, Kind, Node, Tree};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-impl Loaded {
+impl LoadedCase {
     /// Returns the case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and
     /// content of each file that one of its texts names: materials, parameters, profiles, meshes,
     /// samples, and the summary of another run. Two cases with equal contents are the same scene

@@ -4,7 +4,7 @@ use super::Builder;
 use super::elastic_grains::Shapes;
 use crate::recorded::{Deformed, Motion, ShapedBall, ShapedBody, ShapedGrain, ShapedPiece};
 use crate::source::InputError;
-use fretwork_core::assembly::Parts;
+use fretwork_core::assembly::SceneParts;
 use fretwork_core::bodies::{Bodies, von_mises};
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -23,7 +23,7 @@ impl Builder<'_> {
     /// if a state of another run has them; empty otherwise.
     pub(super) fn taken_over<S: Space>(
         &self,
-        parts: &Parts<S>,
+        parts: &SceneParts<S>,
         body: u32,
         here: &str,
         material: &str,

@@ -6,7 +6,7 @@ use crate::case::ElasticGrainSpec;
 use crate::material::Sourced;
 use crate::measures::MeasureSpec;
 use crate::source::InputError;
-use fretwork_core::assembly::{self, AnyParts, AnySystem, Parts};
+use fretwork_core::assembly::{self, AnySceneParts, AnySystem, SceneParts};
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
@@ -121,11 +121,11 @@ impl Builder<'_> {
         let none = assembly::empty(self.dimension(), *self.assembly.periodic());
         let mut assembly = std::mem::replace(&mut self.assembly, none);
         let made = match assembly.parts() {
-            AnyParts::Plane(parts) => {
+            AnySceneParts::Plane(parts) => {
                 let grains = self.deform(parts, &of_material)?;
                 in_any(grains, AnySystem::Plane)
             }
-            AnyParts::Space(parts) => {
+            AnySceneParts::Space(parts) => {
                 let grains = self.deform(parts, &of_material)?;
                 in_any(grains, AnySystem::Space)
             }
@@ -137,7 +137,7 @@ impl Builder<'_> {
     /// Makes deformable grains from the parts of these materials, and removes the parts.
     fn deform<S: Space>(
         &mut self,
-        parts: &mut Parts<S>,
+        parts: &mut SceneParts<S>,
         of_material: &OfMaterial<'_>,
     ) -> Result<GrainsIn<S>, InputError> {
         let mut shapes: Vec<Shapes<'_, S>> = Vec::new();

@@ -4,7 +4,7 @@ use super::{Builder, Origin, components};
 use crate::case::{GrainSpec, OneGrain};
 use crate::sample::lattice::lattice;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::assembly::{Filling, Start};
+use fretwork_core::assembly::{InitialState, MaterialDensity};
 use nalgebra::Vector3;
 
 /// Limit on grains read from a file; more do not fit into memory.
@@ -17,19 +17,19 @@ pub(super) struct Seed {
     /// Radius (m).
     pub radius: f64,
     /// Material index, and its density (kg/m^3).
-    pub of: Filling,
+    pub of: MaterialDensity,
     /// Position and motion.
-    pub start: Start,
+    pub start: InitialState,
     /// Entry in the case.
     pub origin: Origin,
 }
 
 impl Seed {
     /// A ball at rest.
-    pub fn still(at: Vector3<f64>, radius: f64, of: Filling, origin: Origin) -> Self {
-        let start = Start {
+    pub fn still(at: Vector3<f64>, radius: f64, of: MaterialDensity, origin: Origin) -> Self {
+        let start = InitialState {
             position: at.into(),
-            ..Start::default()
+            ..InitialState::default()
         };
         Self {
             radius,

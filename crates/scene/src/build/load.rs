@@ -1,6 +1,6 @@
 //! Loading of a case from text, a reader or a value, with all checks.
 
-use super::Loaded;
+use super::LoadedCase;
 use crate::case::Case;
 use crate::material::{InterfaceParameters, Material, MaterialLibrary};
 use crate::recorded::RecordReader;
@@ -14,7 +14,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// Returns an error with file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     read(Source::read(path)?, path, sets)
 }
 
@@ -44,7 +44,7 @@ pub fn load_text(
     text: &str,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     read(Source::from_text(name, text), &folder.join(name), sets)
 }
 
@@ -57,20 +57,20 @@ pub fn load_reader(
     mut from: impl Read,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     let text = source::read_text_from(Path::new(name), &mut from)?;
     load_text(name, &text, folder, sets)
 }
 
-fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     for set in sets {
         source.set::<Case>(set)?;
     }
     let case: Case = source.parse()?;
-    Loaded::checked(source, case, path)
+    LoadedCase::checked(source, case, path)
 }
 
-impl Loaded {
+impl LoadedCase {
     /// Checks a case made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors
     /// give positions in the text from [`Case::to_ron`]. Files are searched as in [`load_text`].
     ///

@@ -47,7 +47,7 @@ use std::path::{Path, PathBuf};
 
 /// A case file that was read and parsed.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedCase {
     /// The text, with `--set` applied.
     pub source: Source,
     /// The parsed case.
@@ -82,7 +82,7 @@ pub struct Built {
     pub wear_coefficients: Vec<WearCoefficient>,
 }
 
-impl Loaded {
+impl LoadedCase {
     /// Builds the scene.
     ///
     /// # Errors
@@ -399,7 +399,7 @@ impl Builder<'_> {
             .norm
             .unwrap_or(if by_heat { Norm::Power } else { Norm::Balance });
         let tolerance = case.solver.tolerance;
-        options.solver = solve::Options {
+        options.solver = solve::SolverOptions {
             tolerance: tolerance.unwrap_or(norm.default_tolerance()),
             norm,
             max_iterations: case.solver.max_iterations,

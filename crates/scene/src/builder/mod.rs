@@ -9,7 +9,7 @@ mod grains;
 mod interface;
 mod shapes;
 
-use crate::build::{Built, Loaded};
+use crate::build::{Built, LoadedCase};
 use crate::case::HeatSpec;
 use crate::case::{
     AccuracySpec, BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec,
@@ -234,9 +234,9 @@ impl CaseBuilder {
     /// Checks the case, as if it had been read from a file.
     ///
     /// # Errors
-    /// The errors of [`Loaded::from_case`].
-    pub fn load(self) -> Result<Loaded, InputError> {
-        let mut loaded = Loaded::from_case(self.case, &self.folder)?;
+    /// The errors of [`LoadedCase::from_case`].
+    pub fn load(self) -> Result<LoadedCase, InputError> {
+        let mut loaded = LoadedCase::from_case(self.case, &self.folder)?;
         for (name, material) in &self.materials {
             loaded = loaded.with_material(name, material)?;
         }

@@ -3,7 +3,7 @@
 use crate::case::{BodyHeatSpec, Case, DepthSpec, HeatSpec, StoreSpec};
 use crate::source::ValidationError;
 use fretwork_core::heat::{
-    BodyNodes, Columns, Edge, Grid, HalfSpace, Imposed, Node, PieceAxis, Pieces, Store,
+    BodyNodes, Columns, Edge, Grid, HalfSpace, ImposedHeatFlow, Node, PieceAxis, Pieces, Store,
     ThermalMaterial,
 };
 use fretwork_core::view::RunView;
@@ -25,7 +25,7 @@ pub(super) struct Nodes {
     pub elements: Vec<Edge>,
     /// Nodes of each first body, for [`fretwork_core::heat::Heat::first_bodies`].
     pub first_bodies: Vec<(String, Range<usize>)>,
-    pub imposed: Vec<Imposed>,
+    pub imposed: Vec<ImposedHeatFlow>,
 }
 
 /// Inputs from which the nodes of bodies are made.
@@ -169,7 +169,7 @@ impl Nodes {
                 node.ambient = face.ambient;
             }
             if spec.power != 0.0 {
-                self.imposed.push(Imposed {
+                self.imposed.push(ImposedHeatFlow {
                     body: Some(body as u32),
                     node,
                     flow: spec.power * share,

@@ -5,7 +5,7 @@ use crate::case::{BodyHeatSpec, Case, MeshHeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
 use fretwork_core::bodies::Conduction;
 use fretwork_core::geometry::space::ball_radius;
-use fretwork_core::heat::{BodyNodes, Edge, Imposed, Node, Store};
+use fretwork_core::heat::{BodyNodes, Edge, ImposedHeatFlow, Node, Store};
 use fretwork_core::view::SystemView;
 use std::f64::consts::PI;
 
@@ -84,7 +84,7 @@ impl Nodes {
             node.ambient = face.ambient;
         }
         if spec.power != 0.0 {
-            self.imposed.push(Imposed {
+            self.imposed.push(ImposedHeatFlow {
                 body,
                 node: first,
                 flow: spec.power,
@@ -139,7 +139,7 @@ impl Nodes {
         }
         for (name, flux) in &spec.flux {
             for (point, area) in part("flux", name)? {
-                self.imposed.push(Imposed {
+                self.imposed.push(ImposedHeatFlow {
                     body: None,
                     node: first + point,
                     flow: flux * area,

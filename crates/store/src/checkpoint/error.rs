@@ -1,7 +1,7 @@
 //! Errors in resuming a run.
 
 use crate::folder_lock::LockError;
-use fretwork_observe::code::CodeError;
+use fretwork_observe::encoding::EncodingError;
 use std::path::PathBuf;
 
 /// Reason why a run cannot be resumed from a folder.
@@ -82,7 +82,7 @@ pub enum ResumeError {
         /// The file.
         path: PathBuf,
         /// Reason.
-        source: CodeError,
+        source: EncodingError,
     },
 }
 

@@ -3,7 +3,7 @@
 use super::{Frame, Identity, Kind, ResumeError};
 use crate::folder_lock::{FolderLock, RUN_LOCK};
 use crate::results::PreviousResults;
-use fretwork_observe::code::decode;
+use fretwork_observe::encoding::decode;
 use std::path::Path;
 
 /// Result of the search.

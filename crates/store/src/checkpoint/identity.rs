@@ -4,9 +4,9 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Grid, HalfSpace, Node, Store};
 use fretwork_core::in_dimension;
 use fretwork_core::step::State;
-use fretwork_observe::code::{CodeError, encode};
+use fretwork_observe::encoding::{EncodingError, encode};
 use fretwork_scene::source::{Source, first_difference};
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
@@ -40,7 +40,7 @@ impl Identity {
     ///
     /// # Errors
     /// The scene cannot be serialized.
-    pub fn of(loaded: &Loaded, built: &Built) -> Result<Self, CodeError> {
+    pub fn of(loaded: &LoadedCase, built: &Built) -> Result<Self, EncodingError> {
         let mut plugins: Vec<(String, String)> = Vec::new();
         for law in built.simulation.laws().iter().flat_map(|l| l.loaded()) {
             let p = &law.plugin;

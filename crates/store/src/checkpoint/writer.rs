@@ -1,7 +1,7 @@
 //! Schedule of checkpoints.
 
 use super::{Frame, Identity, Kind};
-use fretwork_observe::code::{CodeError, encode};
+use fretwork_observe::encoding::{EncodingError, encode};
 use fretwork_scene::case::Checkpoint;
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,7 @@ impl CheckpointWriter {
     ///
     /// # Errors
     /// The identity cannot be serialized.
-    pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, CodeError> {
+    pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, EncodingError> {
         Ok(Self {
             rule,
             identity: encode(identity)?,

@@ -32,7 +32,7 @@ pub struct LawParameter {
 
 /// A loaded library of a law.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Loaded {
+pub(crate) struct LoadedLaw {
     /// Kind of the law.
     pub kind: String,
     /// Name.
@@ -68,7 +68,7 @@ pub(crate) struct Interface {
 }
 
 /// Returns the libraries that a run loaded.
-pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
+pub(crate) fn loaded(run: &RunFolder) -> Vec<LoadedLaw> {
     let column = |name: &str| run.reader.texts(&format!("plugins/{name}"));
     let (kinds, names, versions, sums) = (
         column("kind"),
@@ -82,7 +82,7 @@ pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
         let (kind, name) = (text(&kinds), text(&names));
         let stamp =
             stamps.and_then(|s| s.iter().find(|s| s["kind"] == *kind && s["name"] == *name));
-        Loaded {
+        LoadedLaw {
             kind,
             name,
             version: text(&versions),

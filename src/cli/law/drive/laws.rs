@@ -4,7 +4,7 @@ use super::super::super::{Failure, PluginArgs};
 use super::super::{all_used, named, values};
 use super::DriveArgs;
 use crate::laws::bench::Bench;
-use crate::laws::{Interface, Kind, Loaded, Plugin};
+use crate::laws::{Interface, Kind, LoadedLaw, Plugin};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::load;
 use crate::scene::source::nearest;
@@ -90,7 +90,7 @@ fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure>
     let mut loaded = Vec::new();
     for plugin in plugins {
         let parameters = values(&plugin, &args.sets, &mut used)?;
-        loaded.push(Loaded::new(plugin, parameters));
+        loaded.push(LoadedLaw::new(plugin, parameters));
     }
     let laws: Vec<&Plugin> = loaded.iter().map(|l| &*l.plugin).collect();
     all_used(&args.sets, &used, &laws)?;

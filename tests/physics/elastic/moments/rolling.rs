@@ -14,7 +14,7 @@
 
 use super::*;
 use fretwork::geometry::space::Dim3;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::State;
 
 const LENGTH: f64 = 0.05 * R;

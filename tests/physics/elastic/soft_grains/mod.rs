@@ -21,7 +21,7 @@ mod spin;
 use super::*;
 use fretwork::contact::StepSizeDiagnostics;
 use fretwork::geometry::space::Space;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::step::State;

@@ -3,7 +3,7 @@
 use super::expansion::{ALPHA, RISE, height};
 use super::{Table, effusivity, heat, plane, solid, until};
 use fretwork::geometry::space::Dim2;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 

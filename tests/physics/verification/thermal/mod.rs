@@ -7,7 +7,7 @@ mod sources;
 use super::{Table, plane, solid, until};
 use fretwork::geometry::space::{Dim3, Space};
 use fretwork::heat::HeatState;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::Simulation;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;

@@ -11,9 +11,9 @@ mod neighbours;
 mod order;
 mod partners;
 mod prediction;
-mod renewal;
-mod sorted;
+mod sorted_centres;
 mod sweep;
+mod update;
 
 pub use edges::{Impact, record_edges};
 pub use extents::{Extents, fast_motion};
@@ -28,7 +28,7 @@ use crate::geometry::shape::{Ball, Carried, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{any, fill, worth_dividing};
 use neighbours::{NeighbourSearch, joined};
-use renewal::{PlacedScene, renew_contacts};
+use update::{PlacedScene, update_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on
 /// the face.
@@ -147,7 +147,7 @@ pub fn detect<S: Space>(
         time,
         h,
     };
-    renew_contacts(network, &placed, parallel);
+    update_contacts(network, &placed, parallel);
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
@@ -261,7 +261,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     if bond.intact() {
         // The contact of an intact bond ends only beyond the end of a surface.
         let (torn, damage) = (bond.energy, bond.damage);
-        bond.life.fracture += torn;
+        bond.energies.fracture += torn;
         network.torn_energy += torn;
         network.memory[law].broken += 1;
         network.broken_pairs.insert(contact.key.pair());

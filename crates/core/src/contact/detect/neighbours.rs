@@ -1,6 +1,6 @@
 //! Broad phase: pairs of shapes within the range of the neighbour list.
 
-use super::sorted::Sorted;
+use super::sorted_centres::SortedCentres;
 use super::{CollisionScene, frame};
 use crate::contact::network::{Key, Network};
 use crate::geometry::grid::{self, Balls};
@@ -117,7 +117,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         let (surfaces, periodic) = (&self.scene.shapes.surfaces, &self.scene.shapes.periodic);
         let all: Vec<u32> = (0..self.radii.len() as u32).collect();
         let any_closed = surfaces.iter().any(|s| s.shape.is_closed());
-        let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, periodic));
+        let sorted = any_closed.then(|| SortedCentres::new::<S>(self.centres, periodic));
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
         let divide = threads::worth_dividing(self.parallel, surfaces.len() * all.len(), COST);
         let size_of_task = threads::chunk_size(CHUNK);

@@ -5,14 +5,14 @@ use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Points sorted along the axis in which they extend the farthest.
-pub(super) struct Sorted {
+pub(super) struct SortedCentres {
     axis: usize,
     period: Option<f64>,
     /// Coordinates in the period, in increasing order, with the indices of the points.
     along: Vec<(f64, u32)>,
 }
 
-impl Sorted {
+impl SortedCentres {
     pub fn new<S: Space>(places: &[S::Vector], periodic: &Periodic) -> Self {
         let extent = |axis: usize| {
             let all = places.iter().map(|x| x[axis]);
@@ -86,7 +86,7 @@ mod tests {
             let periodic = Periodic {
                 period: [period, None, None],
             };
-            let sorted = Sorted::new::<Dim2>(&places, &periodic);
+            let sorted = SortedCentres::new::<Dim2>(&places, &periodic);
             let mut found = Vec::new();
             for (at, distance) in places.iter().flat_map(|x| [(x, 0.01), (x, 0.4), (x, 2.0)]) {
                 sorted.near(at, distance, &mut found);

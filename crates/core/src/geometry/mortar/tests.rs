@@ -106,7 +106,7 @@ fn a_facet_that_is_turned_away_faces_nothing() {
 
 /// Returns triangles over a square whose grid lines have these positions, by their corners, all
 /// anticlockwise; diagonals alternate.
-fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
+fn grid(lines: &[f64]) -> (Vec<TangentialPoint>, Vec<[u32; 3]>) {
     let n = lines.len() as u32;
     let at = lines.iter().flat_map(|y| lines.iter().map(|x| [*x, *y]));
     let mut triangles = Vec::new();
@@ -130,11 +130,11 @@ fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
 
 /// Returns the weights of a point of one grid on another, and its tributary area.
 fn on_grid(
-    (points, own): &(Vec<Along>, Vec<[u32; 3]>),
+    (points, own): &(Vec<TangentialPoint>, Vec<[u32; 3]>),
     k: usize,
-    (vertices, triangles): &(Vec<Along>, Vec<[u32; 3]>),
+    (vertices, triangles): &(Vec<TangentialPoint>, Vec<[u32; 3]>),
 ) -> (Option<Vec<(u32, f64)>>, f64) {
-    let from = |p: Along| [p[0] - points[k][0], p[1] - points[k][1]];
+    let from = |p: TangentialPoint| [p[0] - points[k][0], p[1] - points[k][1]];
     let about = own.iter().filter_map(|t| {
         let place = t.iter().position(|p| *p == k as u32)?;
         let mut corners = t.map(|p| from(points[p as usize]));

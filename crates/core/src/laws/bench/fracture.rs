@@ -1,7 +1,7 @@
 //! Fracture energy of a bond under any law: the value that the law declares, or the work of a slow
 //! pull to failure.
 
-use super::{Answer, Bench, Motion};
+use super::{Bench, BenchMotion, BenchOutputs};
 use crate::laws::{Interface, LawError};
 use fretwork_abi::FLAG_BREAKS;
 
@@ -127,12 +127,12 @@ impl Bench {
         for u in openings {
             let ([n, t], [twist, bend]) = (to.opening, to.rotation);
             let opening = [u * n, u * t, 0.0];
-            let motion = Motion {
+            let motion = BenchMotion {
                 opening,
                 rotation: [u * twist, u * bend, 0.0],
                 gap: opening[0],
                 pressure,
-                ..Motion::default()
+                ..BenchMotion::default()
             };
             let answer = self.step(&mut state, &[motion], (u - before) / speed)?[0];
             let traction = to.along(&answer);
@@ -169,7 +169,7 @@ impl Direction {
 
     /// Returns the traction along the opening plus the moment along the rotation: work per unit of
     /// the path length (J/m^2).
-    fn along(&self, answer: &Answer) -> f64 {
+    fn along(&self, answer: &BenchOutputs) -> f64 {
         let ([n, t], [twist, bend]) = (self.opening, self.rotation);
         answer.traction[0] * n
             + answer.traction[1] * t

@@ -1,7 +1,7 @@
 //! Characteristic scales of a bond under any law: stiffness, strength, and the openings at peak
 //! traction and at failure, found by driving new bonds on the bench from 0.1 pm to 1 m.
 
-use super::{Bench, Motion};
+use super::{Bench, BenchMotion};
 use crate::laws::LawError;
 
 /// First opening of a search (m).
@@ -45,9 +45,9 @@ enum OpeningDirection {
 }
 
 impl OpeningDirection {
-    fn motion(self, opening: f64) -> Motion {
+    fn motion(self, opening: f64) -> BenchMotion {
         let k = usize::from(self == Self::Shear);
-        let mut motion = Motion::default();
+        let mut motion = BenchMotion::default();
         motion.opening[k] = opening;
         motion.gap = motion.opening[0];
         motion
@@ -160,9 +160,9 @@ fn broken(points: &[PathPoint]) -> Option<f64> {
 /// The law's error.
 pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, LawError> {
     let mut state = [bench.fresh()];
-    let touch = Motion {
+    let touch = BenchMotion {
         pressure: 1e6,
-        ..Motion::default()
+        ..BenchMotion::default()
     };
     let mut most = bench.step(&mut state, &[touch], 1.0)?[0].strength[0];
     let mut gap = FIRST;

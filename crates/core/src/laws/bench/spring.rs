@@ -1,7 +1,7 @@
 //! The spring of a compliant contact under any law: its force at an overlap, and the overlap under
 //! a force.
 
-use super::{Bench, Motion};
+use super::{Bench, BenchMotion};
 use crate::laws::{Call, LawError};
 
 /// Smallest and largest overlap of a search, as fractions of the reduced radius.
@@ -30,9 +30,9 @@ impl Bench {
             return Ok(None);
         }
         let state = self.fresh();
-        let motion = Motion {
+        let motion = BenchMotion {
             gap: -overlap,
-            ..Motion::default()
+            ..BenchMotion::default()
         };
         let info = crate::laws::StepInfo {
             dimension: self.dimension,

@@ -81,12 +81,12 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     let bond = &network.memory[0].bonds[0];
     assert_eq!((bond.opening_n, bond.opening_t.x), (x[0], x[1]));
     assert_eq!(network.memory[0].rotations[0].x, x[2]);
-    assert_eq!(bond.life.work, stored);
+    assert_eq!(bond.energies.work, stored);
     assert_eq!(bond.energy, stored.iter().sum::<f64>());
-    assert_eq!((bond.life.viscous, bond.life.fracture), (0.0, 0.0));
+    assert_eq!((bond.energies.viscous, bond.energies.fracture), (0.0, 0.0));
     // Friction acts against the motion: -p u.
     let rubbed = -friction * x[1] / h - rolling * spin;
-    assert_eq!(bond.life.friction, rubbed);
+    assert_eq!(bond.energies.friction, rubbed);
     assert_eq!(totals.friction, rubbed);
     assert_eq!(network.contacts[0].friction_work, rubbed);
     assert_eq!(network.dissipation.as_ref().unwrap()[0].friction, rubbed);

@@ -2,7 +2,7 @@
 //! bonds.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
-use crate::contact::Loss;
+use crate::contact::ContactWear;
 use crate::contact::network::Key;
 use crate::geometry::space::Space;
 use crate::laws::error::LawError;
@@ -59,7 +59,7 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
             }
             if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
                 let contact = *at as u32;
-                losses.push(Loss { contact, volume });
+                losses.push(ContactWear { contact, volume });
             }
         } else {
             slot.totals.worn_third += volume;

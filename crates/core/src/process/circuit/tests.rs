@@ -1,7 +1,7 @@
 //! Debris of bonds that break in a given way, between disks at rest.
 
 use super::*;
-use crate::contact::events::{Break, Life};
+use crate::contact::events::{BondEnergies, Break};
 use crate::contact::memory::Memory;
 use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::space::Dim2;
@@ -33,8 +33,8 @@ fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
     network.contacts.push(Contact { slot, ..contact });
 }
 
-fn spec() -> Spec {
-    Spec {
+fn spec() -> CircuitParameters {
+    CircuitParameters {
         bases: vec![0],
         interfaces: vec![0],
         zones: Vec::new(),
@@ -43,13 +43,13 @@ fn spec() -> Spec {
 }
 
 /// Returns a zone of x from 0.5 to 1.5 m.
-fn zone(fate: EjectedFate) -> Zone {
+fn zone(outcome: EjectionOutcome) -> Zone {
     Zone {
         name: "drain".into(),
         low: [0.5, f64::NEG_INFINITY, 0.0],
         high: [1.5, f64::INFINITY, 0.0],
         carrier: None,
-        fate,
+        outcome,
     }
 }
 
@@ -80,10 +80,10 @@ fn step(
             torn: 0.0,
             damaged: true,
             damage_before: 0.0,
-            life: Life {
+            energies: BondEnergies {
                 work: [*open, *slide, 100.0],
                 fracture: *fracture,
-                ..Life::default()
+                ..BondEnergies::default()
             },
         });
     network.bond_breaks = broken.collect();
@@ -125,11 +125,11 @@ fn debris_of_one_mode() {
         let mut circuit = circuit(&s);
         step(&mut circuit, &mut s, &[], &[([0, 1], work, 1.0)]);
         assert_eq!(circuit.debris[0].mode_mix, mix, "{work:?}");
-        let life = Life {
+        let energies = BondEnergies {
             work: [work[0], work[1], 5.0],
-            ..Life::default()
+            ..BondEnergies::default()
         };
-        assert_eq!(life.mode_mix(), mix);
+        assert_eq!(energies.mode_mix(), mix);
     }
 }
 
@@ -203,8 +203,8 @@ fn other_bonds_do_not_tie() {
 #[test]
 fn a_grain_is_lost_after_its_time_in_the_zone() {
     let mut s = scene();
-    let spec = Spec {
-        zones: vec![zone(EjectedFate::LostAfter(2.0))],
+    let spec = CircuitParameters {
+        zones: vec![zone(EjectionOutcome::LostAfter(2.0))],
         scaling: 4.0,
         ..spec()
     };
@@ -286,7 +286,7 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
 #[test]
 fn a_zone_holds_images_and_follows_its_carrier() {
     let mut s = scene();
-    let mut zone = zone(EjectedFate::Stays);
+    let mut zone = zone(EjectionOutcome::Stays);
     let open = Periodic { period: [None; 3] };
     let periodic = Periodic {
         period: [Some(4.0), None, None],

@@ -4,7 +4,7 @@
 use super::has_begun;
 use crate::contact::{ContactHeat, HeatSide};
 use crate::geometry::space::Space;
-use crate::heat::{CircuitState, DiffusionError, Heat, HeatState, Imposed};
+use crate::heat::{CircuitState, DiffusionError, Heat, HeatState, ImposedHeatFlow};
 use crate::step::Simulation;
 use crate::threads::{fill, worth_dividing};
 use fretwork_math::diffusion::{Edge, Graph, steady, step_with_columns};
@@ -78,7 +78,7 @@ fn heat_of_step<S: Space>(
             }
         }
     }
-    for Imposed { body, node, flow } in &heat.imposed {
+    for ImposedHeatFlow { body, node, flow } in &heat.imposed {
         let removed = |body: u32| s.state.bodies.removed.get(body as usize);
         if body.and_then(removed).is_some_and(|removed| *removed) {
             continue;

@@ -25,14 +25,14 @@ const STALLED: u32 = 15;
 
 /// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to
 /// rounding, long before the others, and then the step length vanishes or the scaling breaks down.
-struct Inwards {
+struct Recentring {
     /// Magnitudes of r and of v.
     magnitudes: [f64; 2],
     /// Remaining number of moves away from the boundaries.
     left: u32,
 }
 
-impl Inwards {
+impl Recentring {
     /// Moves the iterate by the missing distance; returns whether it did.
     fn step<const D: usize>(
         &mut self,
@@ -435,7 +435,7 @@ impl<const D: usize> Solver<D> for Interior {
         let mut u = vec![[0.0; D]; form.len()];
         let mut slope = Slope::new(cones.any_bond());
         let mut stalled = 0;
-        let mut inwards = Inwards {
+        let mut inwards = Recentring {
             magnitudes,
             left: 10,
         };

@@ -140,12 +140,12 @@ record!(Moving);
 /// First numbers of a body record: in the plane four, which are written at once.
 #[derive(Clone, Copy)]
 #[repr(C)]
-struct Front<S: Space, L: Lane> {
+struct LeadingNumbers<S: Space, L: Lane> {
     v: S::V<L>,
     s: S::T<L>,
     im: L,
 }
-record!(Front);
+record!(LeadingNumbers);
 
 impl<S: Space> Moving<S> {
     pub fn of(body: &SolverBody<S>) -> Self {
@@ -171,13 +171,13 @@ impl<S: Space, L: Lane> Moving<S, L> {
         let zero = L::all(0.0);
         let moves = self.im.above(zero) | self.is.above(zero);
         if S::D == 2 {
-            let front = Front {
+            let front = LeadingNumbers {
                 v: self.v,
                 s: self.s,
                 im: self.im,
             };
             // SAFETY: as for `load`.
-            let mut to = unsafe { to.part_mut(|body| body.cast::<Front<S, f64>>()) };
+            let mut to = unsafe { to.part_mut(|body| body.cast::<LeadingNumbers<S, f64>>()) };
             to.write_where(moves, &front);
         } else {
             // SAFETY: as for `load`.

@@ -48,13 +48,13 @@ pub(in crate::solve) struct SystemRow<S: Space> {
 }
 
 /// Body, arm (m), mobility and length (m) of a rigid side.
-type Rigid<'a, S> = (u32, <S as Space>::Vector, &'a Mobility<S>, f64);
+type RigidData<'a, S> = (u32, <S as Space>::Vector, &'a Mobility<S>, f64);
 
 impl<S: Space> SystemRow<S> {
     pub fn new(
         contact: &ContactForm<S>,
         block: S::Matrix,
-        rigid: [Option<Rigid<S>>; 2],
+        rigid: [Option<RigidData<S>>; 2],
         points: [Option<(u32, u32, f64)>; 2],
         terms: Vec<Term>,
     ) -> Self {

@@ -93,7 +93,7 @@ impl<S: Space, K: RowKind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
     #[inline(always)]
     fn run<L4: Lane, L8: Lane>(mut self) {
         let (row, body) = Row::between_immovable_bodies();
-        let mut idle = Idle { row, body };
+        let mut idle = IdleLanes { row, body };
         let eight = V::TWO_REGISTERS && S::D == 3 && K::EIGHT;
         for group in self.groups.windows(2) {
             let [mut at, end] = [group[0], group[1]].map(|k| (k - self.groups[0]) as usize);
@@ -110,7 +110,7 @@ impl<S: Space, K: RowKind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
 }
 
 /// Fills the lanes without a contact.
-struct Idle<S: Space, K: RowKind<S>> {
+struct IdleLanes<S: Space, K: RowKind<S>> {
     row: Row<S, K>,
     body: SolverBody<S>,
 }
@@ -121,7 +121,7 @@ const AHEAD: usize = 16;
 impl<S: Space, K: RowKind<S>, V: Visit> ByGroups<'_, S, K, V> {
     /// Visits the rows from `at` on, up to at most `end`, the end of the group.
     #[inline(always)]
-    fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut Idle<S, K>) {
+    fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut IdleLanes<S, K>) {
         let (rows, pairs, count) = (self.rows, self.pairs.as_ptr(), self.pairs.len());
         // SAFETY: there are as many rows as pairs, and they name bodies of `solver_bodies`; in a
         // group movable bodies differ. Idle rows and bodies may be shared, and what is read there

@@ -5,7 +5,7 @@ use crate::bodies::Nodes;
 use crate::geometry::space::Dim2;
 use crate::solve::chosen;
 use crate::solve::error::Norm;
-use crate::solve::nlgs::{self, Options};
+use crate::solve::nlgs::{self, SolverOptions};
 use crate::solve::standard::Standard;
 use nalgebra::{Matrix1, Matrix2, Vector1, Vector2};
 
@@ -84,12 +84,12 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
 fn errors_of_nodes_and_bodies_are_measured_alike() {
     for norm in [Norm::Balance, Norm::Velocity] {
         for sweeps in 1..6 {
-            let options = Options {
+            let options = SolverOptions {
                 norm,
                 tolerance: 0.0,
                 max_iterations: sweeps,
                 test_every: 1,
-                ..Options::default()
+                ..SolverOptions::default()
             };
             let error = |rigid: bool| nlgs::solve(&mut stack(rigid).0, &options).error;
             let (body, node) = (error(true), error(false));
@@ -106,7 +106,7 @@ fn errors_of_nodes_and_bodies_are_measured_alike() {
 fn motions_of_nodes_count_as_those_of_bodies() {
     let [of_bodies, of_nodes] = [true, false].map(|rigid| {
         let (mut problem, forms) = stack(rigid);
-        nlgs::solve(&mut problem, &Options::default());
+        nlgs::solve(&mut problem, &SolverOptions::default());
         chosen::hyperstaticity(&problem, &forms)
     });
     assert!(of_bodies > 0.0);

@@ -4,7 +4,7 @@
 use super::phases;
 use super::schedule::set_parameter;
 use crate::bodies::Dof;
-use crate::bodies::pressure::{Pushed, Servo};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::{Scheme, Simulation};
 
@@ -18,9 +18,9 @@ pub(in crate::step) fn set_holder_drives<S: Space>(s: &mut Simulation<S>) {
 }
 
 /// Replaces the servos of the degrees of freedom that a phase drives by those of its drives.
-fn replace_servos<S: Space>(s: &mut Simulation<S>, pushed: &Pushed, drive: &Dof) {
-    let servos = Servo::of(&s.state.bodies, &s.shapes, pushed, drive);
-    s.state.control.servos.retain(|s| s.pushed() != pushed);
+fn replace_servos<S: Space>(s: &mut Simulation<S>, target: &ServoTarget, drive: &Dof) {
+    let servos = Servo::of(&s.state.bodies, &s.shapes, target, drive);
+    s.state.control.servos.retain(|s| s.target() != target);
     // The servos were validated when the scene was built.
     s.state.control.servos.extend(servos.unwrap_or_default());
 }
@@ -41,7 +41,7 @@ pub(in crate::step) fn end_phase<S: Space>(s: &mut Simulation<S>) {
     let Some(until) = s.phases[phase].until.clone() else {
         return;
     };
-    let now = phases::Moment {
+    let now = phases::StepTime {
         time: s.state.time,
         step: s.state.steps,
         h: s.options.event_step(),
@@ -63,14 +63,14 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
         .open(&phase.name, s.state.time, s.state.steps);
     let (changes, time) = (phase.changes, s.state.time);
     for (place, dof, drive) in changes.drives {
-        replace_servos(s, &Pushed::Body(place, dof), &drive);
+        replace_servos(s, &ServoTarget::Body(place, dof), &drive);
         let middle = time + 0.5 * s.options.event_step();
         s.state
             .bodies
             .set_drive(place, dof, drive.delayed(time), middle);
     }
     for (held, drive) in changes.holders {
-        replace_servos(s, &Pushed::Holder(held.clone()), &drive);
+        replace_servos(s, &ServoTarget::Holder(held.clone()), &drive);
         let set = &mut s.state.control.holder_drives;
         set.insert(held, drive.delayed(time));
     }

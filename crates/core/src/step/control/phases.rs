@@ -67,7 +67,7 @@ pub struct Phase {
 
 /// A phase that has begun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Begun {
+pub struct StartedPhase {
     /// Name.
     pub name: String,
     /// Start of the phase (s).
@@ -78,22 +78,22 @@ pub struct Begun {
     pub end: Option<f64>,
     /// Reason for its end.
     #[serde(deserialize_with = "known")]
-    pub ended_by: Option<Ending>,
+    pub ended_by: Option<EndReason>,
 }
 
 /// Reason why a phase ended, as one word.
-pub type Ending = &'static str;
+pub type EndReason = &'static str;
 
-const ENDS: [Ending; 5] = ["time", "duration", "steps", "rest", "at_most"];
+const ENDS: [EndReason; 5] = ["time", "duration", "steps", "rest", "at_most"];
 
-fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ending>, D::Error> {
+fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<EndReason>, D::Error> {
     let said = Option::<String>::deserialize(from)?;
     let known = |said: String| ENDS.into_iter().find(|end| *end == said);
     Ok(said.and_then(known))
 }
 
 /// Time and step count after a step.
-pub(super) struct Moment {
+pub(super) struct StepTime {
     pub time: f64,
     pub step: u64,
     pub h: f64,
@@ -110,7 +110,7 @@ pub(super) struct UndrivenMotion {
 /// Progress of the schedule.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Clock {
-    pub begun: Vec<Begun>,
+    pub begun: Vec<StartedPhase>,
     /// Time since which the grains have been at rest (s).
     still_since: Option<f64>,
 }
@@ -123,7 +123,7 @@ impl Clock {
 
     pub fn open(&mut self, name: &str, time: f64, step: u64) {
         self.still_since = None;
-        self.begun.push(Begun {
+        self.begun.push(StartedPhase {
             name: name.to_owned(),
             start: time,
             first_step: step,
@@ -132,7 +132,7 @@ impl Clock {
         });
     }
 
-    pub fn close(&mut self, now: &Moment, why: &'static str) {
+    pub fn close(&mut self, now: &StepTime, why: &'static str) {
         if let Some(begun) = self.begun.last_mut() {
             (begun.end, begun.ended_by) = (Some(now.time), Some(why));
         }
@@ -162,7 +162,7 @@ impl Clock {
     pub fn ends(
         &mut self,
         until: &Until,
-        now: &Moment,
+        now: &StepTime,
         motion: impl FnOnce() -> UndrivenMotion,
     ) -> Option<&'static str> {
         let begun = self.begun.last()?;
@@ -240,7 +240,7 @@ mod tests {
     /// between restarts that time.
     #[test]
     fn phases_end_when_their_conditions_say() {
-        let now = |time: f64| Moment {
+        let now = |time: f64| StepTime {
             time,
             step: 10,
             h: 1.0,

@@ -1,8 +1,8 @@
 //! Progress of the external actions that change in time.
 
 use super::GravityDrive;
-use super::phases::{Begun, Clock, Phase};
-use crate::bodies::pressure::{Pushed, Servo};
+use super::phases::{Clock, Phase, StartedPhase};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::bodies::{Dof, Driven, HeldAxis};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Kind};
@@ -52,7 +52,7 @@ impl<S: Space> Control<S> {
     }
 
     /// Returns the phases begun so far, in order.
-    pub fn begun(&self) -> &[Begun] {
+    pub fn begun(&self) -> &[StartedPhase] {
         &self.clock.begun
     }
 
@@ -72,9 +72,11 @@ impl<S: Space> Control<S> {
         let parameters = |law: &Interface| law.contact().parameters.len();
         let mut set = self.contact_parameters.keys();
         self.phase() <= phases.len()
-            && self.servos.iter().all(|s| match s.pushed() {
-                Pushed::Body(place, dof) => driven.get(*place).is_some_and(|d| *dof < d.dofs.len()),
-                Pushed::Holder(_) => true,
+            && self.servos.iter().all(|s| match s.target() {
+                ServoTarget::Body(place, dof) => {
+                    driven.get(*place).is_some_and(|d| *dof < d.dofs.len())
+                }
+                ServoTarget::Holder(_) => true,
             })
             && self.gates.iter().all(|(place, _)| *place < driven.len())
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
@@ -116,8 +118,8 @@ mod tests {
             area: 0.0,
         };
         let servo = |place, dof| {
-            let pushed = Pushed::Body(place, dof);
-            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, &pressure);
+            let target = ServoTarget::Body(place, dof);
+            let servos = Servo::of(&s.state.bodies, &s.shapes, &target, &pressure);
             servos.unwrap().remove(0)
         };
         let body = |dofs| Driven {

@@ -5,7 +5,7 @@
 use crate::bodies::Nodes;
 use crate::contact::Contact;
 use crate::geometry::mortar::Star;
-use crate::geometry::overlap::{Along, signed_size};
+use crate::geometry::overlap::{TangentialPoint, signed_size};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
@@ -20,7 +20,7 @@ const EQUAL: f64 = 1e-9;
 /// Returns the coordinates of a position along the contact, relative to its point: in the plane to
 /// the right of the normal, in space such that triangles that are anticlockwise seen from the tip
 /// of the normal are anticlockwise in these coordinates.
-fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> Along {
+fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> TangentialPoint {
     let [first, second] = S::tangents(normal);
     let sign = if S::D == 2 { -1.0 } else { 1.0 };
     move |from| [sign * from.dot(&first), sign * from.dot(&second)]
@@ -41,7 +41,7 @@ fn add_facets<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,
     near: u32,
-    project: impl Fn(&S::Vector) -> Along,
+    project: impl Fn(&S::Vector) -> TangentialPoint,
 ) -> Option<()> {
     let vertices = surface.moving_vertices();
     let (mut found, mut seen) = (vec![near], HashSet::from([near]));
@@ -212,14 +212,14 @@ pub(super) fn find_of_new_contacts<S: Space>(s: &mut Simulation<S>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::mortar::Faced;
+    use crate::geometry::mortar::FacedVertices;
     use crate::geometry::polyline::Polyline;
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
     /// Returns the mean position of a point above the foot of a flank of length one, whose normal
     /// has this cosine to that of the contact.
-    fn below(cosine: f64) -> Option<Faced> {
+    fn below(cosine: f64) -> Option<FacedVertices> {
         let top = Vector2::new(cosine, (1.0 - cosine * cosine).sqrt());
         let ends = [Vector2::new(-2.0, 0.0), top + Vector2::new(2.0, 0.0)];
         let chain = vec![ends[0], Vector2::zeros(), top, ends[1]];

@@ -6,7 +6,7 @@ pub(super) mod projection;
 
 pub(super) use first_move::{watch_first_move, watch_push};
 
-use super::motion::Motion;
+use super::motion::BodyVelocity;
 use super::process::Process;
 use super::{Simulation, StepError};
 use crate::contact::{Contact, detect};
@@ -23,12 +23,12 @@ pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {
 }
 
 /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
-pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
+pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[BodyVelocity<S>]) {
     add_predicted(s, free);
     mean_places::find_of_new_contacts(s);
 }
 
-fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
+fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[BodyVelocity<S>]) {
     // In a step that spans several steps, the prediction is skipped: bodies that would fall without
     // contacts are held by those at hand. The velocities after the solve show whether this is so.
     if s.options.grown > 0 {

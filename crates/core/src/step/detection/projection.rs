@@ -19,8 +19,8 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::solve::error::Norm;
-use crate::solve::{ContactForm, Options, Problem, nlgs};
-use crate::step::{Projected, Scheme, Simulation, StepError};
+use crate::solve::{ContactForm, Problem, SolverOptions, nlgs};
+use crate::step::{ProjectionReport, Scheme, Simulation, StepError};
 use crate::threads::largest;
 
 /// Displacement of a body's centre (m) and its rotation (rad).
@@ -49,7 +49,7 @@ pub(in crate::step) fn check_bodies<S: Space>(s: &Simulation<S>) -> Result<(), S
 
 /// Removes penetrations if one exceeds the bound, repeats detection, and adds the work to the
 /// ledger.
-pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projected> {
+pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<ProjectionReport> {
     if s.options.projection <= 0.0 {
         return None;
     }
@@ -63,12 +63,12 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
         &s.state.network,
         &s.laws,
     );
-    let options = Options {
+    let options = SolverOptions {
         tolerance: TOLERANCE,
         norm: Norm::Velocity,
         max_iterations: MAX_SWEEPS,
         parallel: s.options.solver.parallel,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let solved = nlgs::solve(&mut s.workspace.problem, &options);
     let moves: Vec<Move<S>> = (0..s.state.bodies.len())
@@ -94,7 +94,7 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
     let (time, parallel) = ([s.state.time, 0.0], s.options.solver.parallel);
     detect(&mut s.state.network, &scene, time, parallel);
     s.state.projection_work += against_loads;
-    Some(Projected {
+    Some(ProjectionReport {
         before,
         after: deepest_overlap(s),
         sweeps: solved.iterations,

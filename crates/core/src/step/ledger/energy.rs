@@ -3,7 +3,7 @@
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, SpringForm};
 use crate::step::control::watch_imposed;
-use crate::step::motion::{Motion, StepStart, end_systems};
+use crate::step::motion::{BodyVelocity, StepStart, end_systems};
 use crate::step::{Scheme, Simulation, StepReport};
 use crate::threads::{map_chunks, worth_dividing};
 
@@ -61,7 +61,7 @@ pub(super) fn spring_energy<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 /// Returns the impulses and moments of contacts on the driven bodies, in their order (N s, N m s).
-fn received<S: Space>(s: &Simulation<S>) -> Vec<Motion<S>> {
+fn received<S: Space>(s: &Simulation<S>) -> Vec<BodyVelocity<S>> {
     let (driven, contacts) = (&s.state.bodies.driven, &s.state.network.contacts);
     let mut place = vec![u32::MAX; s.state.bodies.len()];
     for (driven, d) in driven.iter().zip(0..) {

@@ -11,7 +11,7 @@ use super::{Scheme, Simulation};
 use crate::geometry::space::Space;
 
 /// Velocity and spin of a body.
-pub(super) type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+pub(super) type BodyVelocity<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Moves the bodies to q_m.
 pub(super) fn move_to_detection<S: Space>(s: &mut Simulation<S>) {
@@ -26,7 +26,7 @@ pub(super) fn move_to_detection<S: Space>(s: &mut Simulation<S>) {
 pub(super) fn free_motion<S: Space>(
     s: &mut Simulation<S>,
     start: &mut StepStart<S>,
-) -> Vec<Motion<S>> {
+) -> Vec<BodyVelocity<S>> {
     start.take_rotated_spins(&s.state.bodies);
     s.state.started = start.of_driven(&s.state.bodies);
     let Scheme { h, theta } = s.options.scheme;

@@ -1,6 +1,6 @@
 //! Positions at which the impulses of contacts act.
 
-use crate::contact::{Acts, Contact};
+use crate::contact::{ActionPoint, Contact};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 use crate::threads::{map_chunks_mut, worth_dividing};
@@ -11,7 +11,7 @@ const CHUNK: usize = 4096;
 const LOOK: f64 = 4.0;
 
 /// Parts of an interface that act across a gap.
-struct Across {
+struct GapActions {
     spring: bool,
     attraction: bool,
     bond: bool,
@@ -21,14 +21,14 @@ struct Across {
 /// on each other when they touch, on their surfaces: a gap at q_m is an error of the step. A bond,
 /// a spring or an attraction acts across the actual gap or overlap.
 pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
-    let across = s.laws.iter().map(|law| Across {
+    let across = s.laws.iter().map(|law| GapActions {
         spring: law.compliant(),
         attraction: law.cohesion().is_some() && !law.opens(),
         bond: law.opens(),
     });
-    let across: Vec<Across> = across.collect();
+    let across: Vec<GapActions> = across.collect();
     // Contacts are created with an action on the surfaces.
-    let never = |a: &Across| !(a.spring || a.attraction || a.bond);
+    let never = |a: &GapActions| !(a.spring || a.attraction || a.bond);
     if across.iter().all(never) {
         return;
     }
@@ -47,11 +47,11 @@ pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
             let sides = contact
                 .bodies
                 .map(|b| deforms && bodies.carrier(b as usize).is_some());
-            contact.acts = match (apart, sides) {
-                (false, _) | (true, [true, true]) => Acts::Surfaces,
-                (true, [false, false]) => Acts::Middle,
-                (true, [true, false]) => Acts::Candidate,
-                (true, [false, true]) => Acts::Antagonist,
+            contact.action_point = match (apart, sides) {
+                (false, _) | (true, [true, true]) => ActionPoint::Surfaces,
+                (true, [false, false]) => ActionPoint::Middle,
+                (true, [true, false]) => ActionPoint::Candidate,
+                (true, [false, true]) => ActionPoint::Antagonist,
             };
         }
     });
@@ -69,8 +69,8 @@ mod tests {
     #[test]
     fn attraction_acts_across_the_gap() {
         for (law, acts) in [
-            (0, [Acts::Middle, Acts::Surfaces]),
-            (1, [Acts::Surfaces; 2]),
+            (0, [ActionPoint::Middle, ActionPoint::Surfaces]),
+            (1, [ActionPoint::Surfaces; 2]),
         ] {
             let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
             let mut table = LawTable::new(1);
@@ -81,7 +81,7 @@ mod tests {
             let placed = [false, true].map(|beyond| {
                 s.state.network.contacts[0].beyond = beyond;
                 place_actions(&mut s);
-                s.state.network.contacts[0].acts
+                s.state.network.contacts[0].action_point
             });
             assert_eq!(placed, acts);
         }
@@ -98,8 +98,8 @@ mod tests {
         let placed = [slot, Contact::<Dim2>::NO_MEMORY].map(|slot| {
             s.state.network.contacts[0].slot = slot;
             place_actions(&mut s);
-            s.state.network.contacts[0].acts
+            s.state.network.contacts[0].action_point
         });
-        assert_eq!(placed, [Acts::Middle, Acts::Surfaces]);
+        assert_eq!(placed, [ActionPoint::Middle, ActionPoint::Surfaces]);
     }
 }

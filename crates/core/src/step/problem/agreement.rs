@@ -24,7 +24,7 @@ pub(super) fn solve_in_agreement<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
     free: &[(S::Vector, S::Spin)],
-    options: &solve::Options,
+    options: &solve::SolverOptions,
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
@@ -34,7 +34,7 @@ pub(super) fn solve_in_agreement<S: Space>(
     let mut sliding = sliding.map_err(|e| s.law_error(e))?;
     report.timing.laws += clock.elapsed();
     let mut agreement = Agreement::default();
-    let brief = solve::Options {
+    let brief = solve::SolverOptions {
         max_iterations: options.max_iterations.min(BRIEF),
         ..*options
     };

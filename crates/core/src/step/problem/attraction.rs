@@ -33,13 +33,13 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// An attraction linearised at a change of the gap x (m): force (N), and slope (N/m), which is not
 /// negative.
 #[derive(Clone, Copy, Debug, Default)]
-struct Linear {
+struct LinearAttraction {
     x: f64,
     force: f64,
     slope: f64,
 }
 
-impl Linear {
+impl LinearAttraction {
     fn at(&self, x: f64) -> f64 {
         self.force + self.slope * (x - self.x)
     }
@@ -55,13 +55,13 @@ struct AttractedContact {
     shift: f64,
     /// Attraction at the gap of detection (N).
     start: f64,
-    linear: Linear,
+    linear: LinearAttraction,
 }
 
 impl AttractedContact {
     /// Writes the linearised attraction into the form.
     fn apply<S: Space>(&self, form: &mut ContactForm<S>, h: f64) {
-        let Linear { x, force, slope } = self.linear;
+        let LinearAttraction { x, force, slope } = self.linear;
         let implicit = slope > 0.0;
         if implicit || form.elastic.is_some() {
             let bond = form.elastic.get_or_insert_with(Elastic::none);
@@ -87,7 +87,7 @@ struct AttractionGroup {
 
 /// Differences between the attractions used and those over the gaps of a solution.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Differences {
+pub(super) struct AttractionMismatch {
     /// Largest difference, over the load of its contact plus a hundredth of all load.
     pub worst: f64,
     /// Sum of the differences, and of the loads of all contacts of the scene (N).
@@ -95,7 +95,7 @@ pub(super) struct Differences {
     loads: f64,
 }
 
-impl Differences {
+impl AttractionMismatch {
     /// Returns the sum of the differences over that of the loads of all contacts.
     pub fn share(&self) -> f64 {
         if self.loads > 0.0 {
@@ -164,7 +164,7 @@ impl GapPath {
 }
 
 /// The attraction over the gaps of a path, linear between nodes.
-struct Passed {
+struct PathAttraction {
     path: GapPath,
     gaps: Vec<f64>,
     force: Vec<f64>,
@@ -172,7 +172,7 @@ struct Passed {
     work: Vec<f64>,
 }
 
-impl Passed {
+impl PathAttraction {
     fn of(path: GapPath, gaps: &[f64], force: &[f64]) -> Self {
         let mut work = vec![0.0; gaps.len()];
         for k in 1..gaps.len() {
@@ -237,16 +237,16 @@ impl Passed {
 
     /// Returns where to linearise, see the module, for `needed` R(x), and whether that is before
     /// x_s, by more than a force `margin`.
-    fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (Linear, bool) {
+    fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (LinearAttraction, bool) {
         let nodes = self.changes();
         let given: Vec<f64> = nodes.iter().map(|x| self.given(*x)).collect();
         let last = nodes.len() - 1;
         if last == 0 {
             let force = given[0];
             return (
-                Linear {
+                LinearAttraction {
                     force,
-                    ..Linear::default()
+                    ..LinearAttraction::default()
                 },
                 false,
             );
@@ -261,7 +261,7 @@ impl Passed {
         } else {
             1.0
         };
-        let linear = Linear {
+        let linear = LinearAttraction {
             x: nodes[k - 1] + share * (nodes[k] - nodes[k - 1]),
             force: given[k - 1] + share * (given[k] - given[k - 1]),
             slope: slope.max(0.0),
@@ -271,7 +271,7 @@ impl Passed {
 }
 
 /// A contact that may pass gaps with different attraction.
-struct Moved {
+struct MovedContact {
     at: usize,
     path: GapPath,
     pull: Option<AttractedContact>,
@@ -297,8 +297,8 @@ pub(super) fn compare_attractions<S: Space>(
     attractions: &mut Attractions,
     tolerance: f64,
     info: &StepInfo,
-) -> Result<Differences, LawError> {
-    let mut differences = Differences::default();
+) -> Result<AttractionMismatch, LawError> {
+    let mut differences = AttractionMismatch::default();
     if !attractions.groups.is_empty() {
         // These are the loads of this solve, since the forms change below.
         let contacts = 0..s.workspace.solved.contact_steps.len();
@@ -323,7 +323,7 @@ fn moved<S: Space>(
     s: &Simulation<S>,
     group: &AttractionGroup,
     info: &StepInfo,
-) -> (Vec<Moved>, f64) {
+) -> (Vec<MovedContact>, f64) {
     let (workspace, contacts) = (&s.workspace, &s.state.network.contacts);
     let mut moved = Vec::new();
     let mut whole = 0.0;
@@ -342,7 +342,7 @@ fn moved<S: Space>(
         whole += load(s, *at);
         let [low, high] = path.bounds();
         if pull.is_some() || (high > low && high > 0.0) {
-            moved.push(Moved {
+            moved.push(MovedContact {
                 at: *at,
                 path,
                 pull,
@@ -356,7 +356,7 @@ fn compare_attraction<S: Space>(
     s: &mut Simulation<S>,
     group: &mut AttractionGroup,
     tolerance: f64,
-    differences: &mut Differences,
+    differences: &mut AttractionMismatch,
     info: &StepInfo,
 ) -> Result<(), LawError> {
     let h = info.h;
@@ -384,9 +384,9 @@ fn compare_attraction<S: Space>(
             tension: form.tension - h * here,
             shift: form.shift_n - form.compliance[0] * form.tension,
             start: *here,
-            linear: Linear {
+            linear: LinearAttraction {
                 force: *here,
-                ..Linear::default()
+                ..LinearAttraction::default()
             },
         });
         let most = here.max(*start).max(*next);
@@ -405,7 +405,7 @@ fn compare_attraction<S: Space>(
     let (mut differs, mut next) = (0.0f64, Vec::with_capacity(moved.len()));
     for (m, range) in moved.iter().zip(ranges) {
         let Some(mut pull) = m.pull else { continue };
-        let passed = Passed::of(m.path, &gaps[range.clone()], &force[range]);
+        let passed = PathAttraction::of(m.path, &gaps[range.clone()], &force[range]);
         let x = m.path.x;
         let (used, given) = (pull.linear.at(x), passed.given(x));
         let own = used.abs().max(pull.start).max(given);
@@ -490,10 +490,10 @@ pub(super) fn settle_attractions<S: Space>(
 mod tests {
     use super::*;
 
-    fn passed(path: GapPath, force: impl Fn(f64) -> f64) -> Passed {
+    fn passed(path: GapPath, force: impl Fn(f64) -> f64) -> PathAttraction {
         let gaps = path.nodes();
         let force: Vec<f64> = gaps.iter().map(|g| force(*g)).collect();
-        Passed::of(path, &gaps, &force)
+        PathAttraction::of(path, &gaps, &force)
     }
 
     /// The mean over the gaps passed has the work of the potential, for any ratio of the distance

@@ -3,7 +3,7 @@
 use super::{agreement, systems};
 use crate::geometry::space::Space;
 use crate::laws::StepInfo;
-use crate::step::motion::{Motion, StepStart};
+use crate::step::motion::{BodyVelocity, StepStart};
 use crate::step::{Coupling, CouplingReport, Simulation, StepError, StepReport};
 use std::time::Instant;
 
@@ -53,7 +53,7 @@ impl Progress {
 pub(super) fn couple<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {

@@ -15,7 +15,7 @@ mod systems;
 mod turning;
 
 use super::detection::{add_contacts, prepare_contacts};
-use super::motion::{Motion, StepStart, restart};
+use super::motion::{BodyVelocity, StepStart, restart};
 use super::{Simulation, StepError, StepReport};
 use crate::contact::{Key, Occurrence, detect};
 use crate::geometry::space::{Space, VectorLike};
@@ -35,7 +35,7 @@ const ACTS: f64 = 5.0;
 pub(super) fn solve<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
@@ -47,7 +47,7 @@ pub(super) fn solve<S: Space>(
 fn solve_with_all<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {

@@ -3,7 +3,7 @@
 
 use super::swerve::shift_of_gap;
 use super::{swerve, systems, turning};
-use crate::contact::Acts;
+use crate::contact::ActionPoint;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::solver::Method;
@@ -21,7 +21,7 @@ const ADOPT: f64 = 5.0;
 pub(super) fn solve_contacts<S: Space>(
     s: &mut Simulation<S>,
     free: &[(S::Vector, S::Spin)],
-    options: &solve::Options,
+    options: &solve::SolverOptions,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
     loop {
@@ -99,7 +99,7 @@ pub(super) fn geometry_of_forms<S: Space>(
             normal: contact.normal,
             arms: contact.levers(),
             central: contact.central,
-            apart: contact.central && contact.acts != Acts::Surfaces,
+            apart: contact.central && contact.action_point != ActionPoint::Surfaces,
             shift_n: shift_of_gap(network, contact, correction, h)
                 - swerves.get(k).map_or(0.0, |s| s / h),
             shift_t: S::Tangent::zero(),

@@ -130,14 +130,14 @@ impl<S: Space> SlidingAnswer<S> {
 
 /// Difference between the friction of a solve and that of the laws.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mismatch {
+pub(super) struct FrictionMismatch {
     /// Sum of the differences over the sum of the friction.
     pub share: f64,
     /// Whether the two agree, or differ by no more than another solve would change.
     pub agrees: bool,
 }
 
-impl Mismatch {
+impl FrictionMismatch {
     /// Computes the difference from the entries: difference, friction (N s), and whether the law
     /// rises.
     fn of(differences: &[(f64, f64, bool)], iterations: u32) -> Self {
@@ -240,10 +240,10 @@ pub(super) fn compare_sliding<S: Space>(
     laws: &mut SlidingLaws<S>,
     again: bool,
     info: &StepInfo,
-) -> Result<Mismatch, LawError> {
+) -> Result<FrictionMismatch, LawError> {
     laws.iterations += 1;
     if laws.groups.is_empty() {
-        return Ok(Mismatch {
+        return Ok(FrictionMismatch {
             share: 0.0,
             agrees: true,
         });
@@ -288,7 +288,7 @@ pub(super) fn compare_sliding<S: Space>(
         }
         found.push((done, friction));
     }
-    let mismatch = Mismatch::of(&differences, laws.iterations);
+    let mismatch = FrictionMismatch::of(&differences, laws.iterations);
     if mismatch.agrees || !again {
         return Ok(mismatch);
     }

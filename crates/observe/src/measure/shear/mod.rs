@@ -16,7 +16,7 @@ mod means;
 mod sums;
 
 use crate::chart::Axis;
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::figures::history;
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
@@ -175,12 +175,12 @@ impl Observer for Shear {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(&self.row, &self.last, &self.whole))
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&(&self.row, &self.last, &self.whole))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.row, self.last, self.whole) = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        (self.row, self.last, self.whole) = encoding::decode(from)?;
         Ok(())
     }
 

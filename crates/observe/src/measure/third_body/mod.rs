@@ -13,7 +13,7 @@ mod spent;
 mod tables;
 
 use super::{grains, mean, since};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::picture::{Picture, Shows};
@@ -426,12 +426,12 @@ impl Observer for ThirdBody {
         }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(self)
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(self)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        *self = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        *self = encoding::decode(from)?;
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use super::results::clock;
 use super::{escape, hash};
 use crate::html::folder::RunFolder;
-use crate::html::laws::{LawInfo, Loaded};
+use crate::html::laws::{LawInfo, LoadedLaw};
 use serde_json::Value;
 
 /// Table of the provenance: version, identity, seed, steps.
@@ -81,7 +81,7 @@ fn bibtex(text: &str) -> String {
 /// BibTeX entries for the program and the run, and the references of the laws.
 pub(crate) fn cite(
     run: &RunFolder,
-    laws: &[Loaded],
+    laws: &[LoadedLaw],
     law: &dyn Fn(&str, &str) -> Option<LawInfo>,
 ) -> String {
     let version = bibtex(&run.version);

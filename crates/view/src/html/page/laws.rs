@@ -1,7 +1,7 @@
 //! Materials with sources, and interfaces and laws with their parameters and libraries.
 
 use super::{escape, hash, table};
-use crate::html::laws::{Interface, Loaded};
+use crate::html::laws::{Interface, LoadedLaw};
 use crate::html::materials::Files;
 use crate::html::results::number;
 
@@ -91,11 +91,11 @@ pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
 }
 
 /// The libraries of the laws.
-pub(crate) fn libraries(laws: &[Loaded]) -> String {
+pub(crate) fn libraries(laws: &[LoadedLaw]) -> String {
     if laws.is_empty() {
         return String::new();
     }
-    let row = |l: &Loaded| {
+    let row = |l: &LoadedLaw| {
         let certified = match l.certified {
             Some(true) => "yes",
             Some(false) => "<strong class=\"bad-text\">no</strong>",
