@@ -16,7 +16,7 @@ use crate::geometry::space::ball_volume;
 use crate::record::biaxial::Biaxial;
 use crate::record::check_names;
 use crate::scene::interfaces::without_interface;
-use crate::scene::methods::{Demands, Service};
+use crate::scene::methods::{SolverRequirements, SolverSupport};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
 use crate::scene::{Built, LoadedCase, load, sampling};
@@ -226,22 +226,24 @@ fn interfaces(s: &dyn RunView, line: &mut impl FnMut(&str, String)) {
 /// Describes which solvers support the case, and why the others do not. A case whose own solver
 /// does not support it is rejected earlier.
 fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
-    let demands = Demands::of(simulation);
+    let requirements = SolverRequirements::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
     for method in Method::ALL.iter().copied() {
-        match demands.service(method) {
-            Service::Serves => can.push(method.name().to_owned()),
-            Service::May(reason) => {
+        match requirements.support(method) {
+            SolverSupport::Serves => can.push(method.name().to_owned()),
+            SolverSupport::May(reason) => {
                 can.push(format!("{}?", method.name()));
                 reasons.push(format!("{} {reason}", method.name()));
             }
-            Service::Refuses(reason) => reasons.push(format!("not {}, {reason}", method.name())),
+            SolverSupport::Refuses(reason) => {
+                reasons.push(format!("not {}, {reason}", method.name()))
+            }
         }
     }
     let chosen = simulation.options().solver.method;
-    let served = match demands.service(chosen) {
-        Service::Serves => "supports this case".to_owned(),
-        Service::May(reason) | Service::Refuses(reason) => reason,
+    let served = match requirements.support(chosen) {
+        SolverSupport::Serves => "supports this case".to_owned(),
+        SolverSupport::May(reason) | SolverSupport::Refuses(reason) => reason,
     };
     line("method", format!("{} {served}", chosen.name()));
     line("methods", can.join(", "));

@@ -4,7 +4,7 @@ use super::experiment::{RunsBar, interrupted, results};
 use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs};
 use crate::experiments::duration::{parse as duration, seconds};
-use crate::experiments::runs::stored::Finished;
+use crate::experiments::runs::stored::FinishedRun;
 use crate::experiments::study::execute::{execute, missing};
 use crate::experiments::study::export::{Engine, Export};
 use crate::experiments::study::forecast::Forecast;
@@ -355,7 +355,7 @@ fn name(plan: &Plan, point: &Point) -> String {
 }
 
 /// Describes how a run ended, for a line of progress.
-fn how(run: &Finished) -> String {
+fn how(run: &FinishedRun) -> String {
     let took = seconds(run.wall);
     match status(Some(run)) {
         (word, why) if why.is_empty() => format!("{word} in {took}"),

@@ -17,7 +17,7 @@ pub use fretwork_store::{checkpoint, fclib, meshes, results, shapes, views};
 #[cfg(feature = "view")]
 pub use fretwork_view::picture;
 
-pub use fretwork_observe::run_state::Missed;
+pub use fretwork_observe::run_state::UnconvergedSteps;
 pub use observer::{Observer, Observers, RunEnd};
 #[cfg(feature = "results")]
 pub use run::{

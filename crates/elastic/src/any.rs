@@ -2,7 +2,7 @@
 
 use crate::body::ElasticBody;
 use crate::error::BodyError;
-use crate::generate::{Grid, mapped_grid};
+use crate::generate::{BlockGrid, mapped_grid};
 use crate::half_space::{HalfSpace, HalfSpaceError, HalfSpaceSpec};
 use crate::mesh::{Mesh, MeshError};
 use crate::spec::BodySpec;
@@ -42,7 +42,7 @@ impl AnyMesh {
     /// Returns the errors of [`mapped_grid`].
     pub fn mapped(
         dimension: usize,
-        grid: &Grid,
+        grid: &BlockGrid,
         map: &dyn Fn([f64; 3]) -> [f64; 3],
     ) -> Result<Self, MeshError> {
         Ok(match dimension {

@@ -23,7 +23,7 @@ use crate::error::BodyError;
 use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
 use crate::mesh::Mesh;
-use crate::model::{Formed, Model, assemble, contactors};
+use crate::model::{BodyModel, StepFactor, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
@@ -40,8 +40,8 @@ use std::sync::{Arc, OnceLock};
 /// A body of finite elements.
 #[derive(Clone, Debug)]
 pub struct ElasticBody<S: Space> {
-    pub(crate) model: Arc<Model<S>>,
-    pub(crate) formed: Option<Arc<Formed<S>>>,
+    pub(crate) model: Arc<BodyModel<S>>,
+    pub(crate) formed: Option<Arc<StepFactor<S>>>,
     /// The current drive of each held coordinate.
     pub(crate) drives: Vec<Dof>,
     pub(crate) displacement: Vec<f64>,
@@ -106,7 +106,7 @@ impl<S: Space> ElasticBody<S> {
         let (part, contactors) = contactors(&mesh, touching, surface_material)?;
         let total = freedoms.total();
         let start = crate::rigid::velocities(&mesh, &freedoms, &velocity, &spin);
-        let model = Model {
+        let model = BodyModel {
             name: name.to_owned(),
             mesh,
             material,

@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 
 /// A coordinate that is held: the common displacement of a part along an axis.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct HeldCoordinate {
     /// Index of the support.
     pub support: usize,
     /// Name of the part.
@@ -30,7 +30,7 @@ pub struct Freedoms<S: Space> {
     /// Axis of each coordinate.
     pub axis: Vec<u8>,
     /// Held coordinates, those that are imposed last and in their order.
-    pub held: Vec<Held>,
+    pub held: Vec<HeldCoordinate>,
     /// Coordinates with a force, and imposed coordinates, by their index in `held`.
     forces: Vec<usize>,
     imposed: Vec<usize>,
@@ -120,7 +120,7 @@ impl<S: Space> Freedoms<S> {
                 } else {
                     out.forces.push(out.held.len());
                 }
-                out.held.push(Held {
+                out.held.push(HeldCoordinate {
                     support: *s,
                     part: supports[*s].part.clone(),
                     coordinate,
@@ -149,7 +149,7 @@ impl<S: Space> Freedoms<S> {
 
     /// The place in `held` of a part along an axis.
     pub fn find(&self, part: &str, axis: usize) -> Option<usize> {
-        let along = |h: &Held| usize::from(self.axis[h.coordinate as usize]) == axis;
+        let along = |h: &HeldCoordinate| usize::from(self.axis[h.coordinate as usize]) == axis;
         self.held.iter().position(|h| h.part == part && along(h))
     }
 

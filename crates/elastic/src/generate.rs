@@ -11,7 +11,7 @@ use crate::mesh::{Mesh, MeshError};
 use cells::{Cut, cells, cut};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use grid::Place;
-pub use grid::{Coarsening, Grid, GridError};
+pub use grid::{BlockGrid, Coarsening, GridError};
 use std::collections::BTreeMap;
 
 /// Names of the sides of a block, at the low and the high end of each axis. In 2D `bottom` and
@@ -46,7 +46,7 @@ pub fn mapped_block<S: Space>(
     coordinates: &[Vec<f64>],
     map: impl Fn(&S::Vector) -> S::Vector,
 ) -> Result<Mesh<S>, MeshError> {
-    let grid = Grid::new(coordinates).map_err(|_| MeshError::Empty(S::D))?;
+    let grid = BlockGrid::new(coordinates).map_err(|_| MeshError::Empty(S::D))?;
     mapped_grid(&grid, map)
 }
 
@@ -59,7 +59,7 @@ pub fn mapped_block<S: Space>(
 /// # Errors
 /// Fails if the map makes points or elements invalid, or for a grid of another dimension.
 pub fn mapped_grid<S: Space>(
-    grid: &Grid,
+    grid: &BlockGrid,
     map: impl Fn(&S::Vector) -> S::Vector,
 ) -> Result<Mesh<S>, MeshError> {
     let (d, up) = (S::D, grid.axis());

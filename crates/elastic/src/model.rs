@@ -21,7 +21,7 @@ const MAX_SURFACE: usize = 20_000;
 
 /// Data that depend on the length of a step.
 #[derive(Clone, Debug)]
-pub struct Formed<S: Space> {
+pub struct StepFactor<S: Space> {
     /// Values of h and theta.
     pub of: [f64; 2],
     /// Factor of A; `None` where A is not positive definite in double precision: velocities are
@@ -32,7 +32,7 @@ pub struct Formed<S: Space> {
     pub surface: Option<Arc<Compliance<S>>>,
 }
 
-impl<S: Space> Formed<S> {
+impl<S: Space> StepFactor<S> {
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
             Some(factor) => factor.solve(x, 1),
@@ -43,7 +43,7 @@ impl<S: Space> Formed<S> {
 
 /// Constant data, shared by copies.
 #[derive(Debug)]
-pub struct Model<S: Space> {
+pub struct BodyModel<S: Space> {
     pub name: String,
     pub mesh: Mesh<S>,
     pub material: Elasticity,
@@ -58,7 +58,7 @@ pub struct Model<S: Space> {
     pub part: Option<SurfacePart>,
 }
 
-impl<S: Space> Model<S> {
+impl<S: Space> BodyModel<S> {
     /// The entries of a vector of coordinates at a point.
     pub fn of(&self, values: &[f64], point: u32) -> S::Vector {
         let mut out = S::Vector::zero();
@@ -106,7 +106,7 @@ impl<S: Space> Model<S> {
         }
     }
 
-    pub fn form(&self, h: f64, theta: f64) -> Formed<S> {
+    pub fn form(&self, h: f64, theta: f64) -> StepFactor<S> {
         let step = h * theta;
         let free = self.freedoms.free;
         let inertia = 1.0 + step * self.damping.mass;
@@ -142,11 +142,11 @@ impl<S: Space> Model<S> {
     }
 
     /// Creates the data of a step with a factor of A.
-    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> Formed<S> {
+    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> StepFactor<S> {
         let points = self.part.as_ref().map(|part| &part.points);
         let points = points.filter(|points| S::D * points.len() <= MAX_SURFACE);
         let surface = points.map(|points| Arc::new(Compliance::new(points.clone())));
-        Formed {
+        StepFactor {
             of,
             factor,
             surface,
@@ -155,7 +155,7 @@ impl<S: Space> Model<S> {
 
     /// Computes the column of the compliance for a surface point, by its index in the list of the
     /// kept compliance: the response of all surface points to an impulse on it.
-    pub fn column<'a>(&self, formed: &'a Formed<S>, at: usize) -> &'a [f64] {
+    pub fn column<'a>(&self, formed: &'a StepFactor<S>, at: usize) -> &'a [f64] {
         let Some(surface) = &formed.surface else {
             return &[];
         };

@@ -11,7 +11,7 @@ pub struct Owner {
     /// The command, `fretwork trade`.
     pub command: &'static str,
     /// Name of the file that is locked.
-    pub mark: &'static str,
+    pub lock_file: &'static str,
     /// Other files by which its folders are recognised.
     pub files: &'static [&'static str],
 }
@@ -25,7 +25,9 @@ impl Owner {
     pub fn take(&self, out: &Path) -> Result<FolderLock, Error> {
         let fail = |e: &dyn std::fmt::Display| Error::write(out, e);
         let ours = || {
-            let mut known = [self.mark].into_iter().chain(self.files.iter().copied());
+            let mut known = [self.lock_file]
+                .into_iter()
+                .chain(self.files.iter().copied());
             known.any(|f| out.join(f).is_file())
         };
         let full = std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
@@ -37,7 +39,7 @@ impl Owner {
             )));
         }
         std::fs::create_dir_all(out).map_err(|e| fail(&e))?;
-        FolderLock::own(out, self.mark).map_err(|e| match e {
+        FolderLock::exclusive(out, self.lock_file).map_err(|e| match e {
             LockError::Held { .. } => Error::Usage(format!(
                 "another {} is running in {}; wait for its end, or give another folder with --out",
                 self.command,
@@ -57,7 +59,7 @@ mod tests {
     fn refuses_a_second_study_and_a_folder_of_something_else() {
         const OWNER: Owner = Owner {
             command: "fretwork trade",
-            mark: "trade.lock",
+            lock_file: "trade.lock",
             files: &["plan.json"],
         };
         let out = std::env::temp_dir().join(format!("fretwork-lock-{}", std::process::id()));
@@ -70,7 +72,7 @@ mod tests {
         );
         drop(first);
         drop(OWNER.take(&out).unwrap());
-        std::fs::remove_file(out.join(OWNER.mark)).unwrap();
+        std::fs::remove_file(out.join(OWNER.lock_file)).unwrap();
         std::fs::write(out.join("thesis.txt"), "mine").unwrap();
         let message = OWNER.take(&out).unwrap_err().to_string();
         assert!(message.contains("holds no study"), "{message}");

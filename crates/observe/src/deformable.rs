@@ -324,7 +324,7 @@ impl Observer for Deformable {
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
-        let (nearest, resolutions): (_, Vec<resolution::State>);
+        let (nearest, resolutions): (_, Vec<resolution::ResolutionState>);
         (
             (self.distortions, self.borders, self.grains, nearest),
             resolutions,

@@ -15,18 +15,18 @@ pub const TRANSITION: f64 = 0.2;
 ///
 /// # Examples
 /// ```
-/// use fretwork_observe::fretting::Regime;
+/// use fretwork_observe::fretting::SlipRegime;
 ///
 /// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
 /// let (q, delta) = (30.0, 5e-6);
 /// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(Regime::of(dissipated / (4.0 * q * delta)), Regime::Gross);
+/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
 /// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(Regime::of(0.05), Regime::Partial);
+/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Regime {
+pub enum SlipRegime {
     /// Partial slip: part of the contact sticks in every cycle.
     #[default]
     Partial,
@@ -36,7 +36,7 @@ pub enum Regime {
     Gross,
 }
 
-impl Regime {
+impl SlipRegime {
     /// Returns the regime of one cycle by its energy ratio.
     pub fn of(energy_ratio: f64) -> Self {
         if energy_ratio < TRANSITION {
@@ -59,7 +59,7 @@ impl Regime {
 crate::described! {
     /// A ratio of sums over cycles with its 95 % confidence interval.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Slope {
+    pub struct CycleRatio {
         /// The ratio.
         pub value: f64 => WEAR_PER_ENERGY,
         /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
@@ -70,9 +70,9 @@ crate::described! {
 crate::described! {
     /// Result of a fretting test.
     #[derive(Clone, Debug, Serialize)]
-    pub struct Outcome {
+    pub struct FrettingOutcome {
         /// Regime over all complete cycles.
-        pub regime: Regime => WORD,
+        pub regime: SlipRegime => WORD,
         /// Energy dissipated in all complete cycles, the sum of E_d, including cycles jumped over.
         pub energy: f64 => ENERGY,
         /// Volume worn off first bodies in these cycles.
@@ -80,17 +80,19 @@ crate::described! {
         /// Slope alpha of wear volume against cumulative energy; `None` without wear. E_d is the
         /// area of the loop: if bodies also collide or move normally, the energy dissipated by
         /// friction alone is smaller.
-        pub alpha: Option<Slope> = part::<Slope>(),
+        pub alpha: Option<CycleRatio> = part::<CycleRatio>(),
     }
 }
 
-impl Outcome {
+impl FrettingOutcome {
     /// Evaluates the complete cycles; `None` if there are none.
     pub fn new(cycles: &[Cycle]) -> Option<Self> {
         let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
         let first = complete.first()?;
-        let kind = Regime::of(first.energy_ratio);
-        let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
+        let kind = SlipRegime::of(first.energy_ratio);
+        let same = complete
+            .iter()
+            .all(|c| SlipRegime::of(c.energy_ratio) == kind);
         // A cycle that represents several has the fracture energy of all of them; its neighbours
         // give that of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
@@ -115,7 +117,7 @@ impl Outcome {
         let energy = points.iter().map(|p| p.0).sum();
         let volume = points.iter().map(|p| p.1).sum();
         Some(Self {
-            regime: if same { kind } else { Regime::Mixed },
+            regime: if same { kind } else { SlipRegime::Mixed },
             energy,
             wear_volume: volume,
             alpha: if volume > 0.0 { slope(&points) } else { None },
@@ -126,7 +128,7 @@ impl Outcome {
 /// Returns the sum of y over the sum of x for independent pairs (x, y): the slope of cumulative y
 /// against cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron,
 /// The Jackknife, the Bootstrap and Other Resampling Plans, 1982).
-fn slope(points: &[(f64, f64)]) -> Option<Slope> {
+fn slope(points: &[(f64, f64)]) -> Option<CycleRatio> {
     let n = points.len() as f64;
     let (x, y) = points
         .iter()
@@ -140,7 +142,7 @@ fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let square: f64 = without.iter().map(|w| (w - mean).powi(2)).sum();
     let t = interval::quantile(points.len());
     let half_width = t.map(|t| t * ((n - 1.0) / n * square).sqrt());
-    Some(Slope { value, half_width })
+    Some(CycleRatio { value, half_width })
 }
 
 #[cfg(test)]
@@ -163,12 +165,12 @@ mod tests {
     fn regimes_follow_the_energy_ratio() {
         let of = |ratios: &[f64]| {
             let cycles: Vec<Cycle> = ratios.iter().map(|a| cycle(1.0, 0.0, *a)).collect();
-            Outcome::new(&cycles).unwrap().regime
+            FrettingOutcome::new(&cycles).unwrap().regime
         };
-        assert_eq!(of(&[0.05, 0.19]), Regime::Partial);
-        assert_eq!(of(&[0.05, 0.4]), Regime::Mixed);
-        assert_eq!(of(&[0.9, 0.4]), Regime::Gross);
-        assert!(Outcome::new(&[]).is_none());
+        assert_eq!(of(&[0.05, 0.19]), SlipRegime::Partial);
+        assert_eq!(of(&[0.05, 0.4]), SlipRegime::Mixed);
+        assert_eq!(of(&[0.9, 0.4]), SlipRegime::Gross);
+        assert!(FrettingOutcome::new(&[]).is_none());
     }
 
     #[test]
@@ -176,7 +178,7 @@ mod tests {
         let alpha = 2e-14;
         let works = [1.0, 0.8, 1.3, 1.1];
         let cycles: Vec<Cycle> = works.iter().map(|w| cycle(*w, alpha * w, 0.8)).collect();
-        let outcome = Outcome::new(&cycles).unwrap();
+        let outcome = FrettingOutcome::new(&cycles).unwrap();
         let slope = outcome.alpha.unwrap();
         assert!((slope.value / alpha - 1.0).abs() < 1e-12);
         assert!(slope.half_width.unwrap() < 1e-6 * alpha);

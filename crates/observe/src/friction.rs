@@ -1,7 +1,7 @@
 //! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from
 //! dissipation.
 
-use super::fretting::Regime;
+use super::fretting::SlipRegime;
 use super::layer::Balance;
 use super::loops::Loop;
 use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
@@ -65,7 +65,7 @@ crate::described! {
         /// 0 before the first reversal.
         pub plateau_ratio: f64 => ONE,
         /// Partial or gross slip, from the energy ratio.
-        pub regime: Regime => WORD,
+        pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,
         /// Number of further cycles that it represents by a jump: wear and damage are of all of
@@ -87,7 +87,7 @@ pub struct Cycles {
     position: f64,
     lowest: f64,
     highest: f64,
-    before: Option<State>,
+    before: Option<FrictionTotals>,
     shape: Loop,
     place: f64,
     /// Integrals of Q d delta and P |d delta| over blocks of equal time, for tests without a
@@ -97,7 +97,7 @@ pub struct Cycles {
 
 /// Cumulative quantities of a run at the end of a step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct State {
+pub struct FrictionTotals {
     /// Energy balance.
     pub balance: Balance,
     /// Bonds broken.
@@ -185,7 +185,14 @@ impl Cycles {
     }
 
     /// Adds a step: cumulative quantities at its start and at its end, and the damage ratio.
-    pub fn add(&mut self, sample: &Sample, h: f64, before: State, after: State, damage: f64) {
+    pub fn add(
+        &mut self,
+        sample: &Sample,
+        h: f64,
+        before: FrictionTotals,
+        after: FrictionTotals,
+        damage: f64,
+    ) {
         let number = self.number(sample.time);
         if number == 0 {
             return;
@@ -246,7 +253,7 @@ impl Cycles {
         };
         cycle.reversal_ratio = self.shape.reversal();
         cycle.plateau_ratio = self.shape.plateau().unwrap_or(0.0);
-        cycle.regime = Regime::of(cycle.energy_ratio);
+        cycle.regime = SlipRegime::of(cycle.energy_ratio);
         let clock = &self.clock;
         let end = clock
             .period
@@ -291,9 +298,9 @@ mod tests {
                 slide: v * h,
                 work: measured * q * v * h,
             };
-            let [before, after] = [before, balance].map(|balance| State {
+            let [before, after] = [before, balance].map(|balance| FrictionTotals {
                 balance,
-                ..State::default()
+                ..FrictionTotals::default()
             });
             cycles.add(&sample, h, before, after, 0.0);
         }

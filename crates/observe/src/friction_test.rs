@@ -3,9 +3,9 @@
 
 use super::figures;
 use super::fretting;
-use super::friction::{Cycles, Sample, State};
+use super::friction::{Cycles, FrictionTotals, Sample};
 use super::friction_report;
-use super::layer::Layer;
+use super::layer::LayerBalance;
 use super::output::Output;
 use super::quantity::unit::{FORCE, LOAD_PATH, METRE, ONE, Unit};
 use super::quantity::{Findings, Role, Topic};
@@ -24,15 +24,15 @@ use serde::{Deserialize, Serialize};
 pub struct FrictionTest {
     body: SlidingBody,
     sample: Sample,
-    before: State,
-    state: Followed,
+    before: FrictionTotals,
+    state: FrictionTestState,
 }
 
 /// State of the test carried from step to step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Followed {
+struct FrictionTestState {
     cycles: Cycles,
-    layer: Layer,
+    layer: LayerBalance,
     /// Displacement of the body so far (m).
     slide: f64,
     /// Tangential force of the last step (N; N/m).
@@ -49,10 +49,10 @@ impl FrictionTest {
         Self {
             body,
             sample: Sample::default(),
-            before: State::default(),
-            state: Followed {
+            before: FrictionTotals::default(),
+            state: FrictionTestState {
                 cycles,
-                layer: Layer::new(run),
+                layer: LayerBalance::new(run),
                 slide: 0.0,
                 force: 0.0,
                 worn: 0.0,
@@ -62,8 +62,8 @@ impl FrictionTest {
     }
 
     /// Returns the cumulative quantities so far.
-    fn cumulated(&self, run: &dyn RunView) -> State {
-        State {
+    fn cumulated(&self, run: &dyn RunView) -> FrictionTotals {
+        FrictionTotals {
             balance: self.state.layer.balance(run),
             broken: run.bonds_broken(),
             worn: self.state.worn,
@@ -168,7 +168,7 @@ impl Observer for FrictionTest {
 
     fn report_so_far(&self, found: &mut Findings) {
         let cycles = &self.state.cycles;
-        let fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
+        let fretting = fretting::FrettingOutcome::new(&cycles.list).filter(|_| cycles.oscillates());
         friction_report::report(cycles, fretting, found);
     }
 

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 /// State of the observer carried from row to row.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct State {
+struct HeatObserverState {
     /// Lowest temperature at the start (K).
     lowest: f64,
     /// Highest temperature so far (K).
@@ -44,7 +44,7 @@ pub struct HeatObserver {
     /// Names of the first bodies, in the order of [`Heat::first_bodies`].
     names: Vec<String>,
     circuit: bool,
-    state: State,
+    state: HeatObserverState,
 }
 
 impl HeatObserver {
@@ -55,7 +55,7 @@ impl HeatObserver {
         Some(Self {
             names: heat.first_bodies.iter().map(|b| b.0.clone()).collect(),
             circuit: heat.circuit.is_some(),
-            state: State {
+            state: HeatObserverState {
                 lowest: temperatures().fold(f64::INFINITY, f64::min),
                 highest: temperatures().fold(0.0, f64::max),
                 off: state.ledger.relative_residual(),

@@ -22,7 +22,7 @@ pub struct Balance {
 
 /// Observer of the balance.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Layer {
+pub struct LayerBalance {
     /// Velocities of the driven bodies at the end of the last processed step.
     velocity: Vec<(Vector3<f64>, Vector3<f64>)>,
     /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger
@@ -33,7 +33,7 @@ pub struct Layer {
     external: f64,
 }
 
-impl Layer {
+impl LayerBalance {
     /// Starts from the current state.
     pub fn new(run: &dyn RunView) -> Self {
         Self {

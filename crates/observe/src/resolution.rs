@@ -70,7 +70,7 @@ crate::described! {
 }
 
 /// State that is kept over a pause.
-pub type State = (f64, Option<f64>, Option<f64>, [f64; 2], f64, bool);
+pub type ResolutionState = (f64, Option<f64>, Option<f64>, [f64; 2], f64, bool);
 
 impl Resolution {
     /// Creates the result of a system with contacts.
@@ -82,7 +82,7 @@ impl Resolution {
     }
 
     /// Returns the state, to continue after a pause.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> ResolutionState {
         (
             self.across,
             self.stick,
@@ -94,7 +94,7 @@ impl Resolution {
     }
 
     /// Restores the state after a pause.
-    pub fn restore(&mut self, (across, stick, slip, sums, before, rolls): State) {
+    pub fn restore(&mut self, (across, stick, slip, sums, before, rolls): ResolutionState) {
         (self.across, self.stick, self.slip) = (across, stick, slip);
         (self.sums, self.before, self.rolls) = (sums, before, rolls);
         self.heat_error = share(sums);
@@ -221,7 +221,7 @@ struct Strip {
 
 /// A point in contact.
 #[derive(Clone, Copy, Debug)]
-struct Loaded {
+struct LoadedPoint {
     place: Vector3<f64>,
     /// Normal of the counterpart times the load, and the load (N; N/m).
     pushes: Vector3<f64>,
@@ -240,7 +240,7 @@ impl Strip {
     /// touches many bodies.
     fn of(run: &dyn RunView, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded>> = BTreeMap::new();
+        let mut all: BTreeMap<Counterpart, BTreeMap<Point, LoadedPoint>> = BTreeMap::new();
         let mut total = 0.0;
         let bodies = run.bodies();
         for (k, acting) in loaded(run, system).into_iter().enumerate() {
@@ -254,7 +254,7 @@ impl Strip {
             let is_point = bodies.carrier(candidate as usize).is_some();
             let point = (candidate, if is_point { 0 } else { k });
             let points = all.entry(counterpart).or_default();
-            let of_point = points.entry(point).or_insert(Loaded {
+            let of_point = points.entry(point).or_insert(LoadedPoint {
                 place: Vector3::from(bodies.position.at(own as usize))
                     + Vector3::from(acting.contact.arms[acting.side]),
                 pushes: Vector3::zeros(),
@@ -270,7 +270,7 @@ impl Strip {
             let system = (kind == 0).then_some(other as usize);
             (system, points.into_values().collect::<Vec<_>>())
         });
-        let sum = |list: &[Loaded]| list.iter().map(|c| c.load).sum::<f64>();
+        let sum = |list: &[LoadedPoint]| list.iter().map(|c| c.load).sum::<f64>();
         let (other, most) = lists.max_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b)))?;
         if sum(&most) < MOST * total {
             return None;
@@ -283,7 +283,7 @@ impl Strip {
     }
 
     /// Returns the result of the points that touch one counterpart; `None` where these are few.
-    fn across(dimension: usize, mut most: Vec<Loaded>) -> Option<Self> {
+    fn across(dimension: usize, mut most: Vec<LoadedPoint>) -> Option<Self> {
         let largest = most.iter().map(|c| c.load).fold(0.0, f64::max);
         most.retain(|c| c.load >= TRACE * largest);
         if most.len() < FEWEST {
@@ -303,7 +303,7 @@ impl Strip {
         }
         // Points are in the order along the mean tangent.
         let normal = most.iter().fold(Vector3::zeros(), |sum, c| sum + c.pushes);
-        let along = |c: &Loaded| c.place[0] * normal[1] - c.place[1] * normal[0];
+        let along = |c: &LoadedPoint| c.place[0] * normal[1] - c.place[1] * normal[0];
         most.sort_by(|a, b| along(a).total_cmp(&along(b)));
         let begins = |k: usize| most[k].slips && (k == 0 || !most[k - 1].slips);
         let strips = (0..most.len()).filter(|k| begins(*k)).count().max(1);
@@ -350,9 +350,9 @@ mod tests {
 
     /// Returns points along a line in the plane, loaded as in Hertz' contact, of which the outer
     /// ones slip, with small forces beyond.
-    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded> {
+    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<LoadedPoint> {
         let normal = Vector3::new(-towards[1], towards[0], 0.0);
-        let of = |k: i32, load: f64, slips: bool| Loaded {
+        let of = |k: i32, load: f64, slips: bool| LoadedPoint {
             place: Vector3::new(towards[0], towards[1], 0.0) * (1e-3 * f64::from(k)),
             pushes: normal * load,
             load,
@@ -360,7 +360,8 @@ mod tests {
         };
         let load = |k: i32| (1.0 - (f64::from(k) / 20.0).powi(2)).sqrt();
         // The contact sticks from -9 to 9, and slips in ten elements at either side.
-        let mut points: Vec<Loaded> = (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
+        let mut points: Vec<LoadedPoint> =
+            (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
         points.extend((0..traces as i32).map(|k| of(20 + k, 1e-7, k % 2 == 0)));
         // The points are in no particular order.
         points.sort_by_key(|p| ((p.place[0] + p.place[1]) * 1e6) as i64 * 7919 % 1009);

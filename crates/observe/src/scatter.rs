@@ -5,7 +5,7 @@
 //! show a trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
 
 use super::friction::Cycle;
-use super::steady::{self, Flow};
+use super::steady::{self, MeanFlow};
 
 /// Smallest number of cycles for an interval.
 const FEWEST: usize = 3;
@@ -16,7 +16,7 @@ const CORRELATED: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
     /// Mean, half-width of its interval, trend.
-    pub flow: Flow,
+    pub flow: MeanFlow,
     /// Number of values.
     pub count: usize,
     /// Description of the values: `cycles 6 to 10`.

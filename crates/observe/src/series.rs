@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Equidistant points, including the first, and the last one separately.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Series<T> {
+pub struct DecimatedSeries<T> {
     points: Vec<T>,
     /// The last point, if it is not among the points.
     last: Option<T>,
@@ -13,7 +13,7 @@ pub struct Series<T> {
     seen: u64,
 }
 
-impl<T> Default for Series<T> {
+impl<T> Default for DecimatedSeries<T> {
     fn default() -> Self {
         Self {
             points: Vec::new(),
@@ -24,7 +24,7 @@ impl<T> Default for Series<T> {
     }
 }
 
-impl<T> Series<T> {
+impl<T> DecimatedSeries<T> {
     /// Largest number of points; at least half of them remain.
     pub const MAX: usize = 2048;
 
@@ -67,17 +67,18 @@ mod tests {
     #[test]
     fn points_are_all_there_or_equally_far_apart_with_both_ends() {
         for count in [0, 1, 5, 2048, 2049, 4096, 4097, 4101, 100_001] {
-            let mut series = Series::default();
+            let mut series = DecimatedSeries::default();
             (0..count).for_each(|k: u64| series.add(k));
             let points: Vec<u64> = series.points().copied().collect();
             assert_eq!(series.last().copied(), count.checked_sub(1));
             assert_eq!(points.last(), series.last());
-            if count <= Series::<u64>::MAX as u64 {
+            if count <= DecimatedSeries::<u64>::MAX as u64 {
                 assert_eq!(points, (0..count).collect::<Vec<_>>());
                 continue;
             }
             assert!(
-                points.len() > Series::<u64>::MAX / 2 && points.len() <= Series::<u64>::MAX + 1
+                points.len() > DecimatedSeries::<u64>::MAX / 2
+                    && points.len() <= DecimatedSeries::<u64>::MAX + 1
             );
             let apart: Vec<u64> = points.windows(2).map(|w| w[1] - w[0]).collect();
             let (end, rest) = apart.split_last().unwrap();

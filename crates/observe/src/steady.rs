@@ -15,7 +15,7 @@ pub const BLOCKS: usize = 10;
 crate::described! {
     /// A mean flow over a window.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-    pub struct Flow {
+    pub struct MeanFlow {
         /// Mean rate, in units of the table per second.
         pub mean: f64 => MASS_FLOW,
         /// Half-width of its 95 % confidence interval.
@@ -29,7 +29,7 @@ crate::described! {
     }
 }
 
-impl Flow {
+impl MeanFlow {
     /// Whether zero is within the interval.
     pub fn may_be_zero(&self) -> bool {
         self.mean.abs() <= self.half_width
@@ -38,7 +38,7 @@ impl Flow {
 
 /// Returns the mean rate of a cumulative quantity after a time. `points` are (time, cumulative
 /// value), with increasing times; `None` if a block has fewer than two points.
-pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
+pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<MeanFlow> {
     if start >= end || points.len() < 2 {
         return None;
     }
@@ -69,7 +69,7 @@ fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
 }
 
 /// Returns mean, interval and trend of block means; `None` for fewer than two.
-pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
+pub(super) fn of_blocks(blocks: &[f64]) -> Option<MeanFlow> {
     if blocks.len() < 2 {
         None
     } else {
@@ -78,7 +78,7 @@ pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
 }
 
 /// Returns mean, interval and trend of blocks.
-fn summary(blocks: &[f64]) -> Option<Flow> {
+fn summary(blocks: &[f64]) -> Option<MeanFlow> {
     let n = blocks.len();
     let count = n as f64;
     let mean = blocks.iter().sum::<f64>() / count;
@@ -87,7 +87,7 @@ fn summary(blocks: &[f64]) -> Option<Flow> {
     let t = interval::quantile(n)?;
     let neighbours: f64 = deviations.windows(2).map(|w| w[0] * w[1]).sum();
     let trend = trend(blocks)?;
-    Some(Flow {
+    Some(MeanFlow {
         mean,
         half_width: t * (square / (count - 1.0) / count).sqrt(),
         correlation: if square > 0.0 {

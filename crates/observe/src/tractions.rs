@@ -177,7 +177,7 @@ pub fn signed(dimension: usize, along: &Vector3<f64>) -> f64 {
 
 /// A contact with a force on a system, over the last step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Acting {
+pub(crate) struct ActingContact {
     pub contact: ContactView,
     /// Index of the body of the contact that belongs to the system.
     pub side: usize,
@@ -189,7 +189,7 @@ pub(crate) struct Acting {
 }
 
 /// Returns the contacts of a system that carry force.
-pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<Acting> {
+pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<ActingContact> {
     let bodies = run.bodies();
     let mut out = Vec::new();
     run.visit_contacts(&mut |contact| {
@@ -208,7 +208,7 @@ pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<Acting> {
         };
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let (force, normal) = (Vector3::from(contact.force), Vector3::from(contact.normal));
-        out.push(Acting {
+        out.push(ActingContact {
             contact: *contact,
             side,
             force: force * sign,

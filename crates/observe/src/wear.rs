@@ -208,12 +208,12 @@ pub struct Wear {
     density: f64,
     /// Whether an interface of the case has a wear law.
     wears: bool,
-    state: Worn,
+    state: WearObserverState,
 }
 
 /// State carried from step to step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-struct Worn {
+struct WearObserverState {
     /// Volumes worn off first bodies and between grains (m^3; m^3/m).
     volumes: (f64, f64),
     flows: Flows,
@@ -229,7 +229,7 @@ impl Wear {
             along,
             scaling,
             density,
-            state: Worn {
+            state: WearObserverState {
                 volumes: (0.0, 0.0),
                 flows: Flows::since(start),
             },

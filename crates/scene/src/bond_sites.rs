@@ -124,7 +124,7 @@ fn of_contacts(s: &dyn RunView, law: usize) -> Vec<BondPair> {
 /// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and
 /// the tangents (1/kg), material.
 #[derive(Clone, Copy)]
-struct Side {
+struct BondSide {
     body: u32,
     curvature: f64,
     normal: f64,
@@ -132,7 +132,7 @@ struct Side {
     material: u16,
 }
 
-impl Side {
+impl BondSide {
     fn with(&self, other: &Self) -> BondPair {
         BondPair {
             radius: 1.0 / (self.curvature + other.curvature),
@@ -154,12 +154,12 @@ struct Candidates {
 /// Returns pairs before there are contacts: each grain with the next one in the scene, or with each
 /// surface where the interface has no pairs of grains.
 fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
-    let governed = |a: &Side, b: &Side| {
+    let governed = |a: &BondSide, b: &BondSide| {
         let found = s.table().get(a.material, b.material);
         found.map(usize::from) == Some(law)
     };
-    let join = |a: &Side, b: &Side| governed(a, b).then(|| a.with(b));
-    let apart = |a: &Side, b: &Side| (a.body != b.body).then(|| join(a, b)).flatten();
+    let join = |a: &BondSide, b: &BondSide| governed(a, b).then(|| a.with(b));
+    let apart = |a: &BondSide, b: &BondSide| (a.body != b.body).then(|| join(a, b)).flatten();
     let (grains, surfaces) = (grains(s), surfaces(s));
     let mut out = Candidates::default();
     let neighbours = grains.windows(2);
@@ -168,7 +168,7 @@ fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
     let mut kinds: Vec<u16> = grains.iter().map(|g| g.material).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    let own = |g: &&Side| {
+    let own = |g: &&BondSide| {
         let with = |kind: &u16| s.table().get(g.material, *kind).map(usize::from) == Some(law);
         kinds.iter().any(with)
     };
@@ -197,7 +197,7 @@ fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
     out
 }
 
-fn grains(s: &dyn RunView) -> Vec<Side> {
+fn grains(s: &dyn RunView) -> Vec<BondSide> {
     // The size of a point of a deformable grain is that of its tributary area.
     let balls = s.balls().into_iter().map(|b| {
         let size = match b.radius > 0.0 {
@@ -216,7 +216,7 @@ fn grains(s: &dyn RunView) -> Vec<Side> {
             None => radius,
         };
         let turning = arm * arm * inverse_inertia(s, body);
-        Side {
+        BondSide {
             body,
             curvature: 1.0 / radius,
             normal: inverse,
@@ -228,13 +228,13 @@ fn grains(s: &dyn RunView) -> Vec<Side> {
 }
 
 /// Returns one surface for each material and mass.
-fn surfaces(s: &dyn RunView) -> Vec<Side> {
-    let mut out: Vec<Side> = Vec::new();
+fn surfaces(s: &dyn RunView) -> Vec<BondSide> {
+    let mut out: Vec<BondSide> = Vec::new();
     for surface in s.surfaces() {
         let normal = inverse_mass(s, surface.body);
-        let known = |x: &Side| x.material == surface.material && x.normal == normal;
+        let known = |x: &BondSide| x.material == surface.material && x.normal == normal;
         if !out.iter().any(known) {
-            out.push(Side {
+            out.push(BondSide {
                 body: surface.body,
                 curvature: 0.0,
                 normal,

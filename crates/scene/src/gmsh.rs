@@ -81,7 +81,7 @@ fn shorter(line: &str) -> String {
 type Elements = Vec<(usize, Vec<i64>, Vec<u64>)>;
 
 #[derive(Default)]
-struct Read {
+struct MeshReader {
     version: f64,
     names: HashMap<(usize, i64), String>,
     /// Physical groups of each entity.
@@ -95,7 +95,7 @@ fn parse(text: &str, dimension: usize) -> Result<GmshMesh, Fault> {
         rest: text.lines().enumerate(),
         last: 0,
     };
-    let mut read = Read::default();
+    let mut read = MeshReader::default();
     while let Some(line) = lines.next() {
         match line {
             "$MeshFormat" => read.format(&mut lines)?,
@@ -115,7 +115,7 @@ fn parse(text: &str, dimension: usize) -> Result<GmshMesh, Fault> {
     read.mesh(dimension)
 }
 
-impl Read {
+impl MeshReader {
     fn format(&mut self, lines: &mut Lines) -> Result<(), Fault> {
         let format = lines.numbers::<f64>(2)?;
         if format[1] != 0.0 {

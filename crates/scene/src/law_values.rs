@@ -2,7 +2,7 @@
 //! interface.
 
 use super::case::InterfaceSpec;
-use super::material::{self, Given, Sourced};
+use super::material::{self, NumberSpec, Sourced};
 use super::source::{ValidationError, nearest};
 use super::units;
 use super::wear_coefficient::{self, WearCoefficient};
@@ -132,7 +132,7 @@ pub(super) fn wear_from_hardness(
         (spec.between.0.as_str(), hardness(0)),
         (spec.between.1.as_str(), hardness(1)),
     ];
-    let place = wear_coefficient::Place {
+    let place = wear_coefficient::CoefficientParameter {
         interface: &spec.name,
         law,
         parameter,
@@ -157,7 +157,7 @@ pub(super) fn given_numbers<'a>(
     slot: &str,
     law: &str,
     file: Option<&'a BTreeMap<String, Sourced>>,
-    own: &'a BTreeMap<String, Given>,
+    own: &'a BTreeMap<String, NumberSpec>,
 ) -> BTreeMap<&'a str, GivenNumber<'a>> {
     let of_file = file.into_iter().flatten().map(|(name, number)| {
         let given = GivenNumber {

@@ -36,21 +36,21 @@ impl Sourced {
 
 /// A number of a case: a plain number in the unit of the schema, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
+pub struct NumberSpec {
     /// Value.
     pub value: f64,
     /// Unit, if given.
     pub unit: Option<String>,
 }
 
-impl From<f64> for Given {
+impl From<f64> for NumberSpec {
     /// A number in the unit of the schema.
     fn from(value: f64) -> Self {
         Self { value, unit: None }
     }
 }
 
-impl Serialize for Given {
+impl Serialize for NumberSpec {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Some(unit) = &self.unit else {
             return serializer.serialize_f64(self.value);
@@ -62,7 +62,7 @@ impl Serialize for Given {
     }
 }
 
-impl<'de> Deserialize<'de> for Given {
+impl<'de> Deserialize<'de> for NumberSpec {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields)]
@@ -75,22 +75,22 @@ impl<'de> Deserialize<'de> for Given {
         }
         struct NumberOrGroup;
         impl<'de> Visitor<'de> for NumberOrGroup {
-            type Value = Given;
+            type Value = NumberSpec;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str("a number, or `(value: number, unit: \"...\")`")
             }
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Given, E> {
-                Ok(Given { value, unit: None })
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<NumberSpec, E> {
+                Ok(NumberSpec { value, unit: None })
             }
-            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Given, E> {
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<NumberSpec, E> {
                 self.visit_f64(value as f64)
             }
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Given, E> {
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<NumberSpec, E> {
                 self.visit_f64(value as f64)
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Given, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<NumberSpec, A::Error> {
                 let found = WithUnit::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(Given {
+                Ok(NumberSpec {
                     value: found.value,
                     unit: Some(found.unit),
                 })
@@ -182,8 +182,8 @@ pub struct InterfaceParameters {
 
 impl<'de> Deserialize<'de> for InterfaceParameters {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Fields(&'static [&'static str]);
-        impl<'de> Visitor<'de> for Fields {
+        struct ParametersVisitor(&'static [&'static str]);
+        impl<'de> Visitor<'de> for ParametersVisitor {
             type Value = InterfaceParameters;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str("struct InterfaceParameters")
@@ -210,7 +210,7 @@ impl<'de> Deserialize<'de> for InterfaceParameters {
             }
         }
         let fields = with_kinds(&["doc"], 1).map_err(D::Error::custom)?;
-        deserializer.deserialize_struct("InterfaceParameters", fields, Fields(fields))
+        deserializer.deserialize_struct("InterfaceParameters", fields, ParametersVisitor(fields))
     }
 }
 
@@ -283,7 +283,7 @@ impl MaterialLibrary {
     ///
     /// # Errors
     /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
-    pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
+    pub fn read(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
                 format!("{name}.ron (built in Rust)"),
@@ -312,7 +312,7 @@ impl MaterialLibrary {
         }
     }
 
-    fn missing(&self, name: &str) -> Missing {
+    fn missing(&self, name: &str) -> MissingMaterial {
         let mut names: Vec<String> = self
             .folders
             .iter()
@@ -335,7 +335,7 @@ impl MaterialLibrary {
         }
         let folders = self.folders.iter().map(|f| f.display().to_string());
         let built_in = std::iter::once("the program itself".to_owned());
-        Missing {
+        MissingMaterial {
             nearest: nearest(name, names.iter().map(String::as_str)).map(str::to_owned),
             available: names.join(", "),
             looked: folders.chain(built_in).collect::<Vec<_>>().join(", "),
@@ -345,7 +345,7 @@ impl MaterialLibrary {
 
 /// A name without a file.
 #[derive(Clone, Debug)]
-pub struct Missing {
+pub struct MissingMaterial {
     /// The nearest name.
     pub nearest: Option<String>,
     /// All available names.

@@ -53,11 +53,11 @@ pub fn parameter<'a>(
 }
 
 /// A material of an interface: its name in the case, and its hardness if its file gives one.
-pub type Side<'a> = (&'a str, Option<&'a Sourced>);
+pub type MaterialHardness<'a> = (&'a str, Option<&'a Sourced>);
 
 /// Law and parameter to which the coefficient belongs.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct CoefficientParameter<'a> {
     /// Interface.
     pub interface: &'a str,
     /// Wear law.
@@ -73,12 +73,12 @@ pub struct Place<'a> {
 /// Returns a sentence: no material has a hardness, its scale is no pressure, or a required friction
 /// coefficient is missing.
 pub fn derive(
-    place: Place<'_>,
+    place: CoefficientParameter<'_>,
     dimensionless: f64,
-    sides: &[Side<'_>; 2],
+    sides: &[MaterialHardness<'_>; 2],
     friction: Option<f64>,
 ) -> Result<WearCoefficient, String> {
-    let Place {
+    let CoefficientParameter {
         interface,
         law,
         parameter: (parameter, unit),
@@ -161,12 +161,12 @@ mod tests {
         }
     }
 
-    const ARCHARD: Place<'_> = Place {
+    const ARCHARD: CoefficientParameter<'_> = CoefficientParameter {
         interface: "a",
         law: "archard",
         parameter: ("k", "1/Pa"),
     };
-    const ENERGY: Place<'_> = Place {
+    const ENERGY: CoefficientParameter<'_> = CoefficientParameter {
         parameter: ("alpha", "m^3/J"),
         law: "dissipated-energy",
         ..ARCHARD
@@ -200,8 +200,9 @@ mod tests {
         let hard = hardness(50.0, "HRC");
         let soft = hardness(260.0, "HBW");
         let none = [("rail", None), ("oxide", None)];
-        let message =
-            |place, k, sides: &[Side<'_>; 2], mu| derive(place, k, sides, mu).unwrap_err();
+        let message = |place, k, sides: &[MaterialHardness<'_>; 2], mu| {
+            derive(place, k, sides, mu).unwrap_err()
+        };
         assert!(message(ARCHARD, 3e-4, &none, None).contains("neither `rail` nor `oxide`"));
         let sides = [("rail", Some(&hard)), ("oxide", Some(&soft))];
         assert!(message(ARCHARD, 3e-4, &sides, None).contains("50 HRC, is no pressure"));

@@ -20,7 +20,7 @@ pub enum LockError {
     },
     /// The folder is no longer the one that was owned.
     #[error(
-        "the folder {}, or {mark} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
+        "the folder {}, or {lock_file} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
          or resume it where the folder is now, and leave the folder of a run in its place until its end",
         folder.display()
     )]
@@ -28,7 +28,7 @@ pub enum LockError {
         /// The folder.
         folder: PathBuf,
         /// Name of the file by which the folder was owned.
-        mark: String,
+        lock_file: String,
     },
     /// The lock file cannot be created.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
@@ -48,20 +48,20 @@ pub struct FolderLock {
     _file: Option<Arc<File>>,
     /// The file by which the folder is owned, and its number when it was locked. `None` for a
     /// reader, and on systems without file numbers.
-    owned: Option<(PathBuf, Place)>,
+    owned: Option<(PathBuf, FileId)>,
 }
 
 /// Device and number of a file, which stay the same when the file is renamed.
-type Place = (u64, u64);
+type FileId = (u64, u64);
 
 #[cfg(unix)]
-fn place(data: &std::fs::Metadata) -> Option<Place> {
+fn file_id(data: &std::fs::Metadata) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;
     Some((data.dev(), data.ino()))
 }
 
 #[cfg(not(unix))]
-fn place(_: &std::fs::Metadata) -> Option<Place> {
+fn file_id(_: &std::fs::Metadata) -> Option<FileId> {
     None
 }
 
@@ -71,21 +71,23 @@ impl FolderLock {
     ///
     /// # Errors
     /// Another process owns or reads the folder, or the file cannot be created.
-    pub fn own(folder: &Path, mark: &str) -> Result<Self, LockError> {
-        let path = folder.join(mark);
+    pub fn exclusive(folder: &Path, lock_file: &str) -> Result<Self, LockError> {
+        let path = folder.join(lock_file);
         let file = File::options().create(true).append(true).open(&path);
         let file = file.map_err(|e| LockError::Write {
             path: path.clone(),
             reason: e.to_string(),
         })?;
-        held(folder, patiently(|| file.try_lock()))?;
-        let by_handle = file.metadata().ok().and_then(|data| place(&data));
-        let by_name = std::fs::metadata(&path).ok().and_then(|data| place(&data));
+        refuse_if_locked(folder, retry(|| file.try_lock()))?;
+        let by_handle = file.metadata().ok().and_then(|data| file_id(&data));
+        let by_name = std::fs::metadata(&path)
+            .ok()
+            .and_then(|data| file_id(&data));
         // On some systems the number of a file differs between two queries.
         let owned = by_handle.filter(|_| by_handle == by_name);
         Ok(Self {
             _file: Some(Arc::new(file)),
-            owned: owned.map(|place| (path, place)),
+            owned: owned.map(|id| (path, id)),
         })
     }
 
@@ -94,12 +96,12 @@ impl FolderLock {
     ///
     /// # Errors
     /// The folder, or the file by which it is owned, was removed, moved or replaced.
-    pub fn kept(&self) -> Result<(), LockError> {
+    pub fn check_still_owned(&self) -> Result<(), LockError> {
         let Some((path, at)) = &self.owned else {
             return Ok(());
         };
         let now = match std::fs::metadata(path) {
-            Ok(data) => place(&data),
+            Ok(data) => file_id(&data),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
             // A folder that cannot be read is reported when it is written to.
             Err(_) => return Ok(()),
@@ -107,10 +109,10 @@ impl FolderLock {
         if now == Some(*at) {
             return Ok(());
         }
-        let mark = path.file_name().unwrap_or_default();
+        let lock_file = path.file_name().unwrap_or_default();
         Err(LockError::Lost {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            mark: mark.to_string_lossy().into_owned(),
+            lock_file: lock_file.to_string_lossy().into_owned(),
         })
     }
 
@@ -118,12 +120,12 @@ impl FolderLock {
     ///
     /// # Errors
     /// Another process owns the folder.
-    pub fn read(folder: &Path, mark: &str) -> Result<Self, LockError> {
+    pub fn shared(folder: &Path, lock_file: &str) -> Result<Self, LockError> {
         // Without the file no run has written in the folder. A file that this user must not read
         // cannot be locked, and the folder is then read without protection.
-        let file = File::open(folder.join(mark)).ok();
+        let file = File::open(folder.join(lock_file)).ok();
         if let Some(file) = &file {
-            held(folder, patiently(|| file.try_lock_shared()))?;
+            refuse_if_locked(folder, retry(|| file.try_lock_shared()))?;
         }
         Ok(Self {
             _file: file.map(Arc::new),
@@ -134,7 +136,7 @@ impl FolderLock {
 
 /// Tries a lock repeatedly for a tenth of a second. A process that this program has just started
 /// holds copies of its open files, and thereby a released lock, until it executes its own program.
-fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
+fn retry(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
     for _ in 0..10 {
         match lock() {
             Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
@@ -146,7 +148,7 @@ fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockE
 
 /// Returns an error if another process holds the lock. Other errors come from file systems without
 /// locks, where there is no protection, and are ignored.
-fn held(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
+fn refuse_if_locked(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
     match locked {
         Err(TryLockError::WouldBlock) => Err(LockError::Held {
             folder: folder.to_owned(),
@@ -163,8 +165,8 @@ mod tests {
     fn one_owner_or_many_readers() {
         let folder = std::env::temp_dir().join(format!("fretwork-owner-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
-        let read = || FolderLock::read(&folder, "a.lock");
-        let own = || FolderLock::own(&folder, "a.lock");
+        let read = || FolderLock::shared(&folder, "a.lock");
+        let own = || FolderLock::exclusive(&folder, "a.lock");
         // No run ever wrote in the folder.
         drop(read().unwrap());
         let owner = own().unwrap();
@@ -187,24 +189,24 @@ mod tests {
         let other = folder.with_extension("moved");
         let own = || {
             std::fs::create_dir_all(&folder).unwrap();
-            FolderLock::own(&folder, "a.lock").unwrap()
+            FolderLock::exclusive(&folder, "a.lock").unwrap()
         };
         let lost = |owner: &FolderLock| {
-            let said = owner.kept().unwrap_err().to_string();
+            let said = owner.check_still_owned().unwrap_err().to_string();
             assert!(said.contains("removed or replaced"), "{said}");
         };
         let owner = own();
-        owner.kept().unwrap();
+        owner.check_still_owned().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
         lost(&owner);
         // Another folder takes its name.
         let second = own();
         lost(&owner);
-        second.kept().unwrap();
+        second.check_still_owned().unwrap();
         std::fs::rename(&folder, &other).unwrap();
         lost(&second);
         std::fs::rename(&other, &folder).unwrap();
-        second.kept().unwrap();
+        second.check_still_owned().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

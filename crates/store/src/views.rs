@@ -11,7 +11,7 @@ use fretwork_scene::recorded::ShapedGrain;
 
 /// References to the built scene.
 #[derive(Debug)]
-pub struct Made<'a> {
+pub struct BuiltScene<'a> {
     /// The simulation.
     pub simulation: &'a dyn RunView,
     /// Material files: name and text.
@@ -25,7 +25,7 @@ pub struct Made<'a> {
 /// Content of the file before the first step, with the columns and tables of the observers.
 pub fn header(
     loaded: &LoadedCase,
-    built: &Made<'_>,
+    built: &BuiltScene<'_>,
     run: &RunFacts,
     observers: &Observers,
 ) -> Header {

@@ -5,7 +5,7 @@ use crate::laws::Interface;
 use crate::laws::requirements::{LawRequirements, Requirement};
 use crate::record::{meshes, views};
 use crate::scene::case::{BodySpec, Case};
-use crate::scene::methods::Demands;
+use crate::scene::methods::SolverRequirements;
 use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
 use crate::step::Coupling;
 use crate::{AnySimulation, RunView};
@@ -129,10 +129,10 @@ impl Features {
     }
 
     fn laws(&mut self, s: &dyn RunView) {
-        let demands = Demands::of(s);
+        let requirements = SolverRequirements::of(s);
         let names = |which: fn(&LawRequirements) -> Requirement| {
-            let each = demands.each().filter_map(|(name, demand)| {
-                match demand.map_or(Requirement::NotObserved, which) {
+            let each = requirements.each().filter_map(|(name, requirements)| {
+                match requirements.map_or(Requirement::NotObserved, which) {
                     Requirement::Never => None,
                     Requirement::NotObserved => Some(format!("{name}?")),
                     _ => Some(name.to_owned()),
@@ -285,8 +285,8 @@ impl Features {
 }
 
 fn asks(s: &dyn RunView, which: fn(&LawRequirements) -> Requirement) -> bool {
-    let demands = Demands::of(s);
-    let mut each = demands.each();
+    let requirements = SolverRequirements::of(s);
+    let mut each = requirements.each();
     each.any(|(_, d)| d.is_none_or(|d| which(d) != Requirement::Never))
 }
 

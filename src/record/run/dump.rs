@@ -7,7 +7,7 @@ use crate::step::StepReport;
 impl Recorder<'_> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let problem = self.simulation.local_problem();
         let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
             self.problems.1 += 1;

@@ -48,7 +48,7 @@ impl EmergencySave {
                 let spent = outputs.spent;
                 outputs.summary.run.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
                 outputs.summary.run.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
-                lock.kept().is_ok() && outputs.write(who, &out)
+                lock.check_still_owned().is_ok() && outputs.write(who, &out)
             })
         });
         Self {

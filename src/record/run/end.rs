@@ -21,7 +21,7 @@ use std::time::Duration;
 impl Recorder<'_> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let statistics_read = self.timed(|t| &mut t.files, Self::read_statistics);
         let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
         let run = &mut self.summary.run;
@@ -45,7 +45,7 @@ impl Recorder<'_> {
             self.summary.run.stopped = Some(e.to_string());
             self.summary.check();
         }
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         write_atomic(&self.out.join(LAST), &(text + "\n"))?;
         files

@@ -15,7 +15,7 @@ impl Recorder<'_> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let mut caption = vec![format!("t = {}", quantity(self.simulation.time(), "s", 4))];
         if let Some(phase) = self.simulation.begun().last() {
             caption.push(phase.name.clone());

@@ -293,7 +293,7 @@ impl<'a> Recorder<'a> {
             None => {
                 let made = std::fs::create_dir_all(&options.out);
                 made.map_err(|e| unwritable(&options.out, &e))?;
-                FolderLock::own(&options.out, RUN_LOCK)?
+                FolderLock::exclusive(&options.out, RUN_LOCK)?
             }
         };
         let frames = options.out.join("frames");
@@ -514,7 +514,7 @@ fn create_results(
     facts: &RunFacts,
     observers: &Observers,
 ) -> Result<Results, RunError> {
-    let made = views::Made {
+    let made = views::BuiltScene {
         simulation: built.simulation.view(),
         materials: &built.materials,
         densities: &built.densities,

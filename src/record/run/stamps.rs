@@ -9,7 +9,7 @@ use crate::scene::build::LoadedCase;
 /// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
 /// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    let mut known = Known {
+    let mut known = CertificateCache {
         path: partners(),
         found: Vec::new(),
     };
@@ -89,12 +89,12 @@ impl Key {
 }
 
 /// Certification results of laws and their partners.
-struct Known {
+struct CertificateCache {
     path: SearchPath,
     found: Vec<((Key, Option<Key>), bool)>,
 }
 
-impl Known {
+impl CertificateCache {
     fn certified(&mut self, law: &LoadedLaw, partner: Option<&LoadedLaw>) -> bool {
         let key = (Key::of(law), partner.map(Key::of));
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {

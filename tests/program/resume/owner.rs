@@ -32,7 +32,7 @@ fn refused(output: &std::process::Output, words: &str) {
 
 /// Whether a run owns the folder.
 fn held(out: &Path) -> bool {
-    FolderLock::read(out, RUN_LOCK).is_err()
+    FolderLock::shared(out, RUN_LOCK).is_err()
 }
 
 /// Tries all commands in the folder while a run, new or resumed, writes there.

@@ -1,7 +1,9 @@
 //! Certification of a law in a child process, so that a law that crashes, ends the program or hangs
 //! only fails a line of its certificate.
 
-use super::{Certificate, CertifyProgress, CheckResult, certify, certify_with_progress, plugin_interface};
+use super::{
+    Certificate, CertifyProgress, CheckResult, certify, certify_with_progress, plugin_interface,
+};
 use crate::laws::child::{self, End};
 use crate::laws::{BuiltInLaws, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 
 use super::ElasticBody;
 use crate::element::Simplex;
-use crate::freedom::Held;
+use crate::freedom::HeldCoordinate;
 use crate::material::{Elasticity, Symmetric};
 use fretwork_core::bodies::{DeformedMesh, Dof, Holder, SystemStep, TouchingSurface};
 use fretwork_core::geometry::space::Space;
@@ -76,7 +76,7 @@ impl<S: Space> ElasticBody<S> {
         let freedoms = &self.model.freedoms;
         let reactions = self.step.as_ref().map(|step| self.reactions(step));
         let averages = self.step.as_ref().map(|step| self.average(step));
-        let one = |(held, drive): (&Held, &Dof)| {
+        let one = |(held, drive): (&HeldCoordinate, &Dof)| {
             let c = held.coordinate as usize;
             let force = match (&self.step, &reactions) {
                 (Some(_), Some(reactions)) if c >= freedoms.free => reactions[c - freedoms.free],
@@ -92,7 +92,8 @@ impl<S: Space> ElasticBody<S> {
                 force,
             }
         };
-        let mut held: Vec<(&Held, &Dof)> = freedoms.held.iter().zip(&self.drives).collect();
+        let mut held: Vec<(&HeldCoordinate, &Dof)> =
+            freedoms.held.iter().zip(&self.drives).collect();
         held.sort_by_key(|(h, _)| (h.support, freedoms.axis[h.coordinate as usize]));
         held.into_iter().map(one).collect()
     }

@@ -1,7 +1,7 @@
 //! Division of the cells of a grid into triangles or tetrahedra that match those of their
 //! neighbours.
 
-use super::grid::{Grid, Place};
+use super::grid::{BlockGrid, Place};
 
 /// A cell: its lowest and highest grid point, and the number of its column along each axis and of
 /// its row.
@@ -31,7 +31,7 @@ pub(super) enum Cut {
 }
 
 /// The cells of a row.
-pub(super) fn cells(grid: &Grid, row: usize) -> impl Iterator<Item = Cell> + '_ {
+pub(super) fn cells(grid: &BlockGrid, row: usize) -> impl Iterator<Item = Cell> + '_ {
     let (d, axis) = (grid.dimension(), grid.axis());
     let set = grid.row(row);
     let counts: Vec<usize> = set.iter().map(|s| s.len().max(2) - 1).collect();
@@ -52,7 +52,7 @@ pub(super) fn cells(grid: &Grid, row: usize) -> impl Iterator<Item = Cell> + '_ 
 }
 
 /// Divides a cell. Elements have positive volume where the coordinates increase along all axes.
-pub(super) fn cut(grid: &Grid, cell: &Cell) -> Cut {
+pub(super) fn cut(grid: &BlockGrid, cell: &Cell) -> Cut {
     let d = grid.dimension();
     if d == 3 && is_plain(grid, cell) {
         let mut whole = paths(cell);
@@ -78,7 +78,7 @@ pub(super) fn cut(grid: &Grid, cell: &Cell) -> Cut {
 
 /// Returns whether a cell in space has no points except its corners, and the diagonals of its faces
 /// are those of [`paths`].
-fn is_plain(grid: &Grid, cell: &Cell) -> bool {
+fn is_plain(grid: &BlockGrid, cell: &Cell) -> bool {
     let row = cell.at[grid.axis()];
     let others = (0..3).filter(|k| *k != grid.axis());
     others.into_iter().all(|k| {
@@ -122,7 +122,7 @@ fn paths(cell: &Cell) -> Vec<Vec<Place>> {
 }
 
 /// The parts of an edge of a cell in the plane.
-fn edges(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
+fn edges(grid: &BlockGrid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
     let along = 1 - axis;
     let mut place = cell.low;
     place[axis] = [cell.low, cell.high][end][axis];
@@ -140,7 +140,7 @@ fn edges(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
 }
 
 /// Returns the triangles of a face of a cell in space; the adjacent cell has the same ones.
-fn triangles(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
+fn triangles(grid: &BlockGrid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
     let mut place = cell.low;
     place[axis] = [cell.low, cell.high][end][axis];
     let up = grid.axis();

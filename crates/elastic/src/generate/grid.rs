@@ -12,7 +12,7 @@ pub(super) type Place = [usize; 3];
 /// has the same columns, or pairs of them are joined. The points between two rows are those of the
 /// row with more columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct BlockGrid {
     /// Coordinates along each axis (m), increasing.
     lines: Vec<Vec<f64>>,
     /// The axis along which rows follow each other.
@@ -82,7 +82,7 @@ pub enum GridError {
     TooMany(usize),
 }
 
-impl Grid {
+impl BlockGrid {
     /// Creates a grid with the same columns in all rows, between the given coordinates along two or
     /// three axes (m), which must increase.
     ///

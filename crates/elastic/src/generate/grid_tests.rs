@@ -15,8 +15,8 @@ const STEEL: Elasticity = Elasticity {
 /// Upper bound of the number of points, which no grid here reaches.
 const MOST: usize = 100_000;
 
-fn coarsened(lines: &[Vec<f64>], from: &str, ratio: f64) -> Grid {
-    let grid = Grid::coarsened(lines, &Coarsening { from, ratio }, MOST);
+fn coarsened(lines: &[Vec<f64>], from: &str, ratio: f64) -> BlockGrid {
+    let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, MOST);
     grid.unwrap_or_else(|e| panic!("{from}: {e}"))
 }
 
@@ -48,7 +48,7 @@ fn lines(counts: &[usize], axis: usize, end: usize) -> Vec<Vec<f64>> {
 }
 
 /// Tests a box of these numbers of columns, with joins away from each of its sides in turn.
-fn boxes(counts: &[usize]) -> Vec<(Grid, &'static str)> {
+fn boxes(counts: &[usize]) -> Vec<(BlockGrid, &'static str)> {
     let one = |(axis, end, name)| {
         let lines = lines(counts, axis, end);
         (coarsened(&lines, name, 1.0), name)
@@ -294,7 +294,7 @@ fn graded_columns_and_sides_that_are_not_flat() {
 fn grids_that_cannot_be_say_why() {
     let lines = lines(&[8, 8], 1, 1);
     let error = |lines: &[Vec<f64>], from: &str, ratio: f64, most: usize| {
-        let grid = Grid::coarsened(lines, &Coarsening { from, ratio }, most);
+        let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, most);
         grid.unwrap_err()
     };
     let said = error(&lines, "front", 1.0, MOST).to_string();
@@ -327,7 +327,7 @@ fn grids_that_cannot_be_say_why() {
         GridError::TooMany(points - 1)
     );
     assert!(
-        Grid::coarsened(
+        BlockGrid::coarsened(
             &lines,
             &Coarsening {
                 from: "top",
@@ -337,5 +337,5 @@ fn grids_that_cannot_be_say_why() {
         )
         .is_ok()
     );
-    assert_eq!(Grid::new(&lines[..1]), Err(GridError::Lines));
+    assert_eq!(BlockGrid::new(&lines[..1]), Err(GridError::Lines));
 }

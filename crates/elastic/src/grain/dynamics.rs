@@ -2,7 +2,7 @@
 //! theta scheme.
 
 use super::shape::stresses;
-use super::{ElasticGrain, Formed, Middle, State};
+use super::{ElasticGrain, GrainAtDetection, GrainState, ModalResponse};
 use crate::material::Symmetric;
 use crate::small_strain;
 use crate::touching_surface::closed_surface;
@@ -24,7 +24,7 @@ impl<S: Space> ElasticGrain<S> {
 
     /// Returns the elastic compliance of the surface for an impulse along an axis of a vertex, in
     /// the frame.
-    fn column<'a>(&self, formed: &'a Formed, vertex: usize, axis: usize) -> &'a [f64] {
+    fn column<'a>(&self, formed: &'a ModalResponse, vertex: usize, axis: usize) -> &'a [f64] {
         formed.columns[vertex * S::D + axis].get_or_init(|| {
             let (shape, scale) = (&self.model.shape, self.model.scale);
             let modes = shape.at(vertex, axis).iter().zip(&formed.over);
@@ -69,7 +69,7 @@ impl<S: Space> ElasticGrain<S> {
         pairs.map(|(v, w)| v + theta * (w - v)).collect()
     }
 
-    fn energy_of_spin(state: &State<S>, inertia: &S::Tensor) -> f64 {
+    fn energy_of_spin(state: &GrainState<S>, inertia: &S::Tensor) -> f64 {
         let (_, spin) = Self::of_frame(&state.velocity);
         let turned = S::turned_tensor(&state.rotation, inertia);
         0.5 * spin.dot(&turned.apply(&spin))
@@ -103,7 +103,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
             let over =
                 |rate: &f64| 1.0 / (1.0 + length * self.damping(*rate) + length * length * rate);
             let columns = S::D * self.vertices.len();
-            self.formed = Some(Arc::new(Formed {
+            self.formed = Some(Arc::new(ModalResponse {
                 of,
                 over: self.model.rates.iter().map(over).collect(),
                 columns: (0..columns).map(|_| OnceLock::new()).collect(),
@@ -114,7 +114,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
     fn linearise(&mut self, step: &SystemStep<S>) {
         let (_, spin) = Self::of_frame(&self.state.velocity);
         let (_, free) = Self::of_frame(&self.free_velocity(step));
-        self.middle = Middle {
+        self.middle = GrainAtDetection {
             rotation: self.state.rotation,
             spin,
             free,
@@ -199,7 +199,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
             ..SystemWork::default()
         };
         // Contacts rotated the grain with its inertia at q_m.
-        let Middle {
+        let GrainAtDetection {
             rotation,
             spin: spin_before,
             free: spin_free,
@@ -458,7 +458,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn restore(&mut self, saved: &[u8]) -> bool {
-        match postcard::from_bytes::<State<S>>(saved) {
+        match postcard::from_bytes::<GrainState<S>>(saved) {
             Ok(state)
                 if state.amplitudes.len() == self.state.amplitudes.len()
                     && state.velocity.len() == self.state.velocity.len() =>

@@ -67,7 +67,7 @@ pub struct ElasticGrainSpec<S: Space> {
 
 /// Data that depend on the length of a step.
 #[derive(Debug)]
-struct Formed {
+struct ModalResponse {
     /// Values of h and theta.
     of: [f64; 2],
     /// 1/(1 + h theta c_k + h^2 theta^2 lambda_k) for each mode.
@@ -79,7 +79,7 @@ struct Formed {
 
 /// Constant data, shared by copies.
 #[derive(Debug)]
-struct Model<S: Space> {
+struct GrainModel<S: Space> {
     name: String,
     shape: Arc<GrainShape<S>>,
     size: f64,
@@ -103,7 +103,7 @@ struct Model<S: Space> {
 /// The state of a grain between two steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-struct State<S: Space> {
+struct GrainState<S: Space> {
     position: S::Vector,
     rotation: S::Rotation,
     /// Angular momentum (kg m^2/s).
@@ -115,7 +115,7 @@ struct State<S: Space> {
 
 /// A grain at q_m, before contacts act.
 #[derive(Clone, Debug)]
-struct Middle<S: Space> {
+struct GrainAtDetection<S: Space> {
     rotation: S::Rotation,
     /// Angular velocity at q_m by free rotation from the start of the step, which contacts see
     /// (rad/s).
@@ -127,12 +127,12 @@ struct Middle<S: Space> {
 /// A deformable grain.
 #[derive(Clone, Debug)]
 pub struct ElasticGrain<S: Space> {
-    model: Arc<Model<S>>,
-    formed: Option<Arc<Formed>>,
-    state: State<S>,
+    model: Arc<GrainModel<S>>,
+    formed: Option<Arc<ModalResponse>>,
+    state: GrainState<S>,
     /// State at the start of the step.
-    start: State<S>,
-    middle: Middle<S>,
+    start: GrainState<S>,
+    middle: GrainAtDetection<S>,
     /// Positions of the vertices of the surface in the frame (m).
     vertices: Vec<S::Vector>,
 }
@@ -157,7 +157,7 @@ impl<S: Space> ElasticGrain<S> {
             .inverse()
             .ok_or("its mesh has no moment of inertia")?;
         let rate = young / (density * size * size);
-        let model = Model {
+        let model = GrainModel {
             contactor: Contactor {
                 nodes: Nodes::one(0),
                 radius: spec.radius,
@@ -188,7 +188,7 @@ impl<S: Space> ElasticGrain<S> {
             false => amplitudes(of),
         });
         velocity.extend(rates);
-        let state = State {
+        let state = GrainState {
             position: spec.position,
             rotation: spec.rotation,
             momentum: S::turned_tensor(&spec.rotation, &model.inertia).apply(&spec.spin),
@@ -199,7 +199,7 @@ impl<S: Space> ElasticGrain<S> {
             model: Arc::new(model),
             formed: None,
             start: state.clone(),
-            middle: Middle {
+            middle: GrainAtDetection {
                 rotation: spec.rotation,
                 spin: spec.spin,
                 free: spec.spin,

@@ -4,7 +4,7 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 
 /// Equal cells in a rectangle (an interval in the plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
+pub struct CellGrid {
     /// Lowest corner (m), along x and y.
     pub from: [f64; 2],
     /// Sides of a cell (m).
@@ -13,7 +13,7 @@ pub struct Grid {
     pub cells: [usize; 2],
 }
 
-impl Grid {
+impl CellGrid {
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells[0] * self.cells[1]
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn weights_interpolate_linear_functions() {
-        let grid = Grid {
+        let grid = CellGrid {
             from: [-1.0, 2.0],
             size: [0.5, 0.25],
             cells: [7, 5],
@@ -122,7 +122,7 @@ mod tests {
                 .sum();
             assert!((sum - f(at)).abs() < 1e-14, "{at:?}: {sum}");
         }
-        let line = Grid {
+        let line = CellGrid {
             cells: [7, 1],
             ..grid
         };

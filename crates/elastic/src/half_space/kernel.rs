@@ -1,7 +1,7 @@
 //! Influence of loads on a regular grid of cells: it depends only on the distance of two cells, so
 //! that one number per distance is stored, and the displacement due to many loads is a convolution.
 
-use super::grid::Grid;
+use super::grid::CellGrid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
 use crate::material::Elasticity;
 use rustfft::num_complex::Complex64;
@@ -35,7 +35,7 @@ impl Kernel {
     /// Creates the kernel of a grid, with the displacement at positions that lie `shift` (m) along
     /// x from the middles of cells.
     pub fn new(
-        grid: &Grid,
+        grid: &CellGrid,
         material: &Elasticity,
         reach: Reach,
         dimension: usize,
@@ -183,7 +183,7 @@ impl Kernel {
 
 /// The table of a half-space without end.
 fn closed_forms(
-    grid: &Grid,
+    grid: &CellGrid,
     material: &Elasticity,
     dimension: usize,
     depth: f64,
@@ -211,7 +211,7 @@ fn closed_forms(
 /// Returns the table of a half-space with a period, from the waves that fit in it and are longer
 /// than two cells.
 fn waves(
-    grid: &Grid,
+    grid: &CellGrid,
     material: &Elasticity,
     dimension: usize,
     depth: f64,
@@ -348,8 +348,8 @@ mod tests {
         density: 7800.0,
     };
 
-    fn grid(cells: [usize; 2]) -> Grid {
-        Grid {
+    fn grid(cells: [usize; 2]) -> CellGrid {
+        CellGrid {
             from: [0.0; 2],
             size: [1e-3, 2e-3],
             cells,

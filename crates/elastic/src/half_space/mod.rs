@@ -27,7 +27,7 @@ mod kernel;
 mod profile;
 
 pub use error::HalfSpaceError;
-pub use grid::Grid;
+pub use grid::CellGrid;
 pub use kernel::{Kernel, Reach};
 pub use profile::Profile;
 
@@ -48,7 +48,7 @@ const MAX_KEPT: usize = 4_000;
 
 /// Side of its surface that a half-space fills.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fills {
+pub enum FilledSide {
     /// The space below: its surface faces up, along the last axis.
     Below,
     /// The space above: its surface faces down.
@@ -74,11 +74,11 @@ pub struct HalfSpaceSpec<'a> {
     /// Material; the density has no effect.
     pub material: Elasticity,
     /// Side of the surface that is solid.
-    pub fills: Fills,
+    pub fills: FilledSide,
     /// Position of the origin of the plane and of the grid (m).
     pub position: [f64; 3],
     /// Cells that may be loaded.
-    pub grid: Grid,
+    pub grid: CellGrid,
     /// Extent.
     pub reach: Reach,
     /// Whether the surface is periodic along x with the extent of its cells (2D), in a scene with
@@ -106,7 +106,7 @@ pub const HOLDER: &str = "holder";
 struct Fixed<S: Space> {
     name: String,
     material: Elasticity,
-    grid: Grid,
+    grid: CellGrid,
     reach: Reach,
     kernel: Kernel,
     /// Positions of the cells without load (m).
@@ -162,8 +162,8 @@ impl<S: Space> HalfSpace<S> {
         let HalfSpaceSpec { grid, material, .. } = spec;
         let up = S::D - 1;
         let outward = match spec.fills {
-            Fills::Below => 1.0,
-            Fills::Above => -1.0,
+            FilledSide::Below => 1.0,
+            FilledSide::Above => -1.0,
         };
         let place = |cell: usize| {
             let middle = grid.middle(cell);
@@ -181,7 +181,7 @@ impl<S: Space> HalfSpace<S> {
         let images = u32::from(spec.repeats);
         let mut vertices: Vec<u32> = (0..grid.len() as u32 + images).collect();
         let mut facets = grid.facets(S::D);
-        if spec.fills == Fills::Above {
+        if spec.fills == FilledSide::Above {
             match S::D {
                 2 => vertices.reverse(),
                 _ => facets.iter_mut().for_each(|f| f.swap(1, 2)),

@@ -7,7 +7,7 @@ use super::spec::{FitFile, TestSpec};
 use crate::changes::Changes;
 use crate::factor::Factor;
 use crate::runs::available::{AvailableQuantities, columns};
-use crate::runs::launcher::{Launcher, Patience, Run};
+use crate::runs::launcher::{Launcher, Run, WaitLimits};
 use crate::runs::output::OutputName;
 use crate::runs::pool::each;
 use crate::runs::stored::{Status, summary};
@@ -262,12 +262,12 @@ impl Tests {
             sets,
             seed: test.seed.wrapping_add(seed),
         };
-        let patience = Patience {
+        let wait = WaitLimits {
             deadline: None,
             limit: self.limit.map(|l| l * finer),
             stop,
         };
-        let Some(ended) = launcher.run(&run, patience)? else {
+        let Some(ended) = launcher.run(&run, wait)? else {
             return Ok(None);
         };
         if let Status::Slow(s) = ended.status {

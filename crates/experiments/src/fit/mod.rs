@@ -24,6 +24,6 @@ use crate::folder::Owner;
 /// The owner of folders of fits.
 pub const OWNER: Owner = Owner {
     command: "fretwork fit",
-    mark: "fit.lock",
+    lock_file: "fit.lock",
     files: &["fit.json"],
 };

@@ -3,7 +3,7 @@
 
 use super::key::Keys;
 use super::perturbation::Perturbation;
-use super::stored::{Finished, Limits, StoredRun, interrupted};
+use super::stored::{FinishedRun, Limits, StoredRun, interrupted};
 use crate::{Error, Program, load};
 use fretwork_core::program;
 use std::fs::{File, TryLockError};
@@ -34,7 +34,7 @@ pub struct Run {
 
 /// Time limits of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Patience<'a> {
+pub struct WaitLimits<'a> {
     /// Time at which the run is interrupted; nothing of it is then stored.
     pub deadline: Option<Instant>,
     /// Longest duration: a run that takes longer is stopped, and stored as too slow.
@@ -43,7 +43,7 @@ pub struct Patience<'a> {
     pub stop: &'a AtomicBool,
 }
 
-impl Patience<'_> {
+impl WaitLimits<'_> {
     /// Whether the run is to be interrupted.
     fn is_over(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|d| Instant::now() > d)
@@ -130,17 +130,17 @@ impl Launcher {
     }
 
     /// Returns the stored result of an earlier run, assessed by the current limits.
-    pub fn stored(&self, run: &Run) -> Option<Finished> {
+    pub fn stored(&self, run: &Run) -> Option<FinishedRun> {
         self.stored_in(&self.place(run))
     }
 
     /// Returns the stored result of the run in a folder, unless a repetition may end differently.
-    pub fn stored_in(&self, place: &Path) -> Option<Finished> {
+    pub fn stored_in(&self, place: &Path) -> Option<FinishedRun> {
         self.ended_in(place).filter(|run| !run.temporary)
     }
 
     /// Returns how the run in a folder ended last, even if a repetition may end differently.
-    pub fn ended_in(&self, place: &Path) -> Option<Finished> {
+    pub fn ended_in(&self, place: &Path) -> Option<FinishedRun> {
         let text = std::fs::read_to_string(place.join("run.json")).ok()?;
         let run: StoredRun = serde_json::from_str(&text).ok()?;
         Some(run.assess(&self.limits))
@@ -151,10 +151,10 @@ impl Launcher {
     ///
     /// # Errors
     /// The process cannot be started, or the folder cannot be written.
-    pub fn run(&self, run: &Run, patience: Patience<'_>) -> Result<Option<Finished>, Error> {
+    pub fn run(&self, run: &Run, wait: WaitLimits<'_>) -> Result<Option<FinishedRun>, Error> {
         let place = self.place(run);
         let fail = |e: std::io::Error| Error::write(&place, &e);
-        let Some(_lock) = lock(&place, patience)? else {
+        let Some(_lock) = lock(&place, wait)? else {
             return Ok(None);
         };
         if let Some(stored) = self.stored_in(&place) {
@@ -168,12 +168,12 @@ impl Launcher {
             if let Some(code) = child.try_wait().map_err(fail)? {
                 break Some(code);
             }
-            let slow = patience.limit.is_some_and(|l| started.elapsed() > l);
-            if slow || patience.is_over() {
+            let slow = wait.limit.is_some_and(|l| started.elapsed() > l);
+            if slow || wait.is_over() {
                 // The process may have ended by itself meanwhile.
                 let _ = child.kill();
                 let _ = child.wait();
-                if !slow || patience.stop.load(Ordering::Relaxed) {
+                if !slow || wait.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
                 break None;
@@ -185,7 +185,7 @@ impl Launcher {
         // Ctrl-C reaches the child process too, possibly before this program; the run then counts
         // as interrupted.
         let done = code.is_some_and(|c| c.success());
-        if !done && (patience.stop.load(Ordering::Relaxed) || interrupted(&place)) {
+        if !done && (wait.stop.load(Ordering::Relaxed) || interrupted(&place)) {
             return Ok(None);
         }
         let elapsed = started.elapsed().as_secs_f64();
@@ -248,7 +248,7 @@ impl Launcher {
 }
 
 /// Waits until no other process makes the run in a folder; `None` if the wait was ended.
-fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
+fn lock(place: &Path, wait: WaitLimits<'_>) -> Result<Option<File>, Error> {
     std::fs::create_dir_all(place).map_err(|e| Error::write(place, &e))?;
     let path = place.join(LOCK);
     let mut options = File::options();
@@ -260,7 +260,7 @@ fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(Some(file)),
             Err(TryLockError::WouldBlock) => {}
         }
-        if patience.is_over() {
+        if wait.is_over() {
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(50));

@@ -7,16 +7,16 @@ use std::path::Path;
 
 /// Location of a number.
 #[derive(Clone, Debug, PartialEq)]
-enum Place {
+enum NumberLocation {
     /// In `summary.json`, by its path.
     Summary(Vec<String>),
     /// A column of the statistics, and its reduction to a number.
-    Column(String, Take),
+    Column(String, Reduction),
 }
 
 /// Reduction of a column to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Take {
+enum Reduction {
     /// The mean over the last half of the rows.
     Mean,
     /// The largest value.
@@ -33,7 +33,7 @@ pub struct OutputName {
     /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with
     /// `:mean` of the last half of the rows, `:max`, `:min` or `:last`.
     pub name: String,
-    place: Place,
+    place: NumberLocation,
 }
 
 impl OutputName {
@@ -49,18 +49,18 @@ impl OutputName {
         let place = match name.strip_prefix("statistics.") {
             Some(column) => {
                 let (column, take) = match column.rsplit_once(':') {
-                    None => (column, Take::Mean),
-                    Some((c, "mean")) => (c, Take::Mean),
-                    Some((c, "max")) => (c, Take::Max),
-                    Some((c, "min")) => (c, Take::Min),
-                    Some((c, "last")) => (c, Take::Last),
+                    None => (column, Reduction::Mean),
+                    Some((c, "mean")) => (c, Reduction::Mean),
+                    Some((c, "max")) => (c, Reduction::Max),
+                    Some((c, "min")) => (c, Reduction::Min),
+                    Some((c, "last")) => (c, Reduction::Last),
                     Some((_, other)) => {
                         return Err(format!("`:{other}` is not one of :mean, :max, :min, :last"));
                     }
                 };
-                Place::Column(column.to_owned(), take)
+                NumberLocation::Column(column.to_owned(), take)
             }
-            None => Place::Summary(name.split('.').map(str::to_owned).collect()),
+            None => NumberLocation::Summary(name.split('.').map(str::to_owned).collect()),
         };
         Ok(Self {
             name: name.to_owned(),
@@ -71,25 +71,25 @@ impl OutputName {
     /// Returns its column of the statistics, if it is one.
     pub fn column_name(&self) -> Option<&str> {
         match &self.place {
-            Place::Summary(_) => None,
-            Place::Column(name, _) => Some(name),
+            NumberLocation::Summary(_) => None,
+            NumberLocation::Column(name, _) => Some(name),
         }
     }
 
     /// Returns its value in the folder of a run; `None` if the run has none (null).
     pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
         match &self.place {
-            Place::Summary(path) => {
+            NumberLocation::Summary(path) => {
                 let found = find(summary, &path.join("."))?;
                 found.as_f64().filter(|x| x.is_finite())
             }
-            Place::Column(name, take) => {
+            NumberLocation::Column(name, take) => {
                 let values = column(&folder.join("statistics.csv"), name)?;
                 let found = match take {
-                    Take::Last => values.last().copied(),
-                    Take::Max => values.iter().copied().reduce(f64::max),
-                    Take::Min => values.iter().copied().reduce(f64::min),
-                    Take::Mean => {
+                    Reduction::Last => values.last().copied(),
+                    Reduction::Max => values.iter().copied().reduce(f64::max),
+                    Reduction::Min => values.iter().copied().reduce(f64::min),
+                    Reduction::Mean => {
                         let half = &values[values.len() / 2..];
                         Some(half.iter().sum::<f64>() / half.len() as f64)
                     }
@@ -101,7 +101,7 @@ impl OutputName {
 
     /// Returns whether it is a result of one of these measures, known at the end of a run.
     pub(super) fn measured(&self, measures: &[&str]) -> bool {
-        let Place::Summary(path) = &self.place else {
+        let NumberLocation::Summary(path) = &self.place else {
             return false;
         };
         let [group, name] = path.as_slice() else {

@@ -72,7 +72,7 @@ pub(super) struct StoredRun {
 
 /// A run that ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finished {
+pub struct FinishedRun {
     /// Outcome.
     pub status: Status,
     /// Whether a failure may be temporary: the next study tries again.
@@ -90,7 +90,7 @@ pub struct Finished {
     pub doubts: Vec<String>,
 }
 
-impl Finished {
+impl FinishedRun {
     /// Returns whether the outcome depends on the case: also if it is refused, or takes too long.
     /// Otherwise the run was ended by a signal, could not write, or left nothing.
     pub fn is_result(&self) -> bool {
@@ -143,7 +143,7 @@ impl StoredRun {
     }
 
     /// Assesses the run by limits.
-    pub fn assess(self, limits: &Limits) -> Finished {
+    pub fn assess(self, limits: &Limits) -> FinishedRun {
         let temporary = self.temporary();
         let status = match self.exit {
             _ if self.slow.is_some() => Status::Slow(self.slow.unwrap_or_default()),
@@ -154,7 +154,7 @@ impl StoredRun {
             -1 => Status::Failed("ended by a signal".into()),
             _ => Status::Failed(self.said),
         };
-        Finished {
+        FinishedRun {
             status,
             temporary,
             run: Run {

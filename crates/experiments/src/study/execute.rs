@@ -2,9 +2,9 @@
 
 use super::plan::{Plan, Point};
 use crate::Error;
-use crate::runs::launcher::Patience;
+use crate::runs::launcher::WaitLimits;
 use crate::runs::pool::each;
-use crate::runs::stored::Finished;
+use crate::runs::stored::FinishedRun;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -30,15 +30,15 @@ pub fn execute(
     jobs: usize,
     limit: Option<Duration>,
     stop: &AtomicBool,
-    watch: &(dyn Fn(&Point, &Finished) + Sync),
+    watch: &(dyn Fn(&Point, &FinishedRun) + Sync),
 ) -> Result<usize, Error> {
-    let patience = Patience {
+    let wait = WaitLimits {
         deadline: None,
         limit,
         stop,
     };
     let one = |point: &Point| {
-        let ended = plan.launcher.run(&point.run, patience)?;
+        let ended = plan.launcher.run(&point.run, wait)?;
         if let Some(run) = &ended {
             watch(point, run);
         }

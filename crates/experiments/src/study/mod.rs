@@ -28,6 +28,6 @@ use crate::folder::Owner;
 /// The owner of folders of studies.
 pub const OWNER: Owner = Owner {
     command: "fretwork study",
-    mark: "study.lock",
+    lock_file: "study.lock",
     files: &["study.json"],
 };

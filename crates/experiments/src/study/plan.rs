@@ -64,12 +64,12 @@ pub struct Plan {
     pub launcher: Launcher,
     /// The case with the changes of all runs.
     pub base: LoadedCase,
-    known: Known,
+    known: StudyFacts,
 }
 
 /// Stored results of the preparation of a study, so that each of its points need not repeat it.
 #[derive(Debug, Serialize, Deserialize, PartialEq)]
-struct Known {
+struct StudyFacts {
     /// Keys of the case and of the program, and text of the study.
     fingerprint: String,
     random: bool,
@@ -81,7 +81,7 @@ struct Known {
 /// Name of the file with these results.
 const KNOWN: &str = "study.json";
 
-impl Known {
+impl StudyFacts {
     fn read(file: &Path) -> Option<Self> {
         serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
     }
@@ -134,7 +134,7 @@ impl Plan {
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
-        let known = Known::read(&place.out.join(KNOWN));
+        let known = StudyFacts::read(&place.out.join(KNOWN));
         let known = match known.filter(|k| k.fingerprint == fingerprint) {
             Some(known) => known,
             None => {
@@ -142,7 +142,7 @@ impl Plan {
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
                 let (outputs, units) = outputs(read, &base, &scene)?;
-                Known {
+                StudyFacts {
                     units,
                     fingerprint,
                     random,
@@ -184,7 +184,7 @@ impl Plan {
     /// The file cannot be written.
     pub fn keep(&self) -> Result<(), Error> {
         let file = self.out.join(KNOWN);
-        if self.out.is_dir() && Known::read(&file).as_ref() != Some(&self.known) {
+        if self.out.is_dir() && StudyFacts::read(&file).as_ref() != Some(&self.known) {
             let text = serde_json::to_string_pretty(&self.known).unwrap_or_default();
             std::fs::write(&file, text).map_err(|e| Error::write(&file, &e))?;
         }

@@ -3,7 +3,7 @@
 
 use super::plan::Plan;
 use crate::factor::Level;
-use crate::runs::stored::{Finished, Status, numerical_error, summary};
+use crate::runs::stored::{FinishedRun, Status, numerical_error, summary};
 use crate::runs::unit::unit_of;
 use crate::table::{Cell, Column, Table, Type};
 use fretwork_observe::quantity::Catalogue;
@@ -38,7 +38,7 @@ pub struct Counts {
 
 /// A run of the study as stored.
 struct RunRow {
-    run: Option<Finished>,
+    run: Option<FinishedRun>,
     summary: Json,
     /// Descriptions of the numbers of the summary.
     catalogue: Catalogue,
@@ -87,7 +87,7 @@ impl Rows {
         }
         let text =
             |name: &str, f: &dyn Fn(&RunRow) -> String| Column::text(name, rows.iter().map(f));
-        let of_run = |f: fn(&Finished) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
+        let of_run = |f: fn(&FinishedRun) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
         for regime in &plan.regimes {
             columns.push(text(regime, &|r| regime_of(&r.summary, regime)));
         }
@@ -197,7 +197,7 @@ fn regime_of(summary: &Json, name: &str) -> String {
 }
 
 /// Returns the status of a run and its reason.
-pub fn status(run: Option<&Finished>) -> (&'static str, String) {
+pub fn status(run: Option<&FinishedRun>) -> (&'static str, String) {
     let Some(run) = run else {
         return (NOT_RUN, String::new());
     };

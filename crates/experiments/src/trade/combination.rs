@@ -1,6 +1,6 @@
 //! A setting of a trade: one level for every varied parameter.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 
 /// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,7 +43,7 @@ impl Combination {
             return parts.join(", ");
         }
         // The form of the case is named where other forms are compared with it.
-        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == Sense::Form);
+        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == ParameterEffect::Form);
         let forms: Vec<String> = forms.map(named).collect();
         match forms.is_empty() {
             true => "the case's own".to_owned(),

@@ -4,7 +4,7 @@
 use super::combination::Combination;
 use super::compare::Row;
 use super::frontier::frontier;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Trade;
 
 /// Limit on the number of combinations.
@@ -25,7 +25,7 @@ impl Trade {
         // These are signed errors as fractions of the wanted error, with intervals.
         let scaled = |row: &Row| -> Option<Vec<(f64, f64)>> {
             let each = row.errors.iter().zip(&self.outputs).map(|(e, o)| {
-                let (Wanted::Relative(w) | Wanted::Absolute(w)) = o.wanted;
+                let (ErrorTarget::Relative(w) | ErrorTarget::Absolute(w)) = o.wanted;
                 let e = e.as_ref()?;
                 Some((e.error.mean / w, e.error.half_width? / w))
             });

@@ -3,10 +3,10 @@
 
 use super::combination::Combination;
 use super::frontier::frontier;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
-use crate::runs::stored::{Finished, Status, summary};
+use super::varied::{ParameterEffect, Varied};
+use crate::runs::stored::{FinishedRun, Status, summary};
 use fretwork_math::statistics::interval::Mean;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -141,7 +141,7 @@ impl Trade {
         }
     }
 
-    fn runs(&self, setting: &Combination) -> impl Iterator<Item = (u64, &Finished)> {
+    fn runs(&self, setting: &Combination) -> impl Iterator<Item = (u64, &FinishedRun)> {
         let from = (setting.clone(), 0);
         let to = (setting.clone(), u64::MAX);
         self.done.range(from..=to).map(|((_, seed), r)| (*seed, r))
@@ -177,8 +177,8 @@ impl Trade {
         let output = &self.outputs[o];
         let base: Vec<f64> = against.values().copied().collect();
         let scale = match output.wanted {
-            Wanted::Absolute(_) => 1.0,
-            Wanted::Relative(_) => {
+            ErrorTarget::Absolute(_) => 1.0,
+            ErrorTarget::Relative(_) => {
                 let size = match output.exact {
                     Some(x) => x,
                     None => self.mean(&base)?.mean,
@@ -263,7 +263,7 @@ impl Trade {
         of: &dyn Fn(&Combination, usize) -> BTreeMap<u64, f64>,
         own: &[Option<OwnError>],
     ) -> Row {
-        let runs: Vec<(u64, &Finished)> = self.runs(setting).collect();
+        let runs: Vec<(u64, &FinishedRun)> = self.runs(setting).collect();
         let n = runs.len().max(1) as f64;
         let failed = runs.iter().find_map(|(seed, r)| match &r.status {
             Status::Slow(s) => Some(format!("slower than the reference, stopped after {s:.0} s")),
@@ -324,7 +324,10 @@ const NEAREST: f64 = 1.5;
 /// Returns the level next to the reference's, for an ordered parameter: the first that is coarse
 /// enough for the estimate, otherwise the next one.
 pub fn neighbour(parameter: &Varied) -> Option<usize> {
-    let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
+    let ordered = matches!(
+        parameter.sense,
+        ParameterEffect::Step | ParameterEffect::Tolerance
+    );
     let mut coarser = parameter.reference + 1..parameter.levels.len();
     let next = coarser.clone().next().filter(|_| ordered)?;
     coarser
@@ -349,20 +352,20 @@ fn weight(ratio: f64) -> Option<f64> {
 }
 
 /// A formatted error: `-0.8 +- 0.3 %`.
-pub struct ShownError<'a>(pub &'a Mean, pub Wanted);
+pub struct ShownError<'a>(pub &'a Mean, pub ErrorTarget);
 
 impl std::fmt::Display for ShownError<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mean = self.0;
         let half = match (mean.half_width, self.1) {
             (Some(0.0), _) => String::new(),
-            (Some(h), Wanted::Relative(_)) => format!(" +- {}", share(h)),
-            (Some(h), Wanted::Absolute(_)) => format!(" +- {h:.1e}"),
+            (Some(h), ErrorTarget::Relative(_)) => format!(" +- {}", share(h)),
+            (Some(h), ErrorTarget::Absolute(_)) => format!(" +- {h:.1e}"),
             (None, _) => " +- ?".into(),
         };
         match self.1 {
-            Wanted::Relative(_) => write!(f, "{}{half} %", share(mean.mean)),
-            Wanted::Absolute(_) => write!(f, "{:.2e}{half}", mean.mean),
+            ErrorTarget::Relative(_) => write!(f, "{}{half} %", share(mean.mean)),
+            ErrorTarget::Absolute(_) => write!(f, "{:.2e}{half}", mean.mean),
         }
     }
 }
@@ -402,12 +405,12 @@ mod tests {
     fn levels_too_near_are_passed_over() {
         let level = |x: f64| Level::of(&[], &x.to_string());
         let levels = [1.0, 1.1, 2.0].map(level).into();
-        let mut parameter = Varied::new("step", Sense::Step, levels, Some(0));
+        let mut parameter = Varied::new("step", ParameterEffect::Step, levels, Some(0));
         assert_eq!(neighbour(&parameter), Some(2));
         parameter.levels.pop();
         assert_eq!(neighbour(&parameter), Some(1));
         assert_eq!(ratio(&parameter, 1).and_then(weight), None);
-        parameter.sense = Sense::Choice;
+        parameter.sense = ParameterEffect::Choice;
         assert_eq!(neighbour(&parameter), None);
     }
 }

@@ -2,11 +2,11 @@
 
 use super::combination::Combination;
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
-use crate::runs::launcher::Patience;
+use crate::runs::launcher::WaitLimits;
 use crate::runs::output::column;
-use crate::runs::stored::{Finished, Status};
+use crate::runs::stored::{FinishedRun, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -59,15 +59,16 @@ impl Trade {
         let mut forms = Vec::new();
         for (k, parameter) in parameters.iter().enumerate() {
             let others = (0..parameter.levels.len()).filter(|l| *l != parameter.own);
-            for level in others.filter(|_| parameter.sense == Sense::Form) {
+            for level in others.filter(|_| parameter.sense == ParameterEffect::Form) {
                 forms.push((k, level, seconds(&own.with(k, level))? / base.max(1e-3)));
             }
         }
-        let fine = shrink(&finest, &parameters, Sense::Tolerance);
+        let fine = shrink(&finest, &parameters, ParameterEffect::Tolerance);
         let power = if fine < 1.0 && own != finest {
             let other = factor(&forms, &finest);
-            let ratio =
-                seconds(&finest)? / base * shrink(&finest, &parameters, Sense::Step) / other;
+            let ratio = seconds(&finest)? / base
+                * shrink(&finest, &parameters, ParameterEffect::Step)
+                / other;
             (ratio.ln() / (1.0 / fine).ln()).clamp(0.0, 1.0)
         } else {
             0.0
@@ -92,18 +93,18 @@ impl Trade {
         if let Some(run) = self.launcher.stored(&run) {
             return Ok((run.wall, true));
         }
-        let all = self.steps / shrink(setting, &self.parameters, Sense::Step);
+        let all = self.steps / shrink(setting, &self.parameters, ParameterEffect::Step);
         let table = self.launcher.place(&run).join("statistics.csv");
         let mut guess = f64::INFINITY;
         // Rows are written in batches: without one, the probe is repeated once with more time.
         for longer in [1, 3] {
             let started = Instant::now();
-            let patience = Patience {
+            let wait = WaitLimits {
                 deadline: Some(started + longer * each),
                 limit: None,
                 stop,
             };
-            let ended = self.launcher.run(&run, patience)?;
+            let ended = self.launcher.run(&run, wait)?;
             let ended_at = std::time::SystemTime::now();
             if let Some(finished) = ended {
                 let wall = finished.wall;
@@ -126,7 +127,7 @@ impl Trade {
     /// Returns the duration of a run (s): that of its other seeds, or the cost law, multiplied by
     /// its mean error so far.
     pub fn seconds(&self, setting: &Combination) -> f64 {
-        let ended = |r: &&Finished| r.status == Status::Done;
+        let ended = |r: &&FinishedRun| r.status == Status::Done;
         let of = |setting: &Combination| -> Vec<f64> {
             let own = self.done.iter().filter(|((s, _), _)| s == setting);
             own.map(|(_, r)| r).filter(ended).map(|r| r.wall).collect()
@@ -153,8 +154,8 @@ impl Trade {
 
     /// Returns the duration according to the probes alone (s).
     pub fn cost_law(&self, setting: &Combination) -> f64 {
-        let step = shrink(setting, &self.parameters, Sense::Step);
-        let tolerance = shrink(setting, &self.parameters, Sense::Tolerance);
+        let step = shrink(setting, &self.parameters, ParameterEffect::Step);
+        let tolerance = shrink(setting, &self.parameters, ParameterEffect::Tolerance);
         let law = &self.cost;
         law.own.max(1e-3) / step * tolerance.powf(-law.power) * factor(&law.forms, setting)
     }
@@ -170,7 +171,7 @@ fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
 
 /// Returns the ratio of the case's own step or tolerance to that of the setting; 1 if it is not
 /// varied.
-fn shrink(setting: &Combination, parameters: &[Varied], sense: Sense) -> f64 {
+fn shrink(setting: &Combination, parameters: &[Varied], sense: ParameterEffect) -> f64 {
     let of = |(k, level): (&Varied, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
         Some(number(*level)? / number(k.own)?)

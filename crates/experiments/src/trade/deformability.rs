@@ -6,7 +6,7 @@
 //! left out.
 
 use super::variant::field;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::Level;
 use fretwork_core::bodies::Dof;
@@ -152,7 +152,7 @@ pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     let every: Vec<usize> = (0..case.interfaces.len()).collect();
     forms.push(("compliant", below(compliant_contacts(case, scene))));
     forms.push(("rigid", below(rigid_contacts(case, scene, &every, true))));
-    let mut parameter = Varied::new("deformability", Sense::Form, Vec::new(), Some(0));
+    let mut parameter = Varied::new("deformability", ParameterEffect::Form, Vec::new(), Some(0));
     for (label, form) in forms {
         let sets = match form {
             _ if label == own => {

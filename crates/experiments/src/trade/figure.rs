@@ -2,9 +2,9 @@
 
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels, quantity};
 use std::path::Path;
@@ -65,10 +65,10 @@ struct Panel<'a> {
 
 fn panel(trade: &Trade, found: &Comparison, o: usize) -> Chart {
     let output = &trade.outputs[o];
-    let (Wanted::Relative(wanted) | Wanted::Absolute(wanted)) = output.wanted;
+    let (ErrorTarget::Relative(wanted) | ErrorTarget::Absolute(wanted)) = output.wanted;
     let (factor, unit) = match output.wanted {
-        Wanted::Relative(_) => (100.0, "%"),
-        Wanted::Absolute(_) => (1.0, ""),
+        ErrorTarget::Relative(_) => (100.0, "%"),
+        ErrorTarget::Absolute(_) => (1.0, ""),
     };
     let name = output.name().replace('_', " ");
     let y = Axis::new(format!("error of {name}"), unit).log();
@@ -224,8 +224,8 @@ fn named(parameters: &[Varied], setting: &Combination) -> String {
 
 fn value(parameter: &Varied, level: &Level) -> String {
     match (parameter.sense, level.number) {
-        (Sense::Step, Some(x)) => quantity(x, "s", 2),
-        (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
+        (ParameterEffect::Step, Some(x)) => quantity(x, "s", 2),
+        (ParameterEffect::Tolerance, Some(x)) => quantity(x, "", 1),
         _ => level.label.clone(),
     }
 }
@@ -252,8 +252,8 @@ mod tests {
         };
         for own in [0, 1] {
             let parameters = [
-                parameter("time.step", Sense::Step, own),
-                parameter("solver.tolerance", Sense::Tolerance, own),
+                parameter("time.step", ParameterEffect::Step, own),
+                parameter("solver.tolerance", ParameterEffect::Tolerance, own),
             ];
             let name = named(&parameters, &Combination(vec![0, 1]));
             assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");

@@ -3,7 +3,7 @@
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
 use super::figure::draw;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Findings;
 use super::plan::Trade;
 use super::verdict::Verdict;
@@ -46,8 +46,8 @@ fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool)
         .zip(&found.own)
         .map(|(o, own)| {
             let (kind, wanted) = match o.wanted {
-                Wanted::Relative(w) => ("relative", w),
-                Wanted::Absolute(w) => ("absolute", w),
+                ErrorTarget::Relative(w) => ("relative", w),
+                ErrorTarget::Absolute(w) => ("absolute", w),
             };
             json!({
                 "name": o.name(), "wanted": wanted, "error": kind, "exact": o.exact,

@@ -1,7 +1,7 @@
 //! The option `--vary key.path=a,b,c`: any value of the case with listed levels.
 
 use super::ordered::{steps, tolerances};
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use crate::{Error, load};
 use fretwork_scene::{LoadedCase, invisible_characters};
@@ -66,7 +66,12 @@ pub(super) fn listed(loaded: &LoadedCase, tolerance: f64, argument: &str) -> Res
         }
         _ => {}
     }
-    Ok(Varied::new(key.trim(), Sense::Listed, levels, own))
+    Ok(Varied::new(
+        key.trim(),
+        ParameterEffect::Listed,
+        levels,
+        own,
+    ))
 }
 
 fn split(text: &str) -> Vec<String> {

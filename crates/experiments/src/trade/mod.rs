@@ -43,6 +43,6 @@ use crate::folder::Owner;
 /// The owner of folders of trades.
 pub const OWNER: Owner = Owner {
     command: "fretwork trade",
-    mark: "trade.lock",
+    lock_file: "trade.lock",
     files: &["plan.json", "trade.json"],
 };

@@ -1,6 +1,6 @@
 //! Levels of a step or a tolerance, from the finest up, with their further changes.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use fretwork_scene::case::Case;
 
@@ -29,7 +29,7 @@ pub(super) fn number(key: &str, x: f64) -> Level {
 /// its level.
 fn ordered(
     name: &str,
-    sense: Sense,
+    sense: ParameterEffect,
     own: f64,
     mut values: Vec<f64>,
     level: impl Fn(f64) -> Level,
@@ -46,7 +46,7 @@ fn ordered(
 
 pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {
     let every = case.output.every as f64 * case.time.step;
-    ordered("step", Sense::Step, case.time.step, values, |h| {
+    ordered("step", ParameterEffect::Step, case.time.step, values, |h| {
         let mut level = number("time.step", h);
         // The interval in time between rows of the statistics is that of the case.
         let rows = (every / h).round().max(1.0);
@@ -58,7 +58,7 @@ pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {
 }
 
 pub(super) fn tolerances(case: &Case, own: f64, values: Vec<f64>) -> Varied {
-    ordered("tolerance", Sense::Tolerance, own, values, |t| {
+    ordered("tolerance", ParameterEffect::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
         if t < own {
             // In the worst case methods of first order need proportionally more iterations.

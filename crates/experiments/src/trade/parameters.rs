@@ -4,7 +4,7 @@ use super::deformability::keep_accepted;
 use super::presets::{Solving, presets};
 use super::request::Request;
 use super::variant::variants;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::{Error, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::LoadedCase;
@@ -25,7 +25,7 @@ pub fn parameters(
     if !only_variants {
         all.extend(presets(loaded, solving, &request.presets, &request.vary)?);
     }
-    all.sort_by_key(|k| k.sense != Sense::Form);
+    all.sort_by_key(|k| k.sense != ParameterEffect::Form);
     for forms in all.iter_mut().filter(|k| k.name == "deformability") {
         let before = request.sets.clone();
         keep_accepted(forms, |sets| {
@@ -45,9 +45,10 @@ fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
         let mut sets = k.levels.iter().flat_map(|l| &l.sets);
         sets.any(|set| set.split('=').next().is_some_and(|k| k.trim() == key))
     };
-    let form =
-        |k: &&Varied| k.sense == Sense::Form && (sets(k, "solver.tolerance") || sets(k, "solver"));
-    let varied = |k: &&Varied| k.sense != Sense::Form && sets(k, "solver.tolerance");
+    let form = |k: &&Varied| {
+        k.sense == ParameterEffect::Form && (sets(k, "solver.tolerance") || sets(k, "solver"))
+    };
+    let varied = |k: &&Varied| k.sense != ParameterEffect::Form && sets(k, "solver.tolerance");
     let mut all = parameters.iter();
     let (Some(form), Some(varied)) = (parameters.iter().find(form), all.find(varied)) else {
         return Ok(());

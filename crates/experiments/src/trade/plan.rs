@@ -10,11 +10,11 @@ use super::combination::Combination;
 use super::compare::{Comparison, neighbour};
 use super::cost_law::CostLaw;
 use super::output::Output;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use super::verdict::{Verdict, verdicts};
 use crate::Error;
 use crate::runs::launcher::{Launcher, Run};
-use crate::runs::stored::Finished;
+use crate::runs::stored::FinishedRun;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Runs by setting and seed.
-pub type Ledger = BTreeMap<(Combination, u64), Finished>;
+pub type RunsBySetting = BTreeMap<(Combination, u64), FinishedRun>;
 
 /// Current state of a trade.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ pub struct Trade {
     /// Time budget.
     pub budget: Duration,
     /// Finished runs.
-    pub done: Ledger,
+    pub done: RunsBySetting,
     /// Expected cost of a setting.
     pub cost: CostLaw,
     /// Number of runs reused from an earlier trade in the same folder.
@@ -147,8 +147,13 @@ impl Trade {
         // dropped last: their assumptions are not a matter of accuracy.
         while self.work(&self.first()) > 0.6 * self.budget.as_secs_f64() {
             let finest = self.parameters.iter_mut().filter(|k| k.may_be_coarser());
-            let finest = finest
-                .min_by_key(|k| (k.sense == Sense::Form, k.reference, k.sense == Sense::Step));
+            let finest = finest.min_by_key(|k| {
+                (
+                    k.sense == ParameterEffect::Form,
+                    k.reference,
+                    k.sense == ParameterEffect::Step,
+                )
+            });
             let Some(finest) = finest else { break };
             finest.reference += 1;
         }

@@ -7,7 +7,7 @@
 use super::deformability::{Deformability, forms};
 use super::listed::listed;
 use super::ordered::{number, steps, tolerances};
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::{AS_IN_THE_CASE, Level};
 use fretwork_core::laws::Kind;
@@ -153,7 +153,7 @@ fn preset(loaded: &LoadedCase, solving: &Solving, name: &str) -> Result<Varied, 
     };
     Ok(Varied {
         reference: own,
-        ..Varied::new(name, Sense::Choice, levels, Some(own))
+        ..Varied::new(name, ParameterEffect::Choice, levels, Some(own))
     })
 }
 

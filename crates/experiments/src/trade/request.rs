@@ -4,7 +4,7 @@ use super::combination::Combination;
 use super::cost_law::CostLaw;
 use super::deformability::Deformability;
 use super::output::Output;
-use super::plan::{Ledger, Trade};
+use super::plan::{RunsBySetting, Trade};
 use super::presets::Solving;
 use super::varied::Varied;
 use super::{OWNER, parameters, refuse};
@@ -13,7 +13,7 @@ use crate::runs::launcher::Launcher;
 use crate::runs::stored::Limits;
 use crate::{Error, Program, build, load};
 use fretwork_core::solve::local::solver::Method;
-use fretwork_scene::methods::{Demands, Service};
+use fretwork_scene::methods::{SolverRequirements, SolverSupport};
 use fretwork_scene::most_steps::most_steps;
 use fretwork_scene::{Built, LoadedCase};
 use fretwork_store::folder_lock::FolderLock;
@@ -66,7 +66,7 @@ impl Request {
         let started = Instant::now();
         let loaded = load(&self.case, &self.sets)?;
         let (scene, random) = build(&loaded, program)?;
-        let first = Facts::of(&loaded, &scene);
+        let first = SceneFacts::of(&loaded, &scene);
         let outputs = refuse::outputs(self, &first.available)?;
         let parameters = parameters::parameters(self, &loaded, &program.search, &first.solving)?;
         if parameters.is_empty() {
@@ -136,7 +136,7 @@ impl Request {
             steps: most_steps(&loaded.case) as f64,
             jobs: self.jobs.into(),
             budget: self.budget,
-            done: Ledger::new(),
+            done: RunsBySetting::new(),
             cost: CostLaw::default(),
             reused: 0,
             fresh: 0,
@@ -148,16 +148,17 @@ impl Request {
 }
 
 /// Properties of a scene that a trade needs.
-struct Facts {
+struct SceneFacts {
     solving: Solving,
     available: AvailableQuantities,
 }
 
-impl Facts {
+impl SceneFacts {
     fn of(loaded: &LoadedCase, built: &Built) -> Self {
-        let demands = Demands::of(built.simulation.view());
-        let serves =
-            |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
+        let requirements = SolverRequirements::of(built.simulation.view());
+        let serves = |m: &Method| {
+            *m == loaded.case.solver.method || requirements.support(*m) == SolverSupport::Serves
+        };
         Self {
             available: AvailableQuantities::of(&loaded.case, built),
             solving: Solving {

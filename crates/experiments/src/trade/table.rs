@@ -2,7 +2,7 @@
 
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row, ShownError, share};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use super::plan::{Findings, Trade};
 use super::verdict::{amount, three};
 use crate::duration::seconds;
@@ -116,8 +116,8 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
     );
     for o in &trade.outputs {
         let unit = match o.wanted {
-            Wanted::Relative(_) => " (%)",
-            Wanted::Absolute(_) => "",
+            ErrorTarget::Relative(_) => " (%)",
+            ErrorTarget::Absolute(_) => "",
         };
         let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name()));
     }
@@ -200,7 +200,7 @@ fn push_outputs(out: &mut String, trade: &Trade, found: &Comparison) {
             out,
             "{}: {:.6} in the reference{scatter}{truth}",
             o.name(),
-            Shown(own.value.mean)
+            SignificantDigits(own.value.mean)
         );
         if o.exact.is_none() {
             let known = if own.at_most.is_finite() {
@@ -229,9 +229,9 @@ fn command(trade: &Trade, sets: &[String]) -> String {
 }
 
 /// A number with significant digits.
-struct Shown(f64);
+struct SignificantDigits(f64);
 
-impl std::fmt::Display for Shown {
+impl std::fmt::Display for SignificantDigits {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.0 != 0.0 && !(1e-3..1e5).contains(&self.0.abs()) {
             write!(f, "{:.4e}", self.0)

@@ -1,7 +1,7 @@
 //! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the
 //! coarsest.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::Level;
 use crate::load;
@@ -76,7 +76,12 @@ pub fn variants(loaded: &LoadedCase, arguments: &[String]) -> Result<Option<Vari
         return Ok(None);
     }
     let own = levels.iter().position(|l| l.sets.is_empty());
-    Ok(Some(Varied::new("variant", Sense::Form, levels, own)))
+    Ok(Some(Varied::new(
+        "variant",
+        ParameterEffect::Form,
+        levels,
+        own,
+    )))
 }
 
 /// Returns the `--set` arguments that change this case to another one.

@@ -4,7 +4,7 @@ use crate::factor::{AS_IN_THE_CASE, Level};
 
 /// Effect of a parameter on cost and error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sense {
+pub enum ParameterEffect {
     /// Time step: smaller is finer, and the cost is inversely proportional.
     Step,
     /// Tolerance: smaller is finer.
@@ -24,7 +24,7 @@ pub struct Varied {
     /// Name of the parameter.
     pub name: String,
     /// Effect on cost and error.
-    pub sense: Sense,
+    pub sense: ParameterEffect,
     /// Levels, at least one.
     pub levels: Vec<Level>,
     /// Index of the case's own level.
@@ -38,7 +38,12 @@ pub struct Varied {
 impl Varied {
     /// Creates a parameter whose reference has the first level; if the number of the case's own
     /// level is not given, a level without changes is added.
-    pub fn new(name: &str, sense: Sense, mut levels: Vec<Level>, own: Option<usize>) -> Self {
+    pub fn new(
+        name: &str,
+        sense: ParameterEffect,
+        mut levels: Vec<Level>,
+        own: Option<usize>,
+    ) -> Self {
         let own = own.unwrap_or_else(|| {
             levels.push(Level::named(AS_IN_THE_CASE, Vec::new()));
             levels.len() - 1
@@ -55,7 +60,10 @@ impl Varied {
 
     /// Returns whether its levels have an order, so that the reference may have a coarser one.
     pub fn is_ordered(&self) -> bool {
-        matches!(self.sense, Sense::Step | Sense::Tolerance | Sense::Form)
+        matches!(
+            self.sense,
+            ParameterEffect::Step | ParameterEffect::Tolerance | ParameterEffect::Form
+        )
     }
 
     /// Whether the reference has a finer level than the case.

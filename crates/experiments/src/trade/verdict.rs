@@ -1,7 +1,7 @@
 //! The cheapest setting for a wanted error, and the confidence in it.
 
 use super::compare::{Comparison, OutputError, Row, share};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use fretwork_math::statistics::interval::{Mean, seeds_for};
 
 /// Verdict for a wanted error.
@@ -30,15 +30,15 @@ pub fn verdicts(found: &Comparison, outputs: &[Output], random: bool) -> Vec<Ver
 }
 
 fn limit(output: &Output) -> f64 {
-    let (Wanted::Relative(w) | Wanted::Absolute(w)) = output.wanted;
+    let (ErrorTarget::Relative(w) | ErrorTarget::Absolute(w)) = output.wanted;
     w
 }
 
 /// Formats an error of an output with its unit.
 pub fn amount(x: f64, output: &Output) -> String {
     match output.wanted {
-        Wanted::Relative(_) => format!("{} %", share(x)),
-        Wanted::Absolute(_) => format!("{x:.1e}"),
+        ErrorTarget::Relative(_) => format!("{} %", share(x)),
+        ErrorTarget::Absolute(_) => format!("{x:.1e}"),
     }
 }
 

@@ -16,7 +16,7 @@ mod setting;
 
 pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report_accuracy};
 
-use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
+use crate::error_estimate::{Increments, RatioPair, RepeatedStretch, StretchRepeats, cost};
 use fretwork_core::bodies::Dof;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, StepError, StepReport};
@@ -53,7 +53,7 @@ const STEP_LIMIT: f64 = 4.0 / 3.0;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AccuracyControl {
     share: f64,
-    of: Quantity,
+    of: StoredResult,
     effort: f64,
     seed: u64,
     /// Step (s), tolerance and position correction of the case.
@@ -82,7 +82,7 @@ pub struct AccuracyControl {
 
 /// The result, as stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Quantity {
+enum StoredResult {
     Friction,
     FrictionEnergy,
     Damage,
@@ -90,7 +90,7 @@ enum Quantity {
     Forces,
 }
 
-impl Quantity {
+impl StoredResult {
     /// Returns the result that a case requests.
     fn asked(of: AccurateResult, case: &Case, run: &dyn RunView) -> Self {
         match of {
@@ -143,9 +143,9 @@ impl AccuracyControl {
             run.options().solver.tolerance,
             run.options().correction,
         ];
-        let of = Quantity::asked(spec.of, case, run);
+        let of = StoredResult::asked(spec.of, case, run);
         let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
-        if of == Quantity::Forces {
+        if of == StoredResult::Forces {
             // The steps only grow, and forces of rigid packings scatter at any tolerance: the
             // tolerance is reduced only if the case gives a limit.
             step = 0;
@@ -198,7 +198,7 @@ impl AccuracyControl {
         }
         // The stretch must not extend beyond the end, where drives and tables have ended.
         let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
-        if self.of == Quantity::Forces {
+        if self.of == StoredResult::Forces {
             let count = self.count(run, [done, total], most);
             self.set(run, count);
             if self.repeats_for_forces(run) {
@@ -378,7 +378,7 @@ impl AccuracyControl {
         };
         self.stretches[0] += 1;
         let allowed = 0.5 * self.share;
-        let pair = |change: f64| Pair {
+        let pair = |change: f64| RatioPair {
             coarse: [1.0; 2],
             fine: [1.0 + change, 1.0],
         };
@@ -405,9 +405,9 @@ impl AccuracyControl {
         Ok(())
     }
 
-    fn decide(&mut self, place: &Place, run: &dyn RunView) {
+    fn decide(&mut self, place: &StretchRepeats, run: &dyn RunView) {
         let allowed = 0.5 * self.share;
-        let pair = |fine: &Increments| Pair {
+        let pair = |fine: &Increments| RatioPair {
             coarse: self.of.of(&place.base),
             fine: self.of.of(fine),
         };

@@ -1,6 +1,6 @@
 //! One setting of a run, step or tolerance, and the decision to make it finer or coarser.
 
-use crate::error_estimate::{Change, Pair};
+use crate::error_estimate::{Change, RatioPair};
 use serde::{Deserialize, Serialize};
 
 /// Largest number of latest stretches from which the effect of a setting is determined.
@@ -43,13 +43,13 @@ impl Setting {
 
     /// Adds a stretch, and decides; `factor` is the ratio of two levels, `allowed` the share of the
     /// result that the setting may change.
-    pub fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
+    pub fn decide(&mut self, pair: RatioPair, limit: f64, factor: f64, allowed: f64) -> Decision {
         self.pairs.push([pair.coarse, pair.fine]);
         self.measured += 1;
         if self.pairs.len() > KEPT {
             self.pairs.remove(0);
         }
-        let pairs = self.pairs.iter().map(|[coarse, fine]| Pair {
+        let pairs = self.pairs.iter().map(|[coarse, fine]| RatioPair {
             coarse: *coarse,
             fine: *fine,
         });
@@ -114,8 +114,8 @@ mod tests {
 
     const STEP_LIMIT: f64 = 4.0 / 3.0;
 
-    fn pair(change: f64) -> Pair {
-        Pair {
+    fn pair(change: f64) -> RatioPair {
+        RatioPair {
             coarse: [1.0, 1.0],
             fine: [1.0 + change, 1.0],
         }

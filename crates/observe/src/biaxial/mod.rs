@@ -6,7 +6,7 @@
 
 mod outcome;
 
-pub use outcome::Outcome;
+pub use outcome::BiaxialOutcome;
 pub(crate) use outcome::report_none;
 
 use super::coordination::{Coordination, coordination};
@@ -49,7 +49,7 @@ pub struct Biaxial {
 
 /// Measured values at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
+pub struct BiaxialState {
     /// Axial and lateral stress, from the walls (Pa).
     pub walls: [f64; 2],
     /// Mean of the two (Pa).
@@ -144,7 +144,7 @@ impl Biaxial {
     }
 
     /// Returns the measured values for the last step.
-    pub fn state(&self, run: &dyn RunView) -> State {
+    pub fn state(&self, run: &dyn RunView) -> BiaxialState {
         let lengths = self.lengths(run);
         let volume = lengths[0] * lengths[1];
         // Grains push the low wall in the negative direction of the axis and the high wall in the
@@ -157,7 +157,7 @@ impl Biaxial {
         let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(run, volume));
         let sum = walls[0] + walls[1];
         let [l0, l1] = [0, 1].map(|k| lengths[k] / self.reference[k]);
-        State {
+        BiaxialState {
             walls,
             pressure_walls: 0.5 * sum,
             pressure_contacts,
@@ -229,7 +229,7 @@ impl Observer for Biaxial {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
-        Outcome::new(end.table, self.start, mass).report(found);
+        BiaxialOutcome::new(end.table, self.start, mass).report(found);
     }
 
     fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
@@ -246,7 +246,7 @@ impl Observer for Biaxial {
     }
 }
 
-impl State {
+impl BiaxialState {
     /// Returns the values of [`Biaxial::columns`].
     pub fn row(&self) -> Vec<f64> {
         let z = &self.coordination;

@@ -12,7 +12,7 @@ const WINDOW: f64 = 5e-3;
 crate::described! {
     /// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-    pub struct Outcome {
+    pub struct BiaxialOutcome {
         /// Compacity when the test starts.
         pub compacity_start: f64 => ONE,
         /// Coordination over all grains when the test starts.
@@ -49,7 +49,7 @@ crate::described! {
     }
 }
 
-impl Outcome {
+impl BiaxialOutcome {
     /// Evaluates the statistics, with the `start` of the test (s) and the mean mass of a grain (kg;
     /// kg/m).
     pub fn new(table: &Table, start: f64, mass: f64) -> Self {
@@ -269,7 +269,7 @@ mod tests {
             let row = [time, 1e-4 * time, p + 1.0, p - 1.0, p];
             table.rows.extend(row.iter().chain(&rest));
         }
-        let outcome = Outcome::new(&table, 0.0, 1.0);
+        let outcome = BiaxialOutcome::new(&table, 0.0, 1.0);
         assert!((outcome.residual_ratio - 0.2).abs() < 1e-9, "{outcome:?}");
         // Fifty-one steps fit into the window, at most one more of low pressure: 51/(26 + 25 * 9).
         assert!(outcome.peak_ratio >= 0.2 && outcome.peak_ratio < 51.0 / 251.0 + 1e-9);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Coloured cells of a plane, and arrows over them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Field {
+pub struct FieldMap {
     /// Corners of each cell, in the units of the axes.
     pub cells: Vec<Vec<[f32; 2]>>,
     /// Meaning of the colours.
@@ -36,7 +36,7 @@ pub enum Colours {
     },
 }
 
-impl Field {
+impl FieldMap {
     /// Returns the classes that a cell has, in their order; empty where colours are values.
     pub fn classes(&self) -> Vec<&(String, (u8, u8, u8))> {
         let Colours::Classes { classes, of } = &self.colours else {

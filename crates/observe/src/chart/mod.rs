@@ -6,7 +6,7 @@ mod field;
 mod rows;
 
 pub use axis::{Axis, number, quantity, superscript};
-pub use field::{Colours, Field, round_top};
+pub use field::{Colours, FieldMap, round_top};
 pub use rows::{Columns, Part, Rows, TableColumns, Value};
 
 use serde::{Deserialize, Serialize};
@@ -146,7 +146,7 @@ pub struct Chart {
     /// Curves, drawn in order.
     pub series: Vec<Series>,
     /// Coloured cells below the curves, with both axes to the same scale.
-    pub field: Option<Field>,
+    pub field: Option<FieldMap>,
     /// Horizontal range in the axis unit; `None` fits the data.
     pub x_range: Option<(f64, f64)>,
     /// Vertical range in the axis unit; `None` fits the data.

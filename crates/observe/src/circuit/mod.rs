@@ -12,7 +12,7 @@ use super::output::Output;
 use super::picture::{Paint, Picture, Shows};
 use super::quantity::Findings;
 use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW, METRE, ONE, SECOND, Unit};
-use super::series::Series;
+use super::series::DecimatedSeries;
 use super::statistics::Column;
 use super::steady;
 use super::wear::show_flows;
@@ -148,17 +148,17 @@ impl Observer for BrokenBonds {
 #[derive(Clone, Debug)]
 pub struct CircuitAccount {
     start: f64,
-    state: Followed,
+    state: CircuitObserverState,
 }
 
 /// State carried from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Followed {
+struct CircuitObserverState {
     /// Number of pieces that detached, and number of grains of the largest.
     pieces: u64,
     largest: usize,
     /// Time, accumulated flows, and the mass in the contact, at each update.
-    series: Series<(f64, Flows, f64)>,
+    series: DecimatedSeries<(f64, Flows, f64)>,
 }
 
 /// Returns the circuit of a simulation; `None` before its start.
@@ -171,7 +171,7 @@ impl CircuitAccount {
     pub fn new(start: f64) -> Self {
         Self {
             start,
-            state: Followed::default(),
+            state: CircuitObserverState::default(),
         }
     }
 

@@ -15,7 +15,7 @@ pub const FEWEST: usize = 3;
 /// Numerator and denominator of a result over one stretch: from the run, and from the finer
 /// repetition.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
+pub struct RatioPair {
     /// Values from the run.
     pub coarse: [f64; 2],
     /// Values from the repetition.
@@ -37,7 +37,7 @@ crate::described! {
 impl Change {
     /// Returns the change over all stretches times a factor of extrapolation; `None` for fewer than
     /// three stretches, or where the run gives no reference value.
-    pub fn over(pairs: &[Pair], extrapolation: f64) -> Option<Self> {
+    pub fn over(pairs: &[RatioPair], extrapolation: f64) -> Option<Self> {
         let n = pairs.len();
         if n < FEWEST {
             return None;
@@ -68,14 +68,14 @@ impl Change {
 }
 
 /// Returns the change of the ratio of the sums, without one of the stretches.
-fn ratio(pairs: &[Pair], without: Option<usize>) -> Option<f64> {
+fn ratio(pairs: &[RatioPair], without: Option<usize>) -> Option<f64> {
     let all = || {
         let numbered = pairs.iter().enumerate();
         numbered
             .filter(move |(k, _)| Some(*k) != without)
             .map(|(_, p)| p)
     };
-    let sum = |part: fn(&Pair) -> f64| all().map(part).sum::<f64>();
+    let sum = |part: fn(&RatioPair) -> f64| all().map(part).sum::<f64>();
     let coarse = sum(|p| p.coarse[0]) / sum(|p| p.coarse[1]);
     let fine = sum(|p| p.fine[0]) / sum(|p| p.fine[1]);
     let change = fine / coarse - 1.0;
@@ -86,8 +86,8 @@ fn ratio(pairs: &[Pair], without: Option<usize>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn pair(coarse: f64, fine: f64) -> Pair {
-        Pair {
+    fn pair(coarse: f64, fine: f64) -> RatioPair {
+        RatioPair {
             coarse: [coarse, 1.0],
             fine: [fine, 1.0],
         }

@@ -15,7 +15,7 @@ mod warnings;
 pub use change::Change;
 pub use report::{Effects, Repeats, Shares};
 
-pub(crate) use change::Pair;
+pub(crate) use change::RatioPair;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
@@ -33,7 +33,7 @@ const MOST_COST: f64 = 0.05;
 
 /// One place with its repetitions.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Place {
+pub(crate) struct StretchRepeats {
     /// Number of steps done before it.
     step: u64,
     /// Growth with the step and tolerance of the run.
@@ -63,7 +63,7 @@ pub struct ErrorEstimate {
     limited: bool,
     /// Reason why there is no estimate.
     reason: Option<String>,
-    places: Vec<Place>,
+    places: Vec<StretchRepeats>,
     /// Number of places at which a repeated step failed.
     failed: u32,
     /// Number of places skipped since repetitions cost too much.
@@ -132,7 +132,7 @@ impl ErrorEstimate {
         let (place, [cost, _]) = repeats.at(run)?;
         self.cost[1] += cost;
         match place {
-            Some(place) => self.places.push(Place { step, ..place }),
+            Some(place) => self.places.push(StretchRepeats { step, ..place }),
             None => self.failed += 1,
         }
         Ok(())

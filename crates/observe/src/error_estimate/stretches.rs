@@ -1,7 +1,7 @@
 //! A stretch of steps, repeated with other settings.
 
 use super::increments::Stretch;
-use super::{FINER, Place};
+use super::{FINER, StretchRepeats};
 use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{Coupling, RepeatError};
@@ -34,7 +34,10 @@ impl RepeatedStretch {
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn at(&self, run: &mut dyn RunControl) -> Result<(Option<Place>, [f64; 2]), RepeatError> {
+    pub fn at(
+        &self,
+        run: &mut dyn RunControl,
+    ) -> Result<(Option<StretchRepeats>, [f64; 2]), RepeatError> {
         let (length, mut cost) = (self.length, 0.0);
         let mut stretch = |run: &mut dyn RunControl, parts, options: &SetOptions<'_>| {
             let made = run.repeated(|run| {
@@ -68,7 +71,7 @@ impl RepeatedStretch {
         let (Some(finer), Some(tighter)) = (finer, tighter) else {
             return Ok((None, [cost, each]));
         };
-        let place = Place {
+        let place = StretchRepeats {
             step: run.steps(),
             base: base.increments,
             finer: finer.increments,

@@ -1,6 +1,6 @@
 //! Maps of a contact in space: cells of a surface seen along its normal, with colours and arrows.
 
-use crate::chart::{Axis, Chart, Colours, Field, quantity};
+use crate::chart::{Axis, Chart, Colours, FieldMap, quantity};
 use crate::picture::{OPEN, SLIPS, STICKS};
 use crate::tractions::{FacetTraction, SurfaceState, Zone};
 use nalgebra::Vector3;
@@ -29,7 +29,7 @@ pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart
         let mut chart = Chart::new(format!("{what}, {name}"), x.clone(), y.clone());
         let [xmin, xmax, ymin, ymax] = view.window;
         (chart.x_range, chart.y_range) = (Some((xmin, xmax)), Some((ymin, ymax)));
-        chart.field = Some(Field {
+        chart.field = Some(FieldMap {
             cells: cells
                 .iter()
                 .map(|c| c.iter().copied().map(single).collect())

@@ -36,7 +36,7 @@ const SLOW: f64 = 1e-6;
 /// A bond that broke in rotation: its normal and tangential opening (m), twist and bending (rad),
 /// area, and released energy (J).
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Turned {
+struct RotatedBreak {
     opening: [f64; 2],
     rotation: [f64; 2],
     area: f64,
@@ -59,7 +59,7 @@ struct Broken {
     /// Areas of these bonds by angle.
     areas: Vec<f64>,
     /// Bonds that broke in rotation.
-    turned: Vec<Turned>,
+    turned: Vec<RotatedBreak>,
 }
 
 impl Broken {
@@ -75,7 +75,7 @@ impl Broken {
         self.released += released;
         if b.energies.turning() > TURNS {
             if self.turned.len() < TURNED {
-                self.turned.push(Turned {
+                self.turned.push(RotatedBreak {
                     opening: b.opening,
                     rotation: b.rotation,
                     area: b.area,

@@ -2,15 +2,15 @@
 
 mod driven;
 mod energy;
-mod missed;
 mod phases;
 mod solver;
 mod step_size;
+mod unconverged;
 
 pub use driven::DrivenBodies;
 pub use energy::{LEDGER, MomentumSummary};
-pub use missed::Missed;
 pub use phases::Phases;
+pub use unconverged::UnconvergedSteps;
 
 use super::figures;
 use super::output::Output;
@@ -219,7 +219,7 @@ impl RunState {
                 .map(|text| Warning::serious("IMPOSSIBLE MOTION", text)),
         );
         found.warn(step_size::warnings(&counts.step_size));
-        let missed = Missed {
+        let missed = UnconvergedSteps {
             steps: solver
                 .unconverged_steps
                 .saturating_sub(self.impossible.squeezed_steps),

@@ -3,11 +3,11 @@
 use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::view::RunView;
-use fretwork_scene::methods::{Demands, Service};
+use fretwork_scene::methods::{SolverRequirements, SolverSupport};
 
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Missed {
+pub struct UnconvergedSteps {
     /// Number of these steps.
     pub steps: u64,
     /// Number of the first of these steps.
@@ -16,7 +16,7 @@ pub struct Missed {
     pub error: f64,
 }
 
-impl Missed {
+impl UnconvergedSteps {
     /// Counts a step by its number.
     pub fn add(&mut self, report: &Report, step: u64) {
         if report.converged {
@@ -34,11 +34,11 @@ impl Missed {
     pub fn warning(&self, run: &dyn RunView, of: u64) -> Option<String> {
         let options = run.solver_in_force();
         let seen = self.seen(of, options.tolerance)?;
-        let demands = Demands::of(run);
+        let requirements = SolverRequirements::of(run);
         let others = [Method::Auto, Method::Newton, Method::Interior].into_iter();
         let others = others
             .filter(|m| *m != options.method)
-            .filter(|m| !matches!(demands.service(*m), Service::Refuses(_)));
+            .filter(|m| !matches!(requirements.support(*m), SolverSupport::Refuses(_)));
         let others: Vec<String> = others.map(|m| format!("{m:?}")).collect();
         let other = if others.is_empty() {
             String::new()

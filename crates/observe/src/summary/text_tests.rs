@@ -1,6 +1,6 @@
 use super::*;
 use crate::first_bodies::BodyWear;
-use crate::fretting::{self, Regime};
+use crate::fretting::{self, SlipRegime};
 use crate::friction::{Cycle, Cycles};
 use crate::friction_report;
 use crate::quantity::unit::{ENERGY, METRE, ONE};
@@ -25,9 +25,9 @@ fn fretting() -> Summary {
         work: 2e-3,
         energy_ratio: if k < 10 { 0.1 } else { 0.8 },
         regime: if k < 10 {
-            Regime::Partial
+            SlipRegime::Partial
         } else {
-            Regime::Gross
+            SlipRegime::Gross
         },
         wear_volume: 1e-15,
         ..Cycle::default()
@@ -56,7 +56,11 @@ fn fretting() -> Summary {
         ..WearSummary::default()
     };
     wear.report(true, &mut found);
-    friction_report::report(&cycles, fretting::Outcome::new(&cycles.list), &mut found);
+    friction_report::report(
+        &cycles,
+        fretting::FrettingOutcome::new(&cycles.list),
+        &mut found,
+    );
     for k in 0..31 {
         found.measure(&format!("layer_{k:02}"), 1.0, METRE, "a measure");
     }

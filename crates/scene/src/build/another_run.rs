@@ -1,7 +1,7 @@
 //! Grains taken from a state of another run: positions, orientations, velocities, spins and shapes
 //! as recorded there.
 
-use super::grains::Seed;
+use super::grains::NewBall;
 use super::{Builder, Origin};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
@@ -10,7 +10,7 @@ use fretwork_core::assembly::{InitialState, MaterialDensity, RecordedPiece, turn
 use nalgebra::Vector3;
 
 /// Grains other than single balls, from one entry of `grains`.
-pub(super) struct Others {
+pub(super) struct ShapedEntry {
     /// Index of the entry in the list.
     k: usize,
     /// Material index, and its density (kg/m^3).
@@ -25,7 +25,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &StateSpec,
-    ) -> Result<(Vec<Seed>, Others), InputError> {
+    ) -> Result<(Vec<NewBall>, ShapedEntry), InputError> {
         let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
         let mut path = self.folder.join(&spec.results);
         if path.is_dir() {
@@ -72,7 +72,7 @@ impl Builder<'_> {
         let mut seeds = Vec::with_capacity(balls);
         for grain in &read.grains {
             let motion = &grain.motion;
-            seeds.push(Seed {
+            seeds.push(NewBall {
                 radius: grain.radius,
                 of,
                 start: self.start(k, motion)?,
@@ -80,7 +80,7 @@ impl Builder<'_> {
             });
         }
         let grains = read.shaped;
-        Ok((seeds, Others { k, of, grains }))
+        Ok((seeds, ShapedEntry { k, of, grains }))
     }
 
     /// Returns position and motion of a recorded grain.
@@ -102,7 +102,7 @@ impl Builder<'_> {
     }
 
     /// Adds the grains other than single balls.
-    pub(super) fn shaped_grains(&mut self, others: Others) -> Result<(), InputError> {
+    pub(super) fn shaped_grains(&mut self, others: ShapedEntry) -> Result<(), InputError> {
         let (k, of) = (others.k, others.of);
         for grain in others.grains {
             let start = self.start(k, &grain.motion)?;

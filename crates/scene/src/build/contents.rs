@@ -2,7 +2,7 @@
 //! names.
 
 use super::LoadedCase;
-use crate::source::{InputError, Kind, Node, Tree};
+use crate::source::{InputError, Node, Tree, ValueKind};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -48,8 +48,8 @@ impl LoadedCase {
 /// The texts in a value.
 fn collect(node: &Node, text: &str, out: &mut BTreeSet<String>) {
     match &node.kind {
-        Kind::Text => out.extend(node.string(text)),
-        Kind::Group(group) => {
+        ValueKind::Text => out.extend(node.string(text)),
+        ValueKind::Group(group) => {
             for entry in &group.entries {
                 collect(&entry.value, text, out);
             }

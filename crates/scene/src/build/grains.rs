@@ -13,7 +13,7 @@ pub(super) const MAX_READ: usize = 10_000_000;
 pub(super) const MAX_GENERATED: usize = 2_000_000;
 
 /// A ball to be added to the scene.
-pub(super) struct Seed {
+pub(super) struct NewBall {
     /// Radius (m).
     pub radius: f64,
     /// Material index, and its density (kg/m^3).
@@ -24,7 +24,7 @@ pub(super) struct Seed {
     pub origin: Origin,
 }
 
-impl Seed {
+impl NewBall {
     /// A ball at rest.
     pub fn still(at: Vector3<f64>, radius: f64, of: MaterialDensity, origin: Origin) -> Self {
         let start = InitialState {
@@ -42,7 +42,7 @@ impl Seed {
 
 impl Builder<'_> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
-        let mut balls: Vec<Seed> = Vec::new();
+        let mut balls: Vec<NewBall> = Vec::new();
         let mut shaped = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
             match spec {
@@ -92,7 +92,7 @@ impl Builder<'_> {
         k: usize,
         material: &str,
         grains: &[OneGrain],
-        out: &mut Vec<Seed>,
+        out: &mut Vec<NewBall>,
     ) -> Result<(), InputError> {
         let of = self.material(&format!("grains.{k}.material"), material)?;
         for (g, grain) in grains.iter().enumerate() {
@@ -101,7 +101,7 @@ impl Builder<'_> {
             let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
             let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
             let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-            let mut seed = Seed::still(at, radius, of, Origin::Grain(k, Some(g)));
+            let mut seed = NewBall::still(at, radius, of, Origin::Grain(k, Some(g)));
             (seed.start.velocity, seed.start.spin) = (velocity.into(), spin);
             out.push(seed);
         }
@@ -115,7 +115,7 @@ impl Builder<'_> {
         count: usize,
         radius: (f64, f64),
         [low, high]: [&[f64]; 2],
-    ) -> Result<impl Iterator<Item = Seed> + use<>, InputError> {
+    ) -> Result<impl Iterator<Item = NewBall> + use<>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         for r in [radius.0, radius.1] {
@@ -146,7 +146,7 @@ impl Builder<'_> {
             ));
         }
         let seed = move |(x, r): (Vec<f64>, f64)| {
-            Seed::still(components(&x), r, of, Origin::Grain(k, None))
+            NewBall::still(components(&x), r, of, Origin::Grain(k, None))
         };
         Ok(list.into_iter().map(seed))
     }
@@ -158,12 +158,13 @@ impl Builder<'_> {
         file: &str,
         material: &str,
         walls: Option<&str>,
-    ) -> Result<Vec<Seed>, InputError> {
+    ) -> Result<Vec<NewBall>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         let scene = self.scene_file(&here, file)?;
-        let ball =
-            |(x, r): &(Vec<f64>, f64)| Seed::still(components(x), *r, of, Origin::Grain(k, None));
+        let ball = |(x, r): &(Vec<f64>, f64)| {
+            NewBall::still(components(x), *r, of, Origin::Grain(k, None))
+        };
         let balls = scene.balls.iter().map(ball).collect();
         if let Some(walls) = walls {
             let (m, _) = self.material(&format!("{here}.walls"), walls)?;
@@ -177,7 +178,7 @@ impl Builder<'_> {
     }
 
     /// Adds balls, sorted so that neighbours in space are neighbours in memory.
-    fn add_balls(&mut self, mut balls: Vec<Seed>) {
+    fn add_balls(&mut self, mut balls: Vec<NewBall>) {
         let width = 4.0 * balls.iter().map(|g| g.radius).fold(0.0, f64::max);
         let dimension = self.dimension();
         let cell = |x: &[f64; 3]| -> Vec<i64> {

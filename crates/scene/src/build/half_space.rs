@@ -8,7 +8,9 @@ use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::assembly::AnySystem;
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_elastic::half_space::{self, Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
+use fretwork_elastic::half_space::{
+    self, CellGrid, Cells, FilledSide, HalfSpaceError, Profile, Reach,
+};
 use std::collections::BTreeMap;
 
 /// Smallest theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
@@ -69,8 +71,8 @@ impl Builder<'_> {
             name: &spec.name,
             material: elasticity,
             fills: match spec.side {
-                Side::Below => Fills::Below,
-                Side::Above => Fills::Above,
+                Side::Below => FilledSide::Below,
+                Side::Above => FilledSide::Above,
             },
             position: self
                 .vector(&format!("{here}.position"), &spec.position)?
@@ -103,7 +105,7 @@ impl Builder<'_> {
         })
     }
 
-    fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Grid, InputError> {
+    fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<CellGrid, InputError> {
         let line = |name: &str, line: &CellSpec| {
             let CellSpec { from, to, size } = *line;
             if !(from.is_finite() && to.is_finite() && to > from) {
@@ -137,7 +139,7 @@ impl Builder<'_> {
                 return Err(self.fail(here, message));
             }
         };
-        Ok(Grid {
+        Ok(CellGrid {
             from: [x.0, y.0],
             size: [x.1, y.1],
             cells: [x.2, y.2],
@@ -162,7 +164,12 @@ impl Builder<'_> {
     }
 
     /// Whether the surface repeats with the period of the case.
-    fn repeats(&self, here: &str, spec: &HalfSpaceSpec, grid: &Grid) -> Result<bool, InputError> {
+    fn repeats(
+        &self,
+        here: &str,
+        spec: &HalfSpaceSpec,
+        grid: &CellGrid,
+    ) -> Result<bool, InputError> {
         let [x, across @ ..] = self.assembly.periodic().period;
         if across.iter().any(Option::is_some) || (self.dimension() == 3 && x.is_some()) {
             let message = "an elastic half-space can repeat along x in two dimensions; take other periods of the case away";
@@ -198,7 +205,7 @@ impl Builder<'_> {
         &self,
         here: &str,
         rolling: &TimeFunction,
-        grid: &Grid,
+        grid: &CellGrid,
     ) -> Result<(), InputError> {
         if let Some(why) = rolling.error() {
             return Err(self.fail(here, why));
@@ -229,7 +236,7 @@ impl Builder<'_> {
         &self,
         here: &str,
         spec: &HalfSpaceSpec,
-        grid: &Grid,
+        grid: &CellGrid,
     ) -> Result<Profile, InputError> {
         let positive = |name: &str, value: f64| {
             if value > 0.0 {

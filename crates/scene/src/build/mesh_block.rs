@@ -4,7 +4,7 @@ use super::Builder;
 use crate::case::{CoarsenSpec, LineSpec, MeshProfileSpec, RoundSpec};
 use crate::source::InputError;
 use fretwork_elastic::AnyMesh;
-use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded};
+use fretwork_elastic::generate::{BlockGrid, Coarsening, GridError, even, graded};
 use fretwork_elastic::mesh::MeshError;
 
 /// Largest number of points of a block along an axis, and in total.
@@ -58,7 +58,7 @@ impl Builder<'_> {
         here: &str,
         lines: &[Vec<f64>],
         coarsen: Option<&CoarsenSpec>,
-    ) -> Result<Grid, InputError> {
+    ) -> Result<BlockGrid, InputError> {
         let built = match coarsen {
             None => {
                 let points: usize = lines.iter().map(Vec::len).product();
@@ -68,14 +68,14 @@ impl Builder<'_> {
                     );
                     return Err(self.fail(here, message));
                 }
-                Grid::new(lines)
+                BlockGrid::new(lines)
             }
             Some(CoarsenSpec { from, ratio }) => {
                 let coarsening = Coarsening {
                     from,
                     ratio: *ratio,
                 };
-                Grid::coarsened(lines, &coarsening, MAX_POINTS)
+                BlockGrid::coarsened(lines, &coarsening, MAX_POINTS)
             }
         };
         built.map_err(|error| {
@@ -95,7 +95,7 @@ impl Builder<'_> {
     pub(super) fn mapped(
         &self,
         here: &str,
-        grid: &Grid,
+        grid: &BlockGrid,
         map: &dyn Fn([f64; 3]) -> [f64; 3],
     ) -> Result<AnyMesh, InputError> {
         AnyMesh::mapped(self.dimension(), grid, map).map_err(|error| {
@@ -112,7 +112,12 @@ impl Builder<'_> {
     }
 
     /// Rounds a side of a block; the displacement of points behind it decreases with depth.
-    fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<AnyMesh, InputError> {
+    fn rounded(
+        &self,
+        here: &str,
+        grid: &BlockGrid,
+        round: &RoundSpec,
+    ) -> Result<AnyMesh, InputError> {
         let up = self.dimension() - 1;
         let ends: Vec<[f64; 2]> = grid
             .lines()

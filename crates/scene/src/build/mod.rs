@@ -28,7 +28,7 @@ pub use load::{load, load_reader, load_text};
 use super::case::Case;
 use super::interfaces;
 use super::material::{Material, MaterialLibrary, Sourced};
-use super::methods::{Demands, Service};
+use super::methods::{SolverRequirements, SolverSupport};
 use super::recorded::{Deformed, RecordReader, ShapedGrain};
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
@@ -376,8 +376,8 @@ impl Builder<'_> {
             }
         }
         let simulation = built.setup();
-        let service = Demands::of(simulation).service(case.solver.method);
-        if let Service::Refuses(reason) = service {
+        let support = SolverRequirements::of(simulation).support(case.solver.method);
+        if let SolverSupport::Refuses(reason) = support {
             return Err(source.locate(ValidationError::new("solver.method", reason)));
         }
         simulation.set_gravity(gravity.into(), None);

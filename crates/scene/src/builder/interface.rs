@@ -2,14 +2,14 @@
 
 use crate::case::slots::BySlot;
 use crate::case::{InterfaceSpec, SlotValues};
-use crate::material::Given;
+use crate::material::NumberSpec;
 use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use std::collections::BTreeMap;
 
-fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, Given> {
+fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, NumberSpec> {
     let given = parameters.iter();
     given
-        .map(|(name, value)| ((*name).to_owned(), Given::from(*value)))
+        .map(|(name, value)| ((*name).to_owned(), NumberSpec::from(*value)))
         .collect()
 }
 

@@ -56,7 +56,7 @@ const LARGEST: f64 = 100.0;
 /// Fields of [`AccuracySpec`] as a case gives them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename = "AccuracySpec")]
-struct Fields {
+struct AccuracyFields {
     #[serde(default = "share")]
     share: f64,
     #[serde(default)]
@@ -79,8 +79,8 @@ fn effort() -> f64 {
     0.2
 }
 
-impl From<Fields> for AccuracySpec {
-    fn from(fields: Fields) -> Self {
+impl From<AccuracyFields> for AccuracySpec {
+    fn from(fields: AccuracyFields) -> Self {
         Self {
             share: fields.share,
             of: fields.of,
@@ -123,7 +123,7 @@ impl<'de> Deserialize<'de> for AccuracySpec {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AccuracySpec, A::Error> {
-                Fields::deserialize(MapAccessDeserializer::new(map)).map(AccuracySpec::from)
+                AccuracyFields::deserialize(MapAccessDeserializer::new(map)).map(AccuracySpec::from)
             }
         }
 

@@ -1,7 +1,7 @@
 //! The law between two materials.
 
 use super::slots::{BySlot, Field, FieldName, with_kinds};
-use crate::material::Given;
+use crate::material::NumberSpec;
 use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::{Error as _, SerializeStruct};
@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
-pub type SlotValues = BySlot<BTreeMap<String, Given>>;
+pub type SlotValues = BySlot<BTreeMap<String, NumberSpec>>;
 
 /// The law between two materials: a slot for each kind of law, each with the name of a plugin. In
 /// the text each slot is a field with the keyword of its kind: `contact: "coulomb", wear:
@@ -60,7 +60,7 @@ impl InterfaceSpec {
     }
 
     /// Returns a parameter that the case gives for a slot.
-    pub fn parameter(&self, kind: Kind, name: &str) -> Option<&Given> {
+    pub fn parameter(&self, kind: Kind, name: &str) -> Option<&NumberSpec> {
         self.parameters.get(kind)?.get(name)
     }
 }

@@ -1,7 +1,7 @@
 //! Comparison of two texts by content: comments, white space and the format of numbers are ignored.
 
 use super::Source;
-use super::tree::{Group, Kind, Node, Shape, join_path};
+use super::tree::{Group, Node, Shape, ValueKind, join_path};
 
 /// A place where two texts differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
     let [a, b] = [0, 1].map(|k| &texts[k][nodes[k].span.clone()]);
     let number = |text: &str| text.replace('_', "").parse::<f64>().ok();
     match (&nodes[0].kind, &nodes[1].kind) {
-        (Kind::Number, Kind::Number) => {
+        (ValueKind::Number, ValueKind::Number) => {
             let same = number(a).zip(number(b));
             a == b || same.is_some_and(|(x, y)| x.to_bits() == y.to_bits())
         }

@@ -6,7 +6,7 @@ use ron::error::{Error as RonError, Position, SpannedError};
 
 use super::respell::Step;
 use super::set::{one_of, shorten};
-use super::tree::{Kind, Node, Shape, join_path, plain};
+use super::tree::{Node, Shape, ValueKind, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
 
 impl Source {
@@ -229,14 +229,14 @@ impl Source {
                 | RonError::TrailingCharacters
         );
         if let Some(node) = node {
-            let within = node.span.start < end && matches!(node.kind, Kind::Number);
+            let within = node.span.start < end && matches!(node.kind, ValueKind::Number);
             if within && spare {
                 return self.wrong_type(node, "an integer");
             }
             if matches!(code, RonError::ExpectedIdentifier) && self.is_time_function(node) {
                 let error = self.wrong_type(node, TIME_FUNCTION);
                 return match node.kind {
-                    Kind::Text => error.help("numbers here are in SI units, without a unit"),
+                    ValueKind::Text => error.help("numbers here are in SI units, without a unit"),
                     _ => error,
                 };
             }
@@ -294,12 +294,12 @@ impl Source {
     fn wrong_type(&self, node: &Node, expected: &str) -> InputError {
         let written = shorten(&self.text[node.span.clone()]);
         let found = match &node.kind {
-            Kind::Number => format!("the number `{written}`"),
-            Kind::Text => format!("the text `{written}`"),
-            Kind::Char => format!("the character `{written}`"),
-            Kind::Word => format!("the word `{written}`"),
-            Kind::Other => format!("`{written}`"),
-            Kind::Group(group) => match group.shape {
+            ValueKind::Number => format!("the number `{written}`"),
+            ValueKind::Text => format!("the text `{written}`"),
+            ValueKind::Char => format!("the character `{written}`"),
+            ValueKind::Word => format!("the word `{written}`"),
+            ValueKind::Other => format!("`{written}`"),
+            ValueKind::Group(group) => match group.shape {
                 Shape::List => "a list".to_owned(),
                 Shape::Map => "a map".to_owned(),
                 Shape::Tuple | Shape::Struct => match &group.name {
@@ -314,8 +314,8 @@ impl Source {
             &node.head(&self.text),
             format!("wrong type{place}: found {found}"),
         );
-        let quotes = matches!(node.kind, Kind::Word) && expected == "a text in quotes";
-        let unquoted = matches!(node.kind, Kind::Text) && expected.starts_with("a name");
+        let quotes = matches!(node.kind, ValueKind::Word) && expected == "a text in quotes";
+        let unquoted = matches!(node.kind, ValueKind::Text) && expected.starts_with("a name");
         let error = error.expected(expected);
         if quotes {
             error.help(format!("write `\"{written}\"`"))

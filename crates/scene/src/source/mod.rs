@@ -37,7 +37,7 @@ pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
 pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
-pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree, split_path};
+pub use tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind, split_path};
 
 pub(crate) use schema::fields_at;
 use source_map::SourceMap;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 
 use super::schema::{self, Level};
-use super::tree::{Kind, Node, Shape, Tree, join_path, split_path};
+use super::tree::{Node, Shape, Tree, ValueKind, join_path, split_path};
 use super::{InputError, Source, scan};
 
 /// A parsed `--set` argument; ranges are bytes of the argument.
@@ -56,7 +56,7 @@ impl<'a> Assignment<'a> {
     /// Returns whether the value is a name, and may be a text whose quotes the shell removed.
     fn is_word(&self) -> bool {
         let tree = scan::scan(self.value());
-        let word = matches!(tree.root.map(|root| root.kind), Some(Kind::Word));
+        let word = matches!(tree.root.map(|root| root.kind), Some(ValueKind::Word));
         word && !matches!(self.value(), "true" | "false")
     }
 
@@ -178,7 +178,9 @@ impl Source {
             return false;
         };
         let node = self.tree.around(offset);
-        let Some(node) = node.filter(|node| matches!(node.kind, Kind::Word | Kind::Number)) else {
+        let Some(node) =
+            node.filter(|node| matches!(node.kind, ValueKind::Word | ValueKind::Number))
+        else {
             return false;
         };
         let span = node.span.clone();
@@ -389,7 +391,7 @@ fn replacement(
     let held = node.unwrap_some(text);
     // An existing `Some` around the old value is kept, unless the new value has its own.
     let target = if option { node } else { held };
-    let is_text = matches!(held.kind, Kind::Text);
+    let is_text = matches!(held.kind, ValueKind::Text);
     let unquoted = wanted.is_word() || wanted.is_bare();
     let new = if is_text && unquoted && !option {
         quote(value)

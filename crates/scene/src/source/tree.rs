@@ -35,12 +35,12 @@ pub struct Node {
     /// Byte range of the value.
     pub span: Range<usize>,
     /// Kind of the value.
-    pub kind: Kind,
+    pub kind: ValueKind,
 }
 
 /// Kind of a value.
 #[derive(Debug, Clone)]
-pub enum Kind {
+pub enum ValueKind {
     /// A number, `inf` and `NaN` included.
     Number,
     /// A string, raw or not.
@@ -92,7 +92,7 @@ pub struct Entry {
 
 /// A path that does not exist in the text, and how much of it does.
 #[derive(Debug)]
-pub struct Missing<'t> {
+pub struct MissingPath<'t> {
     /// The deepest value that exists.
     pub parent: Option<&'t Node>,
     /// Number of components that exist.
@@ -101,7 +101,7 @@ pub struct Missing<'t> {
     pub choices: Vec<String>,
 }
 
-impl Missing<'_> {
+impl MissingPath<'_> {
     /// Returns the path with its first wrong component corrected, if a similar one exists.
     pub fn correction(&self, path: &[String]) -> Option<Vec<String>> {
         let wrong = path.get(self.depth)?;
@@ -159,14 +159,14 @@ impl Tree {
     /// Components are field names, map keys, indices, and in a list also the `name` of an element.
     /// `Some(x)` counts as `x`; the value of a one-tuple is its `.0`, and the components of that
     /// value may follow directly.
-    pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, Missing<'_>> {
-        let mut node = self.root.as_ref().ok_or(Missing {
+    pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, MissingPath<'_>> {
+        let mut node = self.root.as_ref().ok_or(MissingPath {
             parent: None,
             depth: 0,
             choices: Vec::new(),
         })?;
         for (depth, part) in path.iter().enumerate() {
-            node = node.step(text, part).ok_or_else(|| Missing {
+            node = node.step(text, part).ok_or_else(|| MissingPath {
                 parent: Some(node),
                 depth,
                 choices: node.choices(text),
@@ -200,7 +200,7 @@ impl Tree {
     pub(super) fn path_of(&self, text: &str, span: &Range<usize>) -> Vec<String> {
         let mut path = Vec::new();
         let mut node = self.root.as_ref();
-        while let Some(Kind::Group(group)) = node.map(|node| &node.kind) {
+        while let Some(ValueKind::Group(group)) = node.map(|node| &node.kind) {
             let holds = |child: &Range<usize>| child.start <= span.start && span.end <= child.end;
             let entries = &group.entries;
             let Some(index) = entries.iter().position(|entry| holds(&entry.value.span)) else {
@@ -226,7 +226,7 @@ impl Tree {
         };
         while let Some(node) = stack.pop() {
             match &node.kind {
-                Kind::Group(group) => {
+                ValueKind::Group(group) => {
                     group.name.iter().for_each(&mut offer);
                     for entry in &group.entries {
                         entry.key.iter().for_each(&mut offer);
@@ -244,7 +244,7 @@ impl Node {
     /// Returns the group, if the value is one.
     pub fn group(&self) -> Option<&Group> {
         match &self.kind {
-            Kind::Group(group) => Some(group),
+            ValueKind::Group(group) => Some(group),
             _ => None,
         }
     }
@@ -272,8 +272,8 @@ impl Node {
     pub fn string(&self, text: &str) -> Option<String> {
         let written = &text[self.span.clone()];
         match self.kind {
-            Kind::Text => ron::from_str(written).ok(),
-            Kind::Word => Some(plain(written).to_owned()),
+            ValueKind::Text => ron::from_str(written).ok(),
+            ValueKind::Word => Some(plain(written).to_owned()),
             _ => None,
         }
     }

@@ -67,15 +67,15 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeErr
         return Ok(FolderState::Nothing);
     }
     loop {
-        let reading = FolderLock::read(folder, RUN_LOCK)?;
+        let reading = FolderLock::shared(folder, RUN_LOCK)?;
         let before = version(&path);
         let saved = match look(folder, &path, identity)? {
-            Seen::Nothing => return Ok(FolderState::Nothing),
-            Seen::Finished => return Ok(FolderState::Finished),
-            Seen::State(saved) => saved,
+            FolderContents::Nothing => return Ok(FolderState::Nothing),
+            FolderContents::Finished => return Ok(FolderState::Finished),
+            FolderContents::State(saved) => saved,
         };
         drop(reading);
-        let lock = FolderLock::own(folder, RUN_LOCK)?;
+        let lock = FolderLock::exclusive(folder, RUN_LOCK)?;
         // Another run may have continued in the folder between the search and the lock.
         if version(&path) == before {
             let (results, number, state) = *saved;
@@ -90,14 +90,14 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeErr
 }
 
 /// Content of a folder.
-enum Seen {
+enum FolderContents {
     Nothing,
     Finished,
     /// The results, and number and bytes of the last state.
     State(Box<(PreviousResults, u64, Vec<u8>)>),
 }
 
-fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeError> {
+fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<FolderContents, ResumeError> {
     let path = path.to_owned();
     let unreadable = |reason: String| ResumeError::Unreadable {
         path: path.clone(),
@@ -144,7 +144,7 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     let is_finished =
         frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
     if !later && is_finished {
-        return Ok(Seen::Finished);
+        return Ok(FolderContents::Finished);
     }
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
     match states.next_back() {
@@ -156,8 +156,12 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
         }),
         None => match ended(folder, &Identity::name(&name)).filter(|_| results.has_rows()) {
             Some(why) => Err(ResumeError::NoState { path, why }),
-            None => Ok(Seen::Nothing),
+            None => Ok(FolderContents::Nothing),
         },
-        Some(frame) => Ok(Seen::State(Box::new((results, frame.number, frame.state)))),
+        Some(frame) => Ok(FolderContents::State(Box::new((
+            results,
+            frame.number,
+            frame.state,
+        )))),
     }
 }

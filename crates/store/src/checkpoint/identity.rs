@@ -49,7 +49,7 @@ impl Identity {
                 plugins.push(stamp);
             }
         }
-        let mut hash = Hashed(Sha256::new());
+        let mut hash = HashWriter(Sha256::new());
         in_dimension!(&built.simulation, |s| {
             hash.0.update(encode(&*without_depths(&s.state))?);
             // Writing to the hash never fails.
@@ -159,9 +159,9 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 /// Writer that hashes what is written to it.
-struct Hashed(Sha256);
+struct HashWriter(Sha256);
 
-impl Write for Hashed {
+impl Write for HashWriter {
     fn write_str(&mut self, text: &str) -> std::fmt::Result {
         self.0.update(text.as_bytes());
         Ok(())

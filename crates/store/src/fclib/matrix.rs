@@ -10,7 +10,7 @@ use super::source::Source;
 use fretwork_core::solve::local::Csr;
 
 /// A matrix as stored in the file.
-pub struct Stored {
+pub struct StoredMatrix {
     name: String,
     rows: usize,
     columns: usize,
@@ -29,7 +29,7 @@ pub enum Order {
     Rows,
 }
 
-impl Stored {
+impl StoredMatrix {
     /// Reads the arrays; the sizes must match those of the problem's vectors.
     ///
     /// # Errors
@@ -233,7 +233,7 @@ fn entries(nz: i64, p: &mut Vec<i64>, lines: usize) -> Result<usize, String> {
 ///
 /// # Errors
 /// An index is outside its matrix in either order, or two matrices require different orders.
-pub fn order(source: &Source, matrices: &[&Stored]) -> Result<Order, FclibError> {
+pub fn order(source: &Source, matrices: &[&StoredMatrix]) -> Result<Order, FclibError> {
     let mut known: Option<(Order, &str)> = None;
     for matrix in matrices {
         match (matrix.order(source)?, known) {

@@ -2,14 +2,14 @@
 
 /// Handle of a dataset that grows along its first axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Growing {
+pub struct GrowingDataset {
     /// Index in [`Store::grown`](super::store::Store::grown).
     pub(super) place: usize,
 }
 
 /// Bookkeeping of a growing dataset.
 #[derive(Clone, Debug)]
-pub struct Grown {
+pub struct GrowthRecord {
     /// Path of the dataset.
     pub path: String,
     /// Number of rows, including those buffered in memory.
@@ -24,7 +24,7 @@ pub struct Grown {
     pub(super) buffered: Vec<u64>,
 }
 
-impl Grown {
+impl GrowthRecord {
     /// Path from the root, in the form that readers use.
     pub fn name(&self) -> &str {
         self.path.trim_start_matches('/')

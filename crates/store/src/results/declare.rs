@@ -1,7 +1,7 @@
 //! Declaration of the contents of the results file before the first row: groups, attributes, texts,
 //! datasets.
 
-use super::dataset::{Growing, Number, Slot};
+use super::dataset::{GrowingDataset, Number, Slot};
 use super::store::{ResultsError, Store};
 use hdf5::types::VarLenUnicode;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
@@ -155,7 +155,7 @@ impl Store {
         width: u64,
         (unit, doc): (&str, &str),
         chunk: usize,
-    ) -> Result<Growing, ResultsError> {
+    ) -> Result<GrowingDataset, ResultsError> {
         let numbers = width as usize;
         let (shape, most, chunk) = match width {
             1 => (vec![0], vec![None], vec![chunk]),

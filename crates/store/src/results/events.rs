@@ -1,6 +1,6 @@
 //! Event tables: columns that grow by one value per event, buffered until the file is flushed.
 
-use super::dataset::Growing;
+use super::dataset::GrowingDataset;
 use super::declare::MANY;
 use super::store::{ResultsError, Store};
 use fretwork_observe::observer::{Event, EventTable};
@@ -9,10 +9,10 @@ use fretwork_observe::observer::{Event, EventTable};
 #[derive(Debug)]
 pub(super) struct Events {
     name: &'static str,
-    columns: Vec<Growing>,
+    columns: Vec<GrowingDataset>,
     buffered: Vec<Vec<f64>>,
     /// Column with any number of values per event.
-    list: Option<Growing>,
+    list: Option<GrowingDataset>,
     buffered_list: Vec<f64>,
 }
 

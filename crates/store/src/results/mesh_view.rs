@@ -4,7 +4,7 @@
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 
-use super::dataset::Growing;
+use super::dataset::GrowingDataset;
 use super::declare::{FEW, MANY};
 use super::store::{ResultsError, Store};
 
@@ -55,15 +55,15 @@ impl Mesh {
 #[derive(Debug)]
 pub struct MeshView {
     /// Time of each state (s).
-    values: Growing,
+    values: GrowingDataset,
     /// For each state: first part, number of parts, first point, first cell, first corner.
-    steps: [Growing; 5],
+    steps: [GrowingDataset; 5],
     /// Values of each field.
-    data: Vec<Growing>,
+    data: Vec<GrowingDataset>,
     /// For each field: the row of its first value in each state.
-    data_offsets: Vec<Growing>,
+    data_offsets: Vec<GrowingDataset>,
     /// Offsets of data that all states share: always 0.
-    shared_offsets: Vec<Growing>,
+    shared_offsets: Vec<GrowingDataset>,
     /// Number of states.
     count: i64,
     path: String,

@@ -35,7 +35,7 @@ pub use view::{Cells, Part};
 use super::checkpoint::Frame;
 use super::folder_lock::FolderLock;
 use super::summary::PluginStamp;
-use dataset::{Growing, Slot};
+use dataset::{GrowingDataset, Slot};
 use declare::MANY;
 use events::Events;
 use fretwork_observe::observer::{Event, EventTable};
@@ -101,7 +101,7 @@ const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
 #[derive(Debug, Default)]
 pub struct Results {
     store: Option<Store>,
-    statistics: Vec<Growing>,
+    statistics: Vec<GrowingDataset>,
     buffered: Vec<Vec<f64>>,
     events: Vec<Events>,
     views: Vec<View>,

@@ -1,6 +1,6 @@
 //! Reads checkpoints and rows of a stopped run from its `results.h5`.
 
-use super::dataset::Grown;
+use super::dataset::GrowthRecord;
 use super::store::{ResultsError, Store};
 use super::{CHECKPOINTS, Results};
 use crate::fclib::guard;
@@ -96,7 +96,7 @@ impl PreviousResults {
     /// # Errors
     /// The store cannot be written, or the rows are missing or differ.
     pub(super) fn copy(&self, rows: &[(u64, u32)], to: &mut Store) -> Result<(), ResultsError> {
-        let grown: Vec<Grown> = to.grown().to_vec();
+        let grown: Vec<GrowthRecord> = to.grown().to_vec();
         let unreadable = |reason: String| ResultsError::unreadable(&self.path, reason);
         if rows.len() != grown.len() {
             return Err(unreadable(

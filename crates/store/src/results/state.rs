@@ -143,7 +143,7 @@ impl Grains {
             std::array::from_fn(|axis| columns.get(axis).map_or(0.0, |c| c[k]))
         }
         let mut deformed = deformed::read(&self.reader, frame)?;
-        let mut sorted = Sorted::of(shaped.unwrap_or_default())?;
+        let mut shapes = ShapesByGrain::of(shaped.unwrap_or_default())?;
         let mut state = State {
             frame,
             time,
@@ -167,14 +167,14 @@ impl Grains {
                 ));
             }
             let body = id[k] as u64;
-            match sorted.take(body, motion) {
-                Known::First(mut grain) => {
+            match shapes.take(body, motion) {
+                RowShape::New(mut grain) => {
                     grain.deformed = deformed.remove(&body);
                     state.shaped.push(*grain);
                 }
-                Known::Again => {}
-                Known::Not if corners[k] > 0.0 => return Err(shapeless(frame)),
-                Known::Not => {
+                RowShape::AlreadyTaken => {}
+                RowShape::None if corners[k] > 0.0 => return Err(shapeless(frame)),
+                RowShape::None => {
                     balls.push(body);
                     let radius = radius[k];
                     state.grains.push(Grain { radius, motion });
@@ -201,19 +201,19 @@ fn shapeless(frame: usize) -> String {
 }
 
 /// Shapes of grains by the identity of the grain; `None` once taken.
-struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
+struct ShapesByGrain(HashMap<u64, Option<Box<ShapedGrain>>>);
 
 /// What is known about the shape of the grain in a row.
-enum Known {
+enum RowShape {
     /// A shape that occurs for the first time in this row.
-    First(Box<ShapedGrain>),
+    New(Box<ShapedGrain>),
     /// A shape that was returned for an earlier row.
-    Again,
+    AlreadyTaken,
     /// The grain has no shape: it is a single ball.
-    Not,
+    None,
 }
 
-impl Sorted {
+impl ShapesByGrain {
     /// Sorts the balls and pieces by grain.
     fn of(shaped: Shaped) -> Result<Self, String> {
         let mut grains: HashMap<u64, Option<Box<ShapedGrain>>> = HashMap::new();
@@ -249,13 +249,13 @@ impl Sorted {
     }
 
     /// Returns the shape of the grain in a row, with the motion of that row.
-    fn take(&mut self, body: u64, motion: Motion) -> Known {
+    fn take(&mut self, body: u64, motion: Motion) -> RowShape {
         match self.0.get_mut(&body).map(Option::take) {
-            None => Known::Not,
-            Some(None) => Known::Again,
+            None => RowShape::None,
+            Some(None) => RowShape::AlreadyTaken,
             Some(Some(mut grain)) => {
                 grain.motion = motion;
-                Known::First(grain)
+                RowShape::New(grain)
             }
         }
     }

@@ -9,7 +9,7 @@
 //! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the
 //! HDF5 crate.
 
-use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
+use super::dataset::{Bytes, GrowingDataset, GrowthRecord, Number, Slot, to_bytes};
 use super::declare::group;
 use super::growth::Growth;
 use crate::folder_lock::{FolderLock, LockError};
@@ -79,7 +79,7 @@ pub struct Store {
     draft: Option<H5File>,
     /// The file, once it grows in place.
     growth: Option<Growth>,
-    grown: Vec<Grown>,
+    grown: Vec<GrowthRecord>,
     slots: Vec<Bytes>,
     /// Pending attributes of groups: group, name, value.
     attributes: Vec<(String, String, i64)>,
@@ -129,8 +129,11 @@ impl Store {
         self.lock = Some(lock);
     }
 
-    fn kept(&self) -> Result<(), ResultsError> {
-        Ok(self.lock.as_ref().map_or(Ok(()), FolderLock::kept)?)
+    fn check_still_owned(&self) -> Result<(), ResultsError> {
+        Ok(self
+            .lock
+            .as_ref()
+            .map_or(Ok(()), FolderLock::check_still_owned)?)
     }
 
     /// Current path of the file.
@@ -142,8 +145,8 @@ impl Store {
         self.named(self.draft.as_ref().ok_or("all was declared before"))
     }
 
-    pub(super) fn add_grown(&mut self, path: &str, width: u64, whole: bool) -> Growing {
-        self.grown.push(Grown {
+    pub(super) fn add_grown(&mut self, path: &str, width: u64, whole: bool) -> GrowingDataset {
+        self.grown.push(GrowthRecord {
             path: path.to_owned(),
             rows: 0,
             sum: 0,
@@ -151,7 +154,7 @@ impl Store {
             whole,
             buffered: Vec::new(),
         });
-        Growing {
+        GrowingDataset {
             place: self.grown.len() - 1,
         }
     }
@@ -221,7 +224,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&mut self, slot: Slot, bytes: &[u8], seal: usize) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         let Some(growth) = &mut self.growth else {
             self.buffer_slot(slot, bytes);
             self.flush()?;
@@ -239,12 +242,12 @@ impl Store {
     }
 
     /// The growing datasets, in the order of their declaration.
-    pub fn grown(&self) -> &[Grown] {
+    pub fn grown(&self) -> &[GrowthRecord] {
         &self.grown
     }
 
     /// Number of rows of a dataset.
-    pub fn rows(&self, dataset: Growing) -> u64 {
+    pub fn rows(&self, dataset: GrowingDataset) -> u64 {
         self.grown[dataset.place].rows
     }
 
@@ -254,7 +257,7 @@ impl Store {
     /// The file cannot be written.
     pub fn append<T: Number>(
         &mut self,
-        dataset: Growing,
+        dataset: GrowingDataset,
         values: &[T],
     ) -> Result<(), ResultsError> {
         let bytes = to_bytes(values, T::bytes);
@@ -307,7 +310,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         if let Some(growth) = &mut self.growth {
             let written = growth.write(&mut self.grown).and_then(|()| growth.flush());
             self.buffered = 0;
@@ -410,7 +413,7 @@ impl Store {
     }
 
     fn take_name(&self, name: &Path) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         named(name, std::fs::rename(&self.part, name))
     }
 
@@ -419,7 +422,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn close(mut self) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         if let Some(mut growth) = self.growth.take() {
             let rows = growth.write(&mut self.grown);
             let slots = self.slots.iter_mut().try_for_each(|slot| {

@@ -3,7 +3,7 @@
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0 (all four kinds of cells must be present).
 
-use super::dataset::Growing;
+use super::dataset::GrowingDataset;
 use super::declare::{FEW, MANY};
 use super::store::{ResultsError, Store};
 use fretwork_observe::statistics::Column;
@@ -64,19 +64,19 @@ pub struct ViewColumns<'a> {
 #[derive(Debug)]
 pub struct View {
     cells: Cells,
-    points: Growing,
-    number_of_points: Growing,
-    numbers: [[Growing; 2]; 4],
-    connectivity: [Growing; 4],
-    offsets: [Growing; 4],
-    data: Vec<Growing>,
-    whole: Vec<Growing>,
-    vectors: Vec<Growing>,
-    values: Growing,
-    steps: [Growing; 3],
-    cell_offsets: Growing,
-    connectivity_offsets: Growing,
-    data_offsets: Vec<Growing>,
+    points: GrowingDataset,
+    number_of_points: GrowingDataset,
+    numbers: [[GrowingDataset; 2]; 4],
+    connectivity: [GrowingDataset; 4],
+    offsets: [GrowingDataset; 4],
+    data: Vec<GrowingDataset>,
+    whole: Vec<GrowingDataset>,
+    vectors: Vec<GrowingDataset>,
+    values: GrowingDataset,
+    steps: [GrowingDataset; 3],
+    cell_offsets: GrowingDataset,
+    connectivity_offsets: GrowingDataset,
+    data_offsets: Vec<GrowingDataset>,
     count: i64,
     path: String,
 }
@@ -241,7 +241,7 @@ fn declare_whole(
     name: &str,
     (width, chunk): (u64, usize),
     doc: &str,
-) -> Result<Growing, ResultsError> {
+) -> Result<GrowingDataset, ResultsError> {
     store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
 }
 
@@ -250,7 +250,7 @@ fn declare_cells(
     store: &mut Store,
     path: &str,
     cells: Cells,
-) -> Result<[[Growing; 4]; 4], ResultsError> {
+) -> Result<[[GrowingDataset; 4]; 4], ResultsError> {
     let mut kinds = Vec::new();
     for kind in KINDS {
         store.group(&format!("{path}/{kind}"))?;

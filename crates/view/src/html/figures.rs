@@ -4,7 +4,7 @@
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
 use crate::html::statistics::Statistics;
-use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series, Style};
+use fretwork_observe::chart::{Axis, Chart, Colours, FieldMap, Figure, Series, Style};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
@@ -153,7 +153,7 @@ fn series(index: usize, series: &Series, numbers: &mut Arrays) -> Value {
     })
 }
 
-fn field(field: &Field, numbers: &mut Arrays) -> Value {
+fn field(field: &FieldMap, numbers: &mut Arrays) -> Value {
     let corners = || field.cells.iter().flatten();
     let mut starts = vec![0.0];
     starts.extend(field.cells.iter().scan(0, |sum, cell| {

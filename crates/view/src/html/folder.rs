@@ -52,7 +52,7 @@ impl RunFolder {
                 "there is no results.h5 in it; name the folder that `fretwork run` wrote, such as results/CASE".to_owned(),
             ));
         }
-        let lock = FolderLock::read(path, RUN_LOCK).map_err(|_| {
+        let lock = FolderLock::shared(path, RUN_LOCK).map_err(|_| {
             no_run(
                 "a run is writing in it; make the page when it has ended, or stop it first (Ctrl-C, and later --resume)"
                     .to_owned(),

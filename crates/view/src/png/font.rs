@@ -89,7 +89,7 @@ fn glyph(character: char) -> Option<(usize, GlyphId)> {
 }
 
 /// A glyph of a line.
-struct Set {
+struct PlacedGlyph {
     face: usize,
     id: GlyphId,
     /// Horizontal position, and em size, pixels.
@@ -135,7 +135,7 @@ fn levels(text: &str) -> Vec<(char, Level)> {
 }
 
 /// Glyphs of a line with their positions, and its width, in pixels.
-fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
+fn set_line(text: &str, size: f32) -> (Vec<PlacedGlyph>, f32) {
     let mut pen = 0.0;
     let mut previous = None;
     let mut glyphs = Vec::with_capacity(text.len());
@@ -157,7 +157,7 @@ fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
         {
             pen += scale * face.kern_unscaled(before, id);
         }
-        glyphs.push(Set {
+        glyphs.push(PlacedGlyph {
             face: face_index,
             id,
             pen,

@@ -3,7 +3,7 @@
 
 use crate::quantity::Unit;
 use crate::quantity::unit::{ONE, PASCAL};
-use crate::steady::{BLOCKS, Flow, of_blocks};
+use crate::steady::{BLOCKS, MeanFlow, of_blocks};
 
 const PER_SECOND: Unit = Unit::of("1/s");
 
@@ -18,7 +18,7 @@ pub(super) struct Means {
     mu: f64,
     inertial: f64,
     /// Means over blocks of equal time: p, mu, phi, I; `None` without enough rows.
-    blocks: Option<[Flow; 4]>,
+    blocks: Option<[MeanFlow; 4]>,
     /// Strain before the time, and from it on.
     strain: [f64; 2],
 }

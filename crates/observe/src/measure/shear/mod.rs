@@ -26,7 +26,7 @@ use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use means::Means;
 use std::f64::consts::PI;
-use sums::{Layer, Sums};
+use sums::{ShearedLayer, Sums};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Shear`].
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub struct Shear {
     /// Number of dimensions.
     dimension: usize,
     name: String,
-    layer: Layer,
+    layer: ShearedLayer,
     start: f64,
     /// Velocities at the start of a step, by body (m/s).
     before: Vec<[f64; 3]>,
@@ -82,7 +82,7 @@ impl Shear {
         Self {
             dimension,
             name,
-            layer: Layer { low, high },
+            layer: ShearedLayer { low, high },
             start,
             before: Vec::new(),
             row: Sums::default(),

@@ -71,14 +71,14 @@ impl Sums {
 
 /// The layer between two heights.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layer {
+pub(super) struct ShearedLayer {
     /// Lower height (m).
     pub low: f64,
     /// Upper height (m).
     pub high: f64,
 }
 
-impl Layer {
+impl ShearedLayer {
     /// Returns the sums of the last step, weighted by `weight` (s). `before` holds the velocities
     /// at its start, by body.
     pub fn step(self, run: &dyn RunView, before: &[[f64; 3]], weight: f64) -> Sums {

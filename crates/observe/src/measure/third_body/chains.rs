@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Two grains that press on each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(super) struct GrainPair {
     /// The grains.
     pub ends: [usize; 2],
     /// Vector from the first to the second (m).
@@ -34,14 +34,14 @@ pub(super) struct Chains {
 }
 
 /// Finds the chains. `loads` are the stresses of the grains, symmetric and positive in compression.
-pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[Pair]) -> Chains {
+pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[GrainPair]) -> Chains {
     let major: Vec<(f64, Vector3<f64>)> = loads.iter().map(|m| principal(m, flat)).collect();
     let carrying = || major.iter().filter(|m| m.0 > 0.0);
     let mean = carrying().map(|m| m.0).sum::<f64>() / carrying().count().max(1) as f64;
     let heavy = |k: usize| major[k].0 > 0.0 && major[k].0 >= mean * (1.0 - 1e-12);
     // This is the best pair of each grain on either side.
     let mut best: Vec<[Option<usize>; 2]> = vec![[None; 2]; loads.len()];
-    let side = |pair: &Pair, end: usize| {
+    let side = |pair: &GrainPair, end: usize| {
         let away = if end == 0 { pair.branch } else { -pair.branch };
         let cosine = major[pair.ends[end]].1.dot(&away) / away.norm();
         (cosine.abs() >= FRAC_1_SQRT_2).then_some(usize::from(cosine < 0.0))
@@ -102,9 +102,9 @@ mod tests {
     use super::*;
 
     /// Returns grains on a line through the origin, with stress `load` along it.
-    fn column(n: usize, direction: Vector3<f64>, load: f64) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+    fn column(n: usize, direction: Vector3<f64>, load: f64) -> (Vec<Matrix3<f64>>, Vec<GrainPair>) {
         let loads = vec![direction * direction.transpose() * load; n];
-        let pair = |k: usize| Pair {
+        let pair = |k: usize| GrainPair {
             ends: [k, k + 1],
             branch: direction,
             force: load,
@@ -125,7 +125,7 @@ mod tests {
             for ends in [[3, 7], [7, 8]] {
                 let branch = Vector3::new(0.8, -0.6, 0.0);
                 let force = 0.1;
-                pairs.push(Pair {
+                pairs.push(GrainPair {
                     ends,
                     branch,
                     force,
@@ -154,7 +154,7 @@ mod tests {
     fn a_chain_follows_the_largest_force() {
         let (mut loads, mut pairs) = column(4, Vector3::y(), 1.0);
         loads.push(loads[0]);
-        pairs.push(Pair {
+        pairs.push(GrainPair {
             ends: [1, 4],
             branch: Vector3::new(0.5, 0.9, 0.0),
             force: 2.0,

@@ -6,7 +6,7 @@
 
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
-use crate::layer::{Balance, Layer};
+use crate::layer::{Balance, LayerBalance};
 use fretwork_core::contact::ContactDissipation;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub(super) type Energies = [f64; MECHANISMS.len()];
 
 /// Kinds of pairs of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum PairKind {
     /// Two grains.
     Grains,
     /// The first of the two first bodies, and a grain.
@@ -29,7 +29,7 @@ pub(super) enum Place {
     Others,
 }
 
-impl Place {
+impl PairKind {
     /// All.
     pub const ALL: [Self; 5] = [
         Self::Grains,
@@ -70,15 +70,15 @@ pub(super) struct Dissipation {
     pub pending: Vec<Energies>,
     /// Per bin, in total.
     pub bins: Vec<Energies>,
-    /// By place, in the order of [`Place::ALL`].
-    pub places: [Energies; Place::ALL.len()],
+    /// By place, in the order of [`PairKind::ALL`].
+    pub places: [Energies; PairKind::ALL.len()],
     /// Work of the sliding on the layer, the integral of Q V dt (J).
     pub work: f64,
     /// The integral of P |V| dt (J).
     pub load: f64,
     /// Observer of dissipated and stored energy and of the work of all driven bodies, with its
     /// balance at the start of the account and now.
-    ledger: Option<(Layer, Balance, Balance)>,
+    ledger: Option<(LayerBalance, Balance, Balance)>,
     grain: Vec<bool>,
 }
 
@@ -98,7 +98,7 @@ impl Dissipation {
 
     /// Starts the account from the current state.
     pub fn begin(&mut self, run: &dyn RunView) {
-        let layer = Layer::new(run);
+        let layer = LayerBalance::new(run);
         let balance = layer.balance(run);
         self.ledger = Some((layer, balance, balance));
     }
@@ -154,7 +154,7 @@ impl Dissipation {
     }
 
     fn add(&mut self, bodies: [u32; 2], ends: [u32; 2], bin: usize, energies: Energies) {
-        let place = Place::of(bodies, ends, &self.grain) as usize;
+        let place = PairKind::of(bodies, ends, &self.grain) as usize;
         for (k, energy) in energies.into_iter().enumerate() {
             self.places[place][k] += energy;
             self.pending[bin - 1][k] += energy;

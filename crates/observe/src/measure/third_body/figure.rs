@@ -7,7 +7,7 @@ use crate::chart::{Axis, Chart, Series, Style, quantity};
 use crate::figures::history;
 
 /// Content of the figure.
-pub(super) struct Figure<'a> {
+pub(super) struct LayerFigure<'a> {
     /// The whole time.
     pub whole: &'a Block,
     /// Time slices of the measure.
@@ -46,7 +46,7 @@ fn span(times: [f64; 2]) -> String {
     }
 }
 
-impl Figure<'_> {
+impl LayerFigure<'_> {
     fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
         let upwards = format!("y/e, {} to {}", self.between.0, self.between.1);
         let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));

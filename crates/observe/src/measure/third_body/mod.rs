@@ -5,11 +5,11 @@ mod cells;
 mod chains;
 mod clusters;
 mod cut;
+mod dissipation;
 mod figure;
 mod gap;
 mod regime;
 mod snapshot;
-mod spent;
 mod tables;
 
 use super::{grains, mean, since};
@@ -22,14 +22,14 @@ use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
+use dissipation::{Dissipation, PairKind};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
-use regime::{Flow, Regime, flow};
+use regime::{FlowProfile, FlowRegime, flow};
 use serde::{Deserialize, Serialize};
 use snapshot::LayerSnapshot;
-use spent::{Dissipation, Place};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -196,7 +196,7 @@ impl ThirdBody {
     /// Returns the flow at the end (over the last complete cycle of the friction test, or the
     /// second half of the time), the mass-weighted mean cluster size there, and a description of
     /// that interval.
-    fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
+    fn flow(&self, table: &Table) -> (Option<FlowProfile>, f64, String) {
         let all = self.history.whole().time;
         let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
         let (over, start) = match cycle {
@@ -241,7 +241,7 @@ impl ThirdBody {
             now.chains.length,
             now.chains.angle,
             flow.map_or(f64::NAN, |f| f.interior),
-            Regime::of(flow.as_ref(), now.clusters.mean) as i32 as f64,
+            FlowRegime::of(flow.as_ref(), now.clusters.mean) as i32 as f64,
         ]);
         row
     }
@@ -325,7 +325,7 @@ impl Observer for ThirdBody {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let (flow, cluster, over) = self.flow(end.table);
-        let regime = Regime::of(flow.as_ref(), cluster);
+        let regime = FlowRegime::of(flow.as_ref(), cluster);
         let said = regime.describe(flow.as_ref(), cluster);
         let doc = "flow regime of the layer";
         found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
@@ -402,9 +402,9 @@ impl Observer for ThirdBody {
                 add(part, value, ONE, doc.to_owned());
             }
         }
-        for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {
+        for (place, energies) in PairKind::ALL.iter().zip(&self.spent.places) {
             let sum: f64 = energies.iter().sum();
-            if *energies == spent::Energies::default() {
+            if *energies == dissipation::Energies::default() {
                 continue;
             }
             let name = place.name(&self.spec.between);
@@ -461,7 +461,7 @@ impl Observer for ThirdBody {
                 tables::clusters(&self.clusters, self.inertia_scaling, self.dimension),
             ),
         ];
-        let figure = figure::Figure {
+        let figure = figure::LayerFigure {
             whole: &whole,
             slices: &slices,
             between: &self.spec.between,

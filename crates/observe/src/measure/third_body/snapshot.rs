@@ -1,7 +1,7 @@
 //! State of the layer at an instant: its cells, and its values for a row of the statistics.
 
 use super::cells::Cell;
-use super::chains::{Pair, chains};
+use super::chains::{GrainPair, chains};
 use super::clusters::{Clusters, clusters};
 use super::cut;
 use super::gap::{Faces, Gap};
@@ -244,7 +244,7 @@ fn chain_numbers(run: &dyn RunView, gap: &Gap, along: usize, grain: &[bool]) -> 
 }
 
 /// Returns the stresses of the grains, and the pairs of grains that press on each other.
-fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<GrainPair>) {
     let bodies = run.bodies();
     let of_ball = |radius: f64| ball_volume(run.dimension(), radius);
     let mut volume = vec![0.0; bodies.len()];
@@ -272,7 +272,7 @@ fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
         }
     });
     pressed.sort_by_key(|p| p.0);
-    let mut pairs: Vec<Pair> = Vec::with_capacity(pressed.len());
+    let mut pairs: Vec<GrainPair> = Vec::with_capacity(pressed.len());
     for (ends, force) in pressed {
         let ends = ends.map(|b| b as usize);
         if let Some(last) = pairs.last_mut().filter(|p| p.ends == ends) {
@@ -281,7 +281,7 @@ fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
         }
         let [a, b] = ends.map(|b| Vector3::from(bodies.position.at(b)));
         let branch = run.periodic().shortest(b - a);
-        pairs.push(Pair {
+        pairs.push(GrainPair {
             ends,
             branch,
             force,

@@ -3,7 +3,7 @@
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
-use super::spent::{Dissipation, Place};
+use super::dissipation::{Dissipation, PairKind};
 use crate::quantity::unit::{ENERGY, MASS};
 
 /// Columns of the profiles, in the order of [`row`].
@@ -118,7 +118,7 @@ pub(super) fn energies(
         );
         lines.push(line);
     };
-    for (place, energies) in Place::ALL.iter().zip(&spent.places) {
+    for (place, energies) in PairKind::ALL.iter().zip(&spent.places) {
         add(place.name(between), energies);
     }
     for (k, energies) in spent.bins.iter().enumerate() {

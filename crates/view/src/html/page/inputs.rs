@@ -2,7 +2,7 @@
 
 use super::{escape, table};
 use crate::html::folder::RunFolder;
-use fretwork_scene::inputs::{From, Input, of};
+use fretwork_scene::inputs::{Input, InputSource, of};
 use std::collections::BTreeMap;
 
 /// Table of all inputs of a run, with a search field.
@@ -19,9 +19,9 @@ pub(crate) fn html(run: &RunFolder) -> String {
     };
     let row = |i: &Input| {
         let (class, from) = match i.from {
-            From::Given => ("given", "given"),
-            From::Default => ("default", "default"),
-            From::NotSet => ("unset", "not set"),
+            InputSource::Given => ("given", "given"),
+            InputSource::Default => ("default", "default"),
+            InputSource::NotSet => ("unset", "not set"),
         };
         format!(
             "<tr class=\"{class}\"><th scope=\"row\"><code>{}</code></th><td>{}</td><td>{}</td><td>{from}</td></tr>\n",
@@ -31,7 +31,10 @@ pub(crate) fn html(run: &RunFolder) -> String {
         )
     };
     let rows: String = inputs.iter().map(row).collect();
-    let given = inputs.iter().filter(|i| i.from == From::Given).count();
+    let given = inputs
+        .iter()
+        .filter(|i| i.from == InputSource::Given)
+        .count();
     format!(
         "<p class=\"lead\">{given} of {} keys are given by the case, the others are defaults or not set. Any of them changes with \
          <code>--set KEY=VALUE</code>. Units are SI; texts and pure numbers have none.</p>\n\

@@ -5,7 +5,7 @@ use crate::png::canvas::{Canvas, DrawError, INK, Rgb, SOFT_INK, TEXT, WHITE};
 use crate::png::font::{TextStyle, text_width};
 use crate::png::scene::paint::{ColourScale, Coloured, colour_bar};
 use crate::png::scene::zone::zone_entry;
-use fretwork_observe::chart::{Colours, Field};
+use fretwork_observe::chart::{Colours, FieldMap};
 use fretwork_observe::picture::{OPEN, Paint};
 
 /// Length of the longest arrow, and least distance between arrows, relative to the side of a plot.
@@ -75,7 +75,7 @@ impl Layout<'_> {
 }
 
 /// Colour of a cell, for values up to `top`.
-fn colour(field: &Field, cell: usize, top: f64) -> Rgb {
+fn colour(field: &FieldMap, cell: usize, top: f64) -> Rgb {
     let (r, g, b) = match &field.colours {
         Colours::Classes { classes, of } => classes[of[cell]].1,
         Colours::Values { values, .. } if values[cell].is_nan() => OPEN,
@@ -120,7 +120,7 @@ mod tests {
         let mut chart = Chart::new("Stick and slip, flat", x, y);
         chart.subtitle = Some("case".to_owned());
         (chart.x_range, chart.y_range) = (Some((0.0, 2e-3)), Some((0.0, 2e-3)));
-        chart.field = Some(Field {
+        chart.field = Some(FieldMap {
             cells: vec![square(0.0), square(1e-3)],
             colours,
             arrows: vec![([1.5e-3, 1e-3], [1.0, 0.0])],

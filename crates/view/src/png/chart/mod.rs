@@ -83,7 +83,7 @@ fn common(charts: &mut [Chart]) -> String {
 }
 
 /// Polylines in pixels of the plot; a gap starts a new polyline.
-type Runs = Vec<Vec<[f32; 2]>>;
+type Polylines = Vec<Vec<[f32; 2]>>;
 
 /// Rectangle in pixels of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -216,7 +216,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Error bars of a series from low to high, in pixels of the plot.
-    fn bars(&self, series: &Series) -> Runs {
+    fn bars(&self, series: &Series) -> Polylines {
         let with = series.points.iter().zip(&series.intervals);
         let bars =
             with.map(|(p, (low, high))| vec![self.place((p.0, *low)), self.place((p.0, *high))]);
@@ -224,7 +224,7 @@ impl<'a> Layout<'a> {
             .collect()
     }
 
-    fn all_bars(&self) -> Runs {
+    fn all_bars(&self) -> Polylines {
         let all = self.chart.series.iter();
         all.flat_map(|s| self.bars(s)).collect()
     }
@@ -253,9 +253,9 @@ impl<'a> Layout<'a> {
     }
 
     /// All series in pixels of the plot, thinned to the pixel resolution.
-    fn curves(&self) -> Vec<Runs> {
+    fn curves(&self) -> Vec<Polylines> {
         let curve = |s: &Series| {
-            let mut runs: Runs = vec![Vec::new()];
+            let mut runs: Polylines = vec![Vec::new()];
             for (raw, p) in s.points.iter().map(|raw| (raw, self.place(*raw))) {
                 let finite = [raw.0, raw.1, f64::from(p[0]), f64::from(p[1])]
                     .iter()

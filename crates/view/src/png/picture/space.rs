@@ -131,7 +131,7 @@ fn solid_side(run: &dyn RunView, surface: &SurfaceView) -> Option<Side<3>> {
 /// Returns the box to which planes and drums are clipped: it surrounds grains and bounded surfaces,
 /// and is extended to nearby planes.
 fn room(run: &dyn RunView, surfaces: &[(usize, SurfaceView)]) -> (Point, Point) {
-    let mut bound = Bound::default();
+    let mut bound = Bounds::default();
     let wrapped = |p: Point| Point::from(run.periodic().wrapped(Vector3::from(p)));
     for ball in run.balls() {
         bound.take(&wrapped(ball.centre), ball.radius);
@@ -181,12 +181,12 @@ fn room(run: &dyn RunView, surfaces: &[(usize, SurfaceView)]) -> (Point, Point) 
     (bound.low, bound.high)
 }
 
-struct Bound {
+struct Bounds {
     low: Point,
     high: Point,
 }
 
-impl Default for Bound {
+impl Default for Bounds {
     fn default() -> Self {
         Self {
             low: [f64::INFINITY; 3],
@@ -195,7 +195,7 @@ impl Default for Bound {
     }
 }
 
-impl Bound {
+impl Bounds {
     fn take(&mut self, p: &Point, radius: f64) {
         if p.iter().all(|x| x.is_finite()) {
             for (k, x) in p.iter().enumerate() {

@@ -15,7 +15,7 @@ pub(crate) struct Raster {
 
 /// How a polygon is blended.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Cover {
+pub(crate) enum Blend {
     /// Hides what is behind it.
     Opaque,
     /// Tints what is behind it by this fraction, and leaves the depth unchanged.
@@ -110,7 +110,7 @@ impl Raster {
     }
 
     /// Fills a convex polygon.
-    pub fn polygon(&mut self, corners: &[Corner], colour: Rgb, cover: Cover) {
+    pub fn polygon(&mut self, corners: &[Corner], colour: Rgb, cover: Blend) {
         let (mut pixels, mut depths) = (
             std::mem::take(&mut self.colour),
             std::mem::take(&mut self.depth),
@@ -120,8 +120,8 @@ impl Raster {
                 return;
             }
             match cover {
-                Cover::Opaque => (pixels[at], depths[at]) = (colour, depth),
-                Cover::Veil(share) => pixels[at] = tinted(pixels[at], colour, share),
+                Blend::Opaque => (pixels[at], depths[at]) = (colour, depth),
+                Blend::Veil(share) => pixels[at] = tinted(pixels[at], colour, share),
             }
         });
         (self.colour, self.depth) = (pixels, depths);
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_nearer_hides_the_farther_in_any_order() {
-        let far = |r: &mut Raster| r.polygon(&square(0.0), RED, Cover::Opaque);
+        let far = |r: &mut Raster| r.polygon(&square(0.0), RED, Blend::Opaque);
         let near = |r: &mut Raster| r.sphere([10.0, 10.0, 5.0], 6.0, BLUE);
         let [mut one, mut other] = [(); 2].map(|()| Raster::new(20, 20, [255; 3]));
         far(&mut one);
@@ -279,7 +279,7 @@ mod tests {
         assert!((40..=60).contains(&hidden), "{hidden}");
         assert_eq!(r.hidden(&square(-20.0)).1, 0);
         let before = r.colour[10 * 20 + 10];
-        r.polygon(&square(20.0), BLUE, Cover::Veil(0.25));
+        r.polygon(&square(20.0), BLUE, Blend::Veil(0.25));
         let after = r.colour[10 * 20 + 10];
         assert!(after[0] < before[0] && after[0] > before[0] / 2 && after[2] >= 50);
         // A slanted polygon has the depth of its plane at each pixel.
@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn lines_are_hidden_by_what_is_nearer() {
         let mut r = Raster::new(40, 20, [255; 3]);
-        r.polygon(&square(50.0), RED, Cover::Opaque);
+        r.polygon(&square(50.0), RED, Blend::Opaque);
         r.line([0.0, 10.0, 0.0], [40.0, 10.0, 0.0], 2.0, 3.0, BLUE, 1.0);
         assert_eq!(r.colour[10 * 40 + 10], RED);
         assert_eq!(r.colour[10 * 40 + 30], BLUE);

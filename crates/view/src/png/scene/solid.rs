@@ -2,7 +2,7 @@
 //! are behind them.
 
 use super::paint::Coloured;
-use super::raster::{Corner, Cover, Raster};
+use super::raster::{Blend, Corner, Raster};
 use super::view::View;
 use crate::png::canvas::{Canvas, Rgb, WHITE, mix};
 use fretwork_observe::picture::Paint;
@@ -57,7 +57,7 @@ const VEIL: f32 = 0.07;
 
 /// Map from metres to pixels of a field.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PixelMap {
     /// Metres at the left and at the top.
     pub left: f64,
     pub top: f64,
@@ -65,7 +65,7 @@ pub(crate) struct Place {
     pub scale: f64,
 }
 
-impl Place {
+impl PixelMap {
     pub fn point(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         let (x, y) = ((x - self.left) * self.scale, (self.top - y) * self.scale);
         [x as f32, y as f32]
@@ -80,7 +80,7 @@ struct SmoothPart {
 
 /// Visible parts of an object: groups of faces towards the viewer, faces away from it, and edges.
 #[derive(Default)]
-struct Seen {
+struct VisibleParts {
     groups: Vec<SmoothPart>,
     away: Vec<Vec<Corner>>,
     edges: Vec<[Corner; 2]>,
@@ -99,7 +99,7 @@ impl SolidScene {
     }
 
     /// Paints the field; `u` is the scale of the picture.
-    pub(crate) fn paint(&self, field: &mut Canvas, place: &Place, u: f32) {
+    pub(crate) fn paint(&self, field: &mut Canvas, place: &PixelMap, u: f32) {
         let (width, height) = (
             field.pixmap.width() as usize,
             field.pixmap.height() as usize,
@@ -165,7 +165,7 @@ impl SolidScene {
         let nearness = |f: &Vec<Corner>| f.iter().map(|c| c[2]).sum::<f64>() / f.len() as f64;
         veils.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
         for face in &veils {
-            raster.polygon(face, WALL_EDGE, Cover::Veil(VEIL));
+            raster.polygon(face, WALL_EDGE, Blend::Veil(VEIL));
         }
         for [a, b] in edges {
             raster.line(a, b, 1.8 * line, 12.0, WALL_EDGE, 0.85);
@@ -198,8 +198,8 @@ impl SolidScene {
     }
 
     /// Visible parts of an object.
-    fn seen(&self, faces: &Faces, pixel: &impl Fn([f64; 3]) -> Corner) -> Seen {
-        let mut seen = Seen::default();
+    fn seen(&self, faces: &Faces, pixel: &impl Fn([f64; 3]) -> Corner) -> VisibleParts {
+        let mut seen = VisibleParts::default();
         let normals: Vec<[f64; 3]> = faces.polygons.iter().map(|p| normal(p)).collect();
         let lights: Vec<(f64, f64)> = normals.iter().map(|n| self.light(n)).collect();
         let (edges, parts) = joined(&faces.polygons, &normals);
@@ -252,7 +252,7 @@ fn solid(raster: &mut Raster, group: &SmoothPart, base: Rgb) {
     for (face, light) in group.faces.iter().zip(&group.lights) {
         let by = 0.7 + 0.36 * light;
         let colour = base.map(|c| (f64::from(c) * by).min(255.0) as u8);
-        raster.polygon(face, colour, Cover::Opaque);
+        raster.polygon(face, colour, Blend::Opaque);
     }
 }
 
@@ -367,7 +367,7 @@ mod tests {
     /// The field of 100 by 100 pixels over four metres about the origin.
     fn painted(scene: &SolidScene) -> Canvas {
         let mut field = Canvas::new(100, 100).unwrap();
-        let place = Place {
+        let place = PixelMap {
             left: -2.0,
             top: 2.0,
             scale: 25.0,
