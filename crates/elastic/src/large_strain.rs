@@ -208,7 +208,28 @@ impl<S: Space> LargeStrain<S> {
 
     /// Returns the tangent of a step, including that of damping over h theta, in the pattern of the
     /// stiffness. With `positive` the negative part of each element is left out.
-    pub fn tangent(&self, step: &Stretch, stiffness: &Sparse, positive: bool) -> Sparse {
+    pub fn tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
+        self.sum_of_elements(step, stiffness, |_, _| {})
+    }
+
+    /// The tangent without what is negative of each element.
+    pub fn positive_tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
+        self.sum_of_elements(step, stiffness, |own, side| {
+            let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
+            modes.eigenvalues.apply(|l| *l = l.max(0.0));
+            // Symmetric: rows are columns.
+            own.copy_from_slice(modes.recompose().as_slice());
+        })
+    }
+
+    /// The sum of the tangents of the elements, each changed by `edit`, which is given its numbers
+    /// and that of its rows.
+    fn sum_of_elements(
+        &self,
+        step: &Stretch,
+        stiffness: &Sparse,
+        edit: impl Fn(&mut [f64], usize),
+    ) -> Sparse {
         let mut values = vec![0.0; stiffness.values().len()];
         let side = (S::D + 1) * S::D;
         for (e, simplex) in self.simplices.iter().enumerate() {
@@ -217,12 +238,8 @@ impl<S: Space> LargeStrain<S> {
             };
             let mut own = self.element_tangent(simplex, &at, step);
             let own = &mut own[..side * side];
-            if positive {
-                let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
-                modes.eigenvalues.apply(|l| *l = l.max(0.0));
                 // The matrix is symmetric: rows are columns.
-                own.copy_from_slice(modes.recompose().as_slice());
-            }
+            edit(own, side);
             let slots = &self.slots[e * side * side..(e + 1) * side * side];
             for (value, slot) in own.iter().zip(slots) {
                 values[*slot as usize] += value;

@@ -161,10 +161,10 @@ impl<S: Space> ElasticBody<S> {
             let pattern = large.pattern.get_or_init(|| Pattern::of(&a));
             pattern.as_ref()?.factor(&a)
         };
-        let mut tangent = large.tangent(&stretch, &model.stiffness, false);
+        let mut tangent = large.tangent(&stretch, &model.stiffness);
         let mut formed = factor(&tangent);
         if formed.is_none() {
-            tangent = large.tangent(&stretch, &model.stiffness, true);
+            tangent = large.positive_tangent(&stretch, &model.stiffness);
             formed = factor(&tangent);
         }
         self.formed = Some(Arc::new(model.formed([h, theta], formed)));

@@ -111,7 +111,7 @@ pub fn certify_in_child(
             return Err(untested(why));
         }
         let text = format!("{why}, while `{begun}` was tested; nothing after it was");
-        lines.push(CheckResult::judged(RETURNS, false, f64::INFINITY, text));
+        lines.push(CheckResult::failed(RETURNS, f64::INFINITY, text));
     }
     Ok(Certificate::of(plugin, lines))
 }

@@ -76,8 +76,16 @@ impl CheckResult {
         }
     }
 
-    fn failed(check: &str, e: &LawError) -> Self {
-        Self::judged(check, false, f64::INFINITY, e.to_string())
+    fn passed(check: &str, number: f64, text: impl Into<String>) -> Self {
+        Self::judged(check, true, number, text)
+    }
+
+    fn failed(check: &str, number: f64, text: impl Into<String>) -> Self {
+        Self::judged(check, false, number, text)
+    }
+
+    fn error(check: &str, e: &LawError) -> Self {
+        Self::failed(check, f64::INFINITY, e.to_string())
     }
 }
 
@@ -109,7 +117,7 @@ impl CertificateWriter<'_> {
     fn run(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
         for (name, check) in checks {
             (self.report)(CertifyProgress::Begins(name));
-            let result = check(rig).unwrap_or_else(|e| CheckResult::failed(name, &e));
+            let result = check(rig).unwrap_or_else(|e| CheckResult::error(name, &e));
             self.write(result);
         }
     }
@@ -214,7 +222,7 @@ fn certify_with_progress(
         writer.partner = rig.partner().to_owned();
         (writer.report)(CertifyProgress::Begins(RUNS));
         match (rig.find_scale(), plugin.kind.spec().certificate.checks) {
-            (Err(e), _) => writer.write(CheckResult::failed(RUNS, &e)),
+            (Err(e), _) => writer.write(CheckResult::error(RUNS, &e)),
             (Ok(()), CheckSet::Bond) if rig.opens() => writer.run(&mut rig, &bond::CHECKS),
             (Ok(()), checks) => writer.run(&mut rig, surface::checks(checks)),
         }

@@ -58,7 +58,7 @@ fn columns(rig: &mut Rig) -> Result<CheckResult, LawError> {
             return Err(e);
         }
     }
-    Ok(CheckResult::judged("columns", true, 0.0, KEPT))
+    Ok(CheckResult::passed("columns", 0.0, KEPT))
 }
 
 /// Checks that the law has left rounding and subnormal numbers of its caller as they are, in all
@@ -67,11 +67,11 @@ fn floating_point(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const CHECK: &str = "floating point";
     let kept = "leaves rounding and subnormal numbers of its caller as they are";
     Ok(match rig.tested().plugin.disturbs_floating_point() {
-        None => CheckResult::judged(CHECK, true, 0.0, kept),
+        None => CheckResult::passed(CHECK, 0.0, kept),
         Some(when) => {
             let text =
                 format!("it changes rounding or flushes subnormal numbers for its caller {when}");
-            CheckResult::judged(CHECK, false, 1.0, text)
+            CheckResult::failed(CHECK, 1.0, text)
         }
     })
 }
@@ -81,9 +81,8 @@ fn range(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let walks: Vec<Vec<BenchMotion>> = (0..17).map(|k| rig.walk(80 + k, 200, 0.3)).collect();
     match run_batch(&mut rig.strict(), &walks, 17, 0) {
         Err(e @ LawError::OutOfRange { .. }) => Err(e),
-        _ => Ok(CheckResult::judged(
+        _ => Ok(CheckResult::passed(
             "range",
-            true,
             0.0,
             "values out of range, such as a negative friction or stiffness, or a damage above one",
         )),

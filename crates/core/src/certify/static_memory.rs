@@ -29,7 +29,7 @@ pub fn static_memory(rig: &mut Rig) -> Result<CheckResult, LawError> {
         Err(UninspectableMemory::TooLarge(bytes)) => {
             let text = "bytes of writable static memory in its library, too many to be compared: a law must not keep data between calls; \
                         make tables `const` and work arrays local to the call";
-            return Ok(CheckResult::judged(CHECK, false, bytes as f64, text));
+            return Ok(CheckResult::failed(CHECK, bytes as f64, text));
         }
         Err(UninspectableMemory::System) => {
             return Ok(CheckResult::skip(

@@ -68,8 +68,8 @@ pub fn solve<S: Space>(
         options,
     };
     let mut report = match options.method {
-        Method::Nlgs => context.sweep(problem, false, options.max_iterations),
-        Method::Anderson => context.sweep(problem, true, options.max_iterations),
+        Method::Nlgs => context.sweep(problem, options.max_iterations),
+        Method::Anderson => context.sweep_accelerated(problem, options.max_iterations),
         Method::Auto => context.auto(problem, auto_state),
         method => context.solve_by(problem, method),
     };
@@ -177,7 +177,7 @@ impl<S: Space> SolveContext<'_, S> {
         let moments = vec![Some(S::Spin::zero()); self.moments.len()];
         problem.adopt(&impulses, &moments);
         let mut report = *so_far;
-        report.add(&self.sweep(problem, false, SWEEPS));
+        report.add(&self.sweep(problem, SWEEPS));
         Report {
             converged: false,
             unbounded: true,
@@ -219,13 +219,13 @@ impl<S: Space> SolveContext<'_, S> {
             large.then_some(SolvePath::Large)
         };
         if let Some(chosen) = without_newton {
-            let mut report = self.sweep(problem, true, options.max_iterations);
+            let mut report = self.sweep_accelerated(problem, options.max_iterations);
             if report.iterations > sweeps {
                 report.chosen = chosen;
             }
             return report;
         }
-        let mut report = self.sweep(problem, true, options.max_iterations.min(sweeps));
+        let mut report = self.sweep_accelerated(problem, options.max_iterations.min(sweeps));
         let left = options.max_iterations - report.iterations;
         if report.converged || report.unbounded || left == 0 {
             return report;
@@ -234,7 +234,7 @@ impl<S: Space> SolveContext<'_, S> {
         if hyperstaticity > 1.0 {
             // Leaves iterations for another attempt of Newton.
             let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
-            report.add(&self.sweep(problem, true, more));
+            report.add(&self.sweep_accelerated(problem, more));
             report.chosen = SolvePath::Longer { hyperstaticity };
         }
         let features = Features {
@@ -319,7 +319,7 @@ impl<S: Space> SolveContext<'_, S> {
             let left = options.max_iterations.saturating_sub(report.iterations);
             if !ended(report) && left > 0 {
                 let more = sweeps.saturating_mul(HYPERSTATIC << round.min(16));
-                report.add(&self.sweep(problem, true, left.min(more)));
+                report.add(&self.sweep_accelerated(problem, left.min(more)));
             }
             round += 1;
         }

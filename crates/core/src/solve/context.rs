@@ -78,18 +78,23 @@ pub(super) struct SolveContext<'a, S: Space> {
 
 impl<S: Space> SolveContext<'_, S> {
     /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
-    pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
+    pub(super) fn sweep(&self, problem: &mut Problem<S>, most: u32) -> Report {
+        self.iterate(problem, Method::Nlgs, most)
+    }
+
+    /// Runs the iteration of [`Self::sweep`] with Anderson acceleration.
+    pub(super) fn sweep_accelerated(&self, problem: &mut Problem<S>, most: u32) -> Report {
+        self.iterate(problem, Method::Anderson, most)
+    }
+
+    fn iterate(&self, problem: &mut Problem<S>, method: Method, most: u32) -> Report {
         let options = SolverOptions {
-            accelerated,
+            accelerated: method == Method::Anderson,
             max_iterations: most,
             ..*self.options
         };
         Report {
-            used: if accelerated {
-                Method::Anderson
-            } else {
-                Method::Nlgs
-            },
+            used: method,
             ..nlgs::solve(problem, &options)
         }
     }

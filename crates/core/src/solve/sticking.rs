@@ -486,7 +486,7 @@ impl<S: Space> SolveContext<'_, S> {
             before - energy > by * work.abs()
         };
         if !other.converged && is_lower(alone, LOWER) {
-            other.add(&self.sweep(alone, true, most));
+            other.add(&self.sweep_accelerated(alone, most));
         }
         let does = self.statuses(alone, least);
         let differs = |(a, b): (&ContactStatus, &ContactStatus)| {
@@ -528,7 +528,7 @@ impl<S: Space> SolveContext<'_, S> {
         problem.adopt_some(&impulses, &moments);
         let mut whole = nlgs::check_convergence(problem, self.options);
         if !whole.converged {
-            whole.add(&self.sweep(problem, true, ITERATIONS));
+            whole.add(&self.sweep_accelerated(problem, ITERATIONS));
         }
         if !whole.converged {
             problem.restore(&saved);
