@@ -9,17 +9,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Smallest work for which other threads are used (ns): many times the cost of waking them, since
 /// other programs may run on their cores.
-const LEAST_WORK: u64 = 170_000;
+const MIN_WORK: u64 = 170_000;
 
 /// Smallest number of items of a task in [`fill`].
-const LEAST_ITEMS: usize = 256;
+const MIN_ITEMS: usize = 256;
 
-static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
+static LEAST: AtomicU64 = AtomicU64::new(MIN_WORK);
 
 /// Sets the least work (ns) that is divided, for the whole process; `None` restores the default.
 /// Results do not depend on it: tests set zero, so that small scenes run on several threads too.
 pub fn divide_loops_from(nanoseconds: Option<u64>) {
-    LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
+    LEAST.store(nanoseconds.unwrap_or(MIN_WORK), Ordering::Relaxed);
 }
 
 /// Returns the size of the chunks of a loop whose results do not depend on it; it is reduced if all
@@ -115,7 +115,7 @@ pub fn fill<T: Send>(
     empty(list, count);
     let out = SharedSlots(list.as_mut_ptr());
     let tasks = if divide {
-        count.div_ceil(LEAST_ITEMS).max(1)
+        count.div_ceil(MIN_ITEMS).max(1)
     } else {
         1
     };
@@ -191,7 +191,7 @@ pub unsafe fn fill_places<T: Send>(
     // SAFETY: places are below the capacity, and each is written once.
     let one = |k: usize| unsafe { spread.put(places[k], of(k)) };
     if divide {
-        let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
+        let items = (0..count).into_par_iter().with_min_len(MIN_ITEMS);
         items.for_each(one);
     } else {
         (0..count).for_each(one);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
 /// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
 /// "Quantification of fretting damage", Wear 200 (1996) 186.
-pub const TRANSITION: f64 = 0.2;
+pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 
 /// How a contact slides.
 ///
@@ -39,7 +39,7 @@ pub enum SlipRegime {
 impl SlipRegime {
     /// Returns the regime of one cycle by its energy ratio.
     pub fn of(energy_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION {
+        if energy_ratio < TRANSITION_ENERGY_RATIO {
             Self::Partial
         } else {
             Self::Gross

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 /// Colour of sticking (red, green, blue). It differs in lightness from that of slip, so that the
 /// two can be distinguished with any deficiency of colour vision.
-pub const STICKS: (u8, u8, u8) = (0, 90, 170);
+pub const STICK_COLOUR: (u8, u8, u8) = (0, 90, 170);
 /// Colour of slip (red, green, blue).
-pub const SLIPS: (u8, u8, u8) = (250, 225, 40);
+pub const SLIP_COLOUR: (u8, u8, u8) = (250, 225, 40);
 /// Colour of points without force (red, green, blue).
-pub const OPEN: (u8, u8, u8) = (231, 232, 235);
+pub const OPEN_COLOUR: (u8, u8, u8) = (231, 232, 235);
 
 /// Meaning of the colour of a grain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -12,7 +12,7 @@ use fretwork_abi::{
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Maximum number of internal variables of a law.
-pub const MOST_VARIABLES: usize = 16;
+pub const MAX_VARIABLES: usize = 16;
 
 /// Writes an error message and the index of the contact that caused it into the host's buffer.
 fn write_message(message: *mut FwMessage, contact: i64, text: &str) {
@@ -196,7 +196,7 @@ fn over<L: Law, const COMMIT: bool>(
     message: *mut FwMessage,
     each: impl Fn(&L, &FwBatch, usize, &Site, &mut [f64]) -> Option<&'static str>,
 ) -> i32 {
-    const { assert!(L::VARIABLES.len() <= MOST_VARIABLES) };
+    const { assert!(L::VARIABLES.len() <= MAX_VARIABLES) };
     guarded(message, |contact| {
         // SAFETY: the host passes a valid batch.
         let Some(batch) = (unsafe { known(raw) }) else {
@@ -218,7 +218,7 @@ fn over<L: Law, const COMMIT: bool>(
             return STATUS_ERROR;
         }
         let law = L::read(values);
-        let mut state = [0.0; MOST_VARIABLES];
+        let mut state = [0.0; MAX_VARIABLES];
         let state = &mut state[..L::VARIABLES.len()];
         for k in 0..batch.n {
             contact.set(k as i64);

@@ -69,7 +69,7 @@ pub trait Law: Parameters {
     const VERSION: &'static str = Self::PACKAGE_VERSION;
     /// Flags of the law, `FLAG_*` of the ABI.
     const FLAGS: u64 = 0;
-    /// Internal variables, at most [`crate::ffi::MOST_VARIABLES`].
+    /// Internal variables, at most [`crate::ffi::MAX_VARIABLES`].
     const VARIABLES: &'static [Variable] = &[];
 
     /// The fracture energy (J/m^2) that a bond dissipates under slow monotonic loading at this

@@ -8,7 +8,7 @@ use fretwork_core::view::SystemView;
 
 /// Number of operations of a factorisation above which it is not timed, since it would take more
 /// than a few tenths of a second.
-const MOST_TIMED: f64 = 5e8;
+const MAX_TIMED: f64 = 5e8;
 
 /// The lines of all deformable bodies: label and text.
 pub(super) fn lines(s: &dyn RunView, timed: bool) -> Vec<(&'static str, String)> {
@@ -32,7 +32,7 @@ pub(super) fn lines(s: &dyn RunView, timed: bool) -> Vec<(&'static str, String)>
         out.push(shape(&*system));
         let Some(size) = system.size() else { continue };
         out.push(("", memory(s.dimension(), &*system, &size)));
-        let times = (timed && size.operations[0] < MOST_TIMED).then(|| clock(&*system));
+        let times = (timed && size.operations[0] < MAX_TIMED).then(|| clock(&*system));
         out.push(("", cost(&size, times)));
     }
     out

@@ -2,7 +2,7 @@
 
 use super::clear;
 use super::{Recorder, RunError, unwritable};
-use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
+use crate::record::checkpoint::{Kind, ResumeError, ResumePoint, SUMMARY_FILE};
 use crate::record::encoding::{EncodingError, decode, encode};
 use crate::step::ProcessState;
 use fretwork_observe::accuracy::AccuracyControl;
@@ -68,7 +68,7 @@ impl Recorder<'_> {
         self.write_frame(kind, state)?;
         // The marker of an earlier finished run and its page are removed: from now on this folder
         // contains an unfinished run.
-        for path in [LAST, REPORT].map(|name| self.out.join(name)) {
+        for path in [SUMMARY_FILE, REPORT].map(|name| self.out.join(name)) {
             match std::fs::remove_file(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
                     return Err(unwritable(&path, &e));

@@ -5,7 +5,7 @@
 //! stored where the watch finds them, with what is known at that time, and they are taken back
 //! after the step. Whoever started the watch decides how the program ends.
 
-use super::end::{self, LAST};
+use super::end::{self, SUMMARY_FILE};
 use super::{Recorder, RunError};
 use crate::laws::watch::{self, RescueGuard};
 use crate::record::results::Results;
@@ -70,7 +70,7 @@ impl UnsavedOutputs {
         let text = serde_json::to_string_pretty(summary).unwrap_or_default();
         let table = self.table.flush().is_ok();
         let results = self.results.finish(out).is_ok();
-        end::write_atomic(&out.join(LAST), &(text + "\n")).is_ok() && table && results
+        end::write_atomic(&out.join(SUMMARY_FILE), &(text + "\n")).is_ok() && table && results
     }
 }
 

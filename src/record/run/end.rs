@@ -5,7 +5,7 @@ use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::Kind;
-pub(super) use crate::record::checkpoint::LAST;
+pub(super) use crate::record::checkpoint::SUMMARY_FILE;
 use crate::record::output::Output;
 use crate::record::quantity::unit::ONE;
 use crate::record::quantity::{Findings, Role, Topic};
@@ -47,7 +47,7 @@ impl Recorder<'_> {
         }
         self.lock.check_still_owned()?;
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
-        write_atomic(&self.out.join(LAST), &(text + "\n"))?;
+        write_atomic(&self.out.join(SUMMARY_FILE), &(text + "\n"))?;
         files
     }
 

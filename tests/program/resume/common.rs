@@ -2,7 +2,7 @@
 
 use fretwork::record::checkpoint::{Frame, Kind};
 use fretwork::record::results::PreviousResults;
-use fretwork::record::summary::FROM_THE_CLOCK;
+use fretwork::record::summary::NOT_REPRODUCIBLE;
 use hdf5::H5File;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -206,7 +206,7 @@ fn datasets(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<u8>)> {
 fn summary(folder: &Path) -> Value {
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
     let mut value: Value = serde_json::from_str(&text).unwrap();
-    for pointer in FROM_THE_CLOCK {
+    for pointer in NOT_REPRODUCIBLE {
         if let Some(found) = value.pointer_mut(pointer) {
             *found = Value::Null;
         }

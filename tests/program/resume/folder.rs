@@ -257,7 +257,7 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     let excepted = paragraph.split("are equal, except for").nth(1).unwrap();
     let excepted = excepted.split('.').next().unwrap();
     let named: Vec<&str> = excepted.split('`').skip(1).step_by(2).collect();
-    let listed: Vec<&str> = fretwork::record::summary::FROM_THE_CLOCK
+    let listed: Vec<&str> = fretwork::record::summary::NOT_REPRODUCIBLE
         .iter()
         .filter_map(|pointer| pointer.rsplit('/').next())
         .collect();

@@ -4,7 +4,7 @@
 use super::rig::{PRESSURE, RADIUS, Rig};
 use super::{Check, CheckResult, surface};
 use crate::laws::LawError;
-use crate::laws::bench::{BenchMotion, ROOM};
+use crate::laws::bench::{BenchMotion, ROOM_TEMPERATURE};
 
 /// The checks.
 pub const CHECKS: [(&str, Check); 4] = [
@@ -89,7 +89,7 @@ fn on_path(path: &str, x: f64) -> (BenchMotion, f64) {
             motion.pressure = PRESSURE * (1.0 - 2.0 * x).max(0.0);
         }
         "damage" => damage = x,
-        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM],
+        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM_TEMPERATURE],
         _ => motion.opening[1] = 1e-3 * x,
     }
     (motion, damage)

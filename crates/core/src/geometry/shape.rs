@@ -24,7 +24,7 @@ pub struct Ball<S: Space> {
 }
 
 /// Share of its area that a vertex has at least in a contact: sizes are positive.
-const LEAST_SHARE: f64 = 1e-6;
+const MIN_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
     /// Returns half of the thickness (m): the radius, or for a point of a surface half of its
@@ -59,7 +59,7 @@ impl<S: Space> Ball<S> {
         if self.area == S::Vector::zero() {
             return self.contact_radius(lengths);
         }
-        let least = LEAST_SHARE * self.area.norm();
+        let least = MIN_SHARE * self.area.norm();
         point_radius(S::D, least.max(-self.area.dot(normal)))
     }
 }

@@ -47,7 +47,7 @@ pub struct BenchMotion {
 }
 
 /// Temperature of bodies for which none is given (K): 20 degrees Celsius.
-pub const ROOM: f64 = 293.15;
+pub const ROOM_TEMPERATURE: f64 = 293.15;
 /// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair on the bench:
 /// steel.
 pub const STEEL: [f64; 2] = [50.0, 2e-7];
@@ -60,7 +60,7 @@ impl Default for BenchMotion {
             rotation: [0.0; 3],
             gap: 0.0,
             pressure: 0.0,
-            temperatures: [ROOM; 2],
+            temperatures: [ROOM_TEMPERATURE; 2],
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::function::Call;
 use super::kind::Kind;
-use super::names::{VARIABLE, name_is_valid};
+use super::names::{PATH_VARIABLE, name_is_valid};
 use super::outputs::Range;
 use std::path::PathBuf;
 
@@ -243,7 +243,7 @@ fn advice(name: &str, nearest: Option<&str>) -> String {
         }
         None => format!(
             "name the folder of its library with --plugin-path or in {}",
-            VARIABLE
+            PATH_VARIABLE
         ),
     }
 }

@@ -4,7 +4,7 @@ use super::built_in::BuiltInLaws;
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
-pub use super::names::{VARIABLE, name_is_valid};
+pub use super::names::{PATH_VARIABLE, name_is_valid};
 use super::{loading, trust};
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,7 @@ impl SearchPath {
         let mut folders = beside_program();
         let beside = folders.len();
         folders.extend_from_slice(extra);
-        if let Some(value) = std::env::var_os(VARIABLE) {
+        if let Some(value) = std::env::var_os(PATH_VARIABLE) {
             folders.extend(std::env::split_paths(&value).filter(|p| !p.as_os_str().is_empty()));
         }
         Self {

@@ -3,7 +3,7 @@
 use super::DesignError;
 
 /// Largest number of points of a grid.
-pub const MOST_POINTS: usize = 1_000_000;
+pub const MAX_POINTS: usize = 1_000_000;
 
 /// Returns all combinations of the levels of factors, of which factor i has `levels[i]`: one row of
 /// level numbers per combination. The first factor varies slowest, as in nested loops in the order
@@ -14,10 +14,10 @@ pub const MOST_POINTS: usize = 1_000_000;
 /// There are more than [`MOST_POINTS`] combinations.
 pub fn full_factorial(levels: &[usize]) -> Result<Vec<Vec<usize>>, DesignError> {
     let points: f64 = levels.iter().map(|l| *l as f64).product();
-    if points > MOST_POINTS as f64 {
+    if points > MAX_POINTS as f64 {
         return Err(DesignError::Grid {
             points,
-            most: MOST_POINTS,
+            most: MAX_POINTS,
         });
     }
     let mut rows = vec![Vec::with_capacity(levels.len())];

@@ -13,7 +13,7 @@ use crate::statistics::interval::{CONFIDENCE, Mean};
 pub const POWER: f64 = 0.8;
 
 /// Largest number of seeds that is proposed.
-const MOST_SEEDS: usize = 100_000;
+const MAX_SEEDS: usize = 100_000;
 
 /// Two alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,11 +106,11 @@ fn seeds_needed(difference: f64, scatter: f64, level: f64) -> Option<usize> {
             .map(|(a, b)| a + b);
         quantiles.is_some_and(|q| q * scatter <= difference * (n as f64).sqrt())
     };
-    if difference == 0.0 || !enough(MOST_SEEDS) {
+    if difference == 0.0 || !enough(MAX_SEEDS) {
         return None;
     }
     // The condition holds for all larger n too.
-    let (mut below, mut from) = (1, MOST_SEEDS);
+    let (mut below, mut from) = (1, MAX_SEEDS);
     while from - below > 1 {
         let middle = below + (from - below) / 2;
         if enough(middle) {

@@ -7,7 +7,7 @@ use fretwork_core::view::RunControl;
 
 /// Largest number of iterations with the tight tolerance: a factor on the number in the run, and a
 /// minimum.
-const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+const MAX_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
 /// Relative change of the forces by finer settings.
 #[derive(Clone, Copy, Debug)]
@@ -62,9 +62,9 @@ pub(super) fn repeat_step(
         run.options_mut().grown = (grown / FINER).max(1) - 1;
         made(run, FINER)
     })?;
-    let most = MOST_ITERATIONS
+    let most = MAX_ITERATIONS
         .1
-        .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
+        .max(MAX_ITERATIONS.0 * f64::from(base.iterations));
     let tighter = run.repeated(|run| {
         tighten(run, most);
         made(run, 1)

@@ -29,7 +29,7 @@ const SHRINKS: u32 = 4;
 const LITTLE: f64 = 0.1;
 /// Upper limits, for any requested accuracy: displacement of a step over the half size of the
 /// smallest grain, and change of forces.
-const MOST_CHANGE: f64 = 0.2;
+const MAX_CHANGE: f64 = 0.2;
 /// Number of steps of the case that a step spans.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Growth {
@@ -85,7 +85,7 @@ impl Growth {
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
         Self {
             most: if run.system_count() == 0 { most } else { 1 },
-            allowed: spec.share.min(MOST_CHANGE),
+            allowed: spec.share.min(MAX_CHANGE),
             chosen: 1,
             last: 1,
             event: false,

@@ -263,7 +263,7 @@ impl Chart {
 }
 
 /// Limit on the charts of a figure.
-const MOST_CHARTS: usize = 12;
+const MAX_CHARTS: usize = 12;
 
 /// Charts on one page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -298,7 +298,7 @@ impl Figure {
     pub fn resolve(&self, columns: &dyn Columns) -> Self {
         let charts = self.charts.iter().map(|c| c.resolve(columns));
         Self {
-            charts: charts.filter(Chart::has_data).take(MOST_CHARTS).collect(),
+            charts: charts.filter(Chart::has_data).take(MAX_CHARTS).collect(),
             name: self.name.clone(),
             heading: self.heading.clone(),
             columns: self.columns,

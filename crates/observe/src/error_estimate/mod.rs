@@ -29,7 +29,7 @@ pub(crate) use stretches::{RepeatedStretch, shorten, tighten};
 /// Number of parts of a step in the repetition with shorter steps.
 pub(crate) const FINER: u32 = 4;
 /// Share of the cost of the run above which no further repetitions are made.
-const MOST_COST: f64 = 0.05;
+const MAX_COST: f64 = 0.05;
 
 /// One place with its repetitions.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -147,7 +147,7 @@ impl ErrorEstimate {
         }
         let each = self.cost[1] / done as f64;
         let run = self.cost[0] / step as f64 * self.total as f64;
-        self.cost[1] + each > MOST_COST * run
+        self.cost[1] + each > MAX_COST * run
     }
 
     /// Adds a step of the run.

@@ -13,7 +13,7 @@ const TIGHTER: f64 = 100.0;
 const ROUNDING: f64 = 1e-12;
 /// Largest number of iterations with the tight tolerance: a factor on the number in the run, and a
 /// minimum.
-const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+const MAX_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
 /// Sets the options of a repeated stretch.
 type SetOptions<'a> = dyn Fn(&mut dyn RunControl) + 'a;
@@ -54,9 +54,9 @@ impl RepeatedStretch {
         };
         let each = base.cost / f64::from(length);
         let finer = stretch(run, FINER, &shorten)?;
-        let most = MOST_ITERATIONS
+        let most = MAX_ITERATIONS
             .1
-            .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
+            .max(MAX_ITERATIONS.0 * f64::from(base.iterations));
         let tighter = stretch(run, 1, &|run| tighten(run, most))?;
         let damages = run.laws().iter().any(Interface::damages);
         let mut coupled = None;

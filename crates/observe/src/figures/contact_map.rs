@@ -1,7 +1,7 @@
 //! Maps of a contact in space: cells of a surface seen along its normal, with colours and arrows.
 
 use crate::chart::{Axis, Chart, Colours, FieldMap, quantity};
-use crate::picture::{OPEN, SLIPS, STICKS};
+use crate::picture::{OPEN_COLOUR, SLIP_COLOUR, STICK_COLOUR};
 use crate::tractions::{FacetTraction, SurfaceState, Zone};
 use nalgebra::Vector3;
 
@@ -75,7 +75,11 @@ fn single(p: [f64; 2]) -> [f32; 2] {
 
 /// Returns colours for stick and slip at some points.
 fn zones(state: &SurfaceState, points: &[usize]) -> Colours {
-    let classes = [("sticks", STICKS), ("slips", SLIPS), ("open", OPEN)];
+    let classes = [
+        ("sticks", STICK_COLOUR),
+        ("slips", SLIP_COLOUR),
+        ("open", OPEN_COLOUR),
+    ];
     let class = |k: &usize| match state.zone[*k] {
         Zone::Stick => 0,
         Zone::Slip => 1,

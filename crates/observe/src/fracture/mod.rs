@@ -3,7 +3,9 @@
 
 mod summary;
 
-pub use summary::{AT_ONCE, FractureSummary, InterfaceBonds, Reference, WRONG_ENERGY};
+pub use summary::{
+    FractureSummary, InterfaceBonds, Reference, UNRESOLVED_BREAK_SHARE, UNRESOLVED_ENERGY_ERROR,
+};
 
 use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};

@@ -10,10 +10,10 @@ use serde::Serialize;
 
 /// Relative difference of the released energy from that of the laws above which bonds count as not
 /// resolved.
-pub const WRONG_ENERGY: f64 = 0.05;
+pub const UNRESOLVED_ENERGY_ERROR: f64 = 0.05;
 /// Share of bonds that break within the step in which their damage begins, above which bonds count
 /// as not resolved.
-pub const AT_ONCE: f64 = 0.1;
+pub const UNRESOLVED_BREAK_SHARE: f64 = 0.1;
 /// Ratio of the opening at failure to that at peak traction below which a bond is brittle: it
 /// breaks within one step for any step length.
 const BRITTLE: f64 = 1.05;
@@ -235,8 +235,10 @@ impl InterfaceBonds {
     /// Returns the text of the warning, if the step does not resolve the bonds.
     fn unresolved(&self) -> Option<String> {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
-        let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
-        let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
+        let wrong = ratio.filter(|r| (r - 1.0).abs() > UNRESOLVED_ENERGY_ERROR);
+        let at_once = self
+            .softening_at_once()
+            .filter(|s| *s > UNRESOLVED_BREAK_SHARE);
         let overshoot = self.overshoot();
         if wrong.is_none() && at_once.is_none() && overshoot.is_none() {
             return None;

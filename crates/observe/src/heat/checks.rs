@@ -3,7 +3,7 @@
 
 use crate::quantity::part;
 use crate::quantity::unit::{METRE, ONE, WORD};
-use crate::run_state::LEDGER;
+use crate::run_state::LEDGER_TOLERANCE;
 use crate::warning::Warning;
 use fretwork_core::contact::HeatSide;
 use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
@@ -64,9 +64,9 @@ impl HeatChecks {
     /// Returns a warning if the account does not close.
     fn account(&self) -> Option<String> {
         let share = self.residual_relative;
-        (share > LEDGER || share.is_nan()).then(|| {
+        (share > LEDGER_TOLERANCE || share.is_nan()).then(|| {
             format!(
-                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {LEDGER:.0e}): temperatures are \
+                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {LEDGER_TOLERANCE:.0e}): temperatures are \
                  wrong; this is a defect of the program, please report it"
             )
         })

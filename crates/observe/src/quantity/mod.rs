@@ -69,7 +69,7 @@ impl Topic {
 }
 
 /// Reason why quantities that describe the course of a run are not compared.
-pub const COURSE: &str = "it describes the course of the run, not a result of the case";
+pub const DESCRIBES_THE_RUN: &str = "it describes the course of the run, not a result of the case";
 
 /// Form of a quantity on the terminal.
 #[derive(Clone, Debug, Default, PartialEq)]

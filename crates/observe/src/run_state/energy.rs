@@ -2,7 +2,7 @@
 
 use super::{BondsOfCase, NO_BONDS, NO_DAMAGE};
 use crate::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, MOMENTUM, ONE};
-use crate::quantity::{COURSE, Findings, Role, Topic, number, quantity};
+use crate::quantity::{DESCRIBES_THE_RUN, Findings, Role, Topic, number, quantity};
 use crate::warning::Warning;
 use fretwork_core::energy::Energy;
 use fretwork_core::momentum::Momentum;
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Residual of the energy ledger, and of the account of heat, relative to the largest energy or
 /// heat, above which it is not explained by rounding: ledgers close to 1e-9 and better, also over
 /// millions of steps.
-pub const LEDGER: f64 = 1e-6;
+pub const LEDGER_TOLERANCE: f64 = 1e-6;
 /// Share of the energy dissipated by friction that friction may return without a warning.
 const GIVEN: f64 = 0.05;
 /// Energies below this fraction of the largest are omitted, as in the energy figure.
@@ -73,7 +73,7 @@ pub(super) fn report(e: &Energy, momentum: Momentum, bonds: BondsOfCase, found: 
     let doc = "largest energy seen, to which the residual is compared";
     found
         .add("energy.scale", e.scale, ENERGY, doc)
-        .lacks(COURSE);
+        .lacks(DESCRIBES_THE_RUN);
     let doc = "energy that friction of compliant contacts gave back, summed over steps in which it dissipated less than nothing";
     found.add("energy.given_by_friction", e.given_by_friction, ENERGY, doc);
     let doc = "energy that no entry explains, over the largest energy seen: round-off where the bookkeeping is right";
@@ -187,16 +187,16 @@ pub(super) fn warn(e: &Energy, found: &mut Findings) {
             .then(Warning::infinite),
     );
     let share = e.relative_residual();
-    found.warn((share > LEDGER).then(|| {
+    found.warn((share > LEDGER_TOLERANCE).then(|| {
         let text = format!(
-            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER:.0e}): a law's energies \
+            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER_TOLERANCE:.0e}): a law's energies \
              may be wrong, see fretwork law certify"
         );
         Warning::serious("ENERGY DOES NOT ADD UP", text)
     }));
     let taken = e.friction + e.given_by_friction;
     let gives = e.given_by_friction > GIVEN * taken.max(0.0);
-    found.warn((gives && e.given_by_friction > LEDGER * e.scale).then(|| {
+    found.warn((gives && e.given_by_friction > LEDGER_TOLERANCE * e.scale).then(|| {
         let text = format!(
             "friction gave {:.1e} J in steps in which it dissipated less than nothing, and took {taken:.1e} J in the others: take a \
              smaller time.step; if it stays, a contact law makes energy by friction (fretwork law certify)",

@@ -8,14 +8,14 @@ mod step_size;
 mod unconverged;
 
 pub use driven::DrivenBodies;
-pub use energy::{LEDGER, MomentumSummary};
+pub use energy::{LEDGER_TOLERANCE, MomentumSummary};
 pub use phases::Phases;
 pub use unconverged::UnconvergedSteps;
 
 use super::figures;
 use super::output::Output;
 use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, Unit, WORD};
-use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
+use super::quantity::{DESCRIBES_THE_RUN, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
@@ -124,7 +124,7 @@ impl Counts {
         let doc = "whether the step was small enough to detect every contact in time";
         found.fields("step_size", &self.step_size, &step_size::FIELDS, doc);
         found.edit_all(&["step_size"], |q| {
-            q.lacks(COURSE);
+            q.lacks(DESCRIBES_THE_RUN);
         });
     }
 }

@@ -4,7 +4,7 @@ use crate::error_estimate::{Change, Effects, Repeats};
 use crate::friction_report::Friction;
 pub use crate::quantity::Estimate;
 use crate::quantity::unit::{ENERGY, VOLUME, WORD};
-use crate::quantity::{COURSE, Findings, Role, Topic, number, part};
+use crate::quantity::{DESCRIBES_THE_RUN, Findings, Role, Topic, number, part};
 use crate::scatter;
 use serde::Serialize;
 
@@ -86,7 +86,7 @@ impl Uncertainty {
             });
         }
         found.edit_all(&["uncertainty"], |q| {
-            q.lacks(COURSE);
+            q.lacks(DESCRIBES_THE_RUN);
         });
         for (name, estimate) in [
             ("friction_coefficient", &self.friction_coefficient),

@@ -41,7 +41,7 @@ crate::described! {
 /// JSON pointers to the values that may differ between the summaries of two runs of a case: wall
 /// and processor times, and the number of threads. All others are bit-identical, see
 /// `docs/checkpoints.md`.
-pub const FROM_THE_CLOCK: [&str; 5] = [
+pub const NOT_REPRODUCIBLE: [&str; 5] = [
     "/wall_seconds",
     "/cpu_seconds",
     "/time_spent",

@@ -19,7 +19,7 @@ const MIN_THETA: f64 = 0.55;
 
 /// Creepage of one surface over another that is permitted in addition to rolling by one cell per
 /// step.
-const MOST_CREEPAGE: f64 = 0.01;
+const MAX_CREEPAGE: f64 = 0.01;
 
 impl Builder<'_> {
     /// Returns the half-spaces of the case, in its order.
@@ -220,7 +220,7 @@ impl Builder<'_> {
             TimeFunction::Table(points) => points.iter().fold(0.0, |m, p| p.1.abs().max(m)),
         };
         // A small creepage in addition to a velocity of one cell per step is permitted.
-        if fastest * h > (1.0 + MOST_CREEPAGE) * grid.size[0] {
+        if fastest * h > (1.0 + MAX_CREEPAGE) * grid.size[0] {
             let message = format!(
                 "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",
                 fastest * h,

@@ -32,18 +32,18 @@ pub struct ResumePoint {
 
 /// Name of the file that a run writes last and removes before it starts: if it exists, all others
 /// are complete.
-pub const LAST: &str = "summary.json";
+pub const SUMMARY_FILE: &str = "summary.json";
 
 /// Whether the run with this identity in a folder finished without an error.
 fn finished(folder: &Path, identity: &str) -> bool {
-    let text = std::fs::read_to_string(folder.join(LAST)).unwrap_or_default();
+    let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
 /// Returns the reason why the run with this identity in a folder ended, if the run recorded one.
 fn ended(folder: &Path, identity: &str) -> Option<String> {
-    let text = std::fs::read_to_string(folder.join(LAST)).ok()?;
+    let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).ok()?;
     let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
     let ours = summary["identity"] == identity;
     ours.then(|| summary["stopped"].as_str().map(str::to_owned))?

@@ -16,7 +16,7 @@ mod identity;
 mod writer;
 
 pub use error::ResumeError;
-pub use find::{FolderState, LAST, ResumePoint, find};
+pub use find::{FolderState, ResumePoint, SUMMARY_FILE, find};
 pub use frame::{Frame, Kind};
 pub use identity::Identity;
 pub use writer::CheckpointWriter;

@@ -10,9 +10,9 @@ use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
 const SLOT_CHUNK: usize = 1 << 15;
 
 /// Chunk size, in rows, of a dataset with many rows per state.
-pub const MANY: usize = 2048;
+pub const LONG_CHUNK: usize = 2048;
 /// Chunk size, in rows, of a dataset with one row per state.
-pub const FEW: usize = 128;
+pub const SHORT_CHUNK: usize = 128;
 
 impl Store {
     fn declared_group(&self, path: &str) -> Result<H5Group, ResultsError> {
@@ -145,7 +145,7 @@ impl Store {
     }
 
     /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and
-    /// description, and its chunk size in rows ([`MANY`], [`FEW`]).
+    /// description, and its chunk size in rows ([`LONG_CHUNK`], [`SHORT_CHUNK`]).
     ///
     /// # Errors
     /// The file cannot be written.

@@ -1,7 +1,7 @@
 //! Event tables: columns that grow by one value per event, buffered until the file is flushed.
 
 use super::dataset::GrowingDataset;
-use super::declare::MANY;
+use super::declare::LONG_CHUNK;
 use super::store::{ResultsError, Store};
 use fretwork_observe::observer::{Event, EventTable};
 
@@ -36,7 +36,7 @@ impl Events {
                     &path,
                     1,
                     (c.unit.heading(dimension), c.doc),
-                    MANY,
+                    LONG_CHUNK,
                 )?);
             }
             let list = table.list.as_ref().and_then(|_| grown.pop());

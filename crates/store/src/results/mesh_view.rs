@@ -5,7 +5,7 @@
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 
 use super::dataset::GrowingDataset;
-use super::declare::{FEW, MANY};
+use super::declare::{LONG_CHUNK, SHORT_CHUNK};
 use super::store::{ResultsError, Store};
 
 /// VTK types of cells by their number of corners: line, triangle, tetrahedron.
@@ -91,9 +91,9 @@ impl MeshView {
         }
         store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
         let doc = ("s", "time of the state");
-        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, SHORT_CHUNK)?;
         let mut whole = |name: &str, doc: &str| {
-            store.growing::<i64>(&format!("{path}/Steps/{name}"), 1, ("", doc), FEW)
+            store.growing::<i64>(&format!("{path}/Steps/{name}"), 1, ("", doc), SHORT_CHUNK)
         };
         let steps = [
             whole("PartOffsets", "number of the first part of each state; 0")?,
@@ -111,10 +111,10 @@ impl MeshView {
             };
             let name = format!("{path}/{place}/{}", field.name);
             let doc = (field.unit, field.doc);
-            data.push(store.growing::<f64>(&name, field.width as u64, doc, MANY)?);
+            data.push(store.growing::<f64>(&name, field.width as u64, doc, LONG_CHUNK)?);
             let name = format!("{path}/Steps/{place}Offsets/{}", field.name);
             let doc = ("", "first value of each state");
-            data_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+            data_offsets.push(store.growing::<i64>(&name, 1, doc, SHORT_CHUNK)?);
         }
         let mut shared_offsets = Vec::new();
         for (place, ids) in ["PointData", "CellData"].into_iter().zip(&mesh.bodies) {
@@ -125,7 +125,7 @@ impl MeshView {
             store.numbers(&format!("{path}/{place}/body"), 1, ids, doc)?;
             let name = format!("{path}/Steps/{place}Offsets/body");
             let doc = ("", "first value of each state; 0");
-            shared_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+            shared_offsets.push(store.growing::<i64>(&name, 1, doc, SHORT_CHUNK)?);
         }
         Ok(Self {
             values,

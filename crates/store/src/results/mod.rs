@@ -36,7 +36,7 @@ use super::checkpoint::Frame;
 use super::folder_lock::FolderLock;
 use super::summary::PluginStamp;
 use dataset::{GrowingDataset, Slot};
-use declare::MANY;
+use declare::LONG_CHUNK;
 use events::Events;
 use fretwork_observe::observer::{Event, EventTable};
 use fretwork_observe::statistics::Column;
@@ -131,7 +131,7 @@ impl Results {
                 &path,
                 1,
                 (c.unit.heading(header.dimension), c.doc),
-                MANY,
+                LONG_CHUNK,
             )?);
         }
         let events = Events::declare(&mut store, &header.events, header.dimension)?;

@@ -8,7 +8,7 @@ use fretwork_observe::chart::{Axis, Chart, Colours, FieldMap, Figure, Series, St
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
-const MOST_CELLS: usize = 20_000;
+const MAX_CELLS: usize = 20_000;
 
 /// Returns the figures that the observers of a run described, with numbers from its statistics.
 pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>) -> Vec<Figure> {
@@ -25,13 +25,13 @@ pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>)
     });
     for figure in &mut figures {
         *figure = figure.resolve(rows);
-        let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MOST_CELLS);
+        let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MAX_CELLS);
         let all = figure.charts.len();
         figure.charts.retain(small);
         if figure.charts.len() < all {
             let name = &figure.name;
             gaps.push(format!(
-                "A map of more than {MOST_CELLS} cells is in {name}.png alone."
+                "A map of more than {MAX_CELLS} cells is in {name}.png alone."
             ));
         }
     }

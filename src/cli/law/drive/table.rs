@@ -4,7 +4,7 @@ use super::super::super::Failure;
 use super::super::super::output::report;
 use super::DriveArgs;
 use super::path::Point;
-use crate::laws::bench::{Bench, BenchMotion, BenchOutputs, ROOM};
+use crate::laws::bench::{Bench, BenchMotion, BenchOutputs, ROOM_TEMPERATURE};
 use serde::Serialize;
 
 /// A row of the table.
@@ -40,7 +40,7 @@ pub(super) fn along(bench: &mut Bench, points: &[Point], mode: &str) -> Result<V
         // Capillary bridges and necks form in contact, so the path begins in contact.
         let touch = BenchMotion {
             pressure: 1e6,
-            temperatures: [points.first().map_or(ROOM, |p| p.temperature); 2],
+            temperatures: [points.first().map_or(ROOM_TEMPERATURE, |p| p.temperature); 2],
             ..BenchMotion::default()
         };
         let h = points.first().map_or(1.0, |p| p.time);
@@ -160,7 +160,7 @@ impl Row {
             tension_strength: 0.0,
             worn: 0.0,
             pressure: 0.0,
-            temperature: ROOM,
+            temperature: ROOM_TEMPERATURE,
             conductance: 0.0,
             electric_conductance: 0.0,
         }

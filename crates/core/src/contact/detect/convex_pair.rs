@@ -8,7 +8,7 @@ use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::passing::{
     PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
 };
-use crate::geometry::convex::seam::{AdjacentPiece, DEEPEST, ball_is_over_seam, leave_seam};
+use crate::geometry::convex::seam::{AdjacentPiece, MAX_SEAM_DEPTH, ball_is_over_seam, leave_seam};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -240,7 +240,7 @@ impl<S: Space> Narrow<'_, S> {
         if !(out.is_empty() || tolerances.held) {
             let motion = self.motion(bodies, centres);
             keep_apart(&pair, &motion, out);
-            let deepest = DEEPEST * one.size.min(other.size);
+            let deepest = MAX_SEAM_DEPTH * one.size.min(other.size);
             leave_seam(
                 &pair,
                 &motion,

@@ -11,7 +11,7 @@ use super::CollisionScene;
 use super::extents::Extents;
 use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::{
-    ContactPoint, ContactTolerances, ConvexCollider, Core, CorePair, DEEP,
+    ContactPoint, ContactTolerances, ConvexCollider, Core, CorePair, MAX_CORNER_DEPTH,
 };
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
@@ -252,7 +252,7 @@ impl<'a, S: Space> PairSweep<'a, S> {
     fn detectable(&self, shape: &Shape<S>, surface: &Carried<S>, half_thickness: f64) -> f64 {
         match shape {
             Shape::Ball(ball, _) => 2.0 * ball.radius + self.reach(surface, half_thickness),
-            Shape::ConvexCollider(piece, _) => DEEP * piece.bound + piece.rounding,
+            Shape::ConvexCollider(piece, _) => MAX_CORNER_DEPTH * piece.bound + piece.rounding,
             Shape::Surface(_) => f64::INFINITY,
         }
     }

@@ -51,7 +51,7 @@ pub struct ConvexCollider<S: Space> {
 /// Depth up to which a corner behind a skin, a profile or facets is still pushed out, relative to
 /// the size of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another
 /// part of the surface.
-pub const DEEP: f64 = 0.25;
+pub const MAX_CORNER_DEPTH: f64 = 0.25;
 
 /// Least cosine of the angle between a side and a surface that deforms for the side to touch its
 /// vertices; a steeper side touches by its corners.

@@ -14,7 +14,7 @@ use crate::geometry::space::{Space, VectorLike};
 
 /// Greatest depth below a face at which a pair still lies on it, relative to the size of the
 /// smaller piece: the ordinary overlap of springs.
-pub const DEEPEST: f64 = 0.05;
+pub const MAX_SEAM_DEPTH: f64 = 0.05;
 
 /// Cosine of the angle from which a face differs from that of a contact.
 const OTHER: f64 = 0.99;

@@ -24,14 +24,10 @@ pub(super) fn inverse_along<L: Lane>(w_t: L, w_n: L) -> L {
 /// reaches its bound at a slip of 1e-12 m/s.
 #[inline(always)]
 pub(super) fn answer_to_slip<L: Lane>(w_t: L, w_n: L, cohesion: L) -> L {
-    const LEAST_SLIP: f64 = 1e-12;
+    const MIN_SLIP: f64 = 1e-12;
     let zero = L::all(0.0);
     let moves = w_t.above(zero) | w_n.above(zero);
-    L::select(
-        moves,
-        inverse_along(w_t, w_n),
-        cohesion / L::all(LEAST_SLIP),
-    )
+    L::select(moves, inverse_along(w_t, w_n), cohesion / L::all(MIN_SLIP))
 }
 
 /// Returns the shift along the normal of a contact with this W_nn. Where both bodies are held along

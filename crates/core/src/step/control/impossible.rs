@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 const NOT_OBEYED: f64 = 0.03;
 /// Number of iterations below which a step that reached its limit does not show whether its motions
 /// are possible.
-const LEAST_ITERATIONS: u32 = 100;
+const MIN_ITERATIONS: u32 = 100;
 /// Smallest share of the work of the drives that goes into the residuals, and largest share that
 /// neither the residuals nor slip account for, where drives squeeze what does not yield.
 const WASTED: f64 = 0.2;
@@ -144,7 +144,7 @@ fn squeezing<S: Space>(
     if !solver.unbounded {
         let wasted = solver.parts.residual_energy;
         let left = (work - wasted - solver.parts.slip_energy).abs();
-        let tried = solver.iterations >= LEAST_ITERATIONS
+        let tried = solver.iterations >= MIN_ITERATIONS
             || solver.iterations < s.options.solver.max_iterations;
         if !(tried && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
             return Vec::new();

@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 1e-4;
 /// contact takes up to eight, and among many contacts some may jump between gaps that hold and gaps
 /// that do not.
 const MOST: u32 = 40;
-const MOST_OF_ATTRACTION: u32 = 12;
+const MAX_OF_ATTRACTION: u32 = 12;
 /// Number of iterations of a solve whose laws do not agree with its solution yet.
 const BRIEF: u32 = 100;
 
@@ -52,7 +52,7 @@ pub(super) fn solve_in_agreement<S: Space>(
         let again = agreement.solves < MOST;
         let friction = sliding::compare_sliding(s, &mut sliding, again, info);
         let friction = friction.map_err(|e| s.law_error(e))?;
-        let tolerance = if agreement.solves < MOST_OF_ATTRACTION {
+        let tolerance = if agreement.solves < MAX_OF_ATTRACTION {
             TOLERANCE
         } else {
             f64::INFINITY

@@ -42,10 +42,10 @@ use strategy::Strategy;
 use thiserror::Error;
 
 /// Largest ratio of the variances of two axes.
-const MOST_CONDITION: f64 = 1e14;
+const MAX_CONDITION: f64 = 1e14;
 
 /// Growth of an axis from the start above which a search counts as divergent.
-const MOST_GROWTH: f64 = 1e4;
+const MAX_GROWTH: f64 = 1e4;
 
 /// Invalid use of a search.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -330,9 +330,9 @@ impl Cma {
             Some(Stop::Step)
         } else if self.history.flat(n, self.population, self.limits.value) {
             Some(Stop::Value)
-        } else if self.step * widest.sqrt() > MOST_GROWTH * self.first_step {
+        } else if self.step * widest.sqrt() > MAX_GROWTH * self.first_step {
             Some(Stop::Diverges)
-        } else if narrowest * MOST_CONDITION < widest {
+        } else if narrowest * MAX_CONDITION < widest {
             Some(Stop::Condition)
         } else if self.without_effect(&deviations) {
             Some(Stop::Step)

@@ -5,7 +5,7 @@ use crate::statistics::eigen;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of iterations of the minimisation; it converges in a few.
-const MOST_ITERATIONS: usize = 200;
+const MAX_ITERATIONS: usize = 200;
 
 /// Half-width of an interval in unit coordinates above which a direction counts as undetermined:
 /// the interval is as wide as the range.
@@ -91,7 +91,7 @@ impl Model<'_> {
         let mut chi_squared = self.chi_squared(&point);
         let mut damping = 1e-9;
         let mut held = vec![0i8; n];
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let jacobian = self.surrogate.jacobian(&point);
             let weighted = self.weighted(&jacobian);
             let downhill = &weighted * self.residuals(&point);

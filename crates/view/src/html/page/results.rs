@@ -5,7 +5,7 @@ use crate::html::folder::RunFolder;
 use crate::html::results::{self, ResultGroup, ResultRow};
 use crate::html::statistics::{Column, Statistics};
 use fretwork_observe::quantity::Catalogue;
-use fretwork_store::summary::FROM_THE_CLOCK;
+use fretwork_store::summary::NOT_REPRODUCIBLE;
 use serde_json::Value;
 
 /// Number of rows of a group that are shown; the rest is folded.
@@ -94,7 +94,7 @@ pub(crate) fn clock(differs: bool) -> &'static str {
 
 /// Whether a number, given by its path, or its group is measured by the clock.
 fn from_the_clock(path: &str) -> bool {
-    FROM_THE_CLOCK.iter().any(|pointer| {
+    NOT_REPRODUCIBLE.iter().any(|pointer| {
         let of = pointer[1..].replace('/', ".");
         let rest = path.strip_prefix(&of);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -6,7 +6,7 @@ use crate::png::font::{TextStyle, text_width};
 use crate::png::scene::paint::{ColourScale, Coloured, colour_bar};
 use crate::png::scene::zone::zone_entry;
 use fretwork_observe::chart::{Colours, FieldMap};
-use fretwork_observe::picture::{OPEN, Paint};
+use fretwork_observe::picture::{OPEN_COLOUR, Paint};
 
 /// Length of the longest arrow, and least distance between arrows, relative to the side of a plot.
 const ARROW: f32 = 0.07;
@@ -78,7 +78,7 @@ impl Layout<'_> {
 fn colour(field: &FieldMap, cell: usize, top: f64) -> Rgb {
     let (r, g, b) = match &field.colours {
         Colours::Classes { classes, of } => classes[of[cell]].1,
-        Colours::Values { values, .. } if values[cell].is_nan() => OPEN,
+        Colours::Values { values, .. } if values[cell].is_nan() => OPEN_COLOUR,
         Colours::Values { values, .. } => return Paint::Value(values[cell] / top).colour(0.0),
     };
     [r, g, b]
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::png::canvas::png_size;
     use fretwork_observe::chart::{Axis, Chart};
-    use fretwork_observe::picture::{SLIPS, STICKS};
+    use fretwork_observe::picture::{SLIP_COLOUR, STICK_COLOUR};
 
     fn chart(colours: Colours) -> Chart {
         let square = |x: f32| vec![[x, 0.0], [x + 1e-3, 0.0], [x + 1e-3, 2e-3], [x, 2e-3]];
@@ -137,7 +137,7 @@ mod tests {
             values: vec![f64::NAN, 3e6],
             scale: Axis::new("pressure", "Pa"),
         };
-        let classes = [("sticks", STICKS), ("slips", SLIPS)];
+        let classes = [("sticks", STICK_COLOUR), ("slips", SLIP_COLOUR)];
         let zones = Colours::Classes {
             classes: classes
                 .map(|(name, colour)| (name.to_owned(), colour))
@@ -153,7 +153,7 @@ mod tests {
             same.count()
         };
         // Each zone takes half of the plot, except for the arrow and the samples of the legend.
-        let [sticks, slips] = [STICKS, SLIPS].map(|c| count(c) as f64);
+        let [sticks, slips] = [STICK_COLOUR, SLIP_COLOUR].map(|c| count(c) as f64);
         assert!(
             slips > 1e5 && (sticks / slips - 1.0).abs() < 0.05,
             "{sticks} {slips}"

@@ -6,8 +6,8 @@ use crate::png::font::{TextStyle, text_width};
 use fretwork_observe::picture;
 use tiny_skia::PathBuilder;
 
-const STICKS: Rgb = rgb(picture::STICKS);
-const SLIPS: Rgb = rgb(picture::SLIPS);
+const STICKS: Rgb = rgb(picture::STICK_COLOUR);
+const SLIPS: Rgb = rgb(picture::SLIP_COLOUR);
 
 const fn rgb((r, g, b): (u8, u8, u8)) -> Rgb {
     [r, g, b]

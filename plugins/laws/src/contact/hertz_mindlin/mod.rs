@@ -78,7 +78,7 @@ impl Law for HertzMindlin {
 /// Index of the overlap among the variables.
 const OVERLAP: usize = 15;
 /// Smallest slope of the tangential force, as a fraction of k_0.
-const LEAST_SLOPE: f64 = 1e-3;
+const MIN_SLOPE: f64 = 1e-3;
 /// Fraction of the friction bound above which the whole contact is assumed to slip.
 const WHOLE: f64 = 1.0 - 1e-3;
 
@@ -188,7 +188,7 @@ impl Sphere {
         };
         Spring {
             force_t: before,
-            stiffness_t: self.k_0 * slope.clamp(LEAST_SLOPE, 1.0),
+            stiffness_t: self.k_0 * slope.clamp(MIN_SLOPE, 1.0),
             unloading_t: self.k_0,
             // The energy exceeds T^2/(2 k_0), because displacements differ within the contact.
             energy_t: 0.5 * self.scale * squares,
@@ -233,7 +233,7 @@ impl Sphere {
             if norm(left) < best.0 {
                 best = (norm(left), profile);
             }
-            if norm(left) <= CLOSE * size.max(LEAST_SLOPE * bound) {
+            if norm(left) <= CLOSE * size.max(MIN_SLOPE * bound) {
                 break;
             }
             if let Some((by_last, force_last)) = last {
