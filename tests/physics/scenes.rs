@@ -8,7 +8,7 @@ use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
 use fretwork::scene::LoadedCase;
 use fretwork::step::Simulation;
-use fretwork_observe::picture::Shows;
+use fretwork_observe::picture::PictureContent;
 use std::path::Path;
 
 const G: f64 = 9.81;
@@ -267,7 +267,9 @@ fn pictured(s: &Simulation<Dim3>, loaded: &LoadedCase, name: &str) -> Vec<[u8; 3
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
     let camera = Camera::new(s, &loaded.case.output);
-    let frame = camera.frame(s, &Shows::Scene, "", Vec::new()).unwrap();
+    let frame = camera
+        .frame(s, &PictureContent::Scene, "", Vec::new())
+        .unwrap();
     frame.draw(&path).unwrap_or_else(|e| panic!("{e}"));
     let picture = tiny_skia::Pixmap::load_png(&path).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);

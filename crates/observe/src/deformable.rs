@@ -5,7 +5,7 @@ use super::chart::{Axis, Chart, Series, Style};
 use super::figures::contact_map;
 use super::nearest_places::NearestPlaces;
 use super::output::Output;
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::quantity::unit::{FORCE, ONE, RADIAN, WORD};
 use super::quantity::{Findings, Role, Topic};
 use super::resolution::{self, Resolution};
@@ -274,7 +274,7 @@ impl Observer for Deformable {
         if run.dimension() == 2 {
             return vec![Picture {
                 name: "stress",
-                shows: Shows::Stress,
+                shows: PictureContent::Stress,
             }];
         }
         let systems = self.bodies.iter().enumerate();
@@ -286,7 +286,7 @@ impl Observer for Deformable {
         });
         vec![Picture {
             name: "slip",
-            shows: Shows::Charts(maps.collect()),
+            shows: PictureContent::Charts(maps.collect()),
         }]
     }
 

@@ -7,7 +7,7 @@ pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
 use super::chart::{Axis, Series};
 use super::figures::history;
 use super::output::Output;
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
@@ -207,7 +207,7 @@ impl Observer for HeatObserver {
         let pieces = run.pieces().into_iter().map(|p| above(p.body));
         vec![Picture {
             name: "temperature",
-            shows: Shows::Values {
+            shows: PictureContent::Values {
                 values: balls.chain(pieces).collect(),
                 label: "temperature above the lowest at the start (K)",
                 top: (self.state.highest - lowest).max(1e-9),

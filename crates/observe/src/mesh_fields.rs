@@ -2,7 +2,7 @@
 //! of explanation: inside a body of finite elements, and on the contact surface of every deformable
 //! body.
 
-use super::tractions::{SurfaceState, Zone, signed};
+use super::tractions::{ContactZone, SurfaceState, signed};
 use fretwork_core::bodies::{DeformedMesh, von_mises};
 use fretwork_core::unit::AREA;
 use fretwork_core::view::{RunView, SystemView};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 /// Location of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum At {
+pub enum FieldLocation {
     /// Points of the mesh.
     Points,
     /// Elements of the mesh.
@@ -27,7 +27,7 @@ pub struct MeshField<T> {
     /// Explanation in one line.
     pub doc: &'static str,
     /// Location of the values: points or elements.
-    pub at: At,
+    pub at: FieldLocation,
     /// Number of components per value.
     pub width: usize,
     /// Function that returns all values, one after the other.
@@ -158,7 +158,7 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
             name: "velocity",
             unit: "m/s",
             doc: "velocity",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |b| triples(b.velocity()),
         },
@@ -166,7 +166,7 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
             name: "stress",
             unit: "Pa",
             doc: STRESS,
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 6,
             values: |b| in_vtk_order(&b.mesh().stress),
         },
@@ -174,7 +174,7 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
             name: "von_mises",
             unit: "Pa",
             doc: "von Mises stress",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |b| b.mesh().stress.iter().map(von_mises).collect(),
         },
@@ -188,7 +188,7 @@ pub fn of_bodies() -> [MeshField<BodyState>; 4] {
         name: "displacement",
         unit: "m",
         doc: "displacement from the place without load",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |b: &BodyState| triples(&b.mesh.displacement),
     };
@@ -202,7 +202,7 @@ pub fn of_grains() -> [MeshField<GrainsState>; 5] {
         name: "displacement",
         unit: "m",
         doc: "way of the point since the start of the run, with the motion of the grain",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |g: &GrainsState| triples(&g.travel),
     };
@@ -210,7 +210,7 @@ pub fn of_grains() -> [MeshField<GrainsState>; 5] {
         name: "deformation",
         unit: "m",
         doc: "displacement of the point against the frame that moves with the grain, in world axes",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |g: &GrainsState| triples(&g.mesh.displacement),
     };
@@ -234,7 +234,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "displacement",
             unit: "m",
             doc: "displacement from the place without load",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |s| triples(&s.displacement),
         },
@@ -242,7 +242,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "traction",
             unit: "Pa",
             doc: "force of contacts on the body over the area of the point",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |s| triples(&s.traction),
         },
@@ -250,7 +250,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "pressure",
             unit: "Pa",
             doc: "part of the traction along the normals of contacts, positive in compression",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.pressure.clone(),
         },
@@ -258,7 +258,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "shear",
             unit: "Pa",
             doc: "part of the traction along the surface; in 2D positive along +x",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.shear.clone(),
         },
@@ -266,7 +266,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "area",
             unit: AREA.symbol(dimension),
             doc: "area (length in 2D) that the point stands for: pressure times area sums up to the force",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.surface.areas.clone(),
         },
@@ -274,15 +274,15 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "status",
             unit: "",
             doc: "0 no force (less than a tenth of that of one contact), 1 stick, 2 slip",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
-            values: |s| s.zone.iter().copied().map(Zone::status).collect(),
+            values: |s| s.zone.iter().copied().map(ContactZone::status).collect(),
         },
         MeshField {
             name: "facet_pressure",
             unit: "Pa",
             doc: "mean of the pressure of the points of each facet",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |s| s.facets().iter().map(|f| f.pressure).collect(),
         },
@@ -290,7 +290,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "facet_shear",
             unit: "Pa",
             doc: "size of the mean traction along the surface of the points of each facet; in 2D positive along +x",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |s| {
                 s.facets()

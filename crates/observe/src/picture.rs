@@ -35,12 +35,12 @@ pub struct Picture {
     /// Name of the picture.
     pub name: &'static str,
     /// Content of the picture.
-    pub shows: Shows,
+    pub shows: PictureContent,
 }
 
 /// Content of a picture.
 #[derive(Clone, Debug)]
-pub enum Shows {
+pub enum PictureContent {
     /// Grains coloured by layer if there are layers, otherwise by the damage of their bonds if
     /// there are bonds, or by speed; in the plane also the forces and bonds between them.
     Scene,

@@ -7,7 +7,7 @@
 //! shear g = (a - b)/sqrt(a b): the amount of simple shear that has the same ratio of stretches, at
 //! finite strain. Rotation and dilation do not contribute.
 
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::statistics::Column;
 use crate::observer::Observer;
 use fretwork_core::encoding::{EncodingError, decode, encode};
@@ -130,7 +130,7 @@ impl Observer for LocalShear {
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "shear",
-            shows: Shows::Values {
+            shows: PictureContent::Values {
                 values: self.strain.shear(run),
                 label: "local shear",
                 top: self.top,

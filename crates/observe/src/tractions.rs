@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 /// Contact status of a point of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Zone {
+pub enum ContactZone {
     /// It carries no force, or less than a tenth of the share of one contact by its area.
     #[default]
     Open,
@@ -19,7 +19,7 @@ pub enum Zone {
     Slip,
 }
 
-impl Zone {
+impl ContactZone {
     /// Returns the value of the field `status` of contacts: 0 no force, 1 stick, 2 slip.
     pub fn status(self) -> f64 {
         match self {
@@ -54,7 +54,7 @@ pub struct SurfaceState {
     /// Vector of that part (Pa).
     pub tangential: Vec<Vector3<f64>>,
     /// Contact status of each point.
-    pub zone: Vec<Zone>,
+    pub zone: Vec<ContactZone>,
 }
 
 /// Tractions on a facet: means of its points, with the same total force. Where points have
@@ -105,9 +105,9 @@ impl SurfaceState {
         let along = tangential.iter().enumerate().map(|(k, f)| over(f, k));
         let tangential: Vec<Vector3<f64>> = along.collect();
         let zone = |([sticks, slips], share): (&[f64; 2], &f64)| match () {
-            () if *share < TRACE => Zone::Open,
-            () if slips >= sticks => Zone::Slip,
-            () => Zone::Stick,
+            () if *share < TRACE => ContactZone::Open,
+            () if slips >= sticks => ContactZone::Slip,
+            () => ContactZone::Stick,
         };
         let dimension = run.dimension();
         Some(Self {

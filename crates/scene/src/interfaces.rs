@@ -401,7 +401,7 @@ fn find_law(
         )
         .expected(format!("one of {available}"))
         .nearest(nearest.as_deref()),
-        LawError::Pinned { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
+        LawError::HashMismatch { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
         other => ValidationError::new(slot, other.to_string()),
     })
 }

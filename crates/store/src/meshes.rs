@@ -5,7 +5,7 @@
 use super::results::{Field, Mesh};
 use fretwork_core::view::{RunView, SystemView};
 use fretwork_observe::mesh_fields::{
-    At, BodyState, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
+    BodyState, FieldLocation, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
 };
 use fretwork_observe::tractions::SurfaceState;
 use fretwork_scene::case::Case;
@@ -86,7 +86,7 @@ fn fields<T>(registered: &[MeshField<T>]) -> Vec<Field> {
         unit: f.unit,
         doc: f.doc,
         width: f.width,
-        of_cells: f.at == At::Cells,
+        of_cells: f.at == FieldLocation::Cells,
     };
     registered.iter().map(field).collect()
 }

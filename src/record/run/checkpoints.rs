@@ -2,7 +2,7 @@
 
 use super::clear;
 use super::{Recorder, RunError, unwritable};
-use crate::record::checkpoint::{Kind, ResumeError, ResumePoint, SUMMARY_FILE};
+use crate::record::checkpoint::{FrameKind, ResumeError, ResumePoint, SUMMARY_FILE};
 use crate::record::encoding::{EncodingError, decode, encode};
 use crate::step::ProcessState;
 use fretwork_observe::accuracy::AccuracyControl;
@@ -46,7 +46,7 @@ impl Recorder<'_> {
         // A resumed run does not draw the pictures before the checkpoint again.
         self.drawing.wait()?;
         let state = self.state()?;
-        self.write_frame(Kind::State, state)?;
+        self.write_frame(FrameKind::State, state)?;
         // The other files can be regenerated from the results; this one is written for the user to
         // read.
         self.table
@@ -57,14 +57,14 @@ impl Recorder<'_> {
     }
 
     /// Writes a checkpoint frame into the results.
-    pub(super) fn write_frame(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+    pub(super) fn write_frame(&mut self, kind: FrameKind, state: Vec<u8>) -> Result<(), RunError> {
         let (number, bytes) = self.checkpoint_writer.frame(kind, state);
         Ok(self.results.checkpoint(number, &bytes)?)
     }
 
     /// Moves the results file to its final name, with a first checkpoint in it, and opens the
     /// table.
-    pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+    pub(super) fn publish(&mut self, kind: FrameKind, state: Vec<u8>) -> Result<(), RunError> {
         self.write_frame(kind, state)?;
         // The marker of an earlier finished run and its page are removed: from now on this folder
         // contains an unfinished run.
@@ -77,7 +77,7 @@ impl Recorder<'_> {
             }
         }
         let results = self.out.join("results.h5");
-        let replaces = kind == Kind::Begun && results.exists();
+        let replaces = kind == FrameKind::Begun && results.exists();
         self.results.publish(&results)?;
         if replaces {
             clear::clear(&self.out, &self.observers)?;
@@ -138,7 +138,7 @@ impl Recorder<'_> {
         // The columns of the statistics are declared first.
         let rows = state.rows.first().map_or(0, |r| r.0 as usize);
         let columns = stop.results.statistics(&names, rows)?;
-        self.publish(Kind::State, stop.state)?;
+        self.publish(FrameKind::State, stop.state)?;
         let written = self.table.extend(&columns);
         written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
         Ok(())

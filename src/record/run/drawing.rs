@@ -12,14 +12,14 @@ use std::thread::{Builder, JoinHandle};
 /// A picture to be drawn.
 #[derive(Debug)]
 pub(super) struct Picture {
-    pub shows: Shows,
+    pub shows: DrawnContent,
     pub path: PathBuf,
     /// Text of the band above the picture.
     pub notice: Option<String>,
 }
 
 #[derive(Debug)]
-pub(super) enum Shows {
+pub(super) enum DrawnContent {
     Scene(Box<Frame>),
     Charts(Vec<Chart>),
 }
@@ -35,8 +35,8 @@ pub(super) fn draw_figure(figure: &Figure, path: &Path) -> Result<(), RunError> 
 impl Picture {
     fn draw(&self) -> Result<(), DrawError> {
         noted(self.notice.clone(), || match &self.shows {
-            Shows::Scene(frame) => frame.draw(&self.path),
-            Shows::Charts(charts) => draw_panels(charts, 2, &self.path),
+            DrawnContent::Scene(frame) => frame.draw(&self.path),
+            DrawnContent::Charts(charts) => draw_panels(charts, 2, &self.path),
         })
     }
 }

@@ -4,7 +4,7 @@ use super::drawing::{draw_figure, noted};
 use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
-use crate::record::checkpoint::Kind;
+use crate::record::checkpoint::FrameKind;
 pub(super) use crate::record::checkpoint::SUMMARY_FILE;
 use crate::record::output::Output;
 use crate::record::quantity::unit::ONE;
@@ -126,7 +126,7 @@ impl Recorder<'_> {
     /// Closes the results file, and marks it as complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.run.stopped.is_none() {
-            let (number, bytes) = self.checkpoint_writer.frame(Kind::Ended, Vec::new());
+            let (number, bytes) = self.checkpoint_writer.frame(FrameKind::Ended, Vec::new());
             self.results.set_final_checkpoint(number, &bytes);
         }
         Ok(self.results.finish(&self.out)?)

@@ -28,7 +28,7 @@ use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
 use self::stamps::{density_of, stamps};
-use super::checkpoint::{CheckpointWriter, FolderState, Identity, Kind, ResumePoint, find};
+use super::checkpoint::{CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find};
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
@@ -351,7 +351,7 @@ impl<'a> Recorder<'a> {
         recorder.observers.begin(&mut *recorder.simulation);
         let begun = match run.stop {
             Some(stop) => recorder.restore(stop),
-            None => recorder.publish(Kind::Begun, Vec::new()),
+            None => recorder.publish(FrameKind::Begun, Vec::new()),
         };
         match begun {
             Ok(()) => Ok(recorder),

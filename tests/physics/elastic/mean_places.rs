@@ -4,7 +4,7 @@
 use super::wear::{agree, case};
 use super::*;
 use fretwork_observe::nearest_places::NearestPlaces;
-use fretwork_observe::tractions::{SurfaceState, Zone};
+use fretwork_observe::tractions::{ContactZone, SurfaceState};
 
 /// Blocks of steel with other cells in place of the bodies of a case: `low` and `high` are the
 /// lines along each horizontal axis of the lower and the upper block.
@@ -188,7 +188,7 @@ fn a_fine_surface_under_full_pressure_is_not_open() {
         let state = SurfaceState::of(&s, system).unwrap();
         for (pressure, zone) in state.pressure.iter().zip(&state.zone) {
             near(50e6, *pressure, 1e-5);
-            assert_ne!(*zone, Zone::Open);
+            assert_ne!(*zone, ContactZone::Open);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Runs of the program to their end or until they are killed, and comparison of two folders.
 
-use fretwork::record::checkpoint::{Frame, Kind};
+use fretwork::record::checkpoint::{Frame, FrameKind};
 use fretwork::record::results::PreviousResults;
 use fretwork::record::summary::NOT_REPRODUCIBLE;
 use hdf5::H5File;
@@ -115,7 +115,7 @@ impl Job<'_> {
             // A file that is being written may be read in the middle of a change, so it is read
             // again.
             let last = last_frame(out);
-            if last.is_some_and(|f| f.kind == Kind::State && f.number >= states) {
+            if last.is_some_and(|f| f.kind == FrameKind::State && f.number >= states) {
                 break;
             }
             if let Some(status) = child.try_wait().unwrap() {

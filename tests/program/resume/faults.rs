@@ -1,7 +1,7 @@
 //! Runs that cannot be resumed are reported with a message.
 
 use super::common::{Folder, Job, draft, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use std::path::Path;
 use std::process::Command;
 
@@ -184,7 +184,7 @@ fn one_damaged_checkpoint_costs_some_steps_two_are_refused() {
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
     let last = last_frame(&out.0).unwrap();
-    assert_eq!((last.number, last.kind), (found[0].0, Kind::State));
+    assert_eq!((last.number, last.kind), (found[0].0, FrameKind::State));
     job().done(&out.0, &["--resume"]);
     same(&whole.0, &out.0);
 }

@@ -2,7 +2,7 @@
 //! and can be resumed when the limit is lifted.
 
 use super::common::{Folder, Job, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -72,7 +72,7 @@ fn a_table_that_may_not_grow_leaves_a_state() {
         reported.contains("statistics.csv") && reported.contains("ulimit -f"),
         "{reported}"
     );
-    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == FrameKind::State));
     let reported = JOB.done(&out.0, &["--resume", "--no-report"]);
     assert!(reported.contains("resuming the run"), "{reported}");
     same(&whole.0, &out.0);
@@ -94,5 +94,5 @@ fn a_limit_on_time_ends_a_run_with_a_sentence() {
         ),
         "{reported}"
     );
-    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == FrameKind::State));
 }

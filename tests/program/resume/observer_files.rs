@@ -9,7 +9,7 @@ use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::output::Output;
 
 use fretwork::record::{
-    Observer, Paint, Picture, Run, RunEnd, RunOptions, RunView, Shows, Summary, stopped,
+    Observer, Paint, Picture, PictureContent, Run, RunEnd, RunOptions, RunView, Summary, stopped,
 };
 use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::step::StepReport;
@@ -41,7 +41,7 @@ impl Observer for Speeds {
         let paints = (0..run.balls().len()).map(|k| Paint::Layer(k as i64));
         vec![Picture {
             name: "balls",
-            shows: Shows::Paints(paints.collect()),
+            shows: PictureContent::Paints(paints.collect()),
         }]
     }
 

@@ -2,7 +2,7 @@
 //! rejected and changes nothing.
 
 use super::common::{Folder, IN_PLACE, Job, files, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
 use std::path::Path;
 use std::process::Command;
@@ -53,7 +53,7 @@ fn a_folder_is_one_runs() {
     for more in [&[][..], &["--resume"]] {
         let mut child = JOB.start(&out.0, more);
         let begun = Instant::now();
-        while last_frame(&out.0).is_none_or(|f| f.kind != Kind::State) || !held(&out.0) {
+        while last_frame(&out.0).is_none_or(|f| f.kind != FrameKind::State) || !held(&out.0) {
             assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -96,7 +96,7 @@ impl Held {
             .stderr(std::process::Stdio::piped());
         let held = Self(command.spawn().unwrap());
         let begun = Instant::now();
-        while last_frame(out).is_none_or(|f| f.kind != Kind::State) {
+        while last_frame(out).is_none_or(|f| f.kind != FrameKind::State) {
             assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
             std::thread::sleep(Duration::from_millis(2));
         }

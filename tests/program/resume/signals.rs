@@ -2,7 +2,7 @@
 //! with a summary, prints how to resume it, and is then bit-identical to an uninterrupted one.
 
 use super::common::{Folder, Job, last_frame, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -30,7 +30,7 @@ fn signal(child: &Child, signal: i32) {
 
 /// Whether the run in a folder has kept a state.
 fn kept(out: &Path) -> bool {
-    last_frame(out).is_some_and(|f| f.kind == Kind::State && f.number >= 1)
+    last_frame(out).is_some_and(|f| f.kind == FrameKind::State && f.number >= 1)
 }
 
 /// Interrupts a run between its first checkpoint and its end; returns its output.

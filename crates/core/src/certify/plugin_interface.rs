@@ -54,7 +54,7 @@ fn columns(rig: &mut Rig) -> Result<CheckResult, LawError> {
         let moved = run_batch(&mut rig.strict().guarded(), &walks, 17, 0);
         rig.onset = onset;
         // Other errors are found by other checks.
-        if let Err(e @ LawError::Trespass { .. }) = moved {
+        if let Err(e @ LawError::ContractViolation { .. }) = moved {
             return Err(e);
         }
     }

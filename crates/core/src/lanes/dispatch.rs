@@ -11,7 +11,7 @@ pub(crate) trait Wide {
 
 /// Vector instructions of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instructions {
+pub(crate) enum InstructionSet {
     /// AVX2, 256 bits.
     #[cfg(target_arch = "x86_64")]
     Avx2,
@@ -26,11 +26,11 @@ pub(crate) enum Instructions {
 
 #[cfg(target_arch = "x86_64")]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
     use crate::lanes::wide::Lanes;
     use std::arch::x86_64::__m256d;
 
-    impl Instructions {
+    impl InstructionSet {
         /// Returns the instructions that this machine has, the best last.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             let avx2 = is_x86_feature_detected!("avx2");
@@ -74,10 +74,10 @@ mod compiled {
 
 #[cfg(target_arch = "aarch64")]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
     use crate::lanes::{neon::Pairs, wide::Lanes};
 
-    impl Instructions {
+    impl InstructionSet {
         /// Returns the instructions that this machine has.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             std::iter::once(Self::Neon)
@@ -96,9 +96,9 @@ mod compiled {
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
 
-    impl Instructions {
+    impl InstructionSet {
         /// Returns no instructions, since none are known here.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             std::iter::empty()

@@ -24,7 +24,7 @@ mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(crate) use dispatch::{Instructions, Wide, prefetch};
+pub(crate) use dispatch::{InstructionSet, Wide, prefetch};
 pub use record::Record;
 pub(crate) use record::{Batch, BatchMut, part, part_mut, record};
 pub use vector::{LaneArray, LaneMatrix, LaneVector, Square};

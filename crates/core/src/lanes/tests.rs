@@ -1,6 +1,6 @@
 //! Operations on several numbers give the same bits as on one.
 
-use super::{Instructions, Lane, Mask, Wide};
+use super::{InstructionSet, Lane, Mask, Wide};
 
 /// Numbers of all kinds: zeros, subnormal numbers, infinities, NaN.
 const NUMBERS: [f64; 12] = [
@@ -93,7 +93,7 @@ impl Wide for Compare {
 
 #[test]
 fn all_widths_compute_the_same() {
-    for with in Instructions::of_this_machine() {
+    for with in InstructionSet::of_this_machine() {
         // SAFETY: the machine has these instructions.
         unsafe { with.run(Compare) };
     }

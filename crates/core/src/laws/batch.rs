@@ -85,7 +85,7 @@ impl LawBatch {
             _ => unsafe { plugin.call(call, batch) },
         });
         if let Some(what) = wrong {
-            return Err(LawError::Trespass {
+            return Err(LawError::ContractViolation {
                 kind: plugin.kind,
                 name: plugin.name.clone(),
                 call,

@@ -19,7 +19,7 @@ pub enum LawError {
     },
     /// Opening the library loaded other libraries than its file names.
     #[error("cannot use the plugin {}: {reason}", path.display())]
-    Unexamined {
+    UnexpectedLibraries {
         /// The library.
         path: PathBuf,
         /// The problem and its remedy.
@@ -37,7 +37,7 @@ pub enum LawError {
     },
     /// The library does not have the SHA-256 that is pinned.
     #[error("the plugin {} has the SHA-256 {sha256}, not {pin} as pinned; get the library that the case was made with, or pin this one if you trust it", path.display())]
-    Pinned {
+    HashMismatch {
         /// The library.
         path: PathBuf,
         /// Expected SHA-256.
@@ -71,7 +71,7 @@ pub enum LawError {
     },
     /// The laws of an interface are incompatible.
     #[error("{reason}")]
-    Pairing {
+    Incompatible {
         /// Reason.
         reason: String,
     },
@@ -146,7 +146,7 @@ pub enum LawError {
     /// A function of the law wrote to memory outside its outputs, or returned different results for
     /// equal inputs.
     #[error("the {kind} law `{name}` {what} in {call:?}; fix the law before using it again")]
-    Trespass {
+    ContractViolation {
         /// Kind.
         kind: Kind,
         /// Name.
@@ -177,14 +177,14 @@ impl LawError {
             | Self::Overrun { kind, name, .. }
             | Self::NotFinite { kind, name, .. }
             | Self::OutOfRange { kind, name, .. }
-            | Self::Trespass { kind, name, .. }
+            | Self::ContractViolation { kind, name, .. }
             | Self::Untested { kind, name, .. } => Some((*kind, name)),
             Self::At { source, .. } => source.law(),
             Self::Unusable { .. }
-            | Self::Unexamined { .. }
-            | Self::Pinned { .. }
+            | Self::UnexpectedLibraries { .. }
+            | Self::HashMismatch { .. }
             | Self::Unknown { .. }
-            | Self::Pairing { .. }
+            | Self::Incompatible { .. }
             | Self::Kind { .. } => None,
         }
     }

@@ -196,7 +196,7 @@ impl Interface {
             _ => Some(format!("interface `{}` has no contact law", self.name)),
         };
         if let Some(reason) = reason {
-            return Err(LawError::Pairing { reason });
+            return Err(LawError::Incompatible { reason });
         }
         let mut next = 0;
         for loaded in &mut self.slots {
@@ -212,7 +212,7 @@ impl Interface {
         if let (Some(_), Some(cohesion)) = (self.healing, self.cohesion())
             && !(cohesion.has(FLAG_OPENING) && cohesion.has(FLAG_FORMS))
         {
-            return Err(LawError::Pairing {
+            return Err(LawError::Incompatible {
                 reason: format!(
                     "the cohesion law `{}` of interface `{}` forms no bonds in contact; drop `healing` or choose another cohesion",
                     cohesion.plugin.name, self.name

@@ -90,7 +90,7 @@ impl Plugin {
         let code = read()?;
         let sha256 = code.sha256.clone();
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
-            return Err(LawError::Pinned {
+            return Err(LawError::HashMismatch {
                 path: path.to_owned(),
                 pin: pin.to_owned(),
                 sha256,
@@ -134,10 +134,12 @@ impl Plugin {
         let table = outside::keep_folder(|| {
             outside::call(loading, watch::LOADING, &disturbed.loading, load)
         })?;
-        opening.check(path).map_err(|reason| LawError::Unexamined {
-            path: path.to_owned(),
-            reason,
-        })?;
+        opening
+            .check(path)
+            .map_err(|reason| LawError::UnexpectedLibraries {
+                path: path.to_owned(),
+                reason,
+            })?;
         // SAFETY: the ABI guarantees a complete static table.
         let mut plugin = unsafe { Self::from_table(table, path, &sha256, false) }?;
         plugin.disturbed = Arc::new(disturbed);
@@ -329,9 +331,9 @@ pub fn try_libraries() -> Result<(), String> {
     for library in libraries {
         send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
-                Err(LawError::Pinned { .. }) => json!(loading::CHANGED),
+                Err(LawError::HashMismatch { .. }) => json!(loading::CHANGED),
                 // The code of the library is not loaded into the process that requested the trial.
-                Err(LawError::Unexamined { reason, .. }) => json!(reason),
+                Err(LawError::UnexpectedLibraries { reason, .. }) => json!(reason),
                 _ => Value::Null,
             },
         );

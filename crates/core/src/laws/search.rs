@@ -130,7 +130,7 @@ impl SearchPath {
         let found = self.built_in.open(kind, name);
         let plugin = found.unwrap_or_else(|| Err(self.unknown(kind, name)))?;
         match pin.filter(|p| !p.eq_ignore_ascii_case(&plugin.sha256)) {
-            Some(pin) => Err(LawError::Pinned {
+            Some(pin) => Err(LawError::HashMismatch {
                 path: plugin.path,
                 pin: pin.to_owned(),
                 sha256: plugin.sha256,

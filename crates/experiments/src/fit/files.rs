@@ -16,7 +16,11 @@ use std::path::Path;
 /// The file cannot be written.
 pub fn write_evaluations(tests: &Tests, found: &SearchResult, out: &Path) -> Result<(), Error> {
     let path = out.join("evaluations.csv");
-    csv::write(&evaluations(tests, found), &path, csv::Numbers::Exponents)
+    csv::write(
+        &evaluations(tests, found),
+        &path,
+        csv::NumberFormat::Exponents,
+    )
 }
 
 /// Writes the other files of a fit into its folder; returns its JSON.
@@ -35,7 +39,11 @@ pub fn write(
     let path = out.join("fit.json");
     std::fs::write(&path, format!("{json}\n")).map_err(|e| Error::write(&path, &e))?;
     let curves = curves(tests, found, outcome);
-    csv::write(&curves, &out.join("curves.csv"), csv::Numbers::Exponents)?;
+    csv::write(
+        &curves,
+        &out.join("curves.csv"),
+        csv::NumberFormat::Exponents,
+    )?;
     let page = sheet(read, tests, found, outcome).write(&out.join("fit.html"));
     page.map_err(|e| Error::Failed(e.to_string()))?;
     draw(read, tests, found, outcome, &out.join("fit.png"))?;

@@ -28,12 +28,12 @@ pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
         )));
     }
     let path = |name: &str| plan.out.join(name);
-    csv::write(&rows.table, &path("table.csv"), csv::Numbers::Plain)?;
+    csv::write(&rows.table, &path("table.csv"), csv::NumberFormat::Plain)?;
     #[cfg(feature = "parquet")]
     crate::table::parquet::write(&rows.table, &path(PARQUET))?;
     let analysis = Analysis::of(plan, &plan.design, rows);
     let settings = settings(plan, &analysis);
-    csv::write(&settings, &path("settings.csv"), csv::Numbers::Plain)?;
+    csv::write(&settings, &path("settings.csv"), csv::NumberFormat::Plain)?;
     let page = sheet(plan, rows, &analysis).write(&path("study.html"));
     page.map_err(|e| Error::Failed(e.to_string()))?;
     let picture = path("study.png");

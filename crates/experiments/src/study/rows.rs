@@ -5,7 +5,7 @@ use super::plan::Plan;
 use crate::factor::Level;
 use crate::runs::stored::{FinishedRun, Status, numerical_error, summary};
 use crate::runs::unit::unit_of;
-use crate::table::{Cell, Column, Table, Type};
+use crate::table::{Cell, Column, ColumnType, Table};
 use fretwork_observe::quantity::Catalogue;
 use serde_json::Value as Json;
 
@@ -182,7 +182,7 @@ pub(super) fn factor_column<'a>(
         false => Column {
             name: name.clone(),
             unit: plan.unit_of(factor),
-            kind: Type::Text,
+            kind: ColumnType::Text,
             cells: levels.map(|l| Cell::Text(l.label.clone())).collect(),
         },
     }

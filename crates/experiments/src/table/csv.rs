@@ -1,13 +1,13 @@
 //! CSV files: writing tables, reading points and measured curves.
 
 use super::cells::{guarded, unguarded};
-use super::{Cell, Table, Type};
+use super::{Cell, ColumnType, Table};
 use crate::Error;
 use std::path::Path;
 
 /// Format of numbers that are not whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Numbers {
+pub enum NumberFormat {
     /// The fewest digits that read back to an equal number: `0.001`.
     Plain,
     /// Scientific notation: `1e-3`.
@@ -18,7 +18,7 @@ pub enum Numbers {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> {
+pub fn write(table: &Table, path: &Path, numbers: NumberFormat) -> Result<(), Error> {
     let text = || -> csv::Result<()> {
         let mut out = csv::Writer::from_path(path)?;
         out.write_record(table.columns.iter().map(|c| match c.unit.as_str() {
@@ -27,7 +27,9 @@ pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> 
         }))?;
         for k in 0..table.rows() {
             out.write_record(table.columns.iter().map(|c| match &c.cells[k] {
-                Cell::Number(x) if numbers == Numbers::Exponents && c.kind == Type::Real => {
+                Cell::Number(x)
+                    if numbers == NumberFormat::Exponents && c.kind == ColumnType::Real =>
+                {
                     format!("{x:e}")
                 }
                 Cell::Number(x) => format!("{x}"),

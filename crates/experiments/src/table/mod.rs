@@ -18,7 +18,7 @@ pub enum Cell {
 
 /// Type of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
+pub enum ColumnType {
     /// Numbers.
     Real,
     /// Whole numbers.
@@ -35,7 +35,7 @@ pub struct Column {
     /// SI unit, `1` for pure numbers; empty for texts.
     pub unit: String,
     /// Type of the cells.
-    pub kind: Type,
+    pub kind: ColumnType,
     /// One cell for each row.
     pub cells: Vec<Cell>,
 }
@@ -54,7 +54,7 @@ impl Column {
                 none if none.is_empty() => "1".to_owned(),
                 unit => unit,
             },
-            kind: Type::Real,
+            kind: ColumnType::Real,
             cells: values.into_iter().map(cell).collect(),
         }
     }
@@ -62,7 +62,7 @@ impl Column {
     /// Creates a column of whole numbers; `None` is unknown.
     pub fn whole(name: impl Into<String>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
         Self {
-            kind: Type::Whole,
+            kind: ColumnType::Whole,
             ..Self::real(name, "", values)
         }
     }
@@ -76,7 +76,7 @@ impl Column {
         Self {
             name: name.into(),
             unit: String::new(),
-            kind: Type::Text,
+            kind: ColumnType::Text,
             cells: texts.into_iter().map(cell).collect(),
         }
     }

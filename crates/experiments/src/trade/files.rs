@@ -8,7 +8,7 @@ use super::plan::Findings;
 use super::plan::Trade;
 use super::verdict::Verdict;
 use crate::Error;
-use crate::table::{Column, Table, Type, csv};
+use crate::table::{Column, ColumnType, Table, csv};
 use fretwork_math::statistics::interval::CONFIDENCE;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -26,7 +26,7 @@ pub fn write(trade: &Trade, answer: &Findings, out: &Path) -> Result<(String, bo
     csv::write(
         &settings(trade, found),
         &out.join("trade.csv"),
-        csv::Numbers::Exponents,
+        csv::NumberFormat::Exponents,
     )?;
     let picture = out.join("trade.png");
     let drawn = draw(trade, found, &picture)?;
@@ -144,7 +144,7 @@ fn settings(trade: &Trade, found: &Comparison) -> Table {
             of("_at_most", &|e| Some(e.at_most)),
             of("_at_most_with_reference", &|e| Some(e.bound)),
             Column {
-                kind: Type::Whole,
+                kind: ColumnType::Whole,
                 ..of("_frontier", &|e| flag(e.on_frontier))
             },
         ]);

@@ -9,7 +9,7 @@ pub use summary::{Base, CircuitSummary, Rates};
 use super::figures;
 use super::observer::{Event, EventTable};
 use super::output::Output;
-use super::picture::{Paint, Picture, Shows};
+use super::picture::{Paint, Picture, PictureContent};
 use super::quantity::Findings;
 use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW, METRE, ONE, SECOND, Unit};
 use super::series::DecimatedSeries;
@@ -363,7 +363,7 @@ impl Observer for CircuitAccount {
         }
         vec![Picture {
             name: "circuit",
-            shows: Shows::Paints(paints),
+            shows: PictureContent::Paints(paints),
         }]
     }
 

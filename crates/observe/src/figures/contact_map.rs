@@ -2,14 +2,14 @@
 
 use crate::chart::{Axis, Chart, Colours, FieldMap, quantity};
 use crate::picture::{OPEN_COLOUR, SLIP_COLOUR, STICK_COLOUR};
-use crate::tractions::{FacetTraction, SurfaceState, Zone};
+use crate::tractions::{ContactZone, FacetTraction, SurfaceState};
 use nalgebra::Vector3;
 
 /// Returns the maps of the contact of a surface: stick and slip with the tangential tractions,
 /// pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of the
 /// points of the surface where these have equal tributary areas, otherwise those of its facets.
 pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart> {
-    let touching = |k: &usize| state.zone[*k] != Zone::Open;
+    let touching = |k: &usize| state.zone[*k] != ContactZone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
     let Some(axes) = plane(state, &loaded).filter(|_| state.dimension == 3) else {
         return Vec::new();
@@ -81,9 +81,9 @@ fn zones(state: &SurfaceState, points: &[usize]) -> Colours {
         ("open", OPEN_COLOUR),
     ];
     let class = |k: &usize| match state.zone[*k] {
-        Zone::Stick => 0,
-        Zone::Slip => 1,
-        Zone::Open => 2,
+        ContactZone::Stick => 0,
+        ContactZone::Slip => 1,
+        ContactZone::Open => 2,
     };
     Colours::Classes {
         classes: classes
@@ -225,7 +225,7 @@ impl View<'_> {
     fn at_points(&self, points: &[usize]) -> Vec<Local> {
         let state = self.state;
         let local = |k: &usize| {
-            let loaded = state.zone[*k] != Zone::Open;
+            let loaded = state.zone[*k] != ContactZone::Open;
             Local::new(loaded, state.pressure[*k], &state.tangential[*k])
         };
         points.iter().map(local).collect()
@@ -234,7 +234,7 @@ impl View<'_> {
     fn at_facets(&self) -> (Shapes, Vec<Local>) {
         let tractions = self.state.facets();
         let facet = |(f, points, corners): (usize, &[u32; 3], [[f64; 2]; 3])| {
-            let open = |k: &u32| self.state.zone[*k as usize] == Zone::Open;
+            let open = |k: &u32| self.state.zone[*k as usize] == ContactZone::Open;
             let FacetTraction {
                 pressure,
                 tangential,

@@ -1,6 +1,6 @@
 //! List of the results of the observers of a run.
 
-use super::{Described, Estimate, Field, Quantity, Role, Schema, Step, Topic, Unit, Wording};
+use super::{Described, Estimate, Field, PathStep, Quantity, Role, Schema, Topic, Unit, Wording};
 use crate::warning::Warning;
 use serde_json::Value;
 use std::any::Any;
@@ -93,8 +93,8 @@ impl Findings {
         doc: impl Into<String>,
     ) -> &mut Quantity {
         let steps = path.split('.').map(|part| match part.parse() {
-            Ok(place) => Step::Place(place),
-            Err(_) => Step::Key(part.to_owned()),
+            Ok(place) => PathStep::Place(place),
+            Err(_) => PathStep::Key(part.to_owned()),
         });
         self.put(steps.collect(), value.into(), unit, doc.into())
     }
@@ -108,7 +108,7 @@ impl Findings {
         unit: Unit,
         doc: impl Into<String>,
     ) -> &mut Quantity {
-        let path = [group, key].map(|k| Step::Key(k.to_owned()));
+        let path = [group, key].map(|k| PathStep::Key(k.to_owned()));
         self.put(path.to_vec(), value.into(), unit, doc.into())
     }
 
@@ -143,7 +143,7 @@ impl Findings {
         found.sentence(name, text)
     }
 
-    fn put(&mut self, path: Vec<Step>, value: Value, unit: Unit, doc: String) -> &mut Quantity {
+    fn put(&mut self, path: Vec<PathStep>, value: Value, unit: Unit, doc: String) -> &mut Quantity {
         let quantity = Quantity {
             path,
             value,
@@ -195,12 +195,12 @@ impl Findings {
     ) {
         let value = serde_json::to_value(result).unwrap_or_default();
         let steps = path.split('.').filter(|p| !p.is_empty());
-        let steps = steps.map(|p| Step::Key(p.to_owned())).collect();
+        let steps = steps.map(|p| PathStep::Key(p.to_owned())).collect();
         self.walk(steps, value, Schema::Part(fields), doc);
     }
 
-    fn walk(&mut self, path: Vec<Step>, value: Value, schema: Schema, doc: &str) {
-        let below = |step: Step| {
+    fn walk(&mut self, path: Vec<PathStep>, value: Value, schema: Schema, doc: &str) {
+        let below = |step: PathStep| {
             let mut path = path.clone();
             path.push(step);
             path
@@ -208,13 +208,13 @@ impl Findings {
         match (value, schema) {
             (Value::Array(list), _) if !list.is_empty() => {
                 for (k, value) in list.into_iter().enumerate() {
-                    self.walk(below(Step::Place(k)), value, schema, doc);
+                    self.walk(below(PathStep::Place(k)), value, schema, doc);
                 }
             }
             (Value::Object(mut map), Schema::Part(fields)) => {
                 for field in fields {
                     if let Some(value) = map.remove(field.name) {
-                        let path = below(Step::Key(field.name.to_owned()));
+                        let path = below(PathStep::Key(field.name.to_owned()));
                         self.walk(path, value, field.schema, field.doc);
                     }
                 }
@@ -223,7 +223,7 @@ impl Findings {
             }
             (Value::Object(map), Schema::Values(_)) if !map.is_empty() => {
                 for (key, value) in map {
-                    self.walk(below(Step::Key(key)), value, schema, doc);
+                    self.walk(below(PathStep::Key(key)), value, schema, doc);
                 }
             }
             (leaf, schema) => {

@@ -87,7 +87,7 @@ pub enum Wording {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     /// Path in `summary.json`: keys, and indices in lists.
-    pub path: Vec<Step>,
+    pub path: Vec<PathStep>,
     /// Number, text, flag or null; an empty list or object where there is nothing to list.
     pub value: Value,
     /// Unit of the quantity.
@@ -110,7 +110,7 @@ pub struct Quantity {
 
 /// One step of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PathStep {
     /// Key of an object.
     Key(String),
     /// Index in a list.
@@ -130,8 +130,8 @@ impl Quantity {
 
     fn spelled(&self, place: impl Fn(usize) -> String) -> String {
         let steps = self.path.iter().map(|step| match step {
-            Step::Key(key) => key.clone(),
-            Step::Place(k) => place(*k),
+            PathStep::Key(key) => key.clone(),
+            PathStep::Place(k) => place(*k),
         });
         steps.collect::<Vec<_>>().join(".")
     }
@@ -139,7 +139,7 @@ impl Quantity {
     /// Returns the short name.
     pub fn label(&self) -> String {
         match (self.label.as_str(), self.path.last()) {
-            ("", Some(Step::Key(key))) => key.replace('_', " "),
+            ("", Some(PathStep::Key(key))) => key.replace('_', " "),
             ("", _) => self.name(),
             (label, _) => label.to_owned(),
         }

@@ -1,6 +1,6 @@
 //! Quantities as nested objects and lists, in the order in which they were added.
 
-use super::{Findings, Quantity, Step};
+use super::{Findings, PathStep, Quantity};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
@@ -15,7 +15,7 @@ enum Node<'a> {
 const NOTHING: &Value = &Value::Null;
 
 impl<'a> Node<'a> {
-    fn insert(&mut self, path: &'a [Step], value: &'a Value) {
+    fn insert(&mut self, path: &'a [PathStep], value: &'a Value) {
         let Some((step, rest)) = path.split_first() else {
             // A group without entries is replaced by the entry.
             if matches!(self, Self::Leaf(_)) {
@@ -24,7 +24,7 @@ impl<'a> Node<'a> {
             return;
         };
         let below = match step {
-            Step::Key(key) => {
+            PathStep::Key(key) => {
                 if !matches!(self, Self::Map(_)) {
                     *self = Self::Map(Vec::new());
                 }
@@ -36,7 +36,7 @@ impl<'a> Node<'a> {
                 });
                 &mut map[place].1
             }
-            Step::Place(k) => {
+            PathStep::Place(k) => {
                 if !matches!(self, Self::List(_)) {
                     *self = Self::List(Vec::new());
                 }

@@ -1,6 +1,6 @@
 //! Search of a results folder for a state to resume from.
 
-use super::{Frame, Identity, Kind, ResumeError};
+use super::{Frame, FrameKind, Identity, ResumeError};
 use crate::folder_lock::{FolderLock, RUN_LOCK};
 use crate::results::PreviousResults;
 use fretwork_observe::encoding::decode;
@@ -142,11 +142,11 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<FolderContent
     // The results file is marked as complete, and the summary of this run shows that all other
     // files are complete too.
     let is_finished =
-        frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
+        frame.kind == FrameKind::Ended && finished(folder, &Identity::name(&frame.identity));
     if !later && is_finished {
         return Ok(FolderContents::Finished);
     }
-    let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
+    let mut states = frames.into_iter().filter(|f| f.kind == FrameKind::State);
     match states.next_back() {
         // Starting again would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),

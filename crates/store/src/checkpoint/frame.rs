@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 /// Kind of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FrameKind {
     /// The run has started, without a state to resume from.
     Begun,
     /// A state to resume from.
@@ -25,7 +25,7 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
     /// Kind of the frame.
-    pub kind: Kind,
+    pub kind: FrameKind,
     /// Number of the frame in its run, increasing with time.
     pub number: u64,
     /// Format of the identity and the state, see [`Frame::FORMAT`].
@@ -53,9 +53,9 @@ impl Frame {
     /// Serializes the frame.
     pub fn bytes(&self) -> Vec<u8> {
         let kind: u32 = match self.kind {
-            Kind::Begun => 0,
-            Kind::State => 1,
-            Kind::Ended => 2,
+            FrameKind::Begun => 0,
+            FrameKind::State => 1,
+            FrameKind::Ended => 2,
         };
         let parts = [self.version.as_bytes(), &self.identity, &self.state];
         let mut bytes = Vec::with_capacity(BODY + parts.iter().map(|p| p.len()).sum::<usize>());
@@ -93,9 +93,9 @@ impl Frame {
             return None;
         }
         let kind = match word(12)? {
-            0 => Kind::Begun,
-            1 => Kind::State,
-            2 => Kind::Ended,
+            0 => FrameKind::Begun,
+            1 => FrameKind::State,
+            2 => FrameKind::Ended,
             _ => return None,
         };
         Some(Self {
@@ -123,7 +123,7 @@ mod tests {
 
     fn frame() -> Frame {
         Frame {
-            kind: Kind::State,
+            kind: FrameKind::State,
             number: 7,
             format: Frame::FORMAT,
             version: "0.1.0".into(),

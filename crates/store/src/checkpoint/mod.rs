@@ -17,6 +17,6 @@ mod writer;
 
 pub use error::ResumeError;
 pub use find::{FolderState, ResumePoint, SUMMARY_FILE, find};
-pub use frame::{Frame, Kind};
+pub use frame::{Frame, FrameKind};
 pub use identity::Identity;
 pub use writer::CheckpointWriter;

@@ -1,6 +1,6 @@
 //! Schedule of checkpoints.
 
-use super::{Frame, Identity, Kind};
+use super::{Frame, FrameKind, Identity};
 use fretwork_observe::encoding::{EncodingError, encode};
 use fretwork_scene::case::Checkpoint;
 use std::time::{Duration, Instant};
@@ -52,7 +52,7 @@ impl CheckpointWriter {
     }
 
     /// Returns the next frame: its number, which determines its slot, and its bytes.
-    pub fn frame(&mut self, kind: Kind, state: Vec<u8>) -> (u64, Vec<u8>) {
+    pub fn frame(&mut self, kind: FrameKind, state: Vec<u8>) -> (u64, Vec<u8>) {
         let frame = Frame {
             kind,
             number: self.next,

@@ -11,7 +11,7 @@ use std::io::Write as _;
 /// Number format of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Kind {
+pub(crate) enum NumberType {
     /// 254 intervals between the smallest and the largest value.
     U8,
     /// 65,534 intervals between the smallest and the largest value.
@@ -27,7 +27,7 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug, Serialize)]
 struct Head {
     name: String,
-    kind: Kind,
+    kind: NumberType,
     count: usize,
     at: usize,
     low: f64,
@@ -46,7 +46,7 @@ pub(crate) struct Arrays {
 
 impl Arrays {
     /// Adds an array.
-    pub fn push(&mut self, name: impl Into<String>, kind: Kind, values: &[f64]) {
+    pub fn push(&mut self, name: impl Into<String>, kind: NumberType, values: &[f64]) {
         let finite = || values.iter().copied().filter(|v| v.is_finite());
         let low = finite().fold(f64::INFINITY, f64::min);
         let high = finite().fold(f64::NEG_INFINITY, f64::max);
@@ -69,23 +69,23 @@ impl Arrays {
             (true, true) => ((v - low) / (high - low) * (most - 1.0)).round(),
         };
         match kind {
-            Kind::U8 => self
+            NumberType::U8 => self
                 .bytes
                 .extend(values.iter().map(|v| code(*v, 255.0) as u8)),
-            Kind::U16 => {
+            NumberType::U16 => {
                 // Differences between neighbours are small: they compress better with low and high
                 // bytes stored separately.
                 let codes: Vec<u16> = values.iter().map(|v| code(*v, 65535.0) as u16).collect();
                 self.bytes.extend(codes.iter().map(|c| *c as u8));
                 self.bytes.extend(codes.iter().map(|c| (c >> 8) as u8));
             }
-            Kind::U32 => self
+            NumberType::U32 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| (*v as u32).to_le_bytes())),
-            Kind::F32 => self
+            NumberType::F32 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| (*v as f32).to_le_bytes())),
-            Kind::F64 => self
+            NumberType::F64 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| v.to_le_bytes())),
         }
@@ -98,12 +98,12 @@ impl Arrays {
             return name.clone();
         }
         let name = format!("#{}", self.known.len());
-        self.push_known(&name, Kind::F32, values);
+        self.push_known(&name, NumberType::F32, values);
         name
     }
 
     /// Adds an array that [`Self::number`] finds again.
-    pub fn push_known(&mut self, name: &str, kind: Kind, values: &[f64]) {
+    pub fn push_known(&mut self, name: &str, kind: NumberType, values: &[f64]) {
         self.push(name, kind, values);
         let bits = values.iter().map(|v| v.to_bits()).collect();
         self.known.entry(bits).or_insert_with(|| name.to_owned());
@@ -137,10 +137,10 @@ impl Arrays {
     fn parts(&self) -> impl Iterator<Item = (&Head, &[u8])> {
         self.heads.iter().map(|head| {
             let size = match head.kind {
-                Kind::U8 => 1,
-                Kind::U16 => 2,
-                Kind::U32 | Kind::F32 => 4,
-                Kind::F64 => 8,
+                NumberType::U8 => 1,
+                NumberType::U16 => 2,
+                NumberType::U32 | NumberType::F32 => 4,
+                NumberType::F64 => 8,
             };
             (head, &self.bytes[head.at..head.at + size * head.count])
         })
@@ -174,11 +174,11 @@ mod tests {
     #[test]
     fn what_is_equal_is_left_out_and_the_rest_keeps_its_bytes() {
         let mut first = Arrays::default();
-        first.push("a", Kind::U8, &[0.0, 1.0, f64::NAN]);
-        first.push("b", Kind::F64, &[2.5]);
+        first.push("a", NumberType::U8, &[0.0, 1.0, f64::NAN]);
+        first.push("b", NumberType::F64, &[2.5]);
         let mut second = Arrays::default();
-        second.push("a", Kind::U8, &[0.0, 1.0, f64::NAN]);
-        second.push("b", Kind::F64, &[3.5]);
+        second.push("a", NumberType::U8, &[0.0, 1.0, f64::NAN]);
+        second.push("b", NumberType::F64, &[3.5]);
         let rest = second.without_those_of(&first);
         let parts: Vec<_> = rest
             .parts()
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(codes[0], [0, 254, 255]);
         // The range belongs to the array: equal codes over another range are another array.
         let mut third = Arrays::default();
-        third.push("a", Kind::U8, &[0.0, 2.0, f64::NAN]);
+        third.push("a", NumberType::U8, &[0.0, 2.0, f64::NAN]);
         assert_eq!(third.without_those_of(&first).parts().count(), 1);
     }
 }

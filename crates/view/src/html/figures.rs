@@ -1,7 +1,7 @@
 //! Figures of a page: the charts that observers and other programs describe, in the form that the
 //! page's scripts read. Their numbers are packed separately.
 
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use crate::html::statistics::Statistics;
 use fretwork_observe::chart::{Axis, Chart, Colours, FieldMap, Figure, Series, Style};
@@ -190,11 +190,11 @@ fn field(field: &FieldMap, numbers: &mut Arrays) -> Value {
 
 /// Double precision is used where rows are closer than single precision resolves, such as the times
 /// of long runs.
-fn kind(values: &[f64]) -> Kind {
+fn kind(values: &[f64]) -> NumberType {
     let merges = |pair: &[f64]| pair[0] != pair[1] && pair[0] as f32 == pair[1] as f32;
     match values.windows(2).any(merges) {
-        true => Kind::F64,
-        false => Kind::F32,
+        true => NumberType::F64,
+        false => NumberType::F32,
     }
 }
 

@@ -53,5 +53,5 @@ fn fits(law: &Interface) -> Result<(), LawError> {
         ),
         Some(_) => return Ok(()),
     };
-    Err(LawError::Pairing { reason })
+    Err(LawError::Incompatible { reason })
 }

@@ -4,7 +4,7 @@
 use super::visit::{Free, Load, MeasureErrors, Update, Visit, visit_one_by_one, visit_with};
 use super::{Bonded, Full, Plain, RigidBodies, Row, RowKind, SolverBodies, SolverBody, Unbonded};
 use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
-use crate::lanes::Instructions;
+use crate::lanes::InstructionSet;
 use crate::solve::form::{ContactForm, Elastic, Mobility};
 
 /// Returns a pseudo-random number between -1 and 1.
@@ -176,7 +176,7 @@ impl<S: Space, K: RowKind<S>> Contacts<S, K> {
     }
 
     /// Visits several contacts at a time, or one by one.
-    fn visit<V: Visit>(&mut self, with: Option<Instructions>, groups: &[u32], what: &mut V) {
+    fn visit<V: Visit>(&mut self, with: Option<InstructionSet>, groups: &[u32], what: &mut V) {
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         let rows = (&mut self.rows[..], &self.pairs[..]);
         match with {
@@ -206,7 +206,7 @@ fn same<S: Space, K: RowKind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
     // Groups of all remainders, up to the end of the prefetch distance.
     let groups = [0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
     let all = [0, 145];
-    for with in Instructions::of_this_machine() {
+    for with in InstructionSet::of_this_machine() {
         let (mut one, mut several) = (start.clone(), start.clone());
         for relaxation in [1.0, 1.45, 1.0] {
             one.visit(None, &groups, &mut Update(relaxation));

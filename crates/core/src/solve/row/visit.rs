@@ -5,7 +5,7 @@ use super::kind::{Row, RowKind};
 use super::solver_bodies::{SolverBodies, SolverBody};
 use super::state::Moving;
 use crate::geometry::space::Space;
-use crate::lanes::{BatchMut, Instructions, Lane, LaneVector, SUMS, Wide, prefetch};
+use crate::lanes::{BatchMut, InstructionSet, Lane, LaneVector, SUMS, Wide, prefetch};
 use crate::solve::error::{ROUNDINGS, Scale, Sums};
 
 /// An operation on rows.
@@ -34,7 +34,7 @@ pub fn visit<S: Space, K: RowKind<S>>(
 ) {
     // Groups of a single contact would leave three of four lanes idle.
     let wide =
-        (rows.len() >= 2 * groups.len()).then(|| Instructions::of_this_machine().next_back());
+        (rows.len() >= 2 * groups.len()).then(|| InstructionSet::of_this_machine().next_back());
     match wide.flatten() {
         // SAFETY: the machine has these instructions.
         Some(with) => unsafe { visit_with(with, (rows, pairs), groups, solver_bodies, what) },
@@ -62,7 +62,7 @@ pub(super) fn visit_one_by_one<S: Space, K: RowKind<S>>(
 /// # Safety
 /// The machine has the instructions.
 pub(super) unsafe fn visit_with<S: Space, K: RowKind<S>>(
-    with: Instructions,
+    with: InstructionSet,
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,

@@ -16,7 +16,7 @@ use super::{grains, mean, since};
 use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
-use crate::picture::{Picture, Shows};
+use crate::picture::{Picture, PictureContent};
 use crate::quantity::unit::{ENERGY, ONE};
 use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
@@ -422,7 +422,7 @@ impl Observer for ThirdBody {
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "chains",
-            shows: Shows::Chains(snapshot::links(run)),
+            shows: PictureContent::Chains(snapshot::links(run)),
         }]
     }
 

@@ -2,7 +2,7 @@
 //! stored as its first state and a displacement.
 
 use super::states;
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 
 const VIEW: &str = "bodies";
@@ -71,19 +71,19 @@ impl Bodies {
             points.extend(chain.points.iter().flatten().copied());
             starts.push((points.len() / 3) as f64);
         }
-        arrays.push("body.start", Kind::U32, &starts);
+        arrays.push("body.start", NumberType::U32, &starts);
         let of: Vec<f64> = shown.iter().map(|c| c.body as f64).collect();
-        arrays.push("body.id", Kind::U32, &of);
+        arrays.push("body.id", NumberType::U32, &of);
         // The outlines of rough surfaces are fine against their size.
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
             let values: Vec<f64> = points.iter().skip(axis).step_by(3).copied().collect();
-            arrays.push(format!("body.{letter}"), Kind::F32, &values);
+            arrays.push(format!("body.{letter}"), NumberType::F32, &values);
             let values: Vec<f64> = shifts.iter().map(|s| s[axis]).collect();
-            arrays.push(format!("body.shift.{letter}"), Kind::F64, &values);
+            arrays.push(format!("body.shift.{letter}"), NumberType::F64, &values);
         }
         if dimension == 2 {
             let side: Vec<f64> = shown.iter().map(|c| side(c, grains)).collect();
-            arrays.push("body.side", Kind::U32, &side);
+            arrays.push("body.side", NumberType::U32, &side);
         }
         Ok(())
     }

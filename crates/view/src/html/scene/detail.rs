@@ -1,6 +1,6 @@
 //! Level of detail of the states in the page.
 
-use crate::html::arrays::Kind;
+use crate::html::arrays::NumberType;
 
 /// If fewer states than this fit at a level of detail, a coarser level is chosen.
 const ENOUGH: [usize; 3] = [10, 8, 5];
@@ -48,8 +48,12 @@ impl Detail {
     }
 
     /// Number format of the values of fields.
-    pub fn kind(self) -> Kind {
-        if self.level == 0 { Kind::U16 } else { Kind::U8 }
+    pub fn kind(self) -> NumberType {
+        if self.level == 0 {
+            NumberType::U16
+        } else {
+            NumberType::U8
+        }
     }
 
     /// Whether contacts are shown.

@@ -4,7 +4,7 @@ use super::detail::Detail;
 use super::outline::{flat, solid};
 use super::range::{FieldInfo, Ranges};
 use super::{Note, push_points, states};
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use fretwork_store::results::shapes::Shaped;
 use fretwork_store::results::shapes::ShapedPiece;
@@ -125,10 +125,14 @@ impl Grains {
         let flat_points: Vec<f64> = self.places.iter().flatten().copied().collect();
         push_points(arrays, "grain", &flat_points, self.dimension);
         for (k, name) in self.turns.iter().enumerate() {
-            arrays.push(format!("grain.turn{k}"), Kind::U16, &pick(&column(name)?));
+            arrays.push(
+                format!("grain.turn{k}"),
+                NumberType::U16,
+                &pick(&column(name)?),
+            );
         }
         let shape = self.shape_of_rows(&column("id")?, &column("corners")?);
-        arrays.push("grain.shape", Kind::U32, &pick(&shape));
+        arrays.push("grain.shape", NumberType::U32, &pick(&shape));
         for field in &self.fields {
             if OF_GEOMETRY.contains(&field.name.as_str()) {
                 continue;
@@ -136,8 +140,8 @@ impl Grains {
             let values = pick(&column(&field.name)?);
             note("grains", &field.name, &values);
             let kind = match field.name.as_str() {
-                "id" => Kind::U32,
-                "radius" => Kind::U16,
+                "id" => NumberType::U32,
+                "radius" => NumberType::U16,
                 _ => detail.kind(),
             };
             arrays.push(format!("grain:{}", field.name), kind, &values);
@@ -204,7 +208,7 @@ impl Grains {
             points.extend(corners.into_iter().flatten());
             starts.push((points.len() / 3) as f64);
         }
-        arrays.push("outline.start", Kind::U32, &starts);
+        arrays.push("outline.start", NumberType::U32, &starts);
         push_points(arrays, "outline", &points, self.dimension);
     }
 }

@@ -3,7 +3,7 @@
 
 use super::range::{FieldInfo, Ranges};
 use super::{Note, Places, place, push_points};
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
@@ -99,7 +99,7 @@ impl Meshes {
             };
             push_points(arrays, &name, &pick(&mesh.points, 3, &mesh.used), dimension);
             let elements: Vec<f64> = mesh.elements.iter().map(|p| *p as f64).collect();
-            arrays.push(format!("{name}.element"), Kind::U32, &elements);
+            arrays.push(format!("{name}.element"), NumberType::U32, &elements);
             for field in &mesh.fields {
                 let place_of = if field.of_cells {
                     "CellData"
@@ -133,7 +133,7 @@ impl Meshes {
                     let value = |p: &usize| get.of(&values[field.width * p..field.width * (p + 1)]);
                     let values: Vec<f64> = rows.iter().map(value).collect();
                     note(&name, &part, &values);
-                    arrays.push(format!("{name}:{part}"), Kind::U16, &values);
+                    arrays.push(format!("{name}:{part}"), NumberType::U16, &values);
                 }
             }
         }

@@ -11,7 +11,7 @@ mod outline;
 mod range;
 mod states;
 
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use bodies::Bodies;
 use contacts::Contacts;
@@ -242,7 +242,7 @@ fn body_names(run: &RunFolder) -> Value {
 fn push_points(arrays: &mut Arrays, name: &str, points: &[f64], dimension: usize) {
     for (axis, letter) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
         let values: Vec<f64> = points.iter().skip(axis).step_by(3).copied().collect();
-        arrays.push(format!("{name}.{letter}"), Kind::U16, &values);
+        arrays.push(format!("{name}.{letter}"), NumberType::U16, &values);
     }
 }
 

@@ -8,7 +8,7 @@ mod zones;
 
 use crate::{ColourScale, Disk, Frame, Link, LinkState, Outline, Paint};
 use fretwork_core::view::{BallView, BodyColumns, RunView, SurfaceView};
-use fretwork_observe::picture::Shows;
+use fretwork_observe::picture::PictureContent;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
 use nalgebra::Vector3;
@@ -117,28 +117,30 @@ impl Camera {
     pub fn frame(
         &self,
         run: &dyn RunView,
-        shows: &Shows,
+        shows: &PictureContent,
         title: &str,
         caption: Vec<String>,
     ) -> Option<Frame> {
         let flat = run.dimension() == 2;
         match shows {
-            Shows::Charts(_) => return None,
-            Shows::Chains(_) | Shows::Stress if !flat => return None,
+            PictureContent::Charts(_) => return None,
+            PictureContent::Chains(_) | PictureContent::Stress if !flat => return None,
             _ => {}
         }
         let made: Vec<Paint>;
         let (paints, scale) = match shows {
-            Shows::Scene if self.paints.is_empty() => {
+            PictureContent::Scene if self.paints.is_empty() => {
                 let scale;
                 (made, scale) = quantity::of(run);
                 (&made[..], scale)
             }
-            Shows::Scene => (&self.paints[..], None),
-            Shows::Bonds | Shows::Chains(_) | Shows::Charts(_) => (&[][..], None),
-            Shows::Paints(paints) => (&paints[..], None),
-            Shows::Stress => (&[][..], mesh::scale(run, self.window)),
-            Shows::Values { values, label, top } => {
+            PictureContent::Scene => (&self.paints[..], None),
+            PictureContent::Bonds | PictureContent::Chains(_) | PictureContent::Charts(_) => {
+                (&[][..], None)
+            }
+            PictureContent::Paints(paints) => (&paints[..], None),
+            PictureContent::Stress => (&[][..], mesh::scale(run, self.window)),
+            PictureContent::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
                 let scale = ColourScale {
                     label: (*label).to_owned(),
@@ -157,10 +159,12 @@ impl Camera {
             links = self.lines(run, shows);
             bodies = outlines(run, self.window);
             bodies.extend(zones::solids(run, self.window));
-            if matches!(shows, Shows::Stress) {
+            if matches!(shows, PictureContent::Stress) {
                 along = zones::lines(run, self.window);
             }
-            let shown = scale.as_ref().filter(|_| matches!(shows, Shows::Stress));
+            let shown = scale
+                .as_ref()
+                .filter(|_| matches!(shows, PictureContent::Stress));
             bodies.extend(mesh::elements(run, self.window, shown));
             if shown.is_none() {
                 bodies.extend(mesh::grains(run, self.window, paints));
@@ -183,16 +187,16 @@ impl Camera {
     }
 
     /// The contacts drawn as lines (2D).
-    fn lines(&self, run: &dyn RunView, shows: &Shows) -> Vec<Link> {
+    fn lines(&self, run: &dyn RunView, shows: &PictureContent) -> Vec<Link> {
         match shows {
             // A picture of the bond states shows no forces, which would cover it.
-            Shows::Bonds => {
+            PictureContent::Bonds => {
                 let bonds = links(run, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
                 bonds.map(|l| Link { width: 0.3, ..l }).collect()
             }
-            Shows::Chains(pairs) => forces(run, self.window, pairs),
-            Shows::Scene if self.paints.is_empty() => links(run, self.window),
+            PictureContent::Chains(pairs) => forces(run, self.window, pairs),
+            PictureContent::Scene if self.paints.is_empty() => links(run, self.window),
             // Nothing is drawn over the grains, since their colours carry the information.
             _ => Vec::new(),
         }

@@ -4,7 +4,7 @@
 use super::images;
 use crate::{Outline, ZoneLine};
 use fretwork_core::view::RunView;
-use fretwork_observe::tractions::{SurfaceState, Zone};
+use fretwork_observe::tractions::{ContactZone, SurfaceState};
 
 fn surfaces(run: &dyn RunView) -> impl Iterator<Item = (usize, SurfaceState)> {
     (0..run.system_count()).filter_map(move |k| Some((k, SurfaceState::of(run, k)?)))
@@ -21,7 +21,7 @@ pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
             let middle = (a + b) * 0.5;
             for (k, from, to) in [(ends[0], a, middle), (ends[1], middle, b)] {
                 let zone = state.zone[k as usize];
-                if zone == Zone::Open {
+                if zone == ContactZone::Open {
                     continue;
                 }
                 let along = to - from;
@@ -29,7 +29,7 @@ pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
                     out.push(ZoneLine {
                         a: [x, from[1]],
                         b: [x + along[0], to[1]],
-                        slips: zone == Zone::Slip,
+                        slips: zone == ContactZone::Slip,
                     });
                 }
             }
