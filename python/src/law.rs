@@ -39,7 +39,7 @@ fn laws(py: Python<'_>, name: Option<&str>, plugin_path: Vec<PathBuf>) -> PyResu
     py.detach(|| {
         let Some(name) = name else {
             let all = path.laws();
-            path.try_out(
+            path.test_loading(
                 all.iter()
                     .map(|(kind, name, _)| (*kind, name.as_str(), None)),
             );
@@ -168,7 +168,7 @@ fn named(path: &SearchPath, name: &str) -> PyResult<Vec<Plugin>> {
         );
         let message = format!(
             "there is no law named `{name}` in {}{proposal}",
-            path.looked()
+            path.searched()
         );
         return Err(PyValueError::new_err(message));
     }

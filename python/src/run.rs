@@ -7,7 +7,7 @@ use crate::observer::{PythonObserver, Wishes};
 use crate::search::search_path;
 use crate::workers::Workers;
 use fretwork::cli;
-use fretwork::laws::watch::{self, Saved};
+use fretwork::laws::watch::{self, RescueOutcome};
 use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
@@ -74,7 +74,7 @@ fn watch_laws() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         // Without a watch thread laws have no time limit.
-        let _ = watch::watch(LAW_TIMEOUT, |who, saved: Saved| {
+        let _ = watch::watch(LAW_TIMEOUT, |who, saved: RescueOutcome| {
             let text = format!(
                 "{who}; {}; the thread that calls it is lost: start Python again",
                 saved.words()

@@ -13,7 +13,7 @@ pub fn arm() -> Armed {
     #[cfg(unix)]
     posix::arm();
     #[cfg(not(unix))]
-    crate::out_of_memory::on_refusal(|bytes| {
+    crate::out_of_memory::on_allocation_failure(|bytes| {
         super::output::report(&format!("error: {}", no_memory(bytes)));
         std::process::exit(FAILED.into())
     });
@@ -130,7 +130,7 @@ mod posix {
             if reserve.try_reserve_exact(RESERVED).is_ok() {
                 RESERVE.store(Box::into_raw(Box::new(reserve)), Ordering::SeqCst);
             }
-            out_of_memory::on_refusal(on_refused_memory);
+            out_of_memory::on_allocation_failure(on_refused_memory);
         });
         ARMED.store(true, Ordering::SeqCst);
     }

@@ -85,7 +85,10 @@ fn law(path: &SearchPath, kind: &str, name: &str) -> Option<LawInfo> {
     if !built_in().names().any(|own| own == (kind, name)) {
         return None;
     }
-    let plugin = path.find(kind, name).ok().filter(|p| path.is_own(p))?;
+    let plugin = path
+        .find(kind, name)
+        .ok()
+        .filter(|p| path.belongs_to_program(p))?;
     let parameter = |f: &crate::laws::LawField| LawParameter {
         name: f.name.clone(),
         unit: f.unit.clone(),

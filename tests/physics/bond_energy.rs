@@ -5,7 +5,7 @@ use fretwork::geometry::space::Space;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
 use fretwork::scene::{Dim2, Dim3, LoadedCase, load_text};
-use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
+use fretwork_observe::fracture::{FractureSummary, InterfaceBonds, Reference};
 use fretwork_observe::summary::Summary;
 use std::path::Path;
 
@@ -44,7 +44,7 @@ fn run(loaded: &LoadedCase) -> Summary {
 
 /// Pulls one bond in steps of an opening (m) beyond its break, with the given damage law and
 /// coupling.
-fn pulled(case: &str, opening: f64, sets: &[&str]) -> (BondEnergies, Summary) {
+fn pulled(case: &str, opening: f64, sets: &[&str]) -> (InterfaceBonds, Summary) {
     let step = opening / SPEED;
     let mut all = vec![
         format!("time.step={step:e}"),
@@ -290,7 +290,7 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
 
 /// Rotates a parallel bond in bending or twist alone until it breaks, in steps of an angle (rad);
 /// returns the released energy and the report on it.
-fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Option<String>) {
+fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (InterfaceBonds, Option<String>) {
     let more = |sign: f64| {
         let to = sign * last;
         motion.replace(
@@ -340,7 +340,7 @@ fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Optio
 #[test]
 fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
     let (stress, stiffness, steps) = (1e6f64, 1e10, 2000);
-    let check = |bond: &BondEnergies, reported: &Option<String>, energy: f64| {
+    let check = |bond: &InterfaceBonds, reported: &Option<String>, energy: f64| {
         assert!(bond.broken == 1 && bond.comparable, "{bond:?}");
         // The bond breaks in the step after the critical angle, which takes more than a thousand
         // steps.

@@ -232,7 +232,7 @@ fn painleves_rod_has_a_finite_impulse() {
 #[test]
 fn a_heap_of_polygons_settles_and_its_ledger_closes() {
     let mut s = scene("verification/polygon_heap", &[]);
-    let fixed = s.state.bodies.still();
+    let fixed = s.state.bodies.fixed_bodies();
     let moving = (0..s.state.bodies.len()).filter(|b| !fixed[*b]);
     let weight: f64 = moving.map(|b| s.state.bodies.mass[b]).sum::<f64>() * G;
     let (mut carried, mut deepest) = (0.0, 0.0f64);

@@ -1,7 +1,7 @@
 //! Memory of large arrays in huge pages: the arrays of a step are larger than the memory that the
 //! processor's translation buffer covers with pages of 4 KiB.
 
-use crate::out_of_memory::refused;
+use crate::out_of_memory::report_allocation_failure;
 use std::alloc::{GlobalAlloc, Layout, System};
 
 /// Size from which allocations request huge pages (bytes): any block of this size contains a whole
@@ -28,7 +28,7 @@ pub struct HugePages;
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
     if start.is_null() {
-        refused(size);
+        report_allocation_failure(size);
     }
     /// A multiple of the page size of any usual machine, which `madvise` asks for.
     const PAGE: usize = 64 << 10;
@@ -55,7 +55,7 @@ fn advise(start: *mut u8, size: usize) {
 #[cfg(not(target_os = "linux"))]
 fn advise(start: *mut u8, size: usize) {
     if start.is_null() {
-        refused(size);
+        report_allocation_failure(size);
     }
 }
 

@@ -207,23 +207,23 @@ impl<S: Space> LargeStrain<S> {
     }
 
     /// Returns the tangent of a step, including that of damping over h theta, in the pattern of the
-    /// stiffness. With `positive` the negative part of each element is left out.
+    /// stiffness.
     pub fn tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
         self.sum_of_elements(step, stiffness, |_, _| {})
     }
 
-    /// The tangent without what is negative of each element.
+    /// Returns the tangent without the negative part of each element.
     pub fn positive_tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
         self.sum_of_elements(step, stiffness, |own, side| {
             let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
             modes.eigenvalues.apply(|l| *l = l.max(0.0));
-            // Symmetric: rows are columns.
+            // The matrix is symmetric: rows are columns.
             own.copy_from_slice(modes.recompose().as_slice());
         })
     }
 
-    /// The sum of the tangents of the elements, each changed by `edit`, which is given its numbers
-    /// and that of its rows.
+    /// Returns the sum of the tangents of the elements, each changed by `edit`, which receives its
+    /// numbers and the number of its rows.
     fn sum_of_elements(
         &self,
         step: &Stretch,
@@ -238,7 +238,6 @@ impl<S: Space> LargeStrain<S> {
             };
             let mut own = self.element_tangent(simplex, &at, step);
             let own = &mut own[..side * side];
-                // The matrix is symmetric: rows are columns.
             edit(own, side);
             let slots = &self.slots[e * side * side..(e + 1) * side * side];
             for (value, slot) in own.iter().zip(slots) {

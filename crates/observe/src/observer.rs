@@ -166,7 +166,7 @@ pub trait Observer: Debug + Send {
     }
 
     /// Encodes the state that the observer carries from step to step for a checkpoint, by
-    /// [`fretwork_core::code::encode`]; no bytes if there is none.
+    /// [`fretwork_core::encoding::encode`]; no bytes if there is none.
     ///
     /// # Errors
     /// The state cannot be encoded.

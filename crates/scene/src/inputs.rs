@@ -42,14 +42,15 @@ const WIDE: usize = 160;
 ///
 /// # Examples
 /// ```
-/// use fretwork_scene::inputs::{From, of};
+/// use fretwork_scene::inputs::{InputSource, of};
 /// let text = r#"(name: "a", dimension: 2, time: (step: 1e-3, end: 0.1), materials: {}, interfaces: [])"#;
 /// let inputs = of(text)?;
 /// let find = |path: &str| inputs.iter().find(|i| i.path == path).unwrap();
 /// let step = find("time.step");
-/// assert_eq!((step.value.as_str(), step.unit, step.from), ("0.001", "s", From::Given));
-/// assert_eq!(find("time.theta").from, From::Default);
-/// assert_eq!(find("friction").from, From::NotSet);
+/// let read = (step.value.as_str(), step.unit, step.from);
+/// assert_eq!(read, ("0.001", "s", InputSource::Given));
+/// assert_eq!(find("time.theta").from, InputSource::Default);
+/// assert_eq!(find("friction").from, InputSource::NotSet);
 /// # Ok::<(), String>(())
 /// ```
 pub fn of(text: &str) -> Result<Vec<Input>, String> {

@@ -49,7 +49,7 @@ pub fn build(
     };
     check_pins(case).map_err(|f| source.locate(f))?;
     let wanted = case.interfaces.iter().flat_map(laws_of);
-    path.try_out(wanted.map(|(kind, name)| {
+    path.test_loading(wanted.map(|(kind, name)| {
         let pin = case.pins.get(&format!("{kind}/{name}"));
         (kind, name, pin.map(String::as_str))
     }));
@@ -225,7 +225,7 @@ impl FromFile {
             Err(error) => source.named_at(&path, error),
             Ok(missing) => at(ValidationError::new(
                 "parameters_from",
-                format!("there is no file `{from}.ron` in {}", missing.looked),
+                format!("there is no file `{from}.ron` in {}", missing.searched),
             )
             .expected(format!("one of {}", missing.available))
             .nearest(missing.nearest.as_deref())),
@@ -393,11 +393,11 @@ fn find_law(
         LawError::Unknown {
             available,
             nearest,
-            looked,
+            searched,
             ..
         } => ValidationError::new(
             slot,
-            format!("there is no {kind} law named `{name}` in {looked}"),
+            format!("there is no {kind} law named `{name}` in {searched}"),
         )
         .expected(format!("one of {available}"))
         .nearest(nearest.as_deref()),

@@ -338,7 +338,7 @@ impl MaterialLibrary {
         MissingMaterial {
             nearest: nearest(name, names.iter().map(String::as_str)).map(str::to_owned),
             available: names.join(", "),
-            looked: folders.chain(built_in).collect::<Vec<_>>().join(", "),
+            searched: folders.chain(built_in).collect::<Vec<_>>().join(", "),
         }
     }
 }
@@ -351,5 +351,5 @@ pub struct MissingMaterial {
     /// All available names.
     pub available: String,
     /// The folders that were searched.
-    pub looked: String,
+    pub searched: String,
 }

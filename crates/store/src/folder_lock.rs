@@ -66,7 +66,7 @@ fn file_id(_: &std::fs::Metadata) -> Option<FileId> {
 }
 
 impl FolderLock {
-    /// Owns an existing folder by a lock on the file `mark` in it, which is created if necessary
+    /// Owns an existing folder by an exclusive lock on a file in it, which is created if necessary
     /// and left there.
     ///
     /// # Errors

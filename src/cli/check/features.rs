@@ -108,8 +108,8 @@ impl Features {
         self.list("imposed force", drives(|d| matches!(d, Dof::Force(_))));
         let servo = |d: &Dof| matches!(d, Dof::Pressure { .. });
         self.list("servo pressure", drives(servo));
-        let (gates, driven) = (s.gates().iter(), s.bodies().driven);
-        let timed = gates.map(|(place, time)| format!("{} at {time:e} s", driven[*place].name));
+        let (removals, driven) = (s.removals().iter(), s.bodies().driven);
+        let timed = removals.map(|(place, time)| format!("{} at {time:e} s", driven[*place].name));
         let opened = case.phases.iter().flat_map(|p| {
             let open = p.open.iter();
             open.map(|body| format!("{body} with phase {}", p.name))

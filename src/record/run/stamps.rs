@@ -102,7 +102,7 @@ impl CertificateCache {
         }
         // A foreign law may end the process in which it is tested, or corrupt its memory, so it is
         // tested in a separate process. The shipped laws are certified by the project's tests.
-        let own = |p: &Plugin| self.path.is_own(p);
+        let own = |p: &Plugin| self.path.belongs_to_program(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test =
             fn(&Plugin, &[f64], Option<&LoadedLaw>, &SearchPath) -> Result<Certificate, LawError>;

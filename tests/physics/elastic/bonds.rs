@@ -2,7 +2,9 @@
 //! the strength and the energy of the law, which does not depend on the kind of body.
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
 /// Material that is stiff compared with the bonds and has no lateral contraction, so that all bonds
 /// open equally.
@@ -72,9 +74,9 @@ fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'
     HalfSpaceSpec {
         name: "half-space",
         material: STIFF,
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         position: [0.0; 3],
-        grid: Grid {
+        grid: CellGrid {
             from: [0.0; 2],
             size: [WIDTH / n as f64; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],
@@ -208,9 +210,9 @@ fn a_block_is_pulled_off_a_half_space() {
         &mut s,
         HalfSpaceSpec {
             name: "below",
-            fills: Fills::Below,
+            fills: FilledSide::Below,
             touching: Cells::Surface,
-            grid: Grid {
+            grid: CellGrid {
                 from: [-0.5 * WIDTH, 0.0],
                 size: [0.125 * WIDTH, 1.0],
                 cells: [16, 1],

@@ -14,7 +14,9 @@
 
 use super::*;
 use crate::extremes::bench::{ball, grains, place, up};
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
 const STEP: f64 = 1e-4;
 const RADIUS: f64 = 0.01;
@@ -44,9 +46,9 @@ fn ground<S: Space>(young: f64, theta: f64, all: &[String], bodies: &str) -> Sim
             poisson: 0.3,
             density: 1000.0,
         },
-        fills: Fills::Below,
+        fills: FilledSide::Below,
         position: [0.0; 3],
-        grid: Grid {
+        grid: CellGrid {
             from: [-0.06; 2],
             size: [size; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],

@@ -7,7 +7,9 @@ mod resolution;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 use fretwork::process::cycle::{SlidingBody, SlidingPart};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -23,11 +25,11 @@ const RAIL: Elasticity = Elasticity {
 const STEP: f64 = 1e-3;
 
 /// Returns a half-space at rest, undriven, flat, solid below its surface.
-fn half_space(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_> {
+fn half_space(material: Elasticity, grid: CellGrid, axes: &[Dof]) -> HalfSpaceSpec<'_> {
     HalfSpaceSpec {
         name: "lower",
         material,
-        fills: Fills::Below,
+        fills: FilledSide::Below,
         position: [0.0; 3],
         grid,
         repeats: false,
@@ -42,9 +44,9 @@ fn half_space(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'
 }
 
 /// Cells of a size within a half-extent on both sides of the origin (m).
-fn grid(size: [f64; 2], half: [f64; 2]) -> Grid {
+fn grid(size: [f64; 2], half: [f64; 2]) -> CellGrid {
     let cells = [0, 1].map(|k| (2.0 * half[k] / size[k]).round() as usize);
-    Grid {
+    CellGrid {
         from: [0, 1].map(|k| -0.5 * cells[k] as f64 * size[k]),
         size,
         cells,
@@ -135,7 +137,7 @@ fn line(n: usize, mu: f64, share: f64) -> Simulation<Dim2> {
     ];
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         mass: 10.0,
         touching: Cells::Points,
@@ -194,7 +196,7 @@ fn westergaards_wave() {
         let axes = [Dof::Fixed, Dof::Force(ramp(-share * whole * length, 0, 4))];
         let wave = HalfSpaceSpec {
             name: "upper",
-            fills: Fills::Above,
+            fills: FilledSide::Above,
             position: [0.0, -1.0 + amplitude, 0.0],
             profile: Profile::Wave(amplitude, [length, f64::INFINITY]),
             reach: Reach::Periodic(length),
@@ -248,7 +250,7 @@ fn spheres(
     ];
     let sphere = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.05; 2]),
         touching: Cells::Points,
         ..half_space(SOFT, cells, &axes)
@@ -325,7 +327,7 @@ fn fretted(theta: f64) -> Simulation<Dim2> {
     put(&mut empty, HalfSpaceSpec { reach, ..flat });
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         reach,
         mass: 10.0,

@@ -72,18 +72,18 @@ fn coordinates(n: usize) -> [Vec<f64>; 2] {
 /// number. The solution is static: steps are long against all waves.
 fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<Dim2> {
     pressed_as(counter, n, finer, share, |lines, _| {
-        Grid::new(lines).unwrap()
+        BlockGrid::new(lines).unwrap()
     })
 }
 
 /// Columns that reach through all rows.
-fn whole(lines: &[Vec<f64>], _: &str) -> Grid {
-    Grid::new(lines).unwrap()
+fn whole(lines: &[Vec<f64>], _: &str) -> BlockGrid {
+    BlockGrid::new(lines).unwrap()
 }
 
 /// Columns that join with the distance from a side.
-fn joined(lines: &[Vec<f64>], from: &str) -> Grid {
-    Grid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
+fn joined(lines: &[Vec<f64>], from: &str) -> BlockGrid {
+    BlockGrid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
 }
 
 /// Does as [`pressed`] with cells that the last argument makes from coordinates, counted from the
@@ -93,7 +93,7 @@ fn pressed_as(
     n: usize,
     finer: usize,
     share: f64,
-    cells: fn(&[Vec<f64>], &str) -> Grid,
+    cells: fn(&[Vec<f64>], &str) -> BlockGrid,
 ) -> Simulation<Dim2> {
     let normal = load(counter);
     let ramp = |from: f64, to: f64| TimeFunction::Ramp {

@@ -33,7 +33,7 @@ use crate::extremes::bench::Sketch;
 use crate::stepping::{closes, go, near};
 use fretwork::bodies::{DeformedMesh, Dof, DynamicalSystem, Holder, TimeFunction};
 use fretwork::elastic::generate::{
-    Coarsening, Grid, block, even, graded, mapped_block, mapped_grid,
+    BlockGrid, Coarsening, block, even, graded, mapped_block, mapped_grid,
 };
 use fretwork::elastic::{
     BodySpec, ElasticBody, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,

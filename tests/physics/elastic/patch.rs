@@ -157,7 +157,7 @@ fn a_uniform_pressure_goes_through_cells_that_double() {
             from: side,
             ratio: 1.0,
         };
-        let grid = Grid::coarsened(&[x.to_vec(), y], &coarsening, 100_000).unwrap();
+        let grid = BlockGrid::coarsened(&[x.to_vec(), y], &coarsening, 100_000).unwrap();
         mapped_grid::<Dim2>(&grid, |p| *p).unwrap()
     };
     for (low, high) in [(40, 40), (37, 28), (28, 37)] {

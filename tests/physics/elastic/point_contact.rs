@@ -12,12 +12,12 @@ const STEP: f64 = 1e-3;
 /// Load at the approach a^2/R relative to Hertz's, and half-width from the second moment of the
 /// pressure, 2 P a^2/5, relative to that of the load.
 fn pressed(n: usize) -> (f64, f64) {
-    let (load, half_width, _) = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+    let (load, half_width, _) = pressed_on(n, &|lines| BlockGrid::new(lines).unwrap());
     (load, half_width)
 }
 
 /// Load, half-width and number of unknowns with cells that the last argument makes.
-fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize) {
+fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> BlockGrid) -> (f64, f64, usize) {
     let (far, size) = (16.0 * A, A / n as f64);
     let mut s = scene::<Dim3>(&Sketch {
         bodies: format!(
@@ -86,10 +86,10 @@ fn hertz_under_a_sphere_on_cells_that_double() {
             from: "top",
             ratio: 1.0,
         };
-        Grid::coarsened(lines, &from_top, 1_000_000).unwrap()
+        BlockGrid::coarsened(lines, &from_top, 1_000_000).unwrap()
     };
     for n in [2, 3] {
-        let whole = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+        let whole = pressed_on(n, &|lines| BlockGrid::new(lines).unwrap());
         let found = pressed_on(n, &joined);
         println!(
             "{n} over a: load, half-width, unknowns {whole:?}, of cells that double {found:?}"

@@ -338,7 +338,7 @@ fn a_state_of_no_scene_is_refused() {
             ("other springs", |s| s.network.memory[0].compliant ^= true),
             ("other rotations", |s| s.network.memory[0].rotates ^= true),
             ("a gate of a drive that is not there", |s| {
-                s.control.gates.push((1000, 0.0))
+                s.control.removals.push((1000, 0.0))
             }),
             ("no gravity", |s| s.gravity.x = f64::NAN),
         ],

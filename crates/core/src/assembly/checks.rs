@@ -7,7 +7,7 @@ use crate::geometry::space::{Space, VectorLike};
 
 /// A place where more grains are close to each other than is possible.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pile {
+pub struct Overcrowding {
     /// Index of a body at this place.
     pub body: u32,
     /// Position (m).
@@ -42,12 +42,12 @@ impl<S: Space> SceneParts<S> {
         })
     }
 
-    pub(super) fn find_pile(
+    pub(super) fn find_overcrowding(
         &self,
         reach: f64,
         most: &dyn Fn(usize) -> usize,
         table: &LawTable,
-    ) -> Option<Pile> {
+    ) -> Option<Overcrowding> {
         let balls = &self.shapes.balls;
         let owner = |at: u32| match balls.get(at as usize) {
             Some(ball) => (ball.body, ball.material),
@@ -62,7 +62,7 @@ impl<S: Space> SceneParts<S> {
             self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
         }));
         let radii = self.all_radii();
-        let still = self.bodies.still();
+        let still = self.bodies.fixed_bodies();
         let keep = |a: u32, b: u32| {
             let ((i, m), (j, n)) = (owner(a), owner(b));
             i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
@@ -74,7 +74,7 @@ impl<S: Space> SceneParts<S> {
             periodic: &self.shapes.periodic,
         };
         let dense = grid::dense_cell(&all, most(centres.len()), keep)?;
-        Some(Pile {
+        Some(Overcrowding {
             body: owner(dense.ball).0,
             at: centres[dense.ball as usize].padded(),
             count: dense.count,

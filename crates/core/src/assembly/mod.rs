@@ -10,7 +10,7 @@ mod recorded;
 mod system;
 mod union;
 
-pub use checks::Pile;
+pub use checks::Overcrowding;
 pub use parts::{AnySceneParts, SceneParts};
 pub use recorded::RecordedPiece;
 pub use system::AnySystem;
@@ -174,7 +174,12 @@ pub trait Assembly: Debug + Send {
     fn most_pairs(&self, reach: f64) -> f64;
     /// Finds a place where too many shapes are close together: more than `most(number of shapes)`
     /// pairs of shapes with an interface are within a distance (m) of each other.
-    fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile>;
+    fn overcrowding(
+        &self,
+        reach: f64,
+        most: &dyn Fn(usize) -> usize,
+        table: &LawTable,
+    ) -> Option<Overcrowding>;
 
     /// The bodies and shapes in their dimension.
     fn parts(&mut self) -> AnySceneParts<'_>;

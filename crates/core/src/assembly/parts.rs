@@ -2,7 +2,7 @@
 
 use super::{
     AnySystem, AnyUnion, Assembly, ConvexBody, Inertia, InitialState, MassProperties,
-    MaterialDensity, Pile, RecordedPiece,
+    MaterialDensity, Overcrowding, RecordedPiece,
 };
 use crate::bodies::{Bodies, Dof, Driven, DynamicalSystem, tensor};
 use crate::contact::detect::LawTable;
@@ -353,8 +353,13 @@ impl<S: Space> Assembly for SceneParts<S> {
         self.pairs_of_bodies(reach)
     }
 
-    fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile> {
-        self.find_pile(reach, most, table)
+    fn overcrowding(
+        &self,
+        reach: f64,
+        most: &dyn Fn(usize) -> usize,
+        table: &LawTable,
+    ) -> Option<Overcrowding> {
+        self.find_overcrowding(reach, most, table)
     }
 
     fn parts(&mut self) -> AnySceneParts<'_> {

@@ -350,7 +350,7 @@ impl<S: Space> Bodies<S> {
     }
 
     /// Returns which bodies never move: all their degrees of freedom are fixed.
-    pub fn still(&self) -> Vec<bool> {
+    pub fn fixed_bodies(&self) -> Vec<bool> {
         let mut still = vec![false; self.len()];
         for driven in &self.driven {
             still[driven.body as usize] = driven.dofs.iter().all(|d| *d == Dof::Fixed);

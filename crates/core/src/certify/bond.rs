@@ -127,7 +127,7 @@ fn increments(motions: &[BenchMotion], answers: &[BenchOutputs]) -> impl Iterato
 /// Checks on random walks that dissipation, work minus stored energy, never decreases.
 fn dissipation(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
-    let walks = (0..24).map(|seed| rig.walk(seed, 800, 0.02));
+    let walks = (0..24).map(|seed| rig.random_walk(seed, 800, 0.02));
     let paths: Vec<Vec<BenchMotion>> = walks.chain(loops(rig)).collect();
     for motions in paths {
         let answers = rig.drive(&motions, 1e-3)?;
@@ -213,7 +213,7 @@ fn damage_grows(rig: &mut Rig) -> Result<CheckResult, LawError> {
     }
     let (mut worst, mut highest, mut raw) = (0.0f64, 0.0f64, 0.0f64);
     for seed in 0..24 {
-        let motions = rig.walk(100 + seed, 400, 0.3);
+        let motions = rig.random_walk(100 + seed, 400, 0.3);
         let mut state = rig.bench.fresh();
         for motion in &motions {
             let before = state.damage;
@@ -232,10 +232,10 @@ fn damage_grows(rig: &mut Rig) -> Result<CheckResult, LawError> {
 
 /// Checks that rotating the tangential axes rotates the result and changes nothing else.
 fn objectivity(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let motions = rig.walk(7, 300, 0.1);
+    let motions = rig.random_walk(7, 300, 0.1);
     let turned = motions.iter().map(|m| BenchMotion {
-        opening: rig.turned(m.opening),
-        rotation: rig.turned(m.rotation),
+        opening: rig.in_rotated_axes(m.opening),
+        rotation: rig.in_rotated_axes(m.rotation),
         ..*m
     });
     let turned: Vec<BenchMotion> = turned.collect();
@@ -246,7 +246,7 @@ fn objectivity(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let difference = |of: fn(&BenchOutputs) -> [f64; 3]| {
         let largest = plain.iter().flat_map(of);
         let largest = largest.fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-        let vectors = pairs().flat_map(|(a, b)| rig.turned(of(a)).into_iter().zip(of(b)));
+        let vectors = pairs().flat_map(|(a, b)| rig.in_rotated_axes(of(a)).into_iter().zip(of(b)));
         vectors.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs())) / largest
     };
     let damage = pairs().fold(0.0, |m: f64, (a, b)| m.max((a.damage - b.damage).abs()));

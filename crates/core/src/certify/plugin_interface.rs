@@ -50,8 +50,9 @@ fn columns(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let onset = rig.onset;
     for scale in [1e-9, 1e-7, 1e-5, 1e-3] {
         rig.onset = scale;
-        let walks: Vec<Vec<BenchMotion>> = (0..17).map(|k| rig.walk(60 + k, 8, 0.5)).collect();
-        let moved = run_batch(&mut rig.strict().guarded(), &walks, 17, 0);
+        let walks: Vec<Vec<BenchMotion>> =
+            (0..17).map(|k| rig.random_walk(60 + k, 8, 0.5)).collect();
+        let moved = run_batch(&mut rig.strict_bench().guarded(), &walks, 17, 0);
         rig.onset = onset;
         // Other errors are found by other checks.
         if let Err(e @ LawError::ContractViolation { .. }) = moved {
@@ -78,8 +79,8 @@ fn floating_point(rig: &mut Rig) -> Result<CheckResult, LawError> {
 
 /// Checks that outputs are within their physical range; other errors are left to other checks.
 fn range(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let walks: Vec<Vec<BenchMotion>> = (0..17).map(|k| rig.walk(80 + k, 200, 0.3)).collect();
-    match run_batch(&mut rig.strict(), &walks, 17, 0) {
+    let walks: Vec<Vec<BenchMotion>> = (0..17).map(|k| rig.random_walk(80 + k, 200, 0.3)).collect();
+    match run_batch(&mut rig.strict_bench(), &walks, 17, 0) {
         Err(e @ LawError::OutOfRange { .. }) => Err(e),
         _ => Ok(CheckResult::passed(
             "range",
@@ -127,7 +128,9 @@ fn run_new(bench: &mut Bench, motions: &[BenchMotion]) -> Result<Vec<u64>, LawEr
 /// Checks that a batch of n gives the same bits as n batches of one.
 fn batch(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const N: usize = 17;
-    let walks: Vec<Vec<BenchMotion>> = (0..N as u64).map(|k| rig.walk(40 + k, 60, 0.3)).collect();
+    let walks: Vec<Vec<BenchMotion>> = (0..N as u64)
+        .map(|k| rig.random_walk(40 + k, 60, 0.3))
+        .collect();
     let mut batched: Vec<BenchState> = (0..N).map(|_| rig.bench.fresh()).collect();
     let mut alone = batched.clone();
     let mut different = 0u32;
@@ -149,9 +152,9 @@ fn batch(rig: &mut Rig) -> Result<CheckResult, LawError> {
 
 /// Checks that many threads at once get the same bits, on the same contacts and on others.
 fn threads(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let motions = rig.walk(3, 200, 0.3);
+    let motions = rig.random_walk(3, 200, 0.3);
     let expected = run_new(&mut rig.bench, &motions)?;
-    let mut benches: Vec<Bench> = (0..8).map(|_| rig.another()).collect();
+    let mut benches: Vec<Bench> = (0..8).map(|_| rig.second_bench()).collect();
     let same: u32 = std::thread::scope(|scope| {
         let runs: Vec<_> = benches
             .iter_mut()
@@ -179,17 +182,17 @@ fn threads(rig: &mut Rig) -> Result<CheckResult, LawError> {
 fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     const THREADS: usize = 4;
     const N: usize = 1024;
-    let walks: Vec<Vec<BenchMotion>> = (0..61).map(|k| rig.walk(200 + k, 2, 0.3)).collect();
+    let walks: Vec<Vec<BenchMotion>> = (0..61).map(|k| rig.random_walk(200 + k, 2, 0.3)).collect();
     let mut alone = Vec::new();
     for turn in 0..THREADS {
-        alone.push(run_batch(&mut rig.another(), &walks, N, turn)?);
+        alone.push(run_batch(&mut rig.second_bench(), &walks, N, turn)?);
     }
     let start = Barrier::new(THREADS);
     let (rig, start, walks, alone) = (&*rig, &start, &walks, &alone);
     Ok(std::thread::scope(|scope| {
         let runs: Vec<_> = (0..THREADS)
             .map(|turn| {
-                let mut bench = rig.strict().repeating();
+                let mut bench = rig.strict_bench().repeating();
                 scope.spawn(move || {
                     start.wait();
                     run_batch(&mut bench, walks, N, turn).is_ok_and(|bits| bits == alone[turn])
@@ -204,13 +207,13 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
 
 /// Checks that a contact saved in the middle of a path and restored elsewhere continues unchanged.
 fn restore(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let motions = rig.walk(11, 200, 0.3);
+    let motions = rig.random_walk(11, 200, 0.3);
     let (before, after) = motions.split_at(100);
     let mut state = rig.bench.fresh();
     run_one(&mut rig.bench, &mut state, before)?;
     let mut saved = state.clone();
     let rest = run_one(&mut rig.bench, &mut state, after)?;
-    let again = run_one(&mut rig.another(), &mut saved, after)?;
+    let again = run_one(&mut rig.second_bench(), &mut saved, after)?;
     let different = rest.iter().zip(&again).filter(|(a, b)| a != b).count();
     Ok(CheckResult::below(
         "restore",
@@ -222,7 +225,7 @@ fn restore(rig: &mut Rig) -> Result<CheckResult, LawError> {
 
 /// Checks that another contact's path in between has no effect.
 fn hidden(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let (mine, other) = (rig.walk(21, 150, 0.3), rig.walk(22, 150, 0.5));
+    let (mine, other) = (rig.random_walk(21, 150, 0.3), rig.random_walk(22, 150, 0.5));
     let alone = run_new(&mut rig.bench, &mine)?;
     let mut states = [rig.bench.fresh(), rig.bench.fresh()];
     let mut between = Vec::new();

@@ -106,12 +106,12 @@ impl Rig {
     }
 
     /// Returns a second bench with the laws of this one.
-    pub fn another(&self) -> Bench {
-        self.strict().lenient()
+    pub fn second_bench(&self) -> Bench {
+        self.strict_bench().lenient()
     }
 
     /// Returns a bench that reports values out of range as errors, as in a run.
-    pub fn strict(&self) -> Bench {
+    pub fn strict_bench(&self) -> Bench {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 
@@ -160,7 +160,7 @@ impl Rig {
     /// Returns a random walk of `steps` openings, normal and tangential, up to 3 times the onset,
     /// in steps of up to `share` times the onset; for a law without opening these are gaps and
     /// slips.
-    pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<BenchMotion> {
+    pub fn random_walk(&self, seed: u64, steps: usize, share: f64) -> Vec<BenchMotion> {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let reach = 3.0 * self.onset;
         let mut at = [0.0; 3];
@@ -190,7 +190,7 @@ impl Rig {
     }
 
     /// Returns a vector (normal, two tangents) in tangential axes that are rotated, in 2D reversed.
-    pub fn turned(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
+    pub fn in_rotated_axes(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
         if self.dimension == 2 {
             [n, -t1, 0.0]
         } else {

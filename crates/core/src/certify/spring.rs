@@ -16,7 +16,7 @@ const CHANGE: f64 = 1e-4;
 /// Checks that the stiffness is the slope of the force, and that there is no force without overlap:
 /// with a wrong slope a step converges to a wrong force.
 fn slope(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let mut bench = rig.strict();
+    let mut bench = rig.strict_bench();
     let mut at = |overlap: f64| -> Result<SpringAnswer, LawError> {
         Ok(bench.spring(overlap)?.unwrap_or_default())
     };

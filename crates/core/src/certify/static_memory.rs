@@ -72,8 +72,10 @@ fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let plugin = &rig.tested().plugin;
     let other = other_parameters(rig, round);
     for n in sizes {
-        let walks: Vec<_> = (0..37).map(|k| rig.walk(seed + k, 12, 0.3)).collect();
-        let _ = run_batch(&mut rig.another(), &walks, *n, 0);
+        let walks: Vec<_> = (0..37)
+            .map(|k| rig.random_walk(seed + k, 12, 0.3))
+            .collect();
+        let _ = run_batch(&mut rig.second_bench(), &walks, *n, 0);
         if plugin.validate(&other).is_ok() {
             let _ = run_batch(&mut rig.with_parameters(&other), &walks, *n, 1);
         }

@@ -26,7 +26,7 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
 fn signs(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
-        let motions = rig.walk(seed, 200, 0.3);
+        let motions = rig.random_walk(seed, 200, 0.3);
         let answers = rig.drive(&motions, 1e-3)?;
         for a in answers {
             let [normal, tangential] = a.restitution;
@@ -46,9 +46,9 @@ fn signs(rig: &mut Rig) -> Result<CheckResult, LawError> {
 
 /// Checks that rotating the tangential axes changes nothing.
 pub fn objectivity(rig: &mut Rig) -> Result<CheckResult, LawError> {
-    let motions = rig.walk(7, 200, 0.1);
+    let motions = rig.random_walk(7, 200, 0.1);
     let turned = motions.iter().map(|m| BenchMotion {
-        opening: rig.turned(m.opening),
+        opening: rig.in_rotated_axes(m.opening),
         ..*m
     });
     let turned: Vec<BenchMotion> = turned.collect();

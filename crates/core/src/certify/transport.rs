@@ -16,7 +16,7 @@ pub const CHECKS: [(&str, Check); 4] = [
 
 /// Walks of gap, slip and load with temperatures from 1 K to 3000 K.
 fn walks(rig: &Rig, seed: u64) -> Vec<BenchMotion> {
-    let mut walk = rig.walk(seed, 200, 0.3);
+    let mut walk = rig.random_walk(seed, 200, 0.3);
     for (k, motion) in walk.iter_mut().enumerate() {
         let share = |n: u32| f64::from((k as u32 * n + seed as u32) % 97) / 96.0;
         motion.temperatures = [1.0 + 2999.0 * share(37), 1.0 + 2999.0 * share(59)];

@@ -46,7 +46,7 @@ pub enum LawError {
         sha256: String,
     },
     /// No law of this name is on the search path.
-    #[error("there is no {kind} law named `{name}` (available: {available}; looked in {looked}); {}", advice(name, nearest.as_deref()))]
+    #[error("there is no {kind} law named `{name}` (available: {available}; looked in {searched}); {}", advice(name, nearest.as_deref()))]
     Unknown {
         /// Requested kind.
         kind: Kind,
@@ -55,7 +55,7 @@ pub enum LawError {
         /// Available laws.
         available: String,
         /// Folders searched.
-        looked: String,
+        searched: String,
         /// The most similar name.
         nearest: Option<String>,
     },

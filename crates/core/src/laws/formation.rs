@@ -164,7 +164,7 @@ impl LawEvaluator {
         let Some(cohesion) = law.cohesion().filter(|_| !stretched.is_empty()) else {
             return Ok(());
         };
-        let still = Velocities::still(&network.contacts);
+        let still = Velocities::at_rest(&network.contacts);
         let batches = stretched.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source::new(law, index, network, info);
@@ -205,7 +205,7 @@ impl LawEvaluator {
         if new.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
-        let still = Velocities::still(&network.contacts);
+        let still = Velocities::at_rest(&network.contacts);
         let laws: Vec<&LoadedLaw> = law.loaded().collect();
         let batches = new.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {

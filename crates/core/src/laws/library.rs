@@ -80,7 +80,7 @@ impl Plugin {
     /// runs.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::open`], and [`LawError::Pinned`].
+    /// Returns the errors of [`Self::open`], and [`LawError::HashMismatch`].
     pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),

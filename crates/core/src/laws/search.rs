@@ -157,11 +157,14 @@ impl SearchPath {
 
     /// Tries the libraries of several laws in one child process before they are opened one by one.
     /// Missing or untrusted laws are skipped; opening them reports the error.
-    pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
+    pub fn test_loading<'a>(
+        &self,
+        laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>,
+    ) {
         let mut libraries = Vec::new();
         for (kind, name, pin) in laws {
             if let Some(LawLocation::Library(path)) = self.place(kind, name)
-                && self.doubt(&path).is_none()
+                && self.reason_to_distrust(&path).is_none()
             {
                 libraries.push((path, pin));
             }
@@ -171,8 +174,9 @@ impl SearchPath {
 
     /// Returns whether a law belongs to the program itself: whoever can change the law can then
     /// change the program anyway.
-    pub fn is_own(&self, plugin: &Plugin) -> bool {
-        plugin.built_in || (self.own(&plugin.path) && self.doubt(&plugin.path).is_none())
+    pub fn belongs_to_program(&self, plugin: &Plugin) -> bool {
+        plugin.built_in
+            || (self.own(&plugin.path) && self.reason_to_distrust(&plugin.path).is_none())
     }
 
     fn own(&self, library: &Path) -> bool {
@@ -181,13 +185,13 @@ impl SearchPath {
     }
 
     /// Returns the reason why a library should not be opened, if there is one.
-    fn doubt(&self, library: &Path) -> Option<String> {
+    fn reason_to_distrust(&self, library: &Path) -> Option<String> {
         if self.trusting {
             None
         } else if self.own(library) {
-            trust::doubt_beside_program(library)
+            trust::reason_to_distrust_beside_program(library)
         } else {
-            trust::doubt(library)
+            trust::reason_to_distrust(library)
         }
     }
 
@@ -200,7 +204,7 @@ impl SearchPath {
     }
 
     fn open_pinned(&self, path: &Path, pin: Option<&str>) -> Result<Plugin, LawError> {
-        if let Some(reason) = self.doubt(path) {
+        if let Some(reason) = self.reason_to_distrust(path) {
             let path = path.to_owned();
             return Err(LawError::Unusable { path, reason });
         }
@@ -245,7 +249,7 @@ impl SearchPath {
     }
 
     /// Describes where laws are searched for, in order.
-    pub fn looked(&self) -> String {
+    pub fn searched(&self) -> String {
         let built_in = self
             .built_in
             .names()
@@ -282,7 +286,7 @@ impl SearchPath {
             kind,
             name: name.into(),
             available,
-            looked: self.looked(),
+            searched: self.searched(),
             nearest,
         }
     }

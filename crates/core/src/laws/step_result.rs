@@ -90,7 +90,7 @@ impl<S: Space> Default for Velocities<S> {
 
 impl<S: Space> Velocities<S> {
     /// Returns the values of contacts at rest, with their current overlaps.
-    pub(super) fn still(contacts: &[Contact<S>]) -> Self {
+    pub(super) fn at_rest(contacts: &[Contact<S>]) -> Self {
         Self {
             relative: vec![S::Vector::zero(); contacts.len()],
             turning: Vec::new(),

@@ -8,24 +8,28 @@ use std::path::Path;
 /// Returns why a library should not be opened, if others can write to it, to a folder or link on
 /// its path, or to a library to which it links.
 #[cfg(unix)]
-pub(super) fn doubt(library: &Path) -> Option<String> {
-    of_all(library, &[on_the_way::me()])
+pub(super) fn reason_to_distrust(library: &Path) -> Option<String> {
+    of_all(library, &[on_the_way::effective_user()])
 }
 
-/// Returns why a library in a folder of the program is not trusted, if it is not: [`doubt`] with
-/// the owner of the folder trusted too, since the owner of the program can change the program
-/// itself.
+/// Returns why a library in a folder of the program is not trusted, if it is not:
+/// [`reason_to_distrust`] with the owner of the folder trusted too, since the owner of the program
+/// can change the program itself.
 #[cfg(unix)]
-pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust_beside_program(library: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
     let program = crate::program::file().and_then(std::fs::metadata);
-    let owners = [Some(on_the_way::me()), program.ok().map(|p| p.uid())];
+    let owners = [
+        Some(on_the_way::effective_user()),
+        program.ok().map(|p| p.uid()),
+    ];
     of_all(library, &owners.into_iter().flatten().collect::<Vec<_>>())
 }
 
 #[cfg(unix)]
 fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
-    let one = |path: &Path| on_the_way::doubt(path, owners, on_the_way::FileStatus::of);
+    let one =
+        |path: &Path| on_the_way::reason_to_distrust(path, owners, on_the_way::FileStatus::of);
     one(library).or_else(|| {
         let links = match linked::libraries(library) {
             Ok(links) => links.into_iter(),
@@ -42,13 +46,13 @@ fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
 
 /// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
-pub(super) fn doubt_beside_program(_: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust_beside_program(_: &Path) -> Option<String> {
     None
 }
 
 /// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
-pub(super) fn doubt(_: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust(_: &Path) -> Option<String> {
     None
 }
 
@@ -64,7 +68,7 @@ mod on_the_way {
     const ROOT: u32 = 0;
 
     /// Returns the effective user id.
-    pub fn me() -> u32 {
+    pub fn effective_user() -> u32 {
         // SAFETY: the function has no arguments and cannot fail.
         unsafe { libc::geteuid() }
     }
@@ -103,7 +107,7 @@ mod on_the_way {
 
     /// Follows a path from the root, link by link, and returns the first component that users other
     /// than these owners and the administrator may change. The first owner is the user.
-    pub fn doubt(
+    pub fn reason_to_distrust(
         library: &Path,
         owners: &[u32],
         place: impl Fn(&Path) -> Option<FileStatus>,
@@ -191,7 +195,7 @@ mod on_the_way {
                     (PathBuf::from(path), place)
                 })
                 .collect();
-            doubt(Path::new(library), &[ME], |p| tree.get(p).cloned())
+            reason_to_distrust(Path::new(library), &[ME], |p| tree.get(p).cloned())
         }
 
         const ROOTS: [(&str, u32, u32, &str); 2] = [("/", 0, 0o755, ""), ("/tmp", 0, 0o1777, "")];

@@ -45,8 +45,8 @@ const CALLS: [&str; 7] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// Guard for a call in progress. If it is dropped without [`Inside::leave`], something unwinds out
-/// of the call, and the program ends.
+/// Guard for a call in progress. If it is dropped without [`CallGuard::leave`], something unwinds
+/// out of the call, and the program ends.
 #[must_use]
 pub(super) struct CallGuard;
 

@@ -26,7 +26,7 @@ fn record<S: Space>(
         v: free.0,
         s: free.1 * length,
         im: (1..S::D).fold(mobility.mass[0], |most, k| most.max(mobility.mass[k])),
-        is: mobility.quickest() * length * length,
+        is: mobility.largest_inverse_inertia() * length * length,
     }
 }
 

@@ -53,7 +53,7 @@
 //! For bodies that move fast together, and for impulses that hold each other, the relative
 //! velocities are rounding errors; those below the rounding of the body velocities, or of the
 //! impulses where that exceeds all free velocities, count as zero. Impulses that leave nothing but
-//! rounding of the velocities are no solution, see [`Sums::drowned`].
+//! rounding of the velocities are no solution, see [`Sums::lost_in_rounding`].
 //!
 //! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least
 //! that of their single tractions, see [`super::traction`], times the default tolerance of the norm
@@ -307,7 +307,7 @@ impl Sums {
     /// Returns whether the velocities are lost in the rounding of the impulses. The impulses of a
     /// problem without a solution grow until then, as W p of squeezed bodies vanishes. Without
     /// convergence W p may have any value. `free` as in [`Scale`].
-    pub fn drowned(&self, free: f64, converged: bool) -> bool {
+    pub fn lost_in_rounding(&self, free: f64, converged: bool) -> bool {
         let rounding = self.rounding(free);
         let moves = self.velocity.max(free) > 0.0;
         let vanishes = 16.0 * rounding > self.velocity || (!converged && free > 0.0);
@@ -451,8 +451,8 @@ mod tests {
             velocity: 1.0,
             ..Sums::default()
         };
-        assert!(sums(1e20).drowned(1.0, true));
-        assert!(!sums(1.0).drowned(1.0, true));
-        assert!(!sums(0.0).drowned(0.0, false));
+        assert!(sums(1e20).lost_in_rounding(1.0, true));
+        assert!(!sums(1.0).lost_in_rounding(1.0, true));
+        assert!(!sums(0.0).lost_in_rounding(0.0, false));
     }
 }

@@ -186,7 +186,7 @@ impl<S: Space> Mobility<S> {
 
     /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic
     /// inertia (1/(kg m^2)).
-    pub fn quickest(&self) -> f64 {
+    pub fn largest_inverse_inertia(&self) -> f64 {
         let n = S::Spin::N;
         let row = |i: usize| (0..n).map(|j| self.inertia.entry(i, j).abs()).sum::<f64>();
         (0..n).map(row).fold(0.0, f64::max)

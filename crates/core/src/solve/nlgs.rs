@@ -64,7 +64,7 @@ pub struct Report {
     /// Whether the error is within the tolerance.
     pub converged: bool,
     /// Whether the impulses grew until the velocities were lost in their rounding, see
-    /// [`Sums::drowned`]: the problem has no solution.
+    /// [`Sums::lost_in_rounding`]: the problem has no solution.
     pub unbounded: bool,
     /// Whether another solution with more energy was found, in which a loaded contact slides that
     /// sticks in the accepted one, or the reverse: the step has several solutions.
@@ -110,7 +110,7 @@ pub(super) fn check_convergence<S: Space>(
         error,
         parts: sums.parts(&scale),
         converged,
-        unbounded: sums.drowned(free.free, converged),
+        unbounded: sums.lost_in_rounding(free.free, converged),
         worst: problem.pushed(sums.worst_at),
         ..Report::default()
     }
@@ -174,7 +174,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &SolverOptions) -> Rep
             report.error = error(problem, limit, &sums, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
-            report.unbounded = sums.drowned(free.free, report.converged);
+            report.unbounded = sums.lost_in_rounding(free.free, report.converged);
             if ended || report.converged {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;

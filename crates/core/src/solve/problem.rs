@@ -16,7 +16,7 @@ use crate::geometry::space::Space;
 /// 0.01 m/s downwards and 0.001 m/s sideways, which Coulomb friction with mu = 0.5 can hold.
 /// ```
 /// use fretwork_core::geometry::space::{Dim2, VectorLike};
-/// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
+/// use fretwork_core::solve::{ContactForm, Problem, SolverOptions, nlgs};
 /// use nalgebra::{Matrix1, Vector1, Vector2};
 ///
 /// let mut problem = Problem::<Dim2>::default();
@@ -30,7 +30,8 @@ use crate::geometry::space::Space;
 ///     friction: 0.5,
 ///     ..ContactForm::default()
 /// });
-/// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
+/// let options = SolverOptions { tolerance: 1e-10, ..SolverOptions::default() };
+/// let report = nlgs::solve(&mut problem, &options);
 /// assert!(report.converged);
 /// // The impulse that stops it: its mass times the change of velocity (N s).
 /// let impulse = problem.solution(0).impulse;

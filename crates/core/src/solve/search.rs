@@ -18,7 +18,7 @@ pub struct SecondSearch {
     searched: BTreeSet<u32>,
 }
 
-/// Waiting time after searches without a result.
+/// Steps to wait after searches without a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Backoff {
     /// Steps until the next search; negative where nothing slid since then.

@@ -73,7 +73,7 @@ const LOWER_HOLDS: f64 = 1e-9;
 /// Marks a contact that is not in a list.
 const NONE: u32 = u32::MAX;
 
-/// State of a contact.
+/// Status of a contact in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ContactStatus {
     /// It carries no load and does not slide, or separates.

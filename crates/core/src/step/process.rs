@@ -99,7 +99,7 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     }
 
     /// Returns the state that the process carries from step to step, as bytes for a checkpoint
-    /// ([`crate::code::encode`]); empty if there is none.
+    /// ([`crate::encoding::encode`]); empty if there is none.
     ///
     /// # Errors
     /// The state cannot be encoded.

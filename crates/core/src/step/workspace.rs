@@ -20,7 +20,7 @@ pub(crate) struct Workspace<S: Space> {
     pub forms: Vec<ContactForm<S>>,
     /// Distance by which the motion closes each gap beyond its velocity (m), in the same order;
     /// empty if it is zero for all.
-    pub swerves: Vec<f64>,
+    pub nonlinear_closing: Vec<f64>,
     /// Linearised springs of compliant contacts, in the same order; empty without one.
     pub springs: Vec<Option<SpringForm<S>>>,
     /// Energy in springs of contacts at the start of the step (J).
@@ -46,7 +46,7 @@ impl<S: Space> Default for Workspace<S> {
             evaluator: LawEvaluator::default(),
             problem: Problem::default(),
             forms: Vec::new(),
-            swerves: Vec::new(),
+            nonlinear_closing: Vec::new(),
             springs: Vec::new(),
             spring_energy: 0.0,
             moments: Vec::new(),

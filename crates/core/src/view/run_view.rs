@@ -65,7 +65,7 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     /// Returns the time dependence of gravity.
     fn gravity_drive(&self) -> Option<&GravityDrive>;
     /// Returns the bodies that are removed at a time: index among the driven bodies, and time (s).
-    fn gates(&self) -> &[(usize, f64)];
+    fn removals(&self) -> &[(usize, f64)];
     /// Returns the lengths of the periodic cell.
     fn periodic(&self) -> &Periodic;
     /// Returns the distance within which a pair forms a contact (m).
@@ -182,8 +182,8 @@ impl<S: Space> RunView for Simulation<S> {
     fn gravity_drive(&self) -> Option<&GravityDrive> {
         self.state.control.gravity_drive.as_ref()
     }
-    fn gates(&self) -> &[(usize, f64)] {
-        &self.state.control.gates
+    fn removals(&self) -> &[(usize, f64)] {
+        &self.state.control.removals
     }
     fn periodic(&self) -> &Periodic {
         &self.shapes.periodic

@@ -95,7 +95,7 @@ impl<S: Space> RunSetup for Simulation<S> {
         wears
     }
     fn add_gate(&mut self, place: usize, time: f64) {
-        self.state.control.gates.push((place, time));
+        self.state.control.removals.push((place, time));
     }
     fn add_phase(&mut self, phase: Phase) {
         self.phases.push(phase);

@@ -23,7 +23,7 @@ pub struct BlockGrid {
     sets: Vec<Vec<Vec<usize>>>,
 }
 
-/// Rule by which columns of a grid are joined, see [`Grid::coarsened`].
+/// Rule by which columns of a grid are joined, see [`BlockGrid::coarsened`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarsening<'a> {
     /// Name of the side where all columns are kept.

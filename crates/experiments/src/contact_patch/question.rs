@@ -223,7 +223,7 @@ fn read(name: &str) -> Result<Material, String> {
             let near = missing.nearest.map(|n| format!("; did you mean `{n}`?"));
             format!(
                 "material: there is no file `{name}.ron` in {}{}; there are {}",
-                missing.looked,
+                missing.searched,
                 near.unwrap_or_default(),
                 missing.available
             )

@@ -11,7 +11,7 @@ pub const MAX_POINTS: usize = 1_000_000;
 ///
 /// # Errors
 ///
-/// There are more than [`MOST_POINTS`] combinations.
+/// There are more than [`MAX_POINTS`] combinations.
 pub fn full_factorial(levels: &[usize]) -> Result<Vec<Vec<usize>>, DesignError> {
     let points: f64 = levels.iter().map(|l| *l as f64).product();
     if points > MAX_POINTS as f64 {

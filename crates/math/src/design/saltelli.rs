@@ -19,7 +19,7 @@ pub fn rows_per_base(factors: usize) -> usize {
 ///
 /// # Errors
 ///
-/// There are more than [`MOST_POINTS`](super::sobol::MOST_POINTS) base points, or more than 128
+/// There are more than [`MAX_POINTS`](super::sobol::MAX_POINTS) base points, or more than 128
 /// factors.
 pub fn saltelli(bases: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
     Ok(saltelli_from(&sobol(bases, 2 * factors, seed)?))

@@ -20,7 +20,7 @@ pub const MAX_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
 ///
 /// # Errors
 ///
-/// There are more than [`MOST_POINTS`] points or [`MOST_DIMENSIONS`] factors.
+/// There are more than [`MAX_POINTS`] points or [`MAX_DIMENSIONS`] factors.
 pub fn sobol(points: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
     if points > MAX_POINTS || factors > MAX_DIMENSIONS {
         return Err(DesignError::Sobol {

@@ -20,7 +20,7 @@ use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
 use fretwork_core::view::RunView;
-use fretwork_core::wear::ledger::{Flows, GrainPlace, Ledger};
+use fretwork_core::wear::ledger::{Flows, GrainPlace, MassLedger};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -342,7 +342,7 @@ impl Observer for CircuitAccount {
     }
 
     fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
-        let none = Ledger::default();
+        let none = MassLedger::default();
         let ledger = circuit(run).map_or(&none, |c| &c.ledger);
         let (c, f, r) = (&ledger.contents, &ledger.flows, ledger.residual());
         let rest = [r.tied, r.contact, r.ejected, r.lost];

@@ -31,7 +31,7 @@ pub(crate) const FINER: u32 = 4;
 /// Share of the cost of the run above which no further repetitions are made.
 const MAX_COST: f64 = 0.05;
 
-/// One place with its repetitions.
+/// A stretch of the run with its repetitions.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct StretchRepeats {
     /// Number of steps done before it.

@@ -26,7 +26,7 @@ pub(super) struct NewBall {
 
 impl NewBall {
     /// A ball at rest.
-    pub fn still(at: Vector3<f64>, radius: f64, of: MaterialDensity, origin: Origin) -> Self {
+    pub fn at_rest(at: Vector3<f64>, radius: f64, of: MaterialDensity, origin: Origin) -> Self {
         let start = InitialState {
             position: at.into(),
             ..InitialState::default()
@@ -101,7 +101,7 @@ impl Builder<'_> {
             let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
             let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
             let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-            let mut seed = NewBall::still(at, radius, of, Origin::Grain(k, Some(g)));
+            let mut seed = NewBall::at_rest(at, radius, of, Origin::Grain(k, Some(g)));
             (seed.start.velocity, seed.start.spin) = (velocity.into(), spin);
             out.push(seed);
         }
@@ -146,7 +146,7 @@ impl Builder<'_> {
             ));
         }
         let seed = move |(x, r): (Vec<f64>, f64)| {
-            NewBall::still(components(&x), r, of, Origin::Grain(k, None))
+            NewBall::at_rest(components(&x), r, of, Origin::Grain(k, None))
         };
         Ok(list.into_iter().map(seed))
     }
@@ -163,7 +163,7 @@ impl Builder<'_> {
         let of = self.material(&format!("{here}.material"), material)?;
         let scene = self.scene_file(&here, file)?;
         let ball = |(x, r): &(Vec<f64>, f64)| {
-            NewBall::still(components(x), *r, of, Origin::Grain(k, None))
+            NewBall::at_rest(components(x), *r, of, Origin::Grain(k, None))
         };
         let balls = scene.balls.iter().map(ball).collect();
         if let Some(walls) = walls {

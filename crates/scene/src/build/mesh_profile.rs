@@ -6,7 +6,7 @@ use crate::case::{MeshProfileSpec, ProfileShape};
 use crate::profile_file;
 use crate::source::InputError;
 use fretwork_elastic::AnyMesh;
-use fretwork_elastic::generate::Grid;
+use fretwork_elastic::generate::BlockGrid;
 use std::f64::consts::TAU;
 
 /// Fraction of the height of a block by which a side may rise or fall.
@@ -47,7 +47,7 @@ impl Builder<'_> {
     pub(super) fn profiled(
         &self,
         here: &str,
-        grid: &Grid,
+        grid: &BlockGrid,
         spec: &MeshProfileSpec,
     ) -> Result<AnyMesh, InputError> {
         let (up, lines) = (self.dimension() - 1, grid.lines());

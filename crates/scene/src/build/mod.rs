@@ -195,7 +195,7 @@ impl LoadedCase {
                 Ok(missing) => self.source.locate(
                     ValidationError::new(
                         format!("materials.{name}"),
-                        format!("there is no file `{file}.ron` in {}", missing.looked),
+                        format!("there is no file `{file}.ron` in {}", missing.searched),
                     )
                     .expected(format!("one of {}", missing.available))
                     .nearest(missing.nearest.as_deref()),
@@ -359,7 +359,7 @@ impl Builder<'_> {
             return Err(self.fail("detection.alert", message));
         }
         self.refuse_wide_skin(alert, skin, largest)?;
-        self.refuse_piles(alert, skin, &table)?;
+        self.refuse_overcrowding(alert, skin, &table)?;
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let wears = self.deformable_wear()?;

@@ -56,7 +56,7 @@ impl Builder<'_> {
         ));
         let seeds = deposited.grains.into_iter();
         Ok(seeds
-            .map(|(at, r)| NewBall::still(at.into(), r, of, Origin::Grain(k, None)))
+            .map(|(at, r)| NewBall::at_rest(at.into(), r, of, Origin::Grain(k, None)))
             .collect())
     }
 
@@ -156,7 +156,7 @@ impl Builder<'_> {
                 return Err(table.fail(row, format!("a radius must be positive, got {r}")));
             }
             let mut seed =
-                NewBall::still(components(&values(&place)), r, of, Origin::Grain(k, None));
+                NewBall::at_rest(components(&values(&place)), r, of, Origin::Grain(k, None));
             seed.start.velocity = components(&values(&moving)).into();
             seed.start.spin = self.about_axes(components(&values(&turning)).into());
             found.push(seed);

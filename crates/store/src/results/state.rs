@@ -203,9 +203,9 @@ fn shapeless(frame: usize) -> String {
 /// Shapes of grains by the identity of the grain; `None` once taken.
 struct ShapesByGrain(HashMap<u64, Option<Box<ShapedGrain>>>);
 
-/// What is known about the shape of the grain in a row.
+/// Shape of the grain in a row.
 enum RowShape {
-    /// A shape that occurs for the first time in this row.
+    /// A shape that no earlier row has taken.
     New(Box<ShapedGrain>),
     /// A shape that was returned for an earlier row.
     AlreadyTaken,

@@ -34,7 +34,7 @@ fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
     ];
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         mass: 10.0,
         touching: Cells::Points,

@@ -5,7 +5,7 @@ use super::*;
 /// A wheel and a rail, both of steel, roll with a creepage. The first touches over `cells`, and a
 /// step rolls by `step` (m). The load is constant after four steps.
 pub(super) fn rolling<S: Space>(
-    cells: Grid,
+    cells: CellGrid,
     curvature: [f64; 2],
     load: f64,
     mu: f64,
@@ -37,7 +37,7 @@ pub(super) fn rolling<S: Space>(
     });
     let wheel = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid(curvature),
         mass: 1.0,
         rolling: speed(1.0 + creepage),

@@ -7,7 +7,9 @@ mod free;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
 const G: f64 = 9.81;
 /// Radius of the disks and spheres, of 1000 kg/m^3 (m).
@@ -128,9 +130,9 @@ impl Ground {
                 let system = HalfSpace::<S>::new(HalfSpaceSpec {
                     name: "ground",
                     material: soft(young),
-                    fills: Fills::Below,
+                    fills: FilledSide::Below,
                     position: [0.0; 3],
-                    grid: Grid {
+                    grid: CellGrid {
                         from: [-0.02; 2],
                         size: [size; 2],
                         cells: [n, if S::D == 2 { 1 } else { n }],

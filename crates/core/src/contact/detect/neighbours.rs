@@ -55,7 +55,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             centres,
             radii,
             reach: network.alert + network.skin,
-            still: scene.bodies.still(),
+            still: scene.bodies.fixed_bodies(),
             parallel,
         }
     }

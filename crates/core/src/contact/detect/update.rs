@@ -1,4 +1,4 @@
-//! Renewal of the contacts: the contacts of each pair are replaced where they are, with the memory
+//! Update of the contacts: the contacts of each pair are replaced where they are, with the memory
 //! of the old ones, so that a second list is not needed.
 
 use super::narrow::{BallData, Narrow};
@@ -420,7 +420,7 @@ impl<S: Space> TaskResult<S> {
     }
 }
 
-/// The list of contacts while it is renewed: the new ones, free places, and the old contacts of
+/// The list of contacts while it is updated: the new ones, free places, and the old contacts of
 /// later pairs.
 struct ContactList<S: Space> {
     contacts: Vec<Contact<S>>,

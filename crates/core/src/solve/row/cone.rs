@@ -16,7 +16,7 @@ impl<S: Space> LawLimits<S> {
     /// Creates the cone from a form whose block, with an acting bond and the compliance, is
     /// `compliant` in the frame of the contact.
     pub(super) fn on_block(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
-        let (w_n, w_t) = (compliant.entry(0, 0), quickest::<S>(compliant));
+        let (w_n, w_t) = (compliant.entry(0, 0), largest_tangential::<S>(compliant));
         let rho = if w_n > 0.0 {
             least(inverse(w_n), inverse_along(w_t, w_n))
         } else {
@@ -40,7 +40,7 @@ impl<S: Space> LawLimits<S> {
 }
 
 /// The largest response across the normal.
-fn quickest<S: Space>(w: &S::Matrix) -> f64 {
+fn largest_tangential<S: Space>(w: &S::Matrix) -> f64 {
     largest_across(matrix_lanes_of::<f64, S::M<f64>>(w))
 }
 
@@ -64,7 +64,7 @@ pub(super) fn in_frame<S: Space>(n: &S::Vector, w: &S::Matrix) -> S::Matrix {
     let [t1, t2] = S::tangents(n);
     let axes = [*n, t1, t2];
     let w = S::Matrix::from_entries(|i, j| axes[i].dot(&w.apply(&axes[j])));
-    if w.entry(0, 0) > HELD * quickest::<S>(&w) {
+    if w.entry(0, 0) > HELD * largest_tangential::<S>(&w) {
         return w;
     }
     S::Matrix::from_entries(|i, j| if i == 0 || j == 0 { 0.0 } else { w.entry(i, j) })

@@ -77,7 +77,7 @@ impl<S: Space> MomentRow<S> {
         mobilities: [&Mobility<S>; 2],
         lengths: [f64; 2],
     ) -> Self {
-        let w = mobilities[0].quickest() + mobilities[1].quickest();
+        let w = mobilities[0].largest_inverse_inertia() + mobilities[1].largest_inverse_inertia();
         Self {
             form: *form,
             place,

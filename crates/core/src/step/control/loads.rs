@@ -106,10 +106,10 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
     let time = s.state.time;
     let Scheme { h, theta } = s.options.scheme;
     let soon = time + 0.5 * s.options.event_step();
-    let (due, later) = std::mem::take(&mut s.state.control.gates)
+    let (due, later) = std::mem::take(&mut s.state.control.removals)
         .into_iter()
-        .partition(|gate: &(usize, f64)| soon > gate.1);
-    s.state.control.gates = later;
+        .partition(|removal: &(usize, f64)| soon > removal.1);
+    s.state.control.removals = later;
     let due: Vec<(usize, f64)> = due;
     for (place, _) in &due {
         take_away(s, *place);

@@ -20,7 +20,7 @@ pub struct Control<S: Space> {
     /// Drives whose force follows the loaded area.
     pub servos: Vec<Servo>,
     /// Bodies to remove: index among the driven bodies, and time (s).
-    pub gates: Vec<(usize, f64)>,
+    pub removals: Vec<(usize, f64)>,
     /// Tolerance of the solver set by a phase, which replaces that of the options.
     pub tolerance: Option<f64>,
     /// Parameters of contact laws that phases have set, by interface and parameter.
@@ -36,7 +36,7 @@ impl<S: Space> Default for Control<S> {
             gravity: S::Vector::zero(),
             gravity_drive: None,
             servos: Vec::new(),
-            gates: Vec::new(),
+            removals: Vec::new(),
             tolerance: None,
             contact_parameters: BTreeMap::new(),
             holder_drives: BTreeMap::new(),
@@ -78,7 +78,7 @@ impl<S: Space> Control<S> {
                 }
                 ServoTarget::Holder(_) => true,
             })
-            && self.gates.iter().all(|(place, _)| *place < driven.len())
+            && self.removals.iter().all(|(place, _)| *place < driven.len())
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
 
@@ -138,8 +138,8 @@ mod tests {
         assert!(fits(2, &|c| c.servos.push(servo(0, 1))));
         assert!(!fits(1, &|c| c.servos.push(servo(0, 1))));
         assert!(!fits(2, &|c| c.servos.push(servo(1, 0))));
-        assert!(fits(2, &|c| c.gates.push((0, 1.0))));
-        assert!(!fits(2, &|c| c.gates.push((1, 1.0))));
+        assert!(fits(2, &|c| c.removals.push((0, 1.0))));
+        assert!(!fits(2, &|c| c.removals.push((1, 1.0))));
         for (place, known) in [((0, 0), true), ((0, 1), false), ((1, 0), false)] {
             let set = |c: &mut Control<Dim2>| c.contact_parameters.extend([(place, 0.5)]);
             assert_eq!(fits(2, &set), known);

@@ -29,8 +29,8 @@ impl StepBounds {
         for dof in s.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
             bounds.drive(dof, t);
         }
-        for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
-            bounds.event = bounds.event.min(*gate);
+        for (_, removal) in control.removals.iter().filter(|g| g.1 > t) {
+            bounds.event = bounds.event.min(*removal);
         }
         let bonds = s.laws.iter().filter_map(Interface::bonding_time);
         bounds.event = bonds.filter(|b| *b > t).fold(bounds.event, f64::min);

@@ -1,7 +1,7 @@
 //! Contact states of a step: the relative velocities before it, and the solver's results as the
 //! laws receive them.
 
-use super::swerve::shift_of_gap;
+use super::nonlinear_closing::shift_of_gap;
 use super::{systems, turning};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{ContactStep, Interface, MomentStep};
@@ -98,7 +98,7 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
     let (before, after_all) = (&s.workspace.solved.before.relative, &after);
     let (forms, problem) = (&s.workspace.forms, &s.workspace.problem);
     let (network, correction) = (&s.state.network, s.options.correction);
-    let swerves = &s.workspace.swerves;
+    let nonlinear_closing = &s.workspace.nonlinear_closing;
     let Scheme { h, theta } = s.options.scheme;
     let count = network.contacts.len();
     let mut begin = std::mem::take(&mut s.workspace.solved.begin);
@@ -120,11 +120,11 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
         // The shift comes from the position correction unless restitution replaced it; a bounce
         // does no correction work.
         let of_gap = shift_of_gap(network, contact, correction, h);
-        let swerve = swerves.get(k).map_or(0.0, |s| s / h);
+        let closing = nonlinear_closing.get(k).map_or(0.0, |s| s / h);
         let lifts = of_gap < 0.0
             && form.compliance[0] == 0.0
             && n.dot(before) >= form.shift_n
-            && form.shift_n == of_gap - swerve;
+            && form.shift_n == of_gap - closing;
         let lift = if lifts {
             -theta * of_gap * solution.unilateral_n.max(0.0)
         } else {

@@ -7,10 +7,10 @@ mod answers;
 mod attraction;
 mod coupling;
 mod law_step;
+mod nonlinear_closing;
 mod posing;
 mod sliding;
 pub(super) mod surfaces;
-mod swerve;
 mod systems;
 mod turning;
 

@@ -1,8 +1,8 @@
 //! The contact problem of a step is set up from bodies, contacts and laws, and solved, and its
 //! velocities are assigned to the bodies.
 
-use super::swerve::shift_of_gap;
-use super::{swerve, systems, turning};
+use super::nonlinear_closing::shift_of_gap;
+use super::{nonlinear_closing, systems, turning};
 use crate::contact::ActionPoint;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;
@@ -87,8 +87,8 @@ pub(super) fn geometry_of_forms<S: Space>(
     free: &[(S::Vector, S::Spin)],
     h: f64,
 ) {
-    swerve::find_swerves(s, free, h);
-    let swerves = &s.workspace.swerves;
+    nonlinear_closing::find_nonlinear_closing(s, free, h);
+    let nonlinear_closing = &s.workspace.nonlinear_closing;
     let mut forms = std::mem::take(&mut s.workspace.forms);
     let (network, correction) = (&s.state.network, s.options.correction);
     let count = network.contacts.len();
@@ -101,7 +101,7 @@ pub(super) fn geometry_of_forms<S: Space>(
             central: contact.central,
             apart: contact.central && contact.action_point != ActionPoint::Surfaces,
             shift_n: shift_of_gap(network, contact, correction, h)
-                - swerves.get(k).map_or(0.0, |s| s / h),
+                - nonlinear_closing.get(k).map_or(0.0, |s| s / h),
             shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: 0.0,

@@ -18,17 +18,19 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::step::Simulation;
+use crate::step::motion::BodyVelocity;
 use crate::threads::fill;
-
-/// Velocity and spin of a body.
-type RelativeMotion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Finds by how much the motion closes each gap beyond its velocity (m); `free` holds the
 /// velocities without contacts. The list is empty where nothing is hollow, no driven body rotates
 /// and no material passes.
-pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[RelativeMotion<S>], h: f64) {
-    let mut swerves = std::mem::take(&mut s.workspace.swerves);
-    swerves.clear();
+pub(super) fn find_nonlinear_closing<S: Space>(
+    s: &mut Simulation<S>,
+    free: &[BodyVelocity<S>],
+    h: f64,
+) {
+    let mut nonlinear_closing = std::mem::take(&mut s.workspace.nonlinear_closing);
+    nonlinear_closing.clear();
     let hollow = s.shapes.surfaces.iter().any(|s| s.shape.is_hollow());
     let driven = s.state.bodies.driven.iter().map(|d| d.body as usize);
     let mut turning: Vec<usize> = driven.filter(|b| free[*b].1 != S::Spin::zero()).collect();
@@ -46,28 +48,33 @@ pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[RelativeMoti
             shapes: &s.shapes,
             laws: &s.laws,
         };
-        fill(s.divides_contacts(), &mut swerves, contacts.len(), |k| {
-            let c = &contacts[k];
-            let bends = hollow && scene.is_on_hollow(c);
-            let bent = if bends || c.bodies.into_iter().any(turns) {
-                scene.swerve(c, free, h)
-            } else {
-                0.0
-            };
-            if !passes {
-                return bent;
-            }
-            let [one, other] = c.bodies.map(|b| {
-                let carrier = scene.bodies.carrier(b as usize);
-                carrier.map_or(S::Vector::zero(), |c| passing[c.system as usize])
-            });
-            bent + h * c.normal.dot(&(one - other))
-        });
+        fill(
+            s.divides_contacts(),
+            &mut nonlinear_closing,
+            contacts.len(),
+            |k| {
+                let c = &contacts[k];
+                let bends = hollow && scene.is_on_hollow(c);
+                let bent = if bends || c.bodies.into_iter().any(turns) {
+                    scene.closing(c, free, h)
+                } else {
+                    0.0
+                };
+                if !passes {
+                    return bent;
+                }
+                let [one, other] = c.bodies.map(|b| {
+                    let carrier = scene.bodies.carrier(b as usize);
+                    carrier.map_or(S::Vector::zero(), |c| passing[c.system as usize])
+                });
+                bent + h * c.normal.dot(&(one - other))
+            },
+        );
     }
-    s.workspace.swerves = swerves;
+    s.workspace.nonlinear_closing = nonlinear_closing;
 }
 
-/// Data from which swerves are computed.
+/// Data from which the closing of gaps is computed.
 struct Scene<'a, S: Space> {
     network: &'a Network<S>,
     bodies: &'a Bodies<S>,
@@ -81,7 +88,7 @@ impl<S: Space> Scene<'_, S> {
         surface.is_some_and(|s| self.shapes.surfaces[s].shape.is_hollow())
     }
 
-    fn swerve(&self, contact: &Contact<S>, free: &[RelativeMotion<S>], h: f64) -> f64 {
+    fn closing(&self, contact: &Contact<S>, free: &[BodyVelocity<S>], h: f64) -> f64 {
         let network = self.network;
         // A spring pushes out what overlaps, a bond holds what it joins; a predicted contact has
         // the geometry at the time of closing.
@@ -112,7 +119,7 @@ impl<S: Space> Scene<'_, S> {
         sides: [usize; 2],
         [arm, place]: [S::Vector; 2],
         n: S::Vector,
-        free: &[RelativeMotion<S>],
+        free: &[BodyVelocity<S>],
         h: f64,
     ) -> f64 {
         let bodies = self.bodies;
