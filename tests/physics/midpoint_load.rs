@@ -129,7 +129,8 @@ fn strength<S: Space>(s: &mut Simulation<S>) -> f64 {
 
 const SHEAR: &str = r#"damage: "mohr-coulomb-brittle","#;
 
-/// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the step changes on the way.
+/// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the
+/// step changes on the way.
 fn breaks_at_the_envelope<S: Space>() {
     let force = format!("Constant({:e})", -PRESSURE * area::<S>());
     let expected = COHESION + FRICTION * PRESSURE;

@@ -30,7 +30,7 @@ use std::fmt::Debug;
 pub struct InitialState {
     /// Position (m).
     pub position: [f64; 3],
-    /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
+    /// Orientation as in [`crate::view::BodyMotion`]; `None` if aligned with the axes of the case.
     pub rotation: Option<[f64; 4]>,
     /// Velocity (m/s); in 2D only the components along x and y are used.
     pub velocity: [f64; 3],
