@@ -10,12 +10,12 @@ use std::collections::HashMap;
 /// Contact status of a point of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactZone {
-    /// It carries no force, or less than a tenth of the share of one contact by its area.
+    /// The point carries no force, or less than a tenth of the share of one contact by its area.
     #[default]
     Open,
-    /// Most of its force is of contacts that stick.
+    /// Most of the force of the point is of contacts that stick.
     Stick,
-    /// At least half of its force is of contacts that slip.
+    /// At least half of the force of the point is of contacts that slip.
     Slip,
 }
 

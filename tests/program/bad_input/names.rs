@@ -194,7 +194,7 @@ fn a_law_for_three_dimensions_in_two() {
     let words = ["the contact law `solid-only` is for three dimensions only, the case has 2"];
     let said = trial.refuses(&case, &more, &words);
     assert!(said.starts_with(&place.unwrap()), "{said}");
-    // In three dimensions it is valid.
+    // In three dimensions the case is valid.
     let case = with(SOLID, r#"contact: "coulomb""#, r#"contact: "solid-only""#);
     trial.write("case.ron", case);
     let output = trial.call(&["check", "case.ron", more[0], more[1]]);

@@ -48,7 +48,7 @@ fn fields_of_grains_are_those_of_the_other_files_and_of_their_motion() {
     };
     assert_eq!(grains.states(), 5);
     assert!(results.join("elastic_grains_soft.vtkhdf").exists());
-    // At the end they have the deformation and stress of the legacy file, and its positions up to
+    // At the end grains have the deformation and stress of the legacy file, and its positions up to
     // the period.
     let file = results.join("elastic_grains.vtk");
     let deformation = grains.last("Point", "deformation", 3);

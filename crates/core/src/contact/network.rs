@@ -112,15 +112,15 @@ impl ShapeIndex {
 /// gap or an overlap separates their surfaces, so that it gives them no angular momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ActionPoint {
-    /// On either surface: of rigid bodies that touch within the step, and of two surfaces that
+    /// Either surface: for rigid bodies that touch within the step, and for two surfaces that
     /// deform, whose forces act at their nodes.
     #[default]
     Surfaces,
-    /// In the middle between the surfaces.
+    /// The middle between the surfaces.
     Middle,
-    /// On the surface of the candidate, which deforms.
+    /// The surface of the candidate, which deforms.
     Candidate,
-    /// On the surface of the antagonist, which deforms.
+    /// The surface of the antagonist, which deforms.
     Antagonist,
 }
 
@@ -312,8 +312,7 @@ pub struct Network<S: Space> {
     pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
-    /// By how much the largest growth of a body (m) has changed distances since the neighbour list
-    /// was built.
+    /// Change of distances by the largest growth of a body since the neighbour list was built (m).
     pub grown: f64,
     /// Number of rebuilds of the neighbour list.
     pub rebuilds: u64,

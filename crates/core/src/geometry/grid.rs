@@ -72,11 +72,11 @@ pub fn pairs<V: VectorLike>(
 /// A cell with many balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DenseCell {
-    /// Index of a ball.
+    /// Index of a ball in the cell.
     pub ball: u32,
-    /// Number of balls
+    /// Number of balls in the cell.
     pub count: usize,
-    /// within a cell of this size (m).
+    /// Size of the cell (m).
     pub size: f64,
 }
 

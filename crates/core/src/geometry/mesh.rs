@@ -38,7 +38,7 @@ pub enum MeshError {
     /// No triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// More triangles than names can distinguish.
+    /// The mesh has more triangles than names can distinguish.
     #[error(
         "the mesh has {0} triangles, more than the limit of {MAX_TRIANGLES}; use a coarser one"
     )]
@@ -331,7 +331,7 @@ mod tests {
 
     #[test]
     fn a_ball_touches_faces_edges_and_corners_once() {
-        // Above a face, including its diagonal seam.
+        // The centre is above a face, or above its diagonal seam.
         for at in [[0.3, 0.1, 1.2], [0.25, 0.25, 1.2], [-0.5, 0.5, 1.2]] {
             let t = closest_points(at, 0.5);
             assert_eq!(t.len(), 1, "{t:?}");

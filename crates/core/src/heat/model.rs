@@ -56,8 +56,8 @@ impl HeatShares {
 /// Split of the heat of a contact between its two sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partition {
-    /// In proportion to the effusivities e = sqrt(k rho c), so that two half-spaces keep one
-    /// surface temperature.
+    /// The heat is split in proportion to the effusivities e = sqrt(k rho c), so that two
+    /// half-spaces keep one surface temperature.
     #[default]
     Effusivity,
     /// Half of the heat goes to each side.

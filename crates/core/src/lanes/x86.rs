@@ -22,7 +22,7 @@ impl Four for __m256d {
         sub: _mm256_sub_pd;
         mul: _mm256_mul_pd;
         div: _mm256_div_pd;
-        // Both give the second number where they are equal or one is NaN.
+        // Maximum and minimum give the second number where the numbers are equal or one is NaN.
         greatest: _mm256_max_pd;
         least: _mm256_min_pd;
         above: _mm256_cmp_pd::<_CMP_GT_OQ>;

@@ -38,12 +38,12 @@ pub fn enabled() -> bool {
 /// How a child process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It completed the whole request.
+    /// The process completed the whole request.
     Done,
-    /// It ended early, for this reason.
+    /// The process ended early, for this reason.
     Early(String),
-    /// It ended early because the system refused it memory, which is no failure of the tried
-    /// operation; the sentence says so.
+    /// The process ended early because the system refused it memory, which is no failure of the
+    /// tried operation; the sentence says so.
     NoMemory(String),
 }
 
@@ -52,7 +52,7 @@ pub enum End {
 pub struct ChildOutput {
     /// Messages of the child in order.
     pub messages: Vec<Value>,
-    /// How it ended.
+    /// How the child process ended.
     pub end: End,
 }
 

@@ -127,7 +127,7 @@ impl Plugin {
                     })?;
                 entry()
             };
-            // Never unloaded: threads may be running its code or hold its thread-local data.
+            // The library stays loaded: threads may run its code or hold its thread-local data.
             std::mem::forget(library);
             Ok(table)
         };

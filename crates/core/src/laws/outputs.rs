@@ -88,7 +88,7 @@ impl<'a> Output<'a> {
 /// Accepted range of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
+    /// Values that are not negative: strengths, stiffnesses, damping, volumes, lengths.
     NotNegative,
     /// Values from 0 to 1: damage, normal restitution.
     Share,

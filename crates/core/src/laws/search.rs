@@ -21,9 +21,9 @@ pub struct SearchPath {
 /// Location of a law.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LawLocation {
-    /// In a library.
+    /// A library, which contains the law.
     Library(PathBuf),
-    /// In the program itself.
+    /// The program itself.
     BuiltIn,
 }
 

@@ -8,9 +8,9 @@ use super::library::Plugin;
 pub enum UninspectableMemory {
     /// The law is part of the program, whose memory changes continually.
     BuiltIn,
-    /// It has this many bytes, more than are compared.
+    /// The static memory has this many bytes, more than are compared.
     TooLarge(usize),
-    /// Not supported on this system.
+    /// The operating system does not support the inspection.
     System,
 }
 

@@ -146,7 +146,7 @@ pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> RescueGuard {
 pub enum RescueOutcome {
     /// All rows and a summary are on disk.
     All,
-    /// Not all could be written.
+    /// Some rows, or the summary, could not be written.
     Some,
     /// There was nothing to save.
     Nothing,

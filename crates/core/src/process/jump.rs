@@ -327,7 +327,7 @@ impl Jumps {
         if run.saturating_sub(s.state.steps) < cycle * (1 + u64::from(self.spec.control)) {
             return 1;
         }
-        // At least two, so that lengths can grow again; `at_most` may be one.
+        // The length is at least two, so that it can grow again; `at_most` may be one.
         self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
         let damage = self.rate.iter().skip(s.state.scars.len() + 1).flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));

@@ -11,7 +11,7 @@ pub struct ContactForm<S: Space> {
     pub normal: S::Vector,
     /// Vectors from each body's centre to the contact point (m).
     pub arms: [S::Vector; 2],
-    /// Both arms lie along the normal and both inverse masses are isotropic.
+    /// Whether both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
     /// For a central contact, whether its arms differ from the lengths of its bodies: the contact
     /// point lies in the gap between two balls, or in their overlap.

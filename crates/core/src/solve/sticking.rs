@@ -76,15 +76,15 @@ const NONE: u32 = u32::MAX;
 /// Status of a contact in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ContactStatus {
-    /// It carries no load and does not slide, or separates.
+    /// The contact carries no load and does not slide, or separates.
     Nothing,
-    /// It carries a load without sliding.
+    /// The contact carries a load without sliding.
     Sticks,
-    /// It slides, and slid at the start of the step.
+    /// The contact slides, and slid at the start of the step.
     KeepsSliding,
-    /// It slides, and was not in contact at the start of the step.
+    /// The contact slides, and was open at the start of the step.
     SlidesNew,
-    /// It slides, and held at the start of the step.
+    /// The contact slides, and stuck at the start of the step.
     StartsSliding,
 }
 

@@ -154,7 +154,7 @@ impl BondForest {
             if self.base[*body as usize] != NONE || seen.contains(body) {
                 continue;
             }
-            // Only the newly loose part; loose grains bonded to it were debris before.
+            // Only the newly loose part counts; loose grains bonded to it were debris before.
             let piece: Vec<u32> = self.piece(*body);
             let now = piece.iter().filter(|b| before(**b) == Some(*base));
             let now: Vec<u32> = now.copied().collect();

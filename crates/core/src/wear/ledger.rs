@@ -17,13 +17,13 @@ use serde::{Deserialize, Serialize};
 /// Location of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GrainPlace {
-    /// Connected by a path of bonds to the first body of this index.
+    /// Grain that a path of bonds connects to the first body of this index.
     Tied(u32),
-    /// Loose, between the first bodies.
+    /// Loose grain between the first bodies.
     Contact,
-    /// In the ejection zone of this index.
+    /// Grain in the ejection zone of this index.
     Ejected(u32),
-    /// Lost for good.
+    /// Grain that is lost for good.
     Lost,
 }
 
@@ -47,13 +47,13 @@ impl Amount {
 /// Grains and their mass, by place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MassByPlace {
-    /// Tied to first bodies.
+    /// Amount tied to first bodies.
     pub tied: Amount,
-    /// In the contact, M.
+    /// Amount in the contact, M.
     pub contact: Amount,
-    /// In ejection zones.
+    /// Amount in ejection zones.
     pub ejected: Amount,
-    /// Lost.
+    /// Amount that is lost.
     pub lost: Amount,
 }
 

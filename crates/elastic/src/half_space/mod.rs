@@ -92,7 +92,7 @@ pub struct HalfSpaceSpec<'a> {
     pub axes: &'a [Dof],
     /// Velocity of the material along x through the cells (m/s).
     pub rolling: Option<TimeFunction>,
-    /// How it touches.
+    /// How the cells touch.
     pub touching: Cells,
     /// Index of the material for interface laws.
     pub surface_material: u16,

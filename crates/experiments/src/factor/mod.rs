@@ -98,7 +98,7 @@ impl Factor {
         }
     }
 
-    /// Returns its levels; `None` for a range without a number of levels.
+    /// Returns the levels of the factor; `None` for a range without a number of levels.
     pub fn levels(&self) -> Option<Vec<Level>> {
         match &self.values {
             Values::Listed(values) => Some(values.clone()),

@@ -181,10 +181,11 @@ pub enum RowsSpec {
 /// Correspondence of points of two curves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum AlongSpec {
-    /// By the abscissa, which increases.
+    /// Points correspond by the abscissa, which increases.
     #[default]
     Abscissa,
-    /// By branch and abscissa, for loops: the measured one must begin on the same branch.
+    /// Points correspond by branch and abscissa, for loops: the measured loop must begin on the
+    /// same branch.
     Branches,
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 /// Location of a number.
 #[derive(Clone, Debug, PartialEq)]
 enum NumberLocation {
-    /// In `summary.json`, by its path.
+    /// A path in `summary.json`.
     Summary(Vec<String>),
     /// A column of the statistics, and its reduction to a number.
     Column(String, Reduction),

@@ -138,7 +138,7 @@ impl Rows {
         (0..self.statuses.len()).filter(|k| self.is_done(*k))
     }
 
-    /// Returns those columns that are empty in all completed runs.
+    /// Returns the columns among `names` that are empty in all completed runs.
     pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
         let empty = |name: &&str| self.done().all(|run| self.table.text(name, run).is_empty());
         match self.counts().done {

@@ -9,7 +9,7 @@ use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
 pub enum ErrorTarget {
     /// A fraction of the reference's value.
     Relative(f64),
-    /// In the unit of the output.
+    /// An error in the unit of the output.
     Absolute(f64),
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Store of the heat of a node.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Store {
-    /// Its temperature is given; any heat flows in or out.
+    /// The temperature of the node is given; any heat flows in or out.
     Fixed,
     /// A heat capacity (J/K), with one temperature.
     Lumped(f64),

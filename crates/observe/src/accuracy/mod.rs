@@ -441,7 +441,7 @@ impl AccuracyControl {
 /// Reason why a step is not kept.
 enum Refused {
     Step(StepError),
-    /// It had grown, and something moved in it.
+    /// The step had grown, and something moved in it.
     Moves,
 }
 

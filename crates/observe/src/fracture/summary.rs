@@ -26,7 +26,7 @@ const OVERSHOOT: f64 = 0.2;
 /// middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
 
-/// What the energy to break a bond is compared with.
+/// Fracture energy with which the energy to break a bond is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reference {

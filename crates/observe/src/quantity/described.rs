@@ -21,7 +21,7 @@ pub enum Schema {
     Values(Unit),
     /// Results with fields.
     Part(&'static [Field]),
-    /// Not reported.
+    /// Values that are not reported.
     Hidden,
 }
 

@@ -78,7 +78,7 @@ pub enum Wording {
     Value(String),
     /// A separate sentence, with its label.
     Sentence(String, String),
-    /// Not shown, since the sentence of another quantity contains it.
+    /// The quantity is not shown, since the sentence of another quantity contains it.
     #[default]
     Silent,
 }

@@ -253,8 +253,8 @@ mod tests {
 
     #[test]
     fn energies_are_named_as_in_the_ledger_and_balance() {
-        // In this fall there are 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J
-        // in bonds.
+        // In this fall forces do 12 J of work and gravity 80 J, of which 5 J are kinetic and 3 J in
+        // bonds.
         let mut e = Energy {
             external_work: 12.0,
             potential: -80.0,

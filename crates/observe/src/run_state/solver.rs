@@ -248,7 +248,7 @@ mod tests {
             })
         };
         assert_eq!(parts(1e-2, 0.3), []);
-        // At rest both are small, for any ratio.
+        // At rest both parts are small, for any ratio.
         assert_eq!(parts(1e-7, 4.0), []);
         let list = parts(3e-2, 1.8);
         assert!(list.len() == 1 && list[0].serious && list[0].of == "LOOSE VELOCITIES");

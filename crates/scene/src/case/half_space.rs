@@ -59,7 +59,7 @@ pub struct HalfSpaceSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub rolling: Option<TimeFunction>,
-    /// How its cells touch.
+    /// How the cells of the surface touch.
     pub touches: CellTouch,
     /// Wear of the surface; it does not recede by default.
     #[serde(

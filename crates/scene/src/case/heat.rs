@@ -128,9 +128,9 @@ pub enum StoreSpec {
     /// The temperature of the body is constant.
     #[default]
     Fixed,
-    /// No heat enters it: all heat of its contacts goes to the other side.
+    /// No heat enters the body: all heat of its contacts goes to the other side.
     Insulated,
-    /// It has one temperature.
+    /// The body has one temperature.
     Lumped {
         /// Heat capacity (J/K; J/(K m) in 2D); from the material where the body has balls, polygons
         /// or polyhedra.
@@ -140,7 +140,7 @@ pub enum StoreSpec {
     /// A half-space below each piece of its surface, in which heat flows along the depth:
     /// `HalfSpace(x: 40)`.
     HalfSpace(DepthSpec),
-    /// Heat flows in its finite elements; for bodies of `elastic` only: `Mesh()`.
+    /// Heat flows in the finite elements of the body; for bodies of `elastic` only: `Mesh()`.
     Mesh(MeshHeatSpec),
 }
 

@@ -383,9 +383,9 @@ pub struct OutputSpec {
 /// Interval of checkpoints.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Checkpoint {
-    /// At intervals of wall time (s); longer if checkpoints would take more than 5 % of the time.
+    /// Interval of wall time (s); longer if checkpoints would take more than 5 % of the time.
     Seconds(f64),
-    /// At intervals of steps.
+    /// Interval in steps.
     Steps(u64),
     /// Never.
     Never,

@@ -98,10 +98,10 @@ pub enum SizeSpec {
 /// Quantity by which a distribution weights grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Counted {
-    /// By number.
+    /// Number of grains.
     #[default]
     Number,
-    /// By mass.
+    /// Mass of grains.
     Mass,
 }
 

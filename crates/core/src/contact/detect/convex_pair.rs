@@ -97,7 +97,7 @@ impl<S: Space> Narrow<'_, S> {
             return false;
         };
         let apart = shapes.periodic.shortest(x - y);
-        // More than the distance at which a corner still counts as lying on a face.
+        // The limit exceeds the distance at which a corner still counts as lying on a face.
         let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
         apart.dot(&apart) > limit * limit
     }

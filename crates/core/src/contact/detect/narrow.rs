@@ -232,7 +232,7 @@ impl<S: Space> Narrow<'_, S> {
         let (i, j) = (ball.body as usize, surface.body as usize);
         let grain = |b: usize| bodies.carrier(b).is_some_and(|c| c.grain);
         let twice = ball.radius == 0.0 && grain(i) && grain(j);
-        // Between two grains both have contact points, each with half of the area.
+        // Two grains both have contact points on each other, each with half of the area.
         let share = if twice {
             f64::powf(0.5, 1.0 / (S::D - 1) as f64)
         } else {

@@ -265,7 +265,7 @@ fn capsules_side_by_side_crossed_and_on_a_box() {
     let points = met(&across, &lying, V::new(0.2, 0.4, 0.25), [0.1, 0.1], &FINE);
     assert!(points.len() == 1 && (points[0].gap - 0.05).abs() < 1e-15);
     assert!((points[0].normal - V::z()).norm() < 1e-14);
-    // In one plane, end to end and far from the intersection of the lines.
+    // The edges are in one plane, end to end and far from the intersection of their lines.
     let points = met(&across, &lying, V::new(1.1, 1.12, 0.0), [0.1, 0.05], &FINE);
     assert_eq!(points.len(), 1);
     assert!((points[0].gap + 0.15 - 0.1f64.hypot(0.12)).abs() < 1e-14);
@@ -411,8 +411,8 @@ fn a_box_over_a_ridge_touches_along_it() {
 fn a_ball_shaped_corner_in_a_valley_touches_both_sides() {
     let valley = floor(1.0);
     let block = Polyhedron::cuboid([1.0, 1.0, 1.0]);
-    // Its lower right edge is near both sides of the bend: 0.05 above the floor, and equally far
-    // from the slope.
+    // The lower right edge of the block is near both sides of the bend: 0.05 above the floor, and
+    // equally far from the slope.
     let right = 0.5 + 0.05 * (2f64.sqrt() - 1.0);
     let points = on(&block, &valley, V::new(-right, 0.2, 0.55), 0.0);
     let flat = points

@@ -38,9 +38,9 @@ pub struct BondScale {
 /// Direction of opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OpeningDirection {
-    /// Along the normal.
+    /// Motion along the normal.
     Normal,
-    /// Along a tangent.
+    /// Motion along a tangent.
     Shear,
 }
 

@@ -16,7 +16,7 @@ pub enum Order {
     Forward,
     /// Forwards, then backwards.
     Symmetric,
-    /// In a random order from a seed, the same in every iteration.
+    /// A random order from a seed, the same in every iteration.
     Shuffled(u64),
 }
 

@@ -47,7 +47,7 @@ pub enum ReduceError {
     Overflow,
 }
 
-/// About 3 GB for W while it is assembled.
+/// Largest number of entries of W: about 3 GB while it is assembled.
 const MAX_ENTRIES: usize = 100_000_000;
 
 /// Computes B^T K^-1 B if it fits in memory.

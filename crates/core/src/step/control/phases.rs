@@ -8,14 +8,14 @@ use serde::{Deserialize, Deserializer, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Until {
-    /// At a time of the run (s).
+    /// The phase ends at a time of the run (s).
     Time(f64),
-    /// After a duration (s).
+    /// The phase ends after a duration (s).
     After(f64),
-    /// After a number of steps.
+    /// The phase ends after a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains, and of first bodies and dynamical systems without
-    /// imposed motion, has stayed below a bound.
+    /// The phase ends when the kinetic energy of the grains, and of first bodies and dynamical
+    /// systems without imposed motion, has stayed below a bound.
     AtRest {
         /// Bound as a fraction of m g d, summed over these bodies; for a system, d is twice
         /// [`crate::bodies::DynamicalSystem::length`].

@@ -13,18 +13,18 @@ use fretwork_math::sensitivity::sobol_indices::{SobolIndices, sobol_indices};
 pub enum Effects {
     /// None, and the reason.
     Nothing(String),
-    /// For a grid: means by level, and shares of the variance.
+    /// Means by level and shares of the variance, for a grid.
     Levels {
         /// Effects by factor.
         effects: Vec<MainEffect>,
         /// The analysis of variance, or the reason why there is none.
         anova: Result<Anova, String>,
     },
-    /// For one factor at a time: the change from the case itself.
+    /// Changes from the case itself, for one factor at a time.
     FromCase(Vec<Change>),
-    /// For a design for Sobol indices.
+    /// Sobol indices, for a design made for them.
     Indices(SobolIndices),
-    /// For points distributed over all factors.
+    /// Trends, for points distributed over all factors.
     Trend {
         /// Linear model in the factors, or in their logarithms for logarithmic factors.
         regression: Result<Regression, String>,

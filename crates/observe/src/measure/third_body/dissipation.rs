@@ -66,11 +66,11 @@ impl PairKind {
 /// Energies since the start of the account.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Dissipation {
-    /// Per bin, since the last sample.
+    /// Energies per bin, since the last sample.
     pub pending: Vec<Energies>,
-    /// Per bin, in total.
+    /// Energies per bin, in total.
     pub bins: Vec<Energies>,
-    /// By place, in the order of [`PairKind::ALL`].
+    /// Energies per kind of pair, in the order of [`PairKind::ALL`].
     pub places: [Energies; PairKind::ALL.len()],
     /// Work of the sliding on the layer, the integral of Q V dt (J).
     pub work: f64,
