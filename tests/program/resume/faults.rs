@@ -19,7 +19,7 @@ fn job() -> Job<'static> {
     }
 }
 
-/// The number of the frame whose head stands at a place.
+/// Returns the number of the frame whose head is at a position.
 fn number(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(bytes[at + 16..at + 24].try_into().unwrap())
 }

@@ -283,7 +283,7 @@ impl<S: Space> Bodies<S> {
         moved
     }
 
-    /// Removes a driven body for good.
+    /// Removes a driven body permanently.
     pub fn remove(&mut self, place: usize) {
         let driven = &mut self.driven[place];
         self.removed[driven.body as usize] = true;

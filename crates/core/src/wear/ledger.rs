@@ -23,7 +23,7 @@ pub enum GrainPlace {
     Contact,
     /// Grain in the ejection zone of this index.
     Ejected(u32),
-    /// Grain that is lost for good.
+    /// Grain that is lost permanently.
     Lost,
 }
 

@@ -74,7 +74,7 @@ pub enum Values {
 pub struct Factor {
     /// Name in tables and figures.
     pub name: String,
-    /// Keys that get its value; empty for named alternatives.
+    /// Keys that take the value of the factor; empty for named alternatives.
     pub keys: Vec<String>,
     /// SI unit, where the file gives it, since no key has one.
     pub unit: String,

@@ -74,7 +74,7 @@ pub struct OptionSpec {
 type Wrong = (String, String);
 
 impl FactorSpec {
-    /// The factor, which stands at `path` of the file.
+    /// Returns the factor that is at `path` of the file.
     ///
     /// # Errors
     /// A range is empty, a value is given twice, or there are no values.

@@ -195,8 +195,8 @@ pub enum AlongSpec {
 pub struct ParameterSpec {
     /// Name of the parameter.
     pub name: String,
-    /// The key of all cases that gets its value, or several; empty for a parameter that is used by
-    /// its name in `set` of the tests.
+    /// Key, or keys, of all cases that take the value of the parameter; empty for a parameter that
+    /// is used by its name in `set` of the tests.
     #[serde(default)]
     pub key: CaseKeys,
     /// Lower limit.

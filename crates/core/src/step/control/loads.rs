@@ -95,7 +95,7 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
     s.state.network.forget_neighbours();
 }
 
-/// Removes a driven body for good.
+/// Removes a driven body permanently.
 fn take_away<S: Space>(s: &mut Simulation<S>, place: usize) {
     s.state.bodies.remove(place);
     let body = s.state.bodies.driven[place].body as usize;
