@@ -1,5 +1,5 @@
-//! Price of first bodies that deform: a step of a third body between two elastic bodies against the
-//! same step between rigid ones.
+//! Cost of deformable first bodies: a step of a third body between two elastic bodies compared with
+//! the step between rigid ones.
 //!
 //! `cargo bench --bench elastic` builds the same layer six times: 2,016 disks of oxide between two
 //! bodies of steel that are pressed together and sheared, with the step, inertia and solver of
@@ -33,8 +33,8 @@ use std::time::{Duration, Instant};
 
 type Scene = Simulation<Dim2>;
 
-/// Length of the layer (m), its height before it is pressed (m), and how far the bodies reach
-/// beyond it (m).
+/// Length of the layer (m), its height before compression (m), and the extent of the bodies beyond
+/// it (m).
 const LENGTH: f64 = 4e-4;
 const HEIGHT: f64 = 3.8e-5;
 const BEYOND: f64 = 5e-6;
@@ -71,9 +71,10 @@ impl First {
     }
 }
 
-/// A body below y = 0 (m) as a file of Gmsh: each row of cells has as many columns as the one above
-/// or half of them, and each cell is cut in triangles by its centre. There are so many rows of the
-/// finest cells, and of the others of a size. `up` turns it over.
+/// Writes a body below y = 0 (m) as a file of Gmsh. Each row of cells has as many columns as the
+/// one above or half of them, and each cell is cut into triangles by its centre. The arguments give
+/// the number of rows of the finest cells and of those of each other size; `up` turns the body
+/// over.
 fn graded(up: bool, [finest, others]: [usize; 2]) -> String {
     let (mut points, mut triangles): (Vec<[f64; 2]>, Vec<[usize; 3]>) = (Vec::new(), Vec::new());
     let row = |points: &mut Vec<[f64; 2]>, cells: usize, y: f64| -> Vec<usize> {
@@ -232,7 +233,7 @@ fn rigid(push: &str, shear: &str) -> String {
 
 /// The case, with its meshes in a folder.
 fn case(first: First, coulomb: bool, folder: &Path) -> String {
-    // All are pressed by the same displacement, which gives them about the same number of contacts.
+    // All scenes are pressed by one displacement, which gives them about equal numbers of contacts.
     let press = match first {
         First::Rigid => number("PRESS_RIGID", 9.0e-6),
         First::HalfSpace => number("PRESS_HALF_SPACE", 9.0e-6),
@@ -462,7 +463,7 @@ fn main() {
     }
 }
 
-/// Times of what a step asks of a body, by calling it.
+/// Times the functions of a body that a step calls.
 fn parts(system: &dyn DynamicalSystem<Dim2>, time_now: f64) {
     let step = SystemStep::<Dim2> {
         time: time_now,
@@ -475,7 +476,7 @@ fn parts(system: &dyn DynamicalSystem<Dim2>, time_now: f64) {
         .first()
         .map_or(0, |c| system.surface_vertices(c).len());
     let mut other = system.clone_box();
-    // Another length of step and back: both are factorised again.
+    // The step is changed to another length and back, so that both are factorised again.
     let clock = Instant::now();
     other.begin_step(&SystemStep {
         h: 0.5 * STEP,

@@ -25,7 +25,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-/// Beside the shared ones: nothing is there to couple.
+/// A feature besides the shared ones, with nothing to couple.
 const UNCOUPLED: Feature = (
     "implicit coupling, nothing to couple",
     &["coupling=Implicit(tolerance: 1e-3, max_iterations: 50)"],
@@ -100,7 +100,7 @@ fn trial<S: Space>(case: &str, feature: &Feature) -> Trial<S> {
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&search_path());
     let mut simulation = built.unwrap_or_else(|e| panic!("{e}"));
-    // The load crosses the packing first; a frictionless one would flow for long.
+    // The load crosses the packing first; a frictionless packing would flow for long.
     simulation.options.solver.max_iterations = 200;
     for _ in 0..10 {
         simulation
@@ -138,8 +138,8 @@ fn round<S: Space>(t: &mut Trial<S>) {
 /// Two polyhedra, and the position of the centre of the first relative to that of the second (m).
 type Pair = (Polyhedron, Polyhedron, Vector3<f64>);
 
-/// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list
-/// only.
+/// Returns the time of the narrow phase per pair: in contact as faces, as edges, and within the
+/// neighbour list only.
 fn pieces() {
     const REACH: f64 = 1e-3;
     let cube = Polyhedron::cuboid([1.0; 3]);
@@ -147,7 +147,7 @@ fn pieces() {
         0.0, 0.0, 0.3,
     )));
     let on_top: Pair = (turned, cube.clone(), Vector3::new(0.1, 0.2, 1.0));
-    // An edge along x over one along y.
+    // An edge along x is placed over one along y.
     let [x, y] = [Vector3::x(), Vector3::y()].map(|axis| {
         cube.turned(&UnitQuaternion::from_scaled_axis(
             axis * std::f64::consts::FRAC_PI_4,

@@ -1,14 +1,14 @@
 //! Cost of heat and current.
 //!
-//! `cargo bench --bench heat` steps the headline case in the middle of its fretting, and boxes of
-//! disks of several sizes, without heat, with heat, and with heat and a current, and prints the
-//! shares of a step that these take, as in `docs/heat.md`. The steps without heat have the bits of
-//! a case that has never heard of it. With `-- headline` it does the first alone.
+//! `cargo bench --bench heat` steps the main example in the middle of its fretting, and boxes of
+//! disks of several sizes, without heat, with heat, and with heat and a current, and prints their
+//! shares of a step, as in `docs/heat.md`. The steps without heat are bit-identical to those of a
+//! case without it. With `-- headline` it runs only the main example.
 //!
-//! Each variant steps in a process of its own. These take turns of ten steps, so that what else the
-//! machine does changes all alike: on a machine that others share the same steps may take 30 %
-//! longer a minute later. Where the memory of a process lies changes its times too, so that all are
-//! launched several times. On one thread, as the heat of a step is solved.
+//! Each variant steps in a separate process. The processes take turns of ten steps, so that other
+//! load on the machine affects all of them equally: on a shared machine equal steps may take 30 %
+//! longer a minute later. The layout of a process in memory changes its times too, so all processes
+//! are launched several times. One thread is used, as the heat of a step is solved on one.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
@@ -18,10 +18,10 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
-/// What a process that steps one variant is launched with: this word, the case, the steps before
-/// those that are timed, and `--set`s.
+/// Arguments of a process that steps one variant: this word, the case, the number of steps before
+/// those that are timed, and `--set` options.
 const ONE: &str = "--one";
-/// Steps of a turn: a whole number of the rarest steps of heat.
+/// Number of steps of a turn: a multiple of the largest interval between steps of heat.
 const TURN: u32 = 10;
 
 fn main() {
@@ -69,10 +69,10 @@ fn headline() {
     );
 }
 
-/// A random packing between two plates, of another size, timed from a first step on at which it has
-/// come together.
+/// Times a random packing of another size between two plates, from a first step on at which it is
+/// compressed.
 fn boxes(grains: usize, first: u32, launches: usize) {
-    // The lattice takes 2.4e5 grains a square metre.
+    // The lattice has 2.4e5 grains per square metre.
     let side = (grains as f64 / 2.3e5).sqrt();
     let common = [
         format!("grains.0.count={grains}"),
@@ -120,12 +120,12 @@ fn compare(
     for _ in 0..launches {
         let launch = |sets: &Vec<String>| Stepping::launch(case, first, common.iter().chain(sets));
         let mut processes: Vec<Stepping> = variants.iter().map(launch).collect();
-        // They have made their first steps.
+        // All processes have made their first steps.
         for process in &mut processes {
             process.answer();
         }
-        // Of times that lie beside each other, so that what else the machine does changes all;
-        // another variant begins each time.
+        // Times measured one after another are compared, so that other load affects all variants;
+        // each turn begins with another variant.
         let times: Vec<[f64; 5]> = (0..turns as usize)
             .map(|turn| {
                 let mut times = [0.0; 5];
@@ -184,7 +184,7 @@ impl Stepping {
         }
     }
 
-    /// The next line that it says.
+    /// Reads the next line that the process prints.
     fn answer(&mut self) -> String {
         let mut line = String::new();
         let read = self.answers.read_line(&mut line);
@@ -196,7 +196,8 @@ impl Stepping {
         line.trim().to_owned()
     }
 
-    /// Time of a step (s), over a turn of steps, and what it says of its grains and contacts.
+    /// Returns the time of a step (s) over a turn of steps, and what the process prints about its
+    /// grains and contacts.
     fn turn(&mut self) -> (f64, String) {
         let Some(orders) = &mut self.process.stdin else {
             panic!("the input of a process is no pipe");
@@ -211,14 +212,14 @@ impl Stepping {
 
 impl Drop for Stepping {
     fn drop(&mut self) {
-        // Its input ends, and so does it.
+        // The process ends with its input.
         drop(self.process.stdin.take());
         let _ = self.process.wait();
     }
 }
 
-/// Steps one variant: says when it has made the first steps, and then the time of a step (s), its
-/// grains and its contacts after each turn that a line asks for.
+/// Steps one variant: prints a line when it has made the first steps, and then the time of a step
+/// (s), its grains and its contacts after each turn that a line requests.
 fn serve(asked: &[String]) {
     let [case, first, sets @ ..] = asked else {
         panic!("the case, and the steps before the time");
@@ -241,7 +242,7 @@ fn serve(asked: &[String]) {
     make(first);
     println!("ready");
     for _ in std::io::stdin().lines() {
-        // Others have had the caches.
+        // Another process has used the caches meanwhile.
         make(1);
         let (each, contacts) = make(TURN);
         println!("{each:e} {grains} | {contacts}");

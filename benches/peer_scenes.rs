@@ -16,9 +16,9 @@ use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Steps from `first` to `last`, the cold one being 1, and LMGC90's processor time (ms) and
-/// iterations per step and its time of a sweep (ns per contact and iteration) in them: its best of
-/// three repetitions.
+/// Steps from `first` to `last`, where the cold step is 1. LMGC90's processor time (ms) and
+/// iterations per step in them, and its time of a sweep (ns per contact and iteration), are the
+/// best of three repetitions.
 struct Window {
     name: &'static str,
     first: u32,

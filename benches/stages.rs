@@ -1,4 +1,4 @@
-//! Where the time of a step goes, in stages of some cases.
+//! Time of a step and its parts, in stages of some cases.
 //!
 //! `cargo bench --bench stages` steps each case from its start and times its stages: the time of a
 //! step and of its parts (detection, laws, solver, the rest), the sweeps, and the solver's time per
@@ -145,7 +145,7 @@ fn time<S: Space>(
     wanted: Option<&str>,
     threads: usize,
 ) {
-    // A run sets this too.
+    // A run sets this option too.
     s.options.solver.parallel = threads > 1;
     processes::install(case, &mut s);
     for stage in stages {

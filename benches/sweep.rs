@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// What one update costs, counted in `crates/core/src/solve/row/plain.rs`.
+/// Cost of one update, counted in `crates/core/src/solve/row/plain.rs`.
 struct Cost {
     /// Bytes of the row; all of its cache lines are read and written back.
     row: f64,
@@ -26,7 +26,7 @@ struct Cost {
     flops: f64,
     /// Divisions, and as many square roots.
     roots: f64,
-    /// Operations that wait for each other from the velocities read to those written.
+    /// Length of the chain of dependent operations from the velocities read to those written.
     depth: f64,
 }
 
@@ -45,7 +45,7 @@ const SPHERES: Cost = Cost {
     depth: 20.0,
 };
 
-/// What the machine does in a second or how long it takes, on one thread or two.
+/// Rates and times of the machine, on one or two threads.
 struct Machine {
     /// Bytes of the L1 cache in a nanosecond, half read and half written.
     l1: f64,
@@ -53,7 +53,7 @@ struct Machine {
     flops: f64,
     /// Time of a division and a square root, four lanes wide, by lane (ns).
     root: f64,
-    /// Time of an operation that waits for the one before (ns).
+    /// Time of an operation that waits for the previous one (ns).
     wait: f64,
 }
 
@@ -118,7 +118,7 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
     let far = 2.0 * cost.row + 2.0 * 64.0 * bodies / n;
     let footprint = cost.row * n + 64.0 * bodies;
     let mut stream = vec![1.0f64; (footprint / 8.0) as usize];
-    // Short runs and many: some find the machine to themselves.
+    // Many short runs are made, so that some have the machine to themselves.
     let count = (100_000.0 / n).ceil() as u32;
     let seconds = std::env::var("SECONDS_EACH")
         .ok()
@@ -212,7 +212,7 @@ fn scalar_rate() -> f64 {
 fn wide_rate() -> f64 {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has it.
+        // SAFETY: the machine has these instructions.
         return unsafe { wide() };
     }
     narrow()
@@ -235,7 +235,7 @@ unsafe fn wide() -> f64 {
     (2 * 4 * 12 * ROUNDS) as f64 / (clock.elapsed().as_secs_f64() * 1e9)
 }
 
-/// The compiler would make two lanes of one.
+/// Arithmetic in one lane, without inlining, since the compiler would otherwise vectorise it.
 #[cfg(target_arch = "x86_64")]
 fn narrow() -> f64 {
     let (m, a) = (black_box(1.000_000_1), black_box(1e-9));
@@ -243,7 +243,7 @@ fn narrow() -> f64 {
     let clock = Instant::now();
     for _ in 0..ROUNDS {
         for y in &mut x {
-            // SAFETY: arithmetic on registers.
+            // SAFETY: the assembly only computes in registers.
             unsafe {
                 std::arch::asm!(
                     "mulsd {y}, {m}",
@@ -278,7 +278,7 @@ fn narrow() -> f64 {
 fn root_time() -> f64 {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has it.
+        // SAFETY: the machine has these instructions.
         return unsafe { wide_roots() };
     }
     roots()
@@ -319,7 +319,7 @@ fn wait_time() -> f64 {
 /// Centres of a lattice of unit radii, the shape of its box, and pairs that may touch.
 struct Lattice<const D: usize> {
     centres: Vec<[f64; D]>,
-    /// The share of close pairs that touch.
+    /// Fraction of close pairs that touch.
     share: f64,
 }
 
@@ -402,7 +402,7 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
     let floor = centres.len() as u32;
     let null = S::Vector::zero();
     p.push_body(null, S::Spin::zero(), null, S::Tensor::uniform(0.0), 1.0);
-    // Neighbours by cells one reach wide.
+    // Neighbours are found by cells as wide as the reach.
     let reach = 2.15;
     let mut cells = std::collections::HashMap::<[i64; D], Vec<u32>>::new();
     for (k, c) in centres.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! A bed of balls between first bodies, as a case: made in code, written as text, read again,
-//! changed by a key, and built. Nothing is stepped.
+//! Builds a case in code: a bed of balls between first bodies. The case is written as text, read
+//! again, changed by a key, and built. Nothing is stepped.
 //!
 //! ```sh
 //! cargo run --release --example build_a_scene
@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .material("glass", "glass_bead")
         .material("steel", "rail_steel_r260")
         .interface(
-            // A contact law and its parameters; further slots of the interface hold other laws.
+            // A contact law and its parameters; `.cohesion`, `.damage` and `.wear` would add other
+            // laws.
             InterfaceSpec::new("inside", ("glass", "glass"), "coulomb", &[("mu", 0.4)])
                 .cohesion("parallel-bond", &[("k_n", 1e10), ("k_t", 5e9)])
                 .bonds_within(1e-4),
@@ -52,13 +53,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .change(|case| case.output.figures = false) // all fields of a case are public
         .case();
 
-    // As text, which the program runs as well: `fretwork run layer.ron`. Reading it gives an equal
+    // The text can also be run by the program: `fretwork run layer.ron`. Reading it gives an equal
     // case, to the last bit.
     let text = case.to_ron()?;
     let read = |sets: &[String]| load_text("layer.ron", &text, Path::new(""), sets);
     assert_eq!(read(&[])?.case, case);
 
-    // The options `--set` of the program. What is wrong is said with its line and column.
+    // Changes use the syntax of `--set`. Errors give line and column.
     let loaded = read(&["interfaces.inside.parameters.contact.mu=0.5".to_owned()])?;
     assert_ne!(loaded.case, case);
     let Err(error) = read(&["time.stop=1.0".to_owned()]) else {
@@ -66,7 +67,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     println!("{error}");
 
-    // Built: laws are found and checked, grains are placed.
+    // Building the scene finds and checks the laws, and places the grains.
     let built = loaded.build(&fretwork::shipped::search_path())?;
     let (simulation, grains) = (&built.simulation, built.simulation.grains());
     println!(

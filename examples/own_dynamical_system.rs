@@ -1,5 +1,6 @@
-//! A body that is not rigid, of one's own: a block on a spring stands on a belt. The belt takes it
-//! along until the spring pulls as much as friction holds; then the block swings about that place.
+//! A dynamical system of your own, which is not a rigid body: a block on a spring stands on a belt.
+//! The belt takes it along until the force of the spring reaches the friction bound; then the block
+//! oscillates about that position.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --features laws --example own_dynamical_system
@@ -13,7 +14,7 @@ use fretwork::scene::case::{BodySpec, InterfaceSpec, ShapeSpec};
 
 type Vector = <Dim2 as Space>::Vector;
 
-/// A mass that moves along x and y without turning, on a spring along x. It touches by a ball.
+/// A mass that moves along x and y without rotating, on a spring along x. Its contactor is a ball.
 #[derive(Clone, Debug)]
 struct BlockOnSpring {
     mass: f64,
@@ -22,7 +23,7 @@ struct BlockOnSpring {
     /// Displacement from the unloaded spring (m) and velocity (m/s), x and y.
     displacement: [f64; 2],
     velocity: [f64; 2],
-    /// Both at the start of the step.
+    /// Displacement and velocity at the start of the step.
     start: [[f64; 2]; 2],
     /// A^-1 = 1/(m + (h theta)^2 k) along x, 1/m along y.
     inverse: [f64; 2],
@@ -65,7 +66,7 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
         }
     }
 
-    /// v + A^-1 h (F - K (q + h theta v)).
+    /// Returns v + A^-1 h (F - K (q + h theta v)).
     fn free_velocity(&self, step: &SystemStep<Dim2>) -> Vec<f64> {
         let [q, v] = self.start;
         let spring = -self.stiffness * (q[0] + step.h * step.theta * v[0]);
@@ -84,7 +85,8 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
         }
     }
 
-    /// Gravity, and what the scheme dissipates; the spring is elastic and nothing damps.
+    /// Returns the work of gravity and the loss of the scheme; the spring is elastic, and there is
+    /// no damping.
     fn work(&self, step: &SystemStep<Dim2>) -> SystemWork {
         let average = self.average(step);
         let [_, v] = self.start;
@@ -111,7 +113,7 @@ impl DynamicalSystem<Dim2> for BlockOnSpring {
         self.mass
     }
 
-    // Contacts see one node, whose velocities are the generalised ones.
+    // Contacts act on one node, whose velocities are the generalised ones.
     fn node_position(&self, _: u32) -> Vector {
         Vector::from_slice(&[self.displacement[0], self.radius + self.displacement[1]])
     }
@@ -181,8 +183,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         inverse: [0.0; 2],
     }));
 
-    // It sticks to x = mu m g/k and goes on from there with the velocity v of the belt:
-    // x = mu m g/k + v/w sin(w t), w = sqrt(k/m).
+    // The block sticks until x = mu m g/k and starts to slide with the velocity v of the belt: x =
+    // mu m g/k + v/w sin(w t), w = sqrt(k/m).
     let hold = mu * mass * g / stiffness;
     let omega = (stiffness / mass).sqrt();
     let mut furthest: f64 = 0.0;

@@ -1,10 +1,11 @@
-//! A contact law of one's own, linked into the program: friction that grows with the speed of
-//! sliding. A block is thrown along a plane and stops by a closed form.
+//! A contact law of your own, linked into the program: friction that increases with the sliding
+//! speed. A block thrown along a plane stops as a closed form says.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --example own_law
 //! ```
-//! The same law may be a library that cases name: `fretwork law new`, `docs/write_your_own_law.md`.
+//! A law can also be built as a library that cases name: `fretwork law new`, see
+//! `docs/write_your_own_law.md`.
 
 use fretwork::laws::{BuiltInLaws, SearchPath};
 use fretwork::scene::CaseBuilder;
@@ -13,7 +14,7 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 use std::ops::ControlFlow;
 
 parameters! {
-    /// mu = mu_0 + c |u_t|.
+    /// Friction coefficient mu = mu_0 + c |u_t|.
     pub struct Viscous {
         mu_0: "" = 0.1, 0.0, f64::INFINITY, "friction coefficient at rest";
         c: "s/m" = 0.0, 0.0, f64::INFINITY, "growth with the sliding velocity";
@@ -65,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .build(&laws)?
         .simulation;
 
-    // m dv/dt = -m g (mu_0 + c v), until it stands.
+    // The closed form solves m dv/dt = -m g (mu_0 + c v) until v = 0.
     let stop = (1.0 + c * v_0 / mu_0).ln() / (g * c);
     let speed = |t: f64| ((v_0 + mu_0 / c) * (-g * c * t).exp() - mu_0 / c).max(0.0);
     let ended = simulation.run_until(1.0, |now, _| {

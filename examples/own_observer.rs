@@ -1,5 +1,5 @@
-//! An observer of one's own: it looks at each step of a run, and what it reports stands in
-//! `summary.json`, the report and tables of studies with its unit and explanation.
+//! An observer of your own: it evaluates each step of a run. The value that it reports is in
+//! `summary.json`, the report and tables of studies, with its unit and explanation.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --features results --example own_observer
@@ -55,8 +55,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let run = Run::new(&loaded, built, &options).observe(Fastest::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(()))?;
 
-    // The first ball ends at sqrt(3^2 + (g t)^2), the second began with 4 m/s, less g h after the
-    // first step.
+    // The first ball ends at the speed sqrt(3^2 + (g t)^2), the second began with 4 m/s, less g h
+    // after the first step.
     let expected = 3f64.hypot(9.81 * 0.3).max(4.0 - 9.81e-3);
     let found = summary
         .found
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("highest speed {found:.4} m/s");
     assert!((found - expected).abs() < 1e-9 * expected);
 
-    // The same number for people, and for other programs.
+    // The value is printed as text, and available to other programs.
     assert!(summary.text(false).contains("highest speed"));
     let json = std::fs::read_to_string(options.out.join("summary.json"))?;
     assert!(json.contains("highest speed of a body in the run"));

@@ -1,5 +1,5 @@
-//! A process of one's own: the drag of a fluid on all grains, at the moment of each step at which
-//! forces act. A ball falls towards its terminal velocity by a closed form.
+//! A process of your own: the drag of a fluid on all grains, at the point of each step at which
+//! forces act. A ball falls towards its terminal velocity, which is compared with a closed form.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --example own_process
@@ -12,7 +12,7 @@ use fretwork::scene::CaseBuilder;
 use fretwork::scene::case::{GrainSpec, OneGrain};
 use fretwork::step::Simulation;
 
-/// The force -c v on each grain.
+/// The drag -c v on each grain.
 #[derive(Debug)]
 struct Drag {
     /// The drag coefficient c (N s/m).
@@ -37,7 +37,7 @@ impl<S: Space> Process<S> for Drag {
         Ok(())
     }
 
-    /// It carries nothing from step to step: a run with it may repeat steps to estimate its error.
+    /// The process has no state, so a run with it may repeat steps to estimate its error.
     fn repeats(&self) -> bool {
         true
     }
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut simulation = case.load()?.build_in::<Dim3>(&SearchPath::new(&[]))?;
     simulation.add_process(Drag { coefficient: c });
 
-    // v = (m g/c) (1 - exp(-c t/m)).
+    // The closed form is v = (m g/c) (1 - exp(-c t/m)).
     let mass = simulation.state.bodies.mass[0];
     for _ in 0..500 {
         simulation.step()?;

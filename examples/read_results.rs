@@ -1,4 +1,4 @@
-//! What a run leaves on disk, read back: the table of steps, recorded states, and the summary.
+//! Reads the results of a run from disk: the table of steps, recorded states, and the summary.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --features laws,results --example read_results
@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Two of five balls arrive at 1 m/s and two leave at 1 m/s, with states at 12 times.
+    // Two of five balls arrive at 1 m/s and two leave at 1 m/s; 12 states are recorded.
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = fretwork::scene::load(&case, &["output.frames=0".to_owned()])?;
     let built = loaded.build(&fretwork::shipped::search_path())?;
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let options = RunOptions { out, threads: 1 };
     Run::new(&loaded, built, &options).execute(&mut |_| ControlFlow::Continue(()))?;
 
-    // Columns of the statistics, each with its unit and explanation: a row a step.
+    // The statistics have columns with units and explanations, and a row per step.
     let path = options.out.join("results.h5");
     let reader = Reader::open(&path)?;
     let (unit, doc) = reader.described("statistics/kinetic");
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .all(|energy| (energy / kinetic[0] - 1.0).abs() < 1e-9)
     );
 
-    // The last recorded state, with identities, radii, positions and velocities of the grains.
+    // The last recorded state has identities, radii, positions and velocities of the grains.
     let last = state::read(&path, None, 3)?;
     let speeds: Vec<f64> = last
         .grains
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         assert!((speed - expected).abs() < 1e-9, "{speeds:?}");
     }
 
-    // What is known of the run, as the observers report it.
+    // The summary has the results of the run as the observers report them.
     let summary = std::fs::read_to_string(options.out.join("summary.json"))?;
     assert!(summary.contains("\"quantities\""));
     std::fs::remove_dir_all(&options.out)?;

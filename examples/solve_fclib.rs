@@ -1,4 +1,5 @@
-//! A contact problem as the collection FCLIB stores them: written, read, and solved by two methods.
+//! Writes a contact problem in the format of the collection FCLIB, reads it, and solves it by two
+//! methods.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --features results --example solve_fclib
@@ -9,8 +10,8 @@ use fretwork::solve::local::solver::{Limits, Method, solve};
 use fretwork::solve::local::{Csr, LocalProblem};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // u = W p + q in (n, t1, t2): a point mass of 0.5 kg arrives at 2 m/s downwards and 3 m/s along
-    // the plane, another of 2 kg at 1 m/s and 0.2 m/s.
+    // The problem is u = W p + q in (n, t1, t2): a point mass of 0.5 kg arrives at 2 m/s downwards
+    // and 3 m/s along the plane, another of 2 kg at 1 m/s and 0.2 m/s.
     let inverse_mass = [2.0, 0.5];
     let diagonal = (0..6).map(|k: u32| (k, k, inverse_mass[k as usize / 3]));
     let diagonal: Vec<_> = diagonal.collect();
@@ -31,8 +32,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     assert_eq!(local.problem, problem);
 
-    // The first slides: p_n = m |q_n|, p_t = mu p_n against the motion, u_t = q_t - mu |q_n|. The
-    // second sticks: p = -q/w.
+    // The first mass slides: p_n = m |q_n|, p_t = mu p_n against the motion, u_t = q_t - mu |q_n|.
+    // The second sticks: p = -q/w.
     for method in [Method::Nlgs, Method::Newton] {
         let limits = Limits {
             tolerance: 1e-10,

@@ -1,5 +1,5 @@
-//! A scene made in code and stepped: a slider on two balls is pressed down, pulled along a plane,
-//! and carried by friction.
+//! Makes a scene in code and steps it: a slider on two balls is pressed down and pulled along a
+//! plane against friction.
 //!
 //! ```sh
 //! cargo run --release --example step_a_scene
@@ -12,7 +12,7 @@ use fretwork::scene::case::{BodySpec, InterfaceSpec, ShapeSpec};
 use std::ops::ControlFlow;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The same type of case as that of a case file, with the same checks and messages.
+    // This is the type into which case files are read, with the same checks and messages.
     let feet = [([0.0, 0.0], 0.01), ([0.05, 0.0], 0.01)];
     let case = CaseBuilder::in_plane("a slider on a plane")
         .time(1e-4, 0.05)
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     let mut simulation = case.build(&fretwork::shipped::search_path())?.simulation;
 
-    // Step by step to the end, or until the callback breaks: here after 2 mm of sliding.
+    // The simulation steps to the end, or until the callback breaks: here after 2 mm of sliding.
     let slider = simulation
         .bodies()
         .driven_named("slider")
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     assert_eq!(end, ControlFlow::Break("slid far enough"));
 
-    // Coulomb: 0.3 x 100 N, carried by two contacts.
+    // Coulomb friction is 0.3 x 100 N, shared by two contacts.
     let last = friction.last().ok_or("no step")?;
     println!("friction force {last:.6} N/m");
     assert!((last - 30.0).abs() < 1e-6 * 30.0);
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     simulation.visit_contacts(&mut |contact| carried += contact.normal_force);
     assert!((carried - 100.0).abs() < 1e-6 * 100.0);
 
-    // The energy ledger: what friction took, and what does not add up.
+    // The energy ledger has the energy that friction dissipated, and the residual.
     let energy = simulation.energies();
     println!("work of friction {:.6} J/m", energy.friction);
     assert!(energy.friction > 0.0 && energy.residual.abs() < 1e-9 * energy.scale);

@@ -1,5 +1,5 @@
-//! A run is stopped by the program that made it and goes on later, to the same bits as a run that
-//! was not stopped.
+//! Stops a run by a callback and resumes it later. The results are bit-identical to those of a run
+//! that was not stopped.
 //!
 //! ```sh
 //! cargo run --release --no-default-features --features laws,results --example stop_and_resume
@@ -7,13 +7,13 @@
 
 use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{Run, RunOptions, stopped};
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Runs a case in a folder to its end, or to a number of steps; goes on where one was stopped.
-/// Returns why it stopped, if it did.
-fn run(loaded: &Loaded, out: &Path, until: Option<u64>) -> Result<Option<String>, String> {
+/// Runs a case in a folder to its end or to a number of steps, and resumes a stopped run. Returns
+/// the reason why it stopped, if it did.
+fn run(loaded: &LoadedCase, out: &Path, until: Option<u64>) -> Result<Option<String>, String> {
     let options = RunOptions {
         out: out.to_owned(),
         threads: 1,
@@ -27,7 +27,7 @@ fn run(loaded: &Loaded, out: &Path, until: Option<u64>) -> Result<Option<String>
         FolderState::State(state) => run = run.resume(state),
         FolderState::Finished => return Ok(None),
     }
-    // Called after each step. All files are complete when it has stopped the run.
+    // The callback is called after each step. When it stops the run, all files are complete.
     let summary = run.execute(&mut |progress| match until {
         Some(steps) if progress.steps.0 == steps => ControlFlow::Break("had enough".to_owned()),
         _ => ControlFlow::Continue(()),
@@ -48,11 +48,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rows = |out: &Path| std::fs::read_to_string(out.join("statistics.csv"));
     assert_eq!(rows(&parts)?.lines().count(), 251);
 
-    // The rest, as another program would do it that knows the case and the folder only.
+    // The rest is run as by another program that knows only the case and the folder.
     assert_eq!(run(&loaded, &parts, None)?, None);
     assert_eq!(rows(&parts)?, rows(&whole)?);
 
-    // The state of a simulation alone, without files: saved, stepped on, and put back.
+    // The state of a simulation is saved without files; the simulation steps on and is restored.
     let mut simulation = loaded.build(&fretwork::shipped::search_path())?.simulation;
     simulation.step()?;
     let saved = simulation.save()?;

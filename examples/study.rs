@@ -1,5 +1,5 @@
-//! A study from code: a case at several values of a key, each a run of the program in a process of
-//! its own, and one table of their results.
+//! Makes a study from code: a case at several values of a key, each run by the program in a
+//! separate process, and one table of the results.
 //!
 //! ```sh
 //! cargo build --release
@@ -31,7 +31,7 @@ const STUDY: &str = r#"(
     outputs: ["energy.friction"],
 )"#;
 
-/// The program that makes the runs: beside the folder of this one.
+/// Path of the program that makes the runs: in the folder above that of this example.
 fn built_program() -> Result<PathBuf, Box<dyn std::error::Error>> {
     let own = std::env::current_exe()?;
     let folder = own
@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::write(folder.join("slider.ron"), case.case().to_ron()?)?;
     std::fs::write(folder.join("study.ron"), STUDY)?;
 
-    // Which runs there are: a factor is checked against the case before any is made.
+    // The plan lists the runs; each factor is checked against the case before any run is made.
     let program = Program {
         search: shipped::search_path(),
         plugins: Vec::new(),
@@ -93,7 +93,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let plan = Plan::new(&StudyFile::read(&folder.join("study.ron"))?, place)?;
     assert_eq!(plan.count(), 3);
 
-    // Two runs at a time. A run that is stored is not made again.
+    // Two runs are made at a time. A run that is stored is not made again.
     let stop = AtomicBool::new(false);
     let ended = execute(&plan, missing(&plan), 2, None, &stop, &|point, run| {
         println!(
@@ -105,8 +105,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     assert_eq!((ended, missing(&plan).len()), (3, 0));
 
-    // The work of friction, mu x 100 N over 2 mm, as a column of the table; and the files of the
-    // study: table.csv, settings.csv, a page and a picture.
+    // The table has the work of friction, mu x 100 N over 2 mm. The files of the study are
+    // table.csv, settings.csv, a page and a picture.
     let rows = Rows::of(&plan);
     for (work, mu) in rows.trusted("energy.friction").iter().zip([0.1, 0.2, 0.4]) {
         let (work, expected) = (work.ok_or("a run is not trusted")?, mu * 100.0 * 2e-3);

@@ -1,12 +1,12 @@
-//! Handling of signals that ask for an end: on the first one the current step is finished and
+//! Handling of signals that request an end. On the first one the current step is finished and the
 //! results are written; a second SIGINT or SIGTERM ends the program at once.
 //!
-//! Those are SIGINT (Ctrl-C) and SIGTERM, SIGHUP of a terminal that closes, and SIGXCPU and SIGXFSZ
-//! of limits on the time of the processor and on the size of files, which the system sends again
-//! and again. On Windows Ctrl-C arrives as SIGINT; the others are never sent there.
+//! These signals are SIGINT (Ctrl-C) and SIGTERM, SIGHUP of a terminal that closes, and SIGXCPU and
+//! SIGXFSZ of limits on processor time and file size, which the system sends repeatedly. On Windows
+//! Ctrl-C arrives as SIGINT; the others are never sent there.
 //!
-//! Where the limit on time ends a process at once, as that of `ulimit -t` does, it is asked for its
-//! signal some seconds earlier.
+//! A limit on processor time that ends a process at once, such as that of `ulimit -t`, is preceded
+//! by its signal: the soft limit is set several seconds lower.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -22,10 +22,10 @@ static WATCH: Once = Once::new();
 /// Exit code after a second signal: the command did not finish.
 const ENDED: i32 = 1;
 
-/// Signals of somebody, and their names.
+/// Signals sent by a user, and their names.
 const OF_SOMEBODY: [(i32, &str); 2] = [(SIGINT, "SIGINT (Ctrl-C)"), (SIGTERM, "SIGTERM")];
 
-/// Signals of a terminal and of limits.
+/// Signals sent by a terminal or by limits.
 #[cfg(unix)]
 const OF_SYSTEM: [(i32, &str); 3] = [
     (libc::SIGHUP, "SIGHUP (as when a terminal closes)"),
@@ -73,24 +73,24 @@ fn ask_before_the_end() {
         rlim_cur: 0,
         rlim_max: 0,
     };
-    // SAFETY: the record is written to, and nothing else.
+    // SAFETY: the call only writes to the record.
     let known = unsafe { libc::getrlimit(libc::RLIMIT_CPU, &raw mut limit) } == 0;
     if known && let Some(earlier) = before(limit.rlim_cur, limit.rlim_max) {
         limit.rlim_cur = earlier;
-        // SAFETY: the record is read. What is refused leaves the limit as it was.
+        // SAFETY: the call only reads the record. If it fails, the limit is unchanged.
         unsafe { libc::setrlimit(libc::RLIMIT_CPU, &raw const limit) };
     }
 }
 
-/// The time (s) at which the signal comes, where the limit that ends a process comes no later than
-/// that which asks: a tenth of it before, at least a second and at most ten.
+/// Returns the soft limit of processor time (s), if it is not already lower than the hard limit. It
+/// is a tenth of the time before the hard limit, at least one second and at most ten.
 #[cfg(unix)]
 fn before(asks: libc::rlim_t, ends: libc::rlim_t) -> Option<libc::rlim_t> {
     let limited = ends != libc::RLIM_INFINITY && asks == ends && ends >= 2;
     limited.then(|| ends - (ends / 10).clamp(1, 10))
 }
 
-/// Notes a signal when it comes.
+/// Records a signal; called by the signal handler.
 fn take(signal: i32) {
     let _ = flag::register_usize(signal, &SIGNAL, signal as usize);
     let _ = flag::register(signal, &ASKED);
@@ -99,7 +99,7 @@ fn take(signal: i32) {
 /// Whether whoever started the program had a signal ignored.
 #[cfg(unix)]
 fn ignored(signal: i32) -> bool {
-    // SAFETY: an all-zero action is a valid place for the answer, and nothing is changed.
+    // SAFETY: an all-zero action is valid memory for the answer, and nothing is changed.
     unsafe {
         let mut now: libc::sigaction = std::mem::zeroed();
         libc::sigaction(signal, std::ptr::null(), &mut now) == 0
@@ -112,7 +112,7 @@ fn ignored(_: i32) -> bool {
     false
 }
 
-/// Name of the signal received; `None` if there was none.
+/// Returns the name of the signal received; `None` if there was none.
 pub fn asked() -> Option<&'static str> {
     if !ASKED.load(Ordering::SeqCst) {
         return None;
@@ -131,7 +131,7 @@ mod tests {
     fn the_signal_comes_before_the_end() {
         for (ends, asks) in [(2, 1), (10, 9), (60, 54), (100, 90), (3600, 3590)] {
             assert_eq!(before(ends, ends), Some(asks));
-            // Who set an earlier one is asked then.
+            // A lower soft limit that was set earlier is kept.
             assert_eq!(before(ends - 1, ends), None);
         }
         assert_eq!(before(1, 1), None);

@@ -41,22 +41,22 @@
 //! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
 //! | pictures | [`view`]: charts and pictures, reports |
 //!
-//! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`,
-//! `fretwork-observe`, `fretwork-store`, `fretwork-view`, `fretwork-experiments`. Here they meet:
-//! [`cli`] is the command line, [`shipped`] has the laws that come with the program,
-//! [`experiments`] makes runs of a case in processes of their own for studies and fits,
-//! [`contact_patch`] has contact patches in closed form.
+//! Each module re-exports a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`,
+//! `fretwork-store`, `fretwork-view`, `fretwork-experiments`. This crate adds the command line
+//! ([`cli`]), the shipped laws ([`shipped`]), processes that make runs for studies and fits
+//! ([`experiments`]), and contact patches in closed form ([`contact_patch`]).
 //!
 //! # Features
 //!
-//! The program is the default; with `default-features = false` a program links what makes scenes
-//! and steps them. Features add `laws` ([`shipped`]), `results` (the run loop and its files),
-//! `view`, `experiments`, `parquet` (tables of studies) and `program` ([`cli`], [`interrupt`]): see
-//! `docs/library.md`, which lists short programs of the folder `examples` to begin with.
+//! By default this crate builds the program; with `default-features = false` it is a library that
+//! makes scenes and steps them. Features add `laws` ([`shipped`]), `results` (the run loop and its
+//! files), `view`, `experiments`, `parquet` (tables of studies) and `program` ([`cli`],
+//! [`interrupt`]). `docs/library.md` describes them, and lists short programs of the folder
+//! `examples` to begin with.
 //!
 //! # A scene without files
 //!
-//! A ball dropped on a plane rests there, and the plane carries its weight.
+//! This example drops a ball on a plane, where it comes to rest; the plane carries its weight.
 //!
 //! ```
 //! use fretwork::scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};

@@ -11,42 +11,42 @@ use std::path::Path;
 ///
 /// # Errors
 /// An [`InputError`] with file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     fretwork_scene::load(path, sets).map(reading_records)
 }
 
 /// Reads a case from a text, see [`fretwork_scene::load_text`].
 ///
 /// # Errors
-/// At name, line and column.
+/// The text is invalid; the error gives the name of the case, line and column.
 pub fn load_text(
     name: &str,
     text: &str,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     fretwork_scene::load_text(name, text, folder, sets).map(reading_records)
 }
 
 /// Reads a case from a stream of bytes, see [`fretwork_scene::load_reader`].
 ///
 /// # Errors
-/// As [`load_text`], and what cannot be read.
+/// The text is invalid, with the name of the case, line and column, or the stream cannot be read.
 pub fn load_reader(
     name: &str,
     from: impl Read,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     fretwork_scene::load_reader(name, from, folder, sets).map(reading_records)
 }
 
 #[cfg(feature = "results")]
-fn reading_records(loaded: Loaded) -> Loaded {
+fn reading_records(loaded: LoadedCase) -> LoadedCase {
     loaded.reading_records(crate::record::results::state::read)
 }
 
 #[cfg(not(feature = "results"))]
-fn reading_records(loaded: Loaded) -> Loaded {
+fn reading_records(loaded: LoadedCase) -> LoadedCase {
     loaded
 }

@@ -10,9 +10,9 @@ pub fn built_in() -> BuiltInLaws {
         .clone()
 }
 
-/// A search path with the shipped laws, for programs that use this library: the folders of the
-/// environment variable `FRETWORK_PLUGIN_PATH` come after them. [`SearchPath::new`] takes further
-/// folders.
+/// Returns a search path with the shipped laws, for programs that use this library. The folders of
+/// the environment variable `FRETWORK_PLUGIN_PATH` come after them; [`SearchPath::new`] takes
+/// further folders.
 pub fn search_path() -> SearchPath {
     SearchPath::new(&[]).with_built_in(built_in())
 }

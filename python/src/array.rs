@@ -1,8 +1,8 @@
-//! Memory that NumPy looks at, through its array interface.
+//! Memory that is exposed to NumPy through its array interface.
 //!
 //! A column of a simulation is shown without a copy while nothing changes it. Before a step the
-//! simulation hands the memory of each column that Python still holds over to its array, and goes
-//! on with a copy: an array never changes, and never dangles.
+//! simulation hands the memory of each column that Python still holds over to its array, and
+//! continues with a copy: an array never changes, and never dangles.
 
 use crate::simulation::Simulation;
 use pyo3::prelude::*;
@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 use std::any::Any;
 use std::sync::Mutex;
 
-/// What keeps the memory of an array.
+/// Owner of the memory of an array.
 enum Owner {
     /// The simulation, whose column it is.
     Simulation { _it: Py<Simulation> },
@@ -29,7 +29,7 @@ pub(crate) struct Array {
 
 /// A number that arrays can hold.
 pub(crate) trait Number: Copy + Send + 'static {
-    /// Its name in the array interface.
+    /// Type code in the array interface.
     const KIND: &'static str;
 }
 
@@ -62,7 +62,8 @@ impl Number for bool {
 }
 
 impl Array {
-    /// An array with its own memory, of `width` numbers a row; of one dimension with a width of 0.
+    /// Returns an array with its own memory, of `width` numbers per row; one-dimensional if `width`
+    /// is 0.
     pub(crate) fn own<T: Number>(numbers: Vec<T>, width: usize) -> Self {
         Self {
             at: numbers.as_ptr() as usize,
@@ -74,8 +75,8 @@ impl Array {
         }
     }
 
-    /// An array on a column of a simulation, whose elements have `width` numbers each, which must
-    /// be all that they have.
+    /// Returns an array on a column of a simulation, whose elements must consist of exactly `width`
+    /// numbers each.
     pub(crate) fn shown<T, N: Number>(column: &[T], width: usize, of: Py<Simulation>) -> Self {
         debug_assert_eq!(size_of::<T>(), width.max(1) * size_of::<N>());
         Self {
@@ -86,8 +87,8 @@ impl Array {
         }
     }
 
-    /// Gives it the memory that it shows. Must be called with the column itself: moving a vector
-    /// leaves its numbers in place.
+    /// Gives the array the memory that it shows. Must be called with the column itself: moving a
+    /// vector leaves its numbers in place.
     pub(crate) fn hand_over(&self, memory: Box<dyn Any + Send>) {
         let mut owner = self.owner.lock().unwrap_or_else(|e| e.into_inner());
         *owner = Owner::Itself { _memory: memory };
@@ -103,7 +104,7 @@ fn shape(numbers: usize, width: usize) -> Vec<usize> {
 
 #[pymethods]
 impl Array {
-    /// Read-only, in the order of C.
+    /// The array interface: read-only, in C order.
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let result = PyDict::new(py);

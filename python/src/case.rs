@@ -6,17 +6,17 @@ use crate::paths;
 use crate::search::search_path;
 use fretwork::cli;
 use fretwork::scene::source::{Names, Tree, nearest, split_path};
-use fretwork::scene::{Case as CaseSpec, InputError, Loaded, check, load, load_text};
+use fretwork::scene::{Case as CaseSpec, InputError, LoadedCase, check, load, load_text};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// A case: its text, and what was read from it. Values go to Python and back as JSON.
+/// A case: its text, and the values read from it. Values are exchanged with Python as JSON.
 #[pyclass(module = "fretwork._fretwork", name = "CaseData", from_py_object)]
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    pub(crate) loaded: Loaded,
+    pub(crate) loaded: LoadedCase,
 }
 
 /// Label and text of the lines of `fretwork check`.
@@ -31,14 +31,14 @@ impl Case {
         Ok(Self { loaded })
     }
 
-    /// Reads a text; `folder` is where files that it names are looked for.
+    /// Reads a text; files that it names are searched in `folder`.
     #[staticmethod]
     fn from_text(name: &str, text: &str, folder: PathBuf, sets: Vec<String>) -> PyResult<Self> {
         let loaded = load_text(name, text, &folder, &sets).map_err(|e| input(&e))?;
         Ok(Self { loaded })
     }
 
-    /// Makes a case of its fields, as JSON.
+    /// Makes a case from its fields, as JSON.
     #[staticmethod]
     fn from_json(name: &str, json: &str, folder: PathBuf) -> PyResult<Self> {
         let value = parsed(json)?;
@@ -58,7 +58,7 @@ impl Case {
         self.loaded.path.clone()
     }
 
-    /// All values written out, defaults too.
+    /// Returns the case as text with all values, including defaults.
     fn to_ron(&self) -> PyResult<String> {
         self.loaded.case.to_ron().map_err(|e| input(&e))
     }
@@ -81,14 +81,14 @@ impl Case {
         self.put(path, parsed(json)?).map_err(|e| input(&e))
     }
 
-    /// The value at a path, as JSON; none for a value that the case leaves out.
+    /// Returns the value at a path, as JSON; `None` for a value that the case omits.
     fn value(&self, path: &str) -> PyResult<Option<String>> {
         let all = infinity::json_of(&self.loaded.case);
         let parts = self.parts(path)?;
         if let Some(found) = paths::find(&all, &parts) {
             return Ok(Some(found.to_string()));
         }
-        // A field that is left out because it is empty or has its default.
+        // The field is omitted because it is empty or has its default.
         if CaseSpec::names(&self.loaded.source, path).is_some()
             && let (above, last) = path.rsplit_once('.').unwrap_or(("", path))
             && let Some(Names::Fields(fields)) = CaseSpec::names(&self.loaded.source, above)
@@ -99,12 +99,13 @@ impl Case {
         Err(self.unknown(path))
     }
 
-    /// All values that the case does not leave out, as JSON.
+    /// Returns all values that the case does not omit, as JSON.
     fn value_of_all(&self) -> String {
         infinity::json_of(&self.loaded.case).to_string()
     }
 
-    /// What may stand at a path: one of `fields`, `entries`, `kinds` and `value`, with the names.
+    /// Returns what is allowed at a path: one of `fields`, `entries`, `kinds` and `value`, with the
+    /// names.
     fn names(&self, path: &str) -> Option<(&'static str, Vec<String>)> {
         Some(match CaseSpec::names(&self.loaded.source, path)? {
             Names::Fields(names) => ("fields", names),
@@ -142,7 +143,7 @@ impl Case {
         split_path(path).ok_or_else(|| self.unknown(path))
     }
 
-    /// `KeyError` with the nearest name.
+    /// Returns a `KeyError` with the nearest name.
     fn unknown(&self, path: &str) -> PyErr {
         let (above, last) = path.rsplit_once('.').unwrap_or(("", path));
         let names = match CaseSpec::names(&self.loaded.source, above) {
@@ -185,8 +186,8 @@ impl Case {
         }
     }
 
-    /// The RON of a value with structs, maps or kinds: that which the case with it has at this
-    /// path.
+    /// Returns the RON text of a value with structs, maps or variants, by way of the case that
+    /// contains it at this path.
     fn written(&self, path: &str, value: Value) -> Result<String, InputError> {
         let parts = split_path(path)
             .ok_or_else(|| InputError::argument(path, "a part of the key is empty"))?;
@@ -198,7 +199,7 @@ impl Case {
         let tree = Tree::of(&text);
         let found = tree.find(&text, &parts).ok();
         let found = found.map(|node| text[node.span.clone()].to_owned());
-        // What is empty is left out of the text.
+        // An empty value is omitted in the text.
         Ok(found.unwrap_or_else(|| "{}".to_owned()))
     }
 }
@@ -208,8 +209,8 @@ fn parsed(json: &str) -> PyResult<Value> {
         .map_err(|e| wrong("the value", format!("it cannot be read as JSON: {e}")))
 }
 
-/// Reads a case from JSON. A number stands for a constant function of time, as in case files. `at`
-/// is the path that was set, for messages where the reader gives none.
+/// Reads a case from JSON. A number is accepted for a constant function of time, as in case files.
+/// `at` is the path that was set, for messages without a path of the reader.
 fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
     // A bound on the number of functions of time, each of which takes one attempt.
     const MAX_CONSTANTS: usize = 10_000;
@@ -222,7 +223,7 @@ fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
         let said = error.inner().to_string();
         let found = pointer(&mut value, &parts);
         match found {
-            // What serde_json says of a number where a kind is expected.
+            // This is the message of serde_json for a number where a variant is expected.
             Some(number) if number.is_number() && said.contains("expected string or map") => {
                 *number = serde_json::json!({ "Constant": number.take() });
             }
@@ -253,7 +254,7 @@ fn segments(path: &serde_path_to_error::Path) -> Vec<String> {
     path.iter().filter_map(named).collect()
 }
 
-/// The value at a path of which each part, a variant too, is a key or an index.
+/// Returns the value at a path each part of which, including variants, is a key or an index.
 fn pointer<'a>(root: &'a mut Value, parts: &[String]) -> Option<&'a mut Value> {
     parts.iter().try_fold(root, |value, part| match value {
         Value::Array(list) => list.get_mut(part.parse::<usize>().ok()?),

@@ -31,7 +31,7 @@ impl Column {
         Self::Removed,
     ];
 
-    /// Name, unit and explanation.
+    /// Returns name, unit and explanation.
     pub(crate) fn about(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Id => ("id", "", "identities, the same over time"),
@@ -57,7 +57,7 @@ impl Column {
     }
 }
 
-/// Shows a column, as memory of its owner.
+/// Returns an array that shows a column, whose memory has an owner.
 pub(crate) fn show<S: Space>(bodies: &Bodies<S>, column: Column, owner: Py<Simulation>) -> Array {
     match column {
         Column::Id => Array::shown::<_, u64>(&bodies.id, 0, owner),
@@ -70,7 +70,7 @@ pub(crate) fn show<S: Space>(bodies: &Bodies<S>, column: Column, owner: Py<Simul
     }
 }
 
-/// A copy of a column, with the layout of that which [`show`] gives.
+/// Returns a copy of a column, with the layout of the array of [`show`].
 pub(crate) fn copy(run: &dyn RunView, column: Column) -> Array {
     let (bodies, dimension) = (run.bodies(), run.dimension());
     let motions = || (0..bodies.len()).map(|body| run.motion(body));
@@ -103,12 +103,12 @@ pub(crate) fn take<S: Space>(bodies: &mut Bodies<S>, column: Column) -> Box<dyn 
     }
 }
 
-/// Numbers of a spin: in 2D a plain column.
+/// Width of an angular velocity: 0 in 2D, which makes a plain column.
 fn spin_width(dimension: usize) -> usize {
     if dimension == 2 { 0 } else { 3 }
 }
 
-/// Vectors as rows of so many numbers as there are dimensions.
+/// Returns vectors as rows with one number per dimension.
 pub(crate) fn vectors(all: impl IntoIterator<Item = [f64; 3]>, dimension: usize) -> Array {
     let numbers = all.into_iter().flat_map(|v| v.into_iter().take(dimension));
     Array::own::<f64>(numbers.collect(), dimension)

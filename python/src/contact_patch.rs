@@ -5,7 +5,7 @@ use fretwork::contact_patch::{Question, answer};
 use fretwork::shipped::search_path;
 use pyo3::prelude::*;
 
-/// Answers a question, both as JSON.
+/// Computes the answer to a question; both are JSON.
 #[pyfunction]
 pub(crate) fn contact_patch(question: &str) -> PyResult<String> {
     let unread = |e: serde_json::Error| errors::wrong("contact_patch", e.to_string());

@@ -8,8 +8,7 @@ use pyo3::prelude::*;
 use std::fmt::Display;
 use std::path::Path;
 
-/// Arguments of an [`InputError`] as Python takes them: text, file, line, column, message,
-/// expected, proposal.
+/// Arguments of an [`InputError`] in Python: text, file, line, column, message, expected, proposal.
 type InputArguments = (
     String,
     String,
@@ -20,7 +19,7 @@ type InputArguments = (
     Option<String>,
 );
 
-/// The name of a class of `fretwork._errors` with its arguments.
+/// Makes an exception of a class of `fretwork._errors` with these arguments.
 fn raised(
     class: &str,
     arguments: impl for<'py> FnOnce(&Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>>,
@@ -34,7 +33,7 @@ fn raised(
     })
 }
 
-/// Options of the command line as the arguments of Python that they stand for.
+/// Replaces options of the command line in a text by the corresponding arguments in Python.
 fn in_python(text: &str) -> String {
     let text = text.replace("--resume", "resume=True");
     let text = text.replace(
@@ -44,7 +43,7 @@ fn in_python(text: &str) -> String {
     clean_lines(&text)
 }
 
-/// `fretwork.InputError`.
+/// Makes a `fretwork.InputError`.
 pub(crate) fn input(error: &InputError) -> PyErr {
     let place = error.position();
     let arguments: InputArguments = (
@@ -59,18 +58,18 @@ pub(crate) fn input(error: &InputError) -> PyErr {
     raised("InputError", move |class| class.call1(arguments))
 }
 
-/// `fretwork.InputError` without a place in a file.
+/// Makes a `fretwork.InputError` without a position in a file.
 pub(crate) fn wrong(subject: impl Display, message: impl Into<String>) -> PyErr {
     input(&InputError::argument(subject, message))
 }
 
-/// `fretwork.RunError`; `out` is the folder with what was computed.
+/// Makes a `fretwork.RunError`; `out` is the folder with the results so far.
 pub(crate) fn run(message: &str, out: Option<&Path>) -> PyErr {
     let arguments = (in_python(message), out.map(Path::to_owned));
     raised("RunError", move |class| class.call1(arguments))
 }
 
-/// A failed run: wrong input where another case or version is resumed.
+/// Makes the exception of a failed run: an input error if another case or version is resumed.
 pub(crate) fn ended(error: &RunError, place: Option<String>, out: &Path) -> PyErr {
     if let RunError::Input(e) = error {
         return input(e);

@@ -1,14 +1,14 @@
-//! Infinite numbers of cases in JSON, which has none: the largest number but one stands for
+//! Infinite numbers of cases in JSON, which has none: the second largest number represents
 //! infinity, here and in `fretwork/_values.py`.
 
 use fretwork::scene::source::Tree;
 use fretwork::scene::{Case, InputError};
 use serde_json::Value;
 
-/// Stands for infinity.
+/// Number that represents infinity.
 const INFINITE: f64 = f64::MAX.next_down();
 
-/// All values of a case that it does not leave out.
+/// Returns all values of a case that it does not omit.
 pub(crate) fn json_of(case: &Case) -> Value {
     let mut value = serde_json::to_value(case).unwrap_or_default();
     // Infinite numbers are written as null.
@@ -30,7 +30,7 @@ fn has_null(value: &Value) -> bool {
     }
 }
 
-/// Puts numbers in the place of nulls where the text has one.
+/// Replaces nulls by the numbers that the text has in their place.
 fn restore(value: &mut Value, text: &str, tree: &Tree, path: &mut Vec<String>) {
     match value {
         Value::Null => {
@@ -67,7 +67,7 @@ fn restore(value: &mut Value, text: &str, tree: &Tree, path: &mut Vec<String>) {
 /// The text of a case that was read from JSON.
 ///
 /// # Errors
-/// As [`Case::to_ron`].
+/// Writes a case as [`Case::to_ron`] does, with infinite numbers.
 pub(crate) fn ron_of(case: &Case) -> Result<String, InputError> {
     Ok(case.to_ron()?.replace(&format!("{INFINITE:?}"), "inf"))
 }

@@ -1,11 +1,11 @@
-//! Laws: listed, described, driven and certified, for `fretwork.law`.
+//! Functions for `fretwork.law` that list, describe, drive and certify laws.
 //!
-//! Answers are JSON, which the Python side makes into its own types.
+//! Results are JSON, which the Python side converts to its own types.
 
 use crate::search::search_path;
 use fretwork::certify::certify_in_child;
-use fretwork::laws::search::Place;
-use fretwork::laws::{Field, Kind, LawError, Plugin, SearchPath};
+use fretwork::laws::search::LawLocation;
+use fretwork::laws::{Kind, LawError, LawField, Plugin, SearchPath};
 use fretwork::program;
 use fretwork::scene::source::nearest;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -23,15 +23,15 @@ pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(drive_laws, module)?)
 }
 
-/// How often a waiting call looks for Ctrl-C.
+/// Interval at which a waiting call checks for Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 fn wrong(e: LawError) -> PyErr {
     PyValueError::new_err(e.to_string())
 }
 
-/// The laws with a name or kind/name; all without one. Each is a JSON object; a library that cannot
-/// be used has the key `error` if all were asked for.
+/// Returns the laws with a name or kind/name, or all laws. Each is a JSON object; a library that
+/// cannot be used has the key `error` if all were requested.
 #[pyfunction]
 #[pyo3(signature = (name=None, plugin_path=Vec::new()))]
 fn laws(py: Python<'_>, name: Option<&str>, plugin_path: Vec<PathBuf>) -> PyResult<String> {
@@ -39,7 +39,7 @@ fn laws(py: Python<'_>, name: Option<&str>, plugin_path: Vec<PathBuf>) -> PyResu
     py.detach(|| {
         let Some(name) = name else {
             let all = path.laws();
-            path.try_out(
+            path.test_loading(
                 all.iter()
                     .map(|(kind, name, _)| (*kind, name.as_str(), None)),
             );
@@ -54,7 +54,7 @@ fn laws(py: Python<'_>, name: Option<&str>, plugin_path: Vec<PathBuf>) -> PyResu
     })
 }
 
-/// The certificate of a law with these parameters, the others at their defaults, as JSON.
+/// Returns the certificate of a law with these parameters, the others at their defaults, as JSON.
 #[pyfunction]
 fn certify_law(
     py: Python<'_>,
@@ -79,8 +79,8 @@ fn certify_law(
     })
 }
 
-/// Runs `fretwork law drive` with these arguments in a process of its own, so that a law that
-/// crashes or hangs does not take this one along; returns its table as JSON and its remarks.
+/// Runs `fretwork law drive` with these arguments in a separate process, so that a law that crashes
+/// or hangs does not affect this one; returns its table as JSON and its remarks.
 #[pyfunction]
 fn drive_laws(py: Python<'_>, arguments: Vec<String>) -> PyResult<(String, String)> {
     let failed =
@@ -98,7 +98,8 @@ fn drive_laws(py: Python<'_>, arguments: Vec<String>) -> PyResult<(String, Strin
         std::thread::spawn(move || {
             let mut text = Vec::new();
             if let Some(mut from) = from {
-                // What was read before an error is kept; how the process ended says the rest.
+                // Output before an error is kept; the exit status of the process explains the
+                // error.
                 let _ = from.read_to_end(&mut text);
             }
             String::from_utf8_lossy(&text).into_owned()
@@ -167,7 +168,7 @@ fn named(path: &SearchPath, name: &str) -> PyResult<Vec<Plugin>> {
         );
         let message = format!(
             "there is no law named `{name}` in {}{proposal}",
-            path.looked()
+            path.searched()
         );
         return Err(PyValueError::new_err(message));
     }
@@ -177,7 +178,7 @@ fn named(path: &SearchPath, name: &str) -> PyResult<Vec<Plugin>> {
     opened.collect::<Result<_, _>>().map_err(wrong)
 }
 
-/// All parameter values of a law, in the order of its schema.
+/// Returns all parameter values of a law, in the order of its schema.
 fn values(law: &Plugin, given: &[(String, f64)]) -> PyResult<Vec<f64>> {
     let mut values: Vec<f64> = law.parameters.iter().map(|p| p.default).collect();
     for (name, value) in given {
@@ -198,8 +199,8 @@ fn values(law: &Plugin, given: &[(String, f64)]) -> PyResult<Vec<f64>> {
 }
 
 fn describe(law: &Plugin) -> Value {
-    let fields = |fields: &[Field]| -> Vec<Value> {
-        let one = |f: &Field| {
+    let fields = |fields: &[LawField]| -> Vec<Value> {
+        let one = |f: &LawField| {
             // JSON has no infinity.
             let finite = |x: f64| x.is_finite().then_some(x);
             json!({
@@ -216,10 +217,10 @@ fn describe(law: &Plugin) -> Value {
     })
 }
 
-fn unusable(kind: Kind, name: &str, place: &Place, e: &LawError) -> Value {
+fn unusable(kind: Kind, name: &str, place: &LawLocation, e: &LawError) -> Value {
     let path = match place {
-        Place::Library(path) => path.display().to_string(),
-        Place::BuiltIn => String::new(),
+        LawLocation::Library(path) => path.display().to_string(),
+        LawLocation::BuiltIn => String::new(),
     };
     json!({ "kind": kind.word(), "name": name, "path": path, "error": e.to_string() })
 }

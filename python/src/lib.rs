@@ -1,7 +1,7 @@
 //! The compiled part of the Python package `fretwork`.
 //!
-//! It knows cases, simulations, runs and laws, and gives them to Python in plain types: numbers,
-//! texts, JSON and memory that NumPy looks at. The classes that users see are in `fretwork/`.
+//! It exposes cases, simulations, runs and laws to Python in plain types: numbers, texts, JSON and
+//! memory for NumPy. The classes that users see are in `fretwork/`.
 
 mod array;
 mod case;

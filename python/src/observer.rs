@@ -6,7 +6,7 @@
 //! `fretwork/_observers.py`.
 
 use crate::simulation::Simulation;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::statistics::Column;
 use fretwork::record::{Observer, RunView};
 use fretwork::step::StepReport;
@@ -14,12 +14,12 @@ use pyo3::prelude::*;
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// How an observer ends a run.
+/// Reason why an observer ends a run.
 #[derive(Debug)]
 pub(crate) enum Wish {
-    /// It asks for an end, with a reason.
+    /// The observer requests an end, with a reason.
     Stop(String),
-    /// It raised an exception.
+    /// The observer raised an exception.
     Raised(PyErr),
 }
 
@@ -39,7 +39,7 @@ impl Wishes {
         }
     }
 
-    /// Why the run is to stop, if it is.
+    /// Returns the reason why the run is to stop, if there is one.
     pub(crate) fn reason(&self) -> Option<String> {
         self.lock().as_ref().map(|wish| match wish {
             Wish::Stop(reason) => reason.clone(),
@@ -47,7 +47,7 @@ impl Wishes {
         })
     }
 
-    /// The exception that an observer raised, if one did.
+    /// Returns the exception that an observer raised, if one did.
     pub(crate) fn exception(&self) -> Option<PyErr> {
         match self.lock().take() {
             Some(Wish::Raised(error)) => Some(error),
@@ -56,7 +56,7 @@ impl Wishes {
     }
 }
 
-/// What Python says of a column: name, unit, explanation.
+/// Name, unit and explanation of a column, as Python gives them.
 type ColumnLine = (String, String, String);
 
 /// An observer in Python.
@@ -66,7 +66,7 @@ pub(crate) struct PythonObserver {
     name: String,
     every: u64,
     columns: Vec<Column>,
-    /// Values of the columns as it last gave them.
+    /// Last values of the columns.
     latest: Vec<f64>,
     wishes: Wishes,
 }
@@ -140,20 +140,20 @@ impl Observer for PythonObserver {
         self.latest.clone()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         let carried = Python::attach(|py| {
             let result = self.object.bind(py).call_method0("save")?;
             result.extract::<Vec<u8>>()
         });
-        // Without it there is no checkpoint; the one before stays.
+        // If this fails there is no new checkpoint, and the previous one is kept.
         let carried = carried.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
-            CodeError::other("states of observers")
+            EncodingError::other("states of observers")
         })?;
         encode(&(&self.latest, carried))
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), EncodingError> {
         let (latest, carried): (Vec<f64>, Vec<u8>) = decode(bytes)?;
         self.latest = latest;
         let done = Python::attach(|py| -> PyResult<()> {
@@ -163,13 +163,13 @@ impl Observer for PythonObserver {
         });
         done.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
-            CodeError::other("states of observers")
+            EncodingError::other("states of observers")
         })
     }
 }
 
-/// A text that lasts: columns name their units for the whole life of a program. Each text is kept
-/// once.
+/// Returns a static copy of a text, since columns name their units for the whole life of the
+/// program. Each text is stored once.
 fn lasting(text: String) -> &'static str {
     static KEPT: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut kept = KEPT.lock().unwrap_or_else(|e| e.into_inner());

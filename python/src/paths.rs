@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-/// What has the fields of a value: a variant is `{"Name": {fields}}`, and its fields are named
-/// without the variant.
+/// Returns the object with the fields of a value: a variant is `{"Name": {fields}}`, and its fields
+/// are addressed without the variant.
 fn inner<'a>(mut value: &'a Value, part: &str) -> &'a Value {
     while let Some(name) = variant(value).filter(|name| *name != part) {
         value = &value[name];
@@ -11,7 +11,7 @@ fn inner<'a>(mut value: &'a Value, part: &str) -> &'a Value {
     value
 }
 
-/// The name of the variant that a value is, if it is one with content.
+/// Returns the name of the variant of a value, if it is a variant with content.
 fn variant(value: &Value) -> Option<&str> {
     let object = value.as_object().filter(|o| o.len() == 1)?;
     let name = object.keys().next()?;
@@ -19,7 +19,7 @@ fn variant(value: &Value) -> Option<&str> {
         .then_some(name.as_str())
 }
 
-/// The index of an element of a list, by its number or its name.
+/// Returns the index of an element of a list, from its number or its name.
 fn index(list: &[Value], part: &str) -> Option<usize> {
     match part.parse::<usize>() {
         Ok(k) => (k < list.len()).then_some(k),
@@ -40,8 +40,8 @@ pub(crate) fn find<'a>(root: &'a Value, path: &[String]) -> Option<&'a Value> {
     })
 }
 
-/// Puts a value at a path, with the structs and maps around it; the first part of the path that
-/// cannot be there, if so.
+/// Sets a value at a path, with the structs and maps around it. If this is impossible, returns the
+/// first part of the path that cannot exist.
 pub(crate) fn put<'a>(root: &mut Value, path: &'a [String], new: Value) -> Result<(), &'a str> {
     let Some((part, rest)) = path.split_first() else {
         *root = new;
@@ -64,7 +64,7 @@ pub(crate) fn put<'a>(root: &mut Value, path: &'a [String], new: Value) -> Resul
     }
 }
 
-/// Whether a value has an object in it.
+/// Whether a value contains an object.
 pub(crate) fn has_object(value: &Value) -> bool {
     match value {
         Value::Object(_) => true,
@@ -81,7 +81,7 @@ pub(crate) fn ron(value: &Value) -> String {
             let list: Vec<String> = list.iter().map(ron).collect();
             format!("[{}]", list.join(", "))
         }
-        // Texts of JSON are texts of RON, but for characters written as \u0000.
+        // Texts of JSON are texts of RON, except for characters written as \u0000.
         Value::String(text) => {
             let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
             format!("\"{escaped}\"")

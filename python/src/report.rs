@@ -12,8 +12,8 @@ fn raised(error: &ReportError, folder: Option<&Path>) -> PyErr {
     }
 }
 
-/// Makes the report of the run in a folder, of at most so many bytes, or of all that was recorded;
-/// gives its path.
+/// Makes the report of the run in a folder, with at most this number of bytes, or with all that was
+/// recorded; returns its path.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, folder: PathBuf, bytes: Option<usize>) -> PyResult<PathBuf> {
     let made = py.detach(|| make_report(&folder, bytes));
@@ -21,7 +21,7 @@ pub(crate) fn report(py: Python<'_>, folder: PathBuf, bytes: Option<usize>) -> P
     Ok(path)
 }
 
-/// Puts the runs in folders side by side, in a page.
+/// Makes a page with the runs in these folders side by side.
 #[pyfunction]
 pub(crate) fn compare(py: Python<'_>, folders: Vec<PathBuf>, to: PathBuf) -> PyResult<()> {
     let made = py.detach(|| compare_runs(&folders, &to));

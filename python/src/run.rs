@@ -1,5 +1,5 @@
-//! Runs of a case: computed by threads of their own, while Python's thread shows progress and
-//! listens for Ctrl-C.
+//! Runs of a case: they are computed by separate threads, while Python's thread shows progress and
+//! checks for Ctrl-C.
 
 use crate::case::Case;
 use crate::errors;
@@ -7,11 +7,11 @@ use crate::observer::{PythonObserver, Wishes};
 use crate::search::search_path;
 use crate::workers::Workers;
 use fretwork::cli;
-use fretwork::laws::watch::{self, Saved};
+use fretwork::laws::watch::{self, RescueOutcome};
 use fretwork::record::checkpoint::FolderState;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
-use fretwork::scene::{Built, InputError, Loaded};
+use fretwork::scene::{Built, InputError, LoadedCase};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -20,14 +20,14 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, Once};
 use std::time::Duration;
 
-/// How often Python's thread looks for Ctrl-C and shows progress.
+/// Interval at which Python's thread checks for Ctrl-C and shows progress.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Limit on the duration of a call of a law (s), as that of the command line.
+/// Limit on the duration of a call of a law (s), equal to that of the command line.
 const LAW_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Progress as Python sees it: steps done and in total, steps before a resumed part, cycle and
-/// number of cycles, contacts, iterations, error, steps that missed the tolerance, damage ratio.
+/// Progress for Python: steps done and in total, steps before a resumed part, cycle and number of
+/// cycles, contacts, iterations, error, steps that missed the tolerance, damage ratio.
 type ProgressLine = (u64, u64, u64, u32, u32, usize, u32, f64, u64, f64);
 
 fn line_of(p: &Progress) -> ProgressLine {
@@ -47,11 +47,12 @@ fn line_of(p: &Progress) -> ProgressLine {
 
 /// How a run ended.
 enum End {
-    /// With files; whether it was not begun because it was finished before.
+    /// The run ended with files; the flag tells whether it was not started because it was finished
+    /// before.
     Done,
     /// The case is wrong.
     Input(InputError),
-    /// It failed, perhaps at a place in the case.
+    /// The run failed; the text is the position of the cause in the case, if known.
     Failed(RunError, Option<String>),
 }
 
@@ -59,21 +60,21 @@ enum End {
 #[derive(Default)]
 struct Shared {
     latest: Mutex<Option<Progress>>,
-    /// Why the run is to stop.
+    /// Reason why the run is to stop.
     stop: Mutex<Option<String>>,
-    /// Whether Python waits for its end.
+    /// Whether Python is waiting for the end of the run.
     hurry: AtomicBool,
 }
 
-/// A law that does not come back, and what was saved of the run.
+/// Message about a law that did not return, and what was saved of the run.
 static STUCK: Mutex<Option<String>> = Mutex::new(None);
 
-/// Has laws that do not come back reported.
+/// Installs the watch that reports laws that do not return.
 fn watch_laws() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // Without threads to watch them laws have no limit.
-        let _ = watch::watch(LAW_TIMEOUT, |who, saved: Saved| {
+        // Without a watch thread laws have no time limit.
+        let _ = watch::watch(LAW_TIMEOUT, |who, saved: RescueOutcome| {
             let text = format!(
                 "{who}; {}; the thread that calls it is lost: start Python again",
                 saved.words()
@@ -87,8 +88,8 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|e| e.into_inner())
 }
 
-/// Runs a case. Files are in `out` when it returns, and also when it raises an exception once the
-/// run has begun.
+/// Runs a case. The files are in `out` when it returns, and also when it raises an exception after
+/// the run has begun.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the keywords of Case.run")]
 pub(crate) fn run(
@@ -122,7 +123,7 @@ pub(crate) fn run(
         shared: shared.clone(),
     };
     let (done, ended) = sync_channel(1);
-    // Only this thread receives; the lock lets it do so while it is detached from Python.
+    // Only this thread receives; the lock allows this while it is detached from Python.
     let ended = Mutex::new(ended);
     let worker = std::thread::Builder::new().spawn(move || {
         // A panic drops the sender.
@@ -149,7 +150,7 @@ pub(crate) fn run(
             return Err(errors::run(&stuck, Some(&out)));
         }
         if raised.is_some() {
-            // The run writes its files.
+            // The run is writing its files.
             continue;
         }
         if let Err(error) = look(py, &shared, progress.as_ref()) {
@@ -171,7 +172,7 @@ pub(crate) fn run(
     }
 }
 
-/// Looks for Ctrl-C, and shows progress.
+/// Checks for Ctrl-C, and shows progress.
 fn look(py: Python<'_>, shared: &Shared, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     py.check_signals()?;
     progress.map_or(Ok(()), |progress| show(py, shared, progress))
@@ -185,9 +186,9 @@ fn show(py: Python<'_>, shared: &Shared, progress: &Py<PyAny>) -> PyResult<()> {
     Ok(())
 }
 
-/// A run that is about to begin.
+/// A run before its start.
 struct Task {
-    loaded: Loaded,
+    loaded: LoadedCase,
     options: RunOptions,
     resume: bool,
     observers: Vec<PythonObserver>,
@@ -232,7 +233,7 @@ impl Task {
     }
 }
 
-/// The folder of results that a run has by default: that of the command line.
+/// Default folder of the results of a run: that of the command line.
 #[pyfunction]
 pub(crate) fn default_folder(path: PathBuf) -> PathBuf {
     cli::default_folder(Path::new(&path))

@@ -1,4 +1,4 @@
-//! Where laws are looked for.
+//! Search path of laws.
 
 use crate::errors::wrong;
 use fretwork::laws::{SearchPath, child};
@@ -10,8 +10,8 @@ use std::time::Duration;
 /// Limit on a call of a law in the process that tries its library (s), as that of the command line.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// The search path with the built-in laws, those of `FRETWORK_PLUGIN_PATH`, and those of further
-/// folders. Libraries are tried in another process before they are opened in this one.
+/// Returns the search path with the built-in laws, those of `FRETWORK_PLUGIN_PATH`, and those of
+/// further folders. Libraries are tested in another process before they are opened in this one.
 pub(crate) fn search_path(folders: &[PathBuf], trust_plugins: bool) -> PyResult<SearchPath> {
     if let Some(missing) = folders.iter().find(|f| !f.is_dir()) {
         let subject = format!("plugin_path {}", missing.display());

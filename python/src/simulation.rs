@@ -16,16 +16,16 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
-/// How long steps are made before Python looks for Ctrl-C.
+/// Duration of stepping between two checks for Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// What Python has of a simulation.
+/// The simulation behind a Python object.
 enum Held {
-    /// A simulation of its own.
+    /// A simulation that the object owns.
     Own(Box<Stepper>),
-    /// That of a run, while an observer is called.
+    /// The simulation of a run, while an observer is called.
     Lent(Lent),
-    /// Lent by a run that took it back.
+    /// A simulation that a run has taken back.
     Ended,
 }
 
@@ -33,9 +33,9 @@ enum Held {
 struct Lent(*const dyn RunView);
 
 // SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before
-// the reference ends. The simulation is read by one thread at a time, while that which owns it
-// waits for the observer; what of it has no `Sync`, the guarded memory of laws under certification,
-// holds addresses that are used through `&mut` only.
+// the reference ends. The simulation is read by one thread at a time, while the thread that owns it
+// waits for the observer. The parts of it that are not `Sync`, the guarded memory of laws under
+// certification, hold addresses that are used only through `&mut`.
 unsafe impl Send for Lent {}
 
 impl Held {
@@ -51,7 +51,7 @@ impl Held {
         }
     }
 
-    /// The simulation that is stepped by one who owns it.
+    /// Returns the simulation that the object owns.
     fn own(&mut self) -> PyResult<&mut Stepper> {
         match self {
             Self::Own(stepper) => Ok(stepper),
@@ -62,7 +62,7 @@ impl Held {
     }
 }
 
-/// Name, unit and line of explanation of a field, and whether its values are whole numbers.
+/// Name, unit and explanation of a field, and whether its values are integers.
 type FieldLine = (String, String, String, bool);
 
 /// A simulation.
@@ -104,12 +104,12 @@ impl Simulation {
         Self::lent(Held::Lent(Lent(run)))
     }
 
-    /// Ends a loan. Waits for a thread that looks at it just now.
+    /// Ends a loan. Waits for a thread that is reading the simulation.
     pub(crate) fn end_loan(&self) {
         *self.held.lock().unwrap_or_else(|e| e.into_inner()) = Held::Ended;
     }
 
-    /// The columns that Python still holds, before they change.
+    /// Returns the columns that Python still holds, before they change.
     fn held_by_python<'py>(&self, py: Python<'py>) -> Vec<(Column, Bound<'py, Array>)> {
         let shown = std::mem::take(&mut *self.shown.lock().unwrap_or_else(|e| e.into_inner()));
         let alive = shown.into_iter().filter_map(|(column, weak)| {
@@ -119,7 +119,7 @@ impl Simulation {
         alive.collect()
     }
 
-    /// Lets arrays keep the numbers that they show.
+    /// Lets arrays keep the values that they show.
     fn before_change(&self, py: Python<'_>, held: &mut Held) -> PyResult<()> {
         for (column, array) in self.held_by_python(py) {
             let simulation = &mut held.own()?.simulation;
@@ -129,7 +129,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Makes steps until `done` says so, or Python has a signal.
+    /// Makes steps until `done` returns true, or Python has received a signal.
     fn step_while(
         &self,
         py: Python<'_>,
@@ -211,7 +211,7 @@ impl Simulation {
 
     /// Makes steps until a time (s) is reached.
     fn run_until(&self, py: Python<'_>, time: f64) -> PyResult<()> {
-        // An end that a whole number of steps reaches up to rounding takes no step more.
+        // If a whole number of steps reaches the end up to round-off, no further step is made.
         self.step_while(py, move |now| now.time < time - 1e-6 * now.step)
     }
 
@@ -246,7 +246,7 @@ impl Simulation {
         Ok(serde_json::to_string(held.view()?.energies()).unwrap_or_default())
     }
 
-    /// Iterations, error and whether the solver converged in the last step; none before the first.
+    /// Iterations, error and convergence of the solver in the last step; `None` before the first.
     fn last_step(&self) -> PyResult<Option<(u32, f64, bool)>> {
         let mut held = self.lock()?;
         let solver = held.own()?.report.as_ref().map(|report| &report.solver);
@@ -264,7 +264,7 @@ impl Simulation {
         Ok(columns.map(line).collect())
     }
 
-    /// Their values now.
+    /// Present values of these columns.
     fn statistics(&self) -> PyResult<Vec<f64>> {
         let mut held = self.lock()?;
         let stepper = held.own()?;
@@ -272,7 +272,7 @@ impl Simulation {
         row.map_err(|e| errors::misused(&e.to_string()))
     }
 
-    /// Number of all bodies, and of those before the first that is no grain.
+    /// Number of all bodies, and of those before the first body that is not a grain.
     fn counts(&self) -> PyResult<(usize, usize)> {
         let held = self.lock()?;
         let bodies = held.view()?.bodies();
@@ -326,7 +326,7 @@ impl Simulation {
         Ok(Some(array))
     }
 
-    /// Names of the first bodies and their places in the columns.
+    /// Names of the first bodies and their indices in the columns.
     fn first_bodies(&self) -> PyResult<Vec<(String, usize)>> {
         let held = self.lock()?;
         let driven = held.view()?.bodies().driven.iter();
@@ -369,7 +369,7 @@ impl Simulation {
         Ok(values.map(array))
     }
 
-    /// Where contacts touch, seen from the candidate (m).
+    /// Positions of the contacts on the candidate (m).
     fn contact_points(&self) -> PyResult<Array> {
         let held = self.lock()?;
         let run = held.view()?;
@@ -392,7 +392,7 @@ impl Simulation {
     }
 }
 
-/// The values of a field: a row of three numbers each for a vector, a number each for others.
+/// Values of a field: a row of three numbers per element for a vector, otherwise one number.
 fn array(values: FieldValues) -> Array {
     match values {
         FieldValues::Number(numbers) => Array::own(numbers, 0),

@@ -2,10 +2,10 @@
 
 use fretwork::AnySimulation;
 use fretwork::record::{Observers, run_observers};
-use fretwork::scene::{Built, Loaded, processes};
+use fretwork::scene::{Built, LoadedCase, processes};
 use fretwork::step::{StepError, StepReport};
 
-/// Where a simulation is.
+/// Time and step of a simulation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     /// Time (s).
@@ -14,7 +14,7 @@ pub(crate) struct Moment {
     pub(crate) step: f64,
 }
 
-/// A simulation, the observers whose columns the statistics of a run have, and the report of the
+/// A simulation, the observers whose columns are in the statistics of a run, and the report of the
 /// last step.
 #[derive(Debug)]
 pub(crate) struct Stepper {
@@ -24,7 +24,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    pub(crate) fn new(loaded: &Loaded, built: Built, threads: usize) -> Self {
+    pub(crate) fn new(loaded: &LoadedCase, built: Built, threads: usize) -> Self {
         let mut simulation = built.simulation;
         simulation.options_mut().solver.parallel = threads > 1;
         processes::install(&loaded.case, simulation.setup());
@@ -44,7 +44,7 @@ impl Stepper {
         }
     }
 
-    /// A step, as a run makes it.
+    /// Makes a step, as a run does.
     pub(crate) fn step(&mut self) -> Result<(), StepError> {
         let s = &mut self.simulation;
         let phase = s.phase();

@@ -10,7 +10,7 @@ const STACK: usize = 8 << 20;
 /// Largest number of threads, that of the command line.
 const MOST: usize = 1024;
 
-/// Threads of their own: what they compute is the same for any number of them.
+/// A thread pool. Results do not depend on its number of threads.
 pub(crate) struct Workers(ThreadPool);
 
 impl Workers {
@@ -33,7 +33,7 @@ impl Workers {
         })
     }
 
-    /// Computes something on them.
+    /// Runs a task in the pool.
     pub(crate) fn install<R: Send>(&self, task: impl FnOnce() -> R + Send) -> R {
         self.0.install(task)
     }

@@ -4,16 +4,16 @@ use crate::experiments::shell;
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
-/// The words of this call, from the name of the program on.
+/// Words of this call, beginning with the name of the program.
 static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
 
-/// Keeps the words of this call.
+/// Stores the words of this call.
 pub(super) fn keep(words: &[OsString]) {
     let _ = WORDS.set(words.to_vec());
 }
 
-/// The arguments of this call, quoted for a shell, with those of `with` appended if they are
-/// missing.
+/// Returns the arguments of this call, quoted for a shell, with those of `with` appended if they
+/// are missing.
 pub(super) fn command(with: &[&str]) -> String {
     let words = WORDS.get().map_or(&[][..], Vec::as_slice).iter();
     let mut words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();

@@ -16,10 +16,10 @@ use crate::geometry::space::ball_volume;
 use crate::record::biaxial::Biaxial;
 use crate::record::check_names;
 use crate::scene::interfaces::without_interface;
-use crate::scene::methods::{Demands, Service};
+use crate::scene::methods::{SolverRequirements, SolverSupport};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Built, Loaded, load, sampling};
+use crate::scene::{Built, LoadedCase, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
@@ -56,12 +56,12 @@ fn line_of(label: &str, text: &str) -> String {
     format!("  {label:<20} {text}")
 }
 
-/// A line of the answer: what it is about, and the text. Lines that go on with that of the line
-/// before have no label.
+/// A line of the answer: its label and its text. A line that continues the previous one has no
+/// label.
 pub type CheckLine = (String, String);
 
-/// The estimated time of a run, from steps that are made for half a second.
-pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
+/// Estimates the time of a run from steps that are computed for half a second.
+pub fn run_time(loaded: &LoadedCase, built: Built) -> CheckLine {
     let mut text = Trial::of(&loaded.case, built).text();
     if loaded.case.accuracy.is_some() {
         text += "; with time.step throughout, where the run chooses its steps";
@@ -69,7 +69,7 @@ pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
     ("run time".to_owned(), text)
 }
 
-/// What a run makes of the steps of a case that asks for an accuracy.
+/// Describes how a run chooses its steps for a case that requires an accuracy.
 fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     let Some(accuracy) = &case.accuracy else {
         return String::new();
@@ -84,9 +84,9 @@ fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     }
 }
 
-/// What `fretwork check` prints of a case below its title, but for the [run time](run_time).
-/// Deformable bodies are timed if `timed`.
-pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
+/// Returns what `fretwork check` prints about a case below its title, except the [run
+/// time](run_time). Deformable bodies are timed if `timed`.
+pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> {
     let (case, simulation) = (&loaded.case, &built.simulation);
     let s = simulation.view();
     let mut out = Vec::new();
@@ -166,8 +166,8 @@ pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
     out
 }
 
-/// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the
-/// largest radius of a grain (m).
+/// Adds the grains, first bodies, deformable bodies (with times if `timed`) and contacts; returns
+/// the largest radius of a grain (m).
 fn bodies(s: &dyn RunView, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
     let range = |radii: &mut dyn Iterator<Item = f64>| {
         let start = (0, f64::INFINITY, 0.0f64);
@@ -223,25 +223,27 @@ fn interfaces(s: &dyn RunView, line: &mut impl FnMut(&str, String)) {
     }
 }
 
-/// The solvers that support the case, and why the others do not. A case whose own solver does not
-/// support it is rejected earlier.
+/// Describes which solvers support the case, and why the others do not. A case whose own solver
+/// does not support it is rejected earlier.
 fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
-    let demands = Demands::of(simulation);
+    let requirements = SolverRequirements::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
     for method in Method::ALL.iter().copied() {
-        match demands.service(method) {
-            Service::Serves => can.push(method.name().to_owned()),
-            Service::May(reason) => {
+        match requirements.support(method) {
+            SolverSupport::Serves => can.push(method.name().to_owned()),
+            SolverSupport::May(reason) => {
                 can.push(format!("{}?", method.name()));
                 reasons.push(format!("{} {reason}", method.name()));
             }
-            Service::Refuses(reason) => reasons.push(format!("not {}, {reason}", method.name())),
+            SolverSupport::Refuses(reason) => {
+                reasons.push(format!("not {}, {reason}", method.name()))
+            }
         }
     }
     let chosen = simulation.options().solver.method;
-    let served = match demands.service(chosen) {
-        Service::Serves => "supports this case".to_owned(),
-        Service::May(reason) | Service::Refuses(reason) => reason,
+    let served = match requirements.support(chosen) {
+        SolverSupport::Serves => "supports this case".to_owned(),
+        SolverSupport::May(reason) | SolverSupport::Refuses(reason) => reason,
     };
     line("method", format!("{} {served}", chosen.name()));
     line("methods", can.join(", "));
@@ -251,7 +253,7 @@ fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
 }
 
 /// Pressure and inertial number of a biaxial test, for a square sample.
-fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str, String)) {
+fn biaxial_groups(loaded: &LoadedCase, s: &AnySimulation, line: &mut impl FnMut(&str, String)) {
     let case = &loaded.case;
     let Some((spec, test)) = case
         .biaxial
@@ -260,7 +262,8 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
     else {
         return;
     };
-    // From the start of the test to its end, over all walls: at least one of them is driven.
+    // The strain is taken from the start of the test to its end, over all walls: at least one of
+    // them is driven.
     let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
         let walls = s.bodies().driven.iter();
         let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
@@ -297,7 +300,12 @@ fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str
 }
 
 /// Dimensionless groups of a friction test.
-fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMut(&str, String)) {
+fn groups(
+    loaded: &LoadedCase,
+    s: &AnySimulation,
+    largest: f64,
+    line: &mut impl FnMut(&str, String),
+) {
     let (case, bodies) = (&loaded.case, s.bodies());
     let Some(test) = &case.friction else { return };
     let Some(driven) = bodies.driven_named(&test.body) else {
@@ -324,7 +332,7 @@ fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMu
     line("pressure", format!("{pressure:.3e} Pa"));
     let mut flags = vec![false; bodies.len()];
     s.grains().into_iter().for_each(|grain| flags[grain] = true);
-    // For convex parts the radius of the ball of the same volume.
+    // A convex part has the radius of the ball of equal volume.
     let balls = s.balls().into_iter().map(|b| (b.body, b.radius));
     let pieces = s.pieces().into_iter().map(|p| (p.body, p.size));
     let volume: f64 = balls

@@ -8,7 +8,7 @@ use crate::shipped::search_path;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Below the options.
+/// Text below the options of the help.
 pub const EXAMPLES: &str = "\
 Numbers have units as one writes them (75kN, '75 kN', 0.46m, 210GPa, '260 HBW', 0.5%); without a unit they are in SI units. A load per
 length (13MN/m) is that of a line contact. Ranges are 0.4, 0.40+-0.03 or 0.3..0.5.

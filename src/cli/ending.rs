@@ -1,5 +1,5 @@
 //! Termination of the process: by the program itself, by a law through `exit`, `abort`, a fault or
-//! an exception, or by the system that has no more memory.
+//! an exception, or because the system has no more memory.
 
 use crate::laws::child::NO_MEMORY;
 
@@ -13,7 +13,7 @@ pub fn arm() -> Armed {
     #[cfg(unix)]
     posix::arm();
     #[cfg(not(unix))]
-    crate::out_of_memory::on_refusal(|bytes| {
+    crate::out_of_memory::on_allocation_failure(|bytes| {
         super::output::report(&format!("error: {}", no_memory(bytes)));
         std::process::exit(FAILED.into())
     });
@@ -27,13 +27,13 @@ impl Drop for Armed {
     }
 }
 
-/// Terminates the process immediately, without running exit handlers of libraries: a law that hangs
-/// while it is loaded holds locks that these need.
+/// Terminates the process immediately, without running the exit handlers of libraries. A law that
+/// hangs while it is loaded holds locks that these handlers need.
 pub fn now(code: u8) -> ! {
     use std::io::Write;
     let _ = std::io::stdout().flush();
     #[cfg(unix)]
-    // SAFETY: it does not return and runs no code of the process.
+    // SAFETY: `_exit` does not return and runs no code of the process.
     unsafe {
         libc::_exit(code.into())
     }
@@ -44,7 +44,7 @@ pub fn now(code: u8) -> ! {
 /// Exit code of a failed run.
 pub const FAILED: u8 = 1;
 
-/// What is said where the system refuses so many bytes.
+/// Returns the message for an allocation of this size that the system refuses.
 fn no_memory(bytes: usize) -> String {
     format!(
         "{NO_MEMORY}: the system refused {bytes} bytes; allow more (ulimit -v, the limit of the job), or take fewer bodies"
@@ -54,7 +54,7 @@ fn no_memory(bytes: usize) -> String {
 #[cfg(unix)]
 mod posix {
     use super::FAILED;
-    use crate::laws::watch::{self, RESCUED_WITHIN, Saved};
+    use crate::laws::watch::{self, RESCUED_WITHIN, RescueOutcome};
     use crate::out_of_memory;
     use libc::c_int;
     use std::cell::Cell;
@@ -80,26 +80,30 @@ mod posix {
     static FAULT: AtomicBool = AtomicBool::new(false);
     /// File descriptor that wakes the rescue thread.
     static WAKE: AtomicI32 = AtomicI32::new(-1);
-    /// Why the program ends, for that thread.
+    /// Reason why the program ends, for the rescue thread.
     static WHY: AtomicPtr<Why> = AtomicPtr::new(std::ptr::null_mut());
-    /// Memory that is given back where the system has no more: what is saved then takes some.
+    /// Memory that is freed when the system has no more, since saving needs some.
     static RESERVE: AtomicPtr<Vec<u8>> = AtomicPtr::new(std::ptr::null_mut());
-    /// Its size (bytes).
+    /// Size of the reserved memory (bytes).
     const RESERVED: usize = 8 << 20;
     /// Result of the rescue; 0 while it is running.
     static SAVED: AtomicUsize = AtomicUsize::new(0);
-    const SAVED_AS: [Saved; 3] = [Saved::All, Saved::Some, Saved::Nothing];
+    const SAVED_AS: [RescueOutcome; 3] = [
+        RescueOutcome::All,
+        RescueOutcome::Some,
+        RescueOutcome::Nothing,
+    ];
 
     thread_local! {
-        /// Whether this thread saves what was recorded.
+        /// Whether this thread is saving what was recorded.
         static RESCUES: Cell<bool> = const { Cell::new(false) };
     }
 
-    /// Why the program ends.
+    /// Reason why the program ends.
     enum Why {
-        /// A law, one of its functions, and how it ended there.
+        /// Name of a law, of its function, and how it ended there.
         Law(&'static str, &'static str, &'static str),
-        /// Memory ran out, in a sentence.
+        /// Memory ran out, described in a sentence.
         Memory(String),
     }
 
@@ -112,13 +116,13 @@ mod posix {
         }
     }
 
-    /// Signal actions installed before.
+    /// Signal actions that were installed before.
     static BEFORE: OnceLock<[libc::sigaction; FAULTS.len()]> = OnceLock::new();
 
     pub fn arm() {
         static ONCE: Once = Once::new();
         ONCE.call_once(|| {
-            // SAFETY: the function outlives the program.
+            // SAFETY: `at_exit` exists as long as the program.
             unsafe { libc::atexit(at_exit) };
             wait_for_faults();
             catch_faults();
@@ -126,7 +130,7 @@ mod posix {
             if reserve.try_reserve_exact(RESERVED).is_ok() {
                 RESERVE.store(Box::into_raw(Box::new(reserve)), Ordering::SeqCst);
             }
-            out_of_memory::on_refusal(on_refused_memory);
+            out_of_memory::on_allocation_failure(on_refused_memory);
         });
         ARMED.store(true, Ordering::SeqCst);
     }
@@ -135,7 +139,7 @@ mod posix {
         ARMED.store(false, Ordering::SeqCst);
     }
 
-    /// Runs when anything other than the program, which disarms first, calls `exit`.
+    /// Exit handler for calls of `exit` by anything other than the program, which disarms it first.
     extern "C" fn at_exit() {
         if !ARMED.swap(false, Ordering::SeqCst) {
             return;
@@ -144,19 +148,24 @@ mod posix {
             Some((law, call)) => format!("{law} ended the program in {call} (it called exit)"),
             None => "something that a law loaded ended the program (it called exit)".to_owned(),
         };
-        // A library that ends the program while it is loaded holds a lock of the dynamic linker
-        // that a new thread would wait for.
+        // A library that ends the program while it is being loaded holds a lock of the dynamic
+        // linker, for which a new thread would wait.
         if watch::nothing_to_save() {
-            put(&[&format!("error: {who}; {}\n", Saved::Nothing.words())]);
+            put(&[&format!(
+                "error: {who}; {}\n",
+                RescueOutcome::Nothing.words()
+            )]);
             super::now(FAILED);
         }
-        // The calling thread's thread-local variables are already destroyed; another thread does
-        // the saving.
+        // The thread-local variables of the calling thread are already destroyed, so another thread
+        // saves the results.
         let (done, saved) = std::sync::mpsc::sync_channel(1);
         let thread = who.clone();
         let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&thread)));
-        let saved = rescue.map_or(Saved::Some, |_| {
-            saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
+        let saved = rescue.map_or(RescueOutcome::Some, |_| {
+            saved
+                .recv_timeout(RESCUED_WITHIN)
+                .unwrap_or(RescueOutcome::Some)
         });
         let text = format!("error: {who}; {}\n", saved.words());
         put(&[&text]);
@@ -174,7 +183,8 @@ mod posix {
                 return;
             }
             RESCUES.with(|rescues| rescues.set(true));
-            // SAFETY: null, or a reference that stays valid while the handler waits.
+            // SAFETY: the pointer is null or refers to a value that remains valid while the handler
+            // waits.
             let why = unsafe { WHY.load(Ordering::SeqCst).as_ref() };
             let saved = watch::save(&why.map_or("the program ended".to_owned(), Why::text));
             let place = SAVED_AS.iter().position(|s| *s == saved).unwrap_or(1);
@@ -225,7 +235,7 @@ mod posix {
 
     /// Asks the other thread to save what was recorded, and waits for it, without taking a lock or
     /// allocating memory.
-    fn rescued(why: &Why) -> Saved {
+    fn rescued(why: &Why) -> RescueOutcome {
         WHY.store(std::ptr::from_ref(why).cast_mut(), Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);
         // SAFETY: `write` is async-signal-safe.
@@ -236,7 +246,7 @@ mod posix {
             waits -= 1;
         }
         let saved = SAVED.load(Ordering::SeqCst).checked_sub(1);
-        saved.map_or(Saved::Some, |k| SAVED_AS[k.min(2)])
+        saved.map_or(RescueOutcome::Some, |k| SAVED_AS[k.min(2)])
     }
 
     fn pause() {
@@ -248,14 +258,14 @@ mod posix {
         unsafe { libc::nanosleep(&pause, std::ptr::null_mut()) };
     }
 
-    /// Says that memory ran out, has saved what was recorded, and ends the program with exit code
-    /// 1.
+    /// Reports that memory ran out, has what was recorded saved, and ends the program with exit
+    /// code 1.
     fn on_refused_memory(bytes: usize) {
         if !ARMED.load(Ordering::SeqCst) {
             return;
         }
         if RESCUES.try_with(Cell::get).unwrap_or(false) {
-            // What is saved takes more than there is: the thread that waits for it ends the
+            // Saving needs more memory than there is, so the thread that waits for it ends the
             // program.
             SAVED.store(2, Ordering::SeqCst);
         }
@@ -266,7 +276,7 @@ mod posix {
         }
         let reserve = RESERVE.swap(std::ptr::null_mut(), Ordering::SeqCst);
         if !reserve.is_null() {
-            // SAFETY: made by `Box::into_raw`, and taken out of its place once.
+            // SAFETY: the pointer was made by `Box::into_raw`, and the swap takes it only once.
             drop(unsafe { Box::from_raw(reserve) });
         }
         let text = super::no_memory(bytes);
@@ -280,7 +290,7 @@ mod posix {
     fn as_before(signal: c_int) {
         let place = FAULTS.iter().position(|(s, _)| *s == signal);
         let before = BEFORE.get().zip(place).map(|(all, k)| &all[k]);
-        // SAFETY: restores the previous or the default action, with async-signal-safe calls.
+        // SAFETY: these calls are async-signal-safe and restore the previous or the default action.
         unsafe {
             match before {
                 Some(action) => libc::sigaction(signal, action, std::ptr::null_mut()),
@@ -305,7 +315,7 @@ mod posix {
     /// Writes to standard error without locks or allocation.
     fn put(parts: &[&str]) {
         for part in parts {
-            // SAFETY: pointer and length of a string slice.
+            // SAFETY: pointer and length belong to a string slice.
             unsafe { libc::write(2, part.as_ptr().cast(), part.len()) };
         }
     }

@@ -1,4 +1,4 @@
-//! What `study`, `fit` and `trade` have in common on a terminal.
+//! Terminal output common to `study`, `fit` and `trade`.
 
 use super::output::report;
 use super::{Failure, again};
@@ -27,7 +27,7 @@ pub fn results(out: Option<&Path>, command: &str, file: &Path) -> PathBuf {
     out.map_or_else(default, Path::to_owned)
 }
 
-/// The end of a command that was asked to stop.
+/// Failure of a command that was asked to stop.
 pub fn interrupted() -> Failure {
     Failure::Failed(format!(
         "interrupted: finished runs are kept; to continue from there:\n  {}",
@@ -40,7 +40,7 @@ pub fn interrupted() -> Failure {
 pub struct RunsBar(Option<ProgressBar>);
 
 impl RunsBar {
-    /// A bar over `count` runs, named where there are several.
+    /// Makes a bar over `count` runs, with a name if there are several bars.
     pub fn new(count: usize, name: &str) -> Self {
         let terminal =
             std::io::stderr().is_terminal() && std::env::var_os("FRETWORK_QUIET").is_none();
@@ -57,14 +57,14 @@ impl RunsBar {
         }))
     }
 
-    /// Counts a run.
+    /// Counts a finished run.
     pub fn run(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);
         }
     }
 
-    /// Prints a line above the bar if it must be seen, or where there is no bar.
+    /// Prints a line above the bar if it must be seen, or if there is no bar.
     pub fn line(&self, text: &str, must: bool) {
         match &self.0 {
             Some(bar) if must => bar.println(text),

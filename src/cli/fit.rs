@@ -99,7 +99,7 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A bar for each stage on a terminal, and a line at its end.
+/// Shows a bar for each stage on a terminal, and prints a line at the end of the stage.
 fn show(progress: &Progress, bar: &mut RunsBar) {
     match progress {
         Progress::Begins(stage, runs) => *bar = RunsBar::new(*runs, &stage.word()),

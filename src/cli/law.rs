@@ -42,7 +42,7 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
             let path = plugins.search()?;
             let mut out = String::new();
             let laws = path.laws();
-            path.try_out(
+            path.test_loading(
                 laws.iter()
                     .map(|(kind, name, _)| (*kind, name.as_str(), None)),
             );
@@ -96,7 +96,7 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
         );
         return Err(Failure::Usage(format!(
             "there is no law named `{name}` in {}{proposal}",
-            path.looked()
+            path.searched()
         )));
     }
     let opened = found
@@ -151,7 +151,7 @@ fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Fail
     )))
 }
 
-/// Description of where a law's library is.
+/// Describes the origin of a law's library.
 fn library(p: &Plugin) -> String {
     match p.built_in {
         true => format!(

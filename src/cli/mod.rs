@@ -1,7 +1,7 @@
 //! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `law`, `solve`, `study`,
 //! `fit`, `trade`.
 //!
-//! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
+//! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
 
 mod again;
 mod check;
@@ -27,7 +27,7 @@ pub use fretwork_view::{ReportError, compare as compare_runs};
 
 use crate::certify::{CERTIFY_IN_CHILD, certify_requested};
 use crate::experiments::Program;
-use crate::laws::watch::{Saved, watch};
+use crate::laws::watch::{RescueOutcome, watch};
 use crate::laws::{LawError, SearchPath, child, library, loading};
 use crate::record::{RunError, check_names};
 use crate::scene::InputError;
@@ -154,11 +154,11 @@ struct PluginArgs {
 }
 
 impl PluginArgs {
-    /// These arguments, for another call of the program.
+    /// Returns these arguments as words, for another call of the program.
     fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
         for folder in &self.plugin_path {
-            // It may be made from another folder.
+            // The other call may be made from another folder.
             let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
             words.extend(["--plugin-path".to_owned(), folder.display().to_string()]);
         }
@@ -169,7 +169,7 @@ impl PluginArgs {
         words
     }
 
-    /// What experiments need of this program.
+    /// Returns what experiments need to call this program.
     fn program(&self) -> Result<Program, Failure> {
         Ok(Program {
             search: self.search()?,
@@ -219,7 +219,7 @@ fn watch_laws(limit: Option<Duration>) -> Result<(), Failure> {
     let Some(limit) = limit else {
         return Ok(());
     };
-    watch(limit, |who, saved: Saved| {
+    watch(limit, |who, saved: RescueOutcome| {
         let left = saved.words();
         output::report(&format!(
             "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
@@ -274,12 +274,11 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs the program with given words, of which the first is its name; returns the exit code. For
-/// processes that are not the program themselves, such as a Python interpreter: see
-/// [`crate::program`]. One call in a process: signals are handled from then on as the program
-/// handles them.
+/// processes other than the program, such as a Python interpreter, see [`crate::program`]. It may
+/// be called once per process, since it installs the program's signal handlers.
 pub fn call(words: &[OsString]) -> u8 {
     again::keep(words);
-    // The main thread uses a pool of one; only `run --threads` computes on more.
+    // The main thread uses a pool with one thread; only `run --threads` uses more.
     let here = rayon::ThreadPoolBuilder::new().num_threads(1);
     let _ = here.use_current_thread().build_global();
     let outcome = match Cli::try_parse_from(words) {
@@ -287,7 +286,7 @@ pub fn call(words: &[OsString]) -> u8 {
             let _armed = ending::arm();
             run(cli.command)
         }
-        // Help and version are answers; other errors are wrong input.
+        // Help and version are answers; other errors are invalid input.
         Err(e) if !e.use_stderr() => output::delivered(e.print()),
         Err(e) => {
             let _ = e.print();

@@ -12,8 +12,8 @@ use std::sync::{Mutex, OnceLock};
 /// Standard output of the program, once [`keep_from_laws`] has taken it.
 static TAKEN: OnceLock<Mutex<File>> = OnceLock::new();
 
-/// Keeps standard output for the program's answers: what laws print goes to standard error from
-/// then on. Without the system's help (Windows) both go to standard output.
+/// Reserves standard output for the program's answers: from then on what laws print goes to
+/// standard error. On systems without this redirection (Windows) both go to standard output.
 pub fn keep_from_laws() {
     #[cfg(unix)]
     {
@@ -24,7 +24,7 @@ pub fn keep_from_laws() {
             return;
         };
         if TAKEN.set(Mutex::new(File::from(own))).is_ok() {
-            // SAFETY: both are open; the first becomes another name of the second.
+            // SAFETY: both descriptors are open; the first becomes a duplicate of the second.
             unsafe { libc::dup2(err.as_raw_fd(), out.as_raw_fd()) };
         }
     }
@@ -41,7 +41,7 @@ fn write_out(text: &str) -> std::io::Result<()> {
 /// Writes the requested answer to standard output. A closed pipe is not an error.
 ///
 /// # Errors
-/// It cannot be written.
+/// The answer cannot be written.
 pub fn answer(text: &str) -> Result<(), Failure> {
     delivered(write_out(&clean_lines(text)))
 }
@@ -49,7 +49,7 @@ pub fn answer(text: &str) -> Result<(), Failure> {
 /// Writes the requested answer as JSON to standard output.
 ///
 /// # Errors
-/// It cannot be written.
+/// The answer cannot be written.
 pub fn answer_json(text: &str) -> Result<(), Failure> {
     delivered(write_out(&clean_json(text)))
 }
@@ -57,7 +57,7 @@ pub fn answer_json(text: &str) -> Result<(), Failure> {
 /// Converts the result of writing an answer.
 ///
 /// # Errors
-/// It could not be written, for a reason other than a closed pipe.
+/// The answer could not be written, for a reason other than a closed pipe.
 pub fn delivered(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::Failed(format!(

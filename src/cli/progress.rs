@@ -45,7 +45,8 @@ impl Display {
         let elapsed = self.started.elapsed();
         if let Some(bar) = &self.bar {
             if !self.begun && p.resumed_at > 0 {
-                // The time left is estimated from this part of a resumed run only.
+                // The remaining time is estimated only from the part of the run since it was
+                // resumed.
                 bar.set_length(p.steps.1);
                 bar.set_position(p.resumed_at);
                 bar.reset_eta();
@@ -90,13 +91,13 @@ impl Display {
     /// Ends the display.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
-            // The bar of a run that ended early stays where it is.
+            // The bar of a run that ended early keeps its position.
             bar.abandon();
         }
     }
 }
 
-/// Time left (s), from the steps since the run started or was resumed.
+/// Estimates the remaining time (s) from the steps since the run started or was resumed.
 fn left(elapsed: Duration, p: &Progress) -> f64 {
     let (done, all) = p.steps;
     let here = done.saturating_sub(p.resumed_at).max(1);

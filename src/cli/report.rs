@@ -49,14 +49,15 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes the report of a folder, of at most so many bytes; gives its path and size (bytes).
+/// Makes the report of a folder with at most this number of bytes; returns its path and size
+/// (bytes).
 ///
 /// # Errors
-/// A folder without a run, and files that cannot be read or written.
+/// The folder has no run, or files cannot be read or written.
 pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
     let law = |kind: &str, name: &str| law(&search_path(), kind, name);
     let make = || fretwork_view::report(folder, &Options { bytes, law: &law });
-    // A defect of the page is not one of the run.
+    // A defect in making the page must not fail the run.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).unwrap_or_else(|_| {
         Err(ReportError::Unwritable {
             path: folder.join(fretwork_view::FILE),
@@ -65,8 +66,8 @@ pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), Rep
     })
 }
 
-/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. That
-/// there is none is said, and does not change how the run ended.
+/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. A
+/// failure is reported, and does not change how the run ended.
 pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
     match make(folder, Some(DEFAULT_BYTES)) {
         Ok(_) if !quiet => {
@@ -78,14 +79,17 @@ pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
     }
 }
 
-/// A law of the program itself: a report never opens the library of anybody else.
+/// Looks up a law of the program itself: a report never opens other libraries.
 fn law(path: &SearchPath, kind: &str, name: &str) -> Option<LawInfo> {
     let kind = Kind::from_word(kind)?;
     if !built_in().names().any(|own| own == (kind, name)) {
         return None;
     }
-    let plugin = path.find(kind, name).ok().filter(|p| path.is_own(p))?;
-    let parameter = |f: &crate::laws::Field| LawParameter {
+    let plugin = path
+        .find(kind, name)
+        .ok()
+        .filter(|p| path.belongs_to_program(p))?;
+    let parameter = |f: &crate::laws::LawField| LawParameter {
         name: f.name.clone(),
         unit: f.unit.clone(),
         default: f.default,

@@ -9,7 +9,7 @@ use crate::record::{self, Run, RunError, RunOptions, Summary};
 use crate::scene::build::Origin;
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
-use crate::scene::{Built, Loaded, load};
+use crate::scene::{Built, LoadedCase, load};
 use crate::step::StepError;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -44,7 +44,7 @@ pub struct RunArgs {
 }
 
 impl RunArgs {
-    /// Folder of the results, as the user names it.
+    /// Returns the folder of the results, as the user names it.
     fn out(&self) -> PathBuf {
         let given = self.out.clone();
         given.unwrap_or_else(|| default_folder(&self.case.case))
@@ -52,7 +52,7 @@ impl RunArgs {
 }
 
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
-    // From the root: a law may change the folder to which other paths are relative.
+    // The path is made absolute, since a law may change the working directory.
     let out = std::path::absolute(args.out())
         .map_err(|e| Failure::Usage(format!("--out {}: {e}", args.out().display())))?;
     let loaded = load(&args.case.case, &args.case.sets)?;
@@ -80,7 +80,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     interrupt::watch();
     let done = pool.install(|| run_case(&loaded, built, &options, args));
     let Some(summary) = done.inspect_err(|e| {
-        // The run began, and what it recorded until it failed is on disk.
+        // The run has begun, and what it recorded until the failure is on disk.
         if matches!(e, Failure::Failed(_) | Failure::Run(RunError::Step(_))) {
             report(&options.out, args);
         }
@@ -115,7 +115,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     strict(args, summary.run.reasons.first().map(String::as_str))
 }
 
-/// Makes the report, unless it is not wanted.
+/// Makes the report, unless it is disabled.
 fn report(out: &Path, args: &RunArgs) {
     if !args.no_report {
         super::report::of_run(out, &args.out(), args.json);
@@ -134,7 +134,7 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 
 /// Runs or resumes a case; `None` if the run is already finished.
 fn run_case(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: Built,
     options: &RunOptions,
     args: &RunArgs,
@@ -160,7 +160,7 @@ fn run_case(
                 stop = Some(state);
             }
             FolderState::Finished => {
-                // Whoever ended the process while it made the report left the results whole.
+                // If the process was ended while it made the report, the results are complete.
                 if !options.out.join(fretwork_view::FILE).exists() {
                     report(&options.out, args);
                 }
@@ -209,7 +209,7 @@ fn run_case(
 }
 
 /// Location in the case of the law or the body that ended a run, as the end of a sentence.
-pub fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
+pub fn place(loaded: &LoadedCase, origins: &[Origin], error: &RunError) -> Option<String> {
     let (path, what) = match error {
         RunError::Step(StepError::Law { source, .. }) => {
             let (kind, name) = source.law()?;
@@ -234,7 +234,7 @@ pub fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<St
     Some(format!("{what} at {file}:{line}:{column}"))
 }
 
-/// Folder of the results of a case file, where none is given.
+/// Returns the folder of the results of a case file for which none is given.
 pub fn default_folder(case: &Path) -> PathBuf {
     Path::new("results").join(case.file_stem().unwrap_or_default())
 }

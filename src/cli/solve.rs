@@ -79,7 +79,7 @@ struct Solved {
     problem: Problem,
     read_seconds: f64,
     reduce_seconds: f64,
-    /// Best first.
+    /// Results of the solvers, the best first.
     outcomes: Vec<Outcome>,
 }
 
@@ -224,7 +224,7 @@ fn solve_file(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
         SolverChoice::One(method) => vec![run(method)],
         SolverChoice::All => Method::ALL.iter().copied().map(run).collect(),
     };
-    // The fastest of those that reached the tolerance, then the most accurate of the others.
+    // Solvers that reached the tolerance come first, by time; the others follow by accuracy.
     outcomes.sort_by(|a, b| {
         let by = |o: &Outcome| if o.converged { o.seconds } else { o.error };
         (b.converged.cmp(&a.converged)).then(by(a).total_cmp(&by(b)))

@@ -4,7 +4,7 @@ use super::experiment::{RunsBar, interrupted, results};
 use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs};
 use crate::experiments::duration::{parse as duration, seconds};
-use crate::experiments::runs::stored::Finished;
+use crate::experiments::runs::stored::FinishedRun;
 use crate::experiments::study::execute::{execute, missing};
 use crate::experiments::study::export::{Engine, Export};
 use crate::experiments::study::forecast::Forecast;
@@ -33,7 +33,7 @@ pub enum StudyCommand {
     Collect(CollectArgs),
 }
 
-/// The study and where it is made.
+/// A study and the folders of its results.
 #[derive(Args, Debug)]
 struct StudyArgs {
     /// The file of the study (RON)
@@ -108,7 +108,7 @@ pub struct ExportArgs {
     lines: Vec<String>,
 }
 
-/// An engine by its name on the command line.
+/// An engine, by its name on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum EngineName {
     /// Slurm: a job array and a job that collects
@@ -141,7 +141,7 @@ pub struct CollectArgs {
     json: bool,
 }
 
-/// Parses `7` or `1-20`.
+/// Parses a number or a range of numbers: `7` or `1-20`.
 fn range(text: &str) -> Result<(usize, usize), String> {
     let wrong = || format!("`{text}` is no number of a run; expected for example 7, or 1-20");
     let (first, last) = text.split_once('-').unwrap_or((text, text));
@@ -167,7 +167,8 @@ impl StudyArgs {
         Ok(Plan::new(&StudyFile::read(&self.study)?, place)?)
     }
 
-    /// The plan, and its folder for this command alone. Nothing is written if the study is wrong.
+    /// Returns the plan of the study, with a folder for this command alone. Nothing is written if
+    /// the study is invalid.
     fn plan_alone(&self) -> Result<(Plan, FolderLock), Failure> {
         let plan = self.plan()?;
         let lock = OWNER.take(&plan.out)?;
@@ -175,7 +176,7 @@ impl StudyArgs {
         Ok((plan, lock))
     }
 
-    /// Options of every call of another engine.
+    /// Returns the options of every call that another engine makes.
     fn options(&self) -> Vec<String> {
         let mut words = Vec::new();
         if let Some(cache) = &self.cache {
@@ -333,7 +334,7 @@ fn collect(args: &CollectArgs) -> Result<(), Failure> {
     gather(&args.of.plan()?, args.json)
 }
 
-/// Writes the table of the runs that are there, and says what it holds.
+/// Writes the table of the existing runs, and reports its contents.
 fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     let rows = Rows::of(plan);
     let drawn = write(plan, &rows)?;
@@ -353,8 +354,8 @@ fn name(plan: &Plan, point: &Point) -> String {
     )
 }
 
-/// How a run ended, for a line of progress.
-fn how(run: &Finished) -> String {
+/// Describes how a run ended, for a line of progress.
+fn how(run: &FinishedRun) -> String {
     let took = seconds(run.wall);
     match status(Some(run)) {
         (word, why) if why.is_empty() => format!("{word} in {took}"),

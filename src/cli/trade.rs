@@ -68,7 +68,7 @@ pub struct TradeArgs {
 }
 
 impl TradeArgs {
-    /// Names of the presets; former names are replaced and reported.
+    /// Returns the names of the presets; former names are replaced and reported.
     fn presets(&self) -> Vec<String> {
         if !self.renamed.is_empty() {
             report("warning: --knob was renamed: write --setting");
@@ -155,7 +155,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     ended
 }
 
-/// Reports a run that begins or has ended.
+/// Reports that a run begins or has ended.
 fn report_event(event: &Event<'_>, started: Instant) {
     let elapsed = seconds(started.elapsed().as_secs_f64());
     match event {

@@ -1,15 +1,15 @@
-//! HDF5 files: contact problems of FCLIB, results of a run; and the bytes of a state, as a
-//! checkpoint has them.
+//! HDF5 files: contact problems of FCLIB, and results of a run; and the bytes of a state in a
+//! checkpoint.
 
 use crate::campaign::Campaign;
 use crate::cases::files;
 use crate::mutate;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::checkpoint::Frame;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::record::fclib;
 use fretwork::record::results::{PreviousResults, state};
-use fretwork::scene::{Loaded, load};
+use fretwork::scene::{LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::State;
 use rand::RngExt;
@@ -73,7 +73,7 @@ fn damaged_contact_problems() {
     });
 }
 
-/// The bytes of what a run of the case records.
+/// Returns the bytes of the results of a run of the case.
 fn results(case: &Path, folder: &Path) -> Vec<u8> {
     let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
         .args(["run", case.to_str().unwrap(), "--out"])
@@ -116,7 +116,7 @@ fn damaged_results() {
     });
 }
 
-/// The case with other grains, in a dimension.
+/// Returns the case with other grains, in a dimension.
 fn with(dimension: usize, grains: &str) -> String {
     let from = CASE.find("grains: [List").unwrap();
     let to = CASE.find("    output:").unwrap();
@@ -135,7 +135,7 @@ const PLANE: &str = r#"Polygons(material: "grain", grains: [(at: [0.0, 0.011], r
 const SOLID: &str = r#"Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, 0.011], size: (0.02, 0.02, 0.02)), (at: [0.03, 0.0, 0.012], size: (0.01, 0.02, 0.02), rounding: 1e-3)]),
     Clusters(material: "grain", grains: [(at: [0.06, 0.0, 0.01], shapes: [Balls([([0.0, 0.0, 0.0], 0.006)]), Capsule(from: (0.0, 0.0, 0.0), to: (0.01, 0.0, 0.0), radius: 0.004)])])"#;
 
-/// Grains of every shape, taken from a damaged run.
+/// Grains of every shape are read from damaged results.
 #[test]
 fn damaged_shapes() {
     let campaign = Campaign {
@@ -163,11 +163,12 @@ fn damaged_shapes() {
     });
 }
 
-fn loaded(case: &Path) -> Loaded {
+fn loaded(case: &Path) -> LoadedCase {
     load(case, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The bytes behind a checkpoint's checksum: decoded, and put back into a scene of the same case.
+/// The bytes behind a checkpoint's checksum are decoded, and restored into a scene of the same
+/// case.
 #[test]
 fn damaged_states() {
     let campaign = Campaign {
@@ -190,7 +191,7 @@ fn damaged_states() {
         let mut again = loaded(&case).build_in::<Dim2>(&laws).unwrap();
         let taken = again.restore(saved);
         if taken {
-            // What is taken up can be stepped: numbers may be wrong, indices and lengths are not.
+            // An accepted state can be stepped: numbers may be wrong, indices and lengths are not.
             for _ in 0..2 {
                 drop(again.step());
             }

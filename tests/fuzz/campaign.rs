@@ -1,5 +1,5 @@
-//! A campaign: damaged inputs of one kind, each read on a thread of its own, under a clock and a
-//! count of bytes.
+//! A campaign: damaged inputs of one kind, each read in a separate thread, with limits on time and
+//! memory.
 
 use crate::memory::peak;
 use cpu_time::ProcessTime;
@@ -11,25 +11,25 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What one input may take (s, of the processor: a busy machine makes no hang): a hang is what
-/// takes longer,
+/// Limit on the processor time of an input (s), beyond which it counts as hanging; load on the
+/// machine does not matter.
 const SECONDS: Duration = Duration::from_secs(10);
-/// or waits for so long (s).
+/// Limit on the waiting time for an input (s), beyond which it counts as hanging.
 const WAITS: Duration = Duration::from_secs(300);
-/// What a reader may hold beyond a multiple of its file (bytes).
+/// Memory that a reader may hold beyond a multiple of its file (bytes).
 const BASE: usize = 64 << 20;
 /// Bytes a reader may hold for each byte of its file.
 const EACH: usize = 1000;
 
 /// Inputs of one kind.
 pub struct Campaign {
-    /// Name, also that of its folder.
+    /// Name of the kind and of its folder.
     pub kind: &'static str,
-    /// How many inputs, unless `FRETWORK_FUZZ` says otherwise.
+    /// Number of inputs, unless `FRETWORK_FUZZ` gives another.
     pub count: u64,
-    /// What is allowed beyond the bound of readers (bytes): what a scene may be made of.
+    /// Memory allowed beyond the limit for readers (bytes), for a scene that is built.
     pub scene: usize,
-    /// Whether inputs that are taken must occur: without them nothing behind the parser is tried.
+    /// Whether some inputs must be accepted: otherwise nothing behind the parser is tested.
     pub taken: bool,
 }
 
@@ -44,13 +44,13 @@ fn variable(name: &str) -> Option<u64> {
     )
 }
 
-/// One campaign at a time: they share the count of bytes.
+/// Allows one campaign at a time, since campaigns share the count of bytes.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A thread that reads the files that it is given.
+/// Starts a thread that reads the files that it receives.
 fn worker(read: Read) -> (Sender<PathBuf>, Receiver<Answer>) {
     let (to, files) = channel::<PathBuf>();
     let (answers, from) = channel();
@@ -74,7 +74,7 @@ fn worker(read: Read) -> (Sender<PathBuf>, Receiver<Answer>) {
     (to, from)
 }
 
-/// The answer to an input, unless it hangs.
+/// Returns the answer to an input, unless it hangs.
 fn awaited(answers: &Receiver<Answer>) -> Option<Answer> {
     let (work, clock) = (ProcessTime::now(), Instant::now());
     loop {
@@ -91,7 +91,7 @@ fn awaited(answers: &Receiver<Answer>) -> Option<Answer> {
 }
 
 impl Campaign {
-    /// A folder for its inputs, emptied.
+    /// Returns an empty folder for the inputs.
     pub fn folder(&self) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join("fuzz")
@@ -101,10 +101,11 @@ impl Campaign {
         folder
     }
 
-    /// Runs it: `make` gives the name and the bytes of an input, `read` says whether it was taken.
+    /// Runs the campaign: `make` returns the name and the bytes of an input, `read` whether it was
+    /// accepted.
     ///
-    /// An input that fails is kept beside the folder's others as `NUMBER-name`, and `last-name` is
-    /// the one that was read when the process was ended from outside.
+    /// An input that fails is stored in the folder as `NUMBER-name`, and `last-name` is the one
+    /// that was being read when the process was ended from outside.
     pub fn run(
         &self,
         folder: &Path,
@@ -121,7 +122,7 @@ impl Campaign {
         let mut faults: Vec<String> = Vec::new();
         let start = Instant::now();
         for k in from..from + count {
-            // Each input from its own number, so that one can be made again alone.
+            // Each input depends only on its own number, so that it can be made again alone.
             let mut rng = Pcg64::seed_from_u64(seed.wrapping_mul(1_000_003).wrapping_add(k));
             let (name, bytes) = make(&mut rng);
             let file = folder.join(format!("last-{name}"));

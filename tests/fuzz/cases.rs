@@ -1,4 +1,4 @@
-//! Cases and material files: read, built into a scene, and taken two steps further.
+//! Cases and material files are read, built into a scene, and stepped twice.
 
 use crate::campaign::Campaign;
 use crate::mutate;
@@ -9,14 +9,14 @@ use fretwork::step::Coupling;
 use rand::RngExt;
 use std::path::{Path, PathBuf};
 
-/// What a scene may hold beyond what its file makes readers hold (bytes).
+/// Memory that a scene may hold beyond the limit for readers of its file (bytes).
 const SCENE: usize = 2 << 30;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The files of a folder of the project with one of these endings, in the order of their names.
+/// Files of a folder of the project with one of these endings, sorted by name.
 pub fn files(folder: &str, endings: &[&str]) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join(folder)).unwrap();
     let mut found: Vec<PathBuf> = entries
@@ -46,7 +46,7 @@ fn shipped() -> Vec<PathBuf> {
         .collect()
 }
 
-/// Puts materials, and what cases name, beside the inputs.
+/// Copies materials, and files named by cases, to the folder of the inputs.
 pub fn furnish(folder: &Path) {
     std::fs::create_dir_all(folder.join("materials")).unwrap();
     for path in files("materials", &["ron"]) {
@@ -60,8 +60,8 @@ pub fn furnish(folder: &Path) {
     }
 }
 
-/// Two steps, with limits on iterations of this test: those of a case may be as many as its writer
-/// likes.
+/// Makes two steps with the limits of this test on iterations, since those of a case may be very
+/// large.
 fn steps(mut built: Built) {
     let s = &mut built.simulation;
     let options = s.options_mut();
@@ -76,13 +76,13 @@ fn steps(mut built: Built) {
     }
 }
 
-/// Whether a case is one.
+/// Whether an input is a valid case.
 pub fn tried(case: &Path, laws: &SearchPath) -> bool {
     match load(case, &[]).and_then(|loaded| loaded.build(laws)) {
         Ok(built) => steps(built),
         Err(error) => {
             assert!(!error.message.is_empty() && !error.to_string().is_empty());
-            // What a user sees, with the line marked.
+            // The message is rendered as for a user, with the line marked.
             assert!(!error.render(false).is_empty());
             return false;
         }

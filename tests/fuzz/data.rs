@@ -8,7 +8,7 @@ use fretwork::shipped::search_path;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// A case of a dimension with these bodies and grains.
+/// Returns a case of a dimension with these bodies and grains.
 fn case(dimension: u32, bodies: &str, grains: &str) -> String {
     format!(
         r#"(
@@ -25,7 +25,7 @@ fn case(dimension: u32, bodies: &str, grains: &str) -> String {
 
 const GRAIN: &str = r#"List(material: "grain", grains: [(at: [0.0, 0.0, 0.5], radius: 0.01)])"#;
 
-/// Damages seeds of a file and reads them through a case that names it `last-NAME`.
+/// Damages seeds of a file and reads them through a case that names the file `last-NAME`.
 fn run(campaign: &Campaign, name: &str, case: &str, seeds: Vec<Vec<u8>>) {
     let folder = campaign.folder();
     furnish(&folder);
@@ -114,7 +114,7 @@ fn damaged_stl_files() {
     );
 }
 
-/// Half of each mesh is a surface, half the hull of a grain: one case has both.
+/// Half of each mesh is a surface, the other half the hull of a grain: one case has both.
 fn meshes(kind: &'static str, name: &str, seeds: Vec<Vec<u8>>) {
     let body = r#"(name: "surface", material: "grain", shapes: [Mesh(file: "FILE", at: [0.0, 0.0, -5.0])])"#;
     let grains = format!(

@@ -1,9 +1,9 @@
-//! Damaged input at scale: whatever a file holds, its reader answers with what it is of or with a
-//! sentence. It does not panic, does not hang, and does not hold more memory than `campaign` allows
+//! Damaged input at scale: for any content of a file its reader returns a value or an error
+//! message. It does not panic, does not hang, and does not hold more memory than `campaign` allows
 //! for the size of the file.
 //!
-//! `FRETWORK_FUZZ=N` tries N inputs of each kind, `FRETWORK_FUZZ_SEED=S` others,
-//! `FRETWORK_FUZZ_FROM=K` from number K on.
+//! `FRETWORK_FUZZ=N` tries N inputs of each kind, `FRETWORK_FUZZ_SEED=S` changes the seed, and
+//! `FRETWORK_FUZZ_FROM=K` begins with number K.
 
 #![allow(
     clippy::unwrap_used,

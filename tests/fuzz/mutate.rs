@@ -1,10 +1,10 @@
-//! Damage to files: bytes, and the tokens of texts. The same generator gives the same damage.
+//! Damage to files: to bytes, and to the tokens of texts. Equal generators give equal damage.
 
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use std::ops::Range;
 
-/// Numbers that hurt most.
+/// Numbers that are most likely to cause errors.
 const NUMBERS: [&str; 32] = [
     "NaN",
     "inf",
@@ -40,7 +40,7 @@ const NUMBERS: [&str; 32] = [
     "1e400",
 ];
 
-/// Whole numbers that hurt most, as they stand in binary files.
+/// Integers that are most likely to cause errors in binary files.
 const WHOLE: [u64; 16] = [
     0,
     1,
@@ -73,7 +73,7 @@ enum Kind {
 
 type Token = (Kind, String);
 
-/// A text as tokens: joined they are the text again.
+/// Splits a text into tokens, which joined are the text again.
 fn tokens(text: &str) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut rest = text;
@@ -104,7 +104,7 @@ fn tokens(text: &str) -> Vec<Token> {
     out
 }
 
-/// The group that opens at a token, its brackets included.
+/// Returns the group that opens at a token, including its brackets.
 fn group(tokens: &[Token], open: usize) -> Range<usize> {
     let mut depth = 0usize;
     for (k, (kind, _)) in tokens.iter().enumerate().skip(open) {
@@ -126,7 +126,7 @@ fn any(tokens: &[Token], kind: Kind, rng: &mut Pcg64) -> Option<usize> {
     (!all.is_empty()).then(|| all[rng.random_range(0..all.len())])
 }
 
-/// A number in place of another: an extreme, one of another size, or of another kind.
+/// Returns a replacement for a number: an extreme, one of another size, or of another type.
 fn number(old: &str, rng: &mut Pcg64) -> String {
     let value: f64 = old.parse().unwrap_or(1.0);
     match rng.random_range(0..6) {
@@ -144,7 +144,7 @@ fn number(old: &str, rng: &mut Pcg64) -> String {
     }
 }
 
-/// A text with some of its tokens, lines or bytes changed; `others` lend theirs.
+/// Changes some tokens, lines or bytes of a text, with material from `others`.
 pub fn text(seed: &str, others: &[String], rng: &mut Pcg64) -> Vec<u8> {
     let mut list = tokens(seed);
     let lender = tokens(&others[rng.random_range(0..others.len())]);
@@ -184,7 +184,7 @@ fn change(list: &mut Vec<Token>, lender: &[Token], rng: &mut Pcg64) {
         }
         12 => drop(list.remove(rng.random_range(0..list.len()))),
         13 => {
-            // A field, a line or part of one.
+            // The change is in a field, a line or part of one.
             let at = rng.random_range(0..list.len());
             let end = (at + rng.random_range(1..40)).min(list.len());
             list.drain(at..end);
@@ -235,12 +235,12 @@ fn change(list: &mut Vec<Token>, lender: &[Token], rng: &mut Pcg64) {
     }
 }
 
-/// Signatures in HDF5 files; what stands behind them says how to read the rest.
+/// Signatures in HDF5 files; the bytes after them tell how to read the rest.
 const SIGNS: [&[u8]; 9] = [
     b"\x89HDF", b"TREE", b"HEAP", b"SNOD", b"OHDR", b"FRHP", b"FADB", b"EAHD", b"BTHD",
 ];
 
-/// A place in a file, half of the time near one of its signatures.
+/// Returns a position in a file, half of the time near one of its signatures.
 fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
     if rng.random_range(0..2) == 0 {
         let from = rng.random_range(0..bytes.len());
@@ -254,7 +254,7 @@ fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
         }
     }
     if rng.random_range(0..2) == 0 {
-        // Heads of objects have no signature in older files; most of what is not zero is one, or
+        // Headers of objects have no signature in older files; most non-zero bytes are headers or
         // data.
         let from = rng.random_range(0..bytes.len());
         return (from..bytes.len()).find(|k| bytes[*k] != 0).unwrap_or(from);
@@ -262,7 +262,7 @@ fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
     rng.random_range(0..bytes.len())
 }
 
-/// A file with some of its bytes changed, or the head of one and the tail of another.
+/// Changes some bytes of a file, or joins the head of one and the tail of another.
 pub fn bytes(seed: &[u8], other: &[u8], rng: &mut Pcg64) -> Vec<u8> {
     let mut out = seed.to_vec();
     let rounds = 1 + (0..6).take_while(|_| rng.random_range(0..2) == 0).count();

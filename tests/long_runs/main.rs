@@ -1,7 +1,7 @@
-//! A long run holds no more memory than a short one, and its checkpoint is no larger: counted to
+//! A long run holds no more memory than a short one, and its checkpoint is not larger, counted to
 //! the byte.
 //!
-//! `FRETWORK_LONG=N` makes it N steps long.
+//! `FRETWORK_LONG=N` sets the number of its steps.
 
 #![allow(
     clippy::unwrap_used,
@@ -24,12 +24,12 @@ use std::path::Path;
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
 
-/// What the number of contacts at the moment, rows on their way to the disk and the file's index
-/// may change (bytes).
+/// Permitted variation by the present number of contacts, rows that are not yet written and the
+/// index of the file (bytes).
 const SLACK: usize = 64 << 10;
 
-/// Grains on a floor that holds some of them by bonds, rubbed to and fro by a lid: 100 steps a
-/// cycle.
+/// Grains on a floor, which holds some of them by bonds, are sheared to and fro by a lid in 100
+/// steps per cycle.
 const RUBBED: &str = r#"(
     name: "rubbed for long", dimension: 2,
     time: (step: 1e-4, end: 2.0), gravity: [0.0, -9.81], periodic: (x: 0.02),
@@ -61,7 +61,7 @@ const RUBBED: &str = r#"(
     output: (frames: 0, views: 20, figures: false, checkpoint: Steps(500)),
 )"#;
 
-/// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
+/// Bytes held after each step of a run, and bytes of the state in the last checkpoint.
 fn followed(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let sets = [format!("time.end={:e}", 1e-4 * steps as f64)];
@@ -74,7 +74,7 @@ fn followed(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
         out: out.clone(),
         threads: 1,
     };
-    // What is counted must not count itself.
+    // The list of counts must not be counted.
     let mut seen = Vec::with_capacity(steps as usize);
     let mut progress = |_: &fretwork::record::Progress| seen.push(held());
     run(&loaded, built, &options, &mut progress).unwrap_or_else(|e| panic!("{e}"));
@@ -91,13 +91,13 @@ fn followed(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
     (seen, state)
 }
 
-/// Most bytes held in the last thousand of so many steps.
+/// Largest number of bytes held in the last thousand of a number of steps.
 fn most(seen: &[usize], steps: usize) -> usize {
     seen[steps - 1000..steps].iter().copied().max().unwrap()
 }
 
-/// What the cycles' list may take: a cycle of it is written out in the end, so that each must be
-/// kept. The list doubles its room when it is full.
+/// Memory that the list of cycles may take: each cycle is written at the end, so it must be kept.
+/// The list doubles its capacity when it is full.
 fn of_cycles(steps: usize) -> usize {
     (steps / 100).next_power_of_two() * size_of::<Cycle>()
 }

@@ -1,5 +1,5 @@
 //! The fretting layer of angular grains with elastic contacts, in a window of a fifth: its steps
-//! are solved to any tolerance, and say what they get wrong.
+//! are solved to any tolerance, and report their errors.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
@@ -38,7 +38,8 @@ fn slips(s: &mut Simulation<Dim2>, norm: Norm, tolerance: f64, most: u32) -> Vec
     (0..20).map(|_| s.step().unwrap().solver).collect()
 }
 
-/// A prototype found that sweeps to 1e-8 grow as 55 sqrt(k h^2/m), up to 29 here: 300.
+/// A prototype found that the number of sweeps to 1e-8 grows as 55 sqrt(k h^2/m), with up to 29 for
+/// the root here: 300.
 #[test]
 fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
     let mut s = sliding(&[]);
@@ -55,9 +56,9 @@ fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
     }
 }
 
-/// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case, with
-/// velocities that are wrong: the heat of the residuals says so: it is above the half of that of
-/// slip which the norm `Power` permits, and below which it stays with springs.
+/// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case,
+/// although velocities are wrong. The heat of the residuals reports it: it is above the half of the
+/// heat of slip that the norm `Power` permits, and below which it remains with springs.
 #[test]
 fn the_parts_of_the_error_tell_loose_velocities() {
     let law = |interface: &str| format!("interfaces.{interface}.contact=coulomb");
@@ -83,8 +84,8 @@ fn the_parts_of_the_error_tell_loose_velocities() {
 }
 
 /// Contact points of polygons, and pairs that meet within a step, are found by several threads:
-/// more than 256 pairs, with bonds, under a wheel that falls by the size of a grain a step at
-/// first.
+/// more than 256 pairs, with bonds, under a wheel that initially falls by the size of a grain per
+/// step.
 #[test]
 fn threads_do_not_change_a_bit_of_a_layer_of_polygons() {
     let bits = |threads: usize| {

@@ -1,4 +1,4 @@
-//! Attraction on more contacts than a law is given at a time.
+//! Attraction on more contacts than one batch of a law.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
@@ -6,8 +6,8 @@ use fretwork::geometry::space::Dim2;
 const COUNT: usize = 1300;
 const RADIUS: f64 = 1e-3;
 
-/// Disks below a ceiling, each alone, which holds each by twice its weight: all stay, and those are
-/// let go whose attraction is too small.
+/// Each disk hangs alone below a ceiling, which attracts it by twice its weight: all stay, except
+/// those whose attraction is too small.
 #[test]
 fn a_ceiling_holds_every_disk() {
     for (share, held) in [(2.0, true), (0.5, false)] {

@@ -1,20 +1,20 @@
-//! Energy that broken bonds release, over what their laws declare.
+//! Ratio of the energy that broken bonds release to the energy that their laws declare.
 
 use crate::scene;
 use fretwork::geometry::space::Space;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
-use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
-use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
+use fretwork::scene::{Dim2, Dim3, LoadedCase, load_text};
+use fretwork_observe::fracture::{FractureSummary, InterfaceBonds, Reference};
 use fretwork_observe::summary::Summary;
 use std::path::Path;
 
-/// Of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of the grip
-/// (m/s).
+/// Parameters of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of
+/// the grip (m/s).
 const W: f64 = 0.1;
 const U0: f64 = 3.162_277_660_168_379_5e-7;
 const SPEED: f64 = 0.045;
-/// Opening at which a hundredth of the peak traction is left, over u_0: the critical opening.
+/// Critical opening over u_0, at which a hundredth of the peak traction is left.
 const CRITICAL: f64 = 4.641_588_833_612_779;
 
 fn summary(case: &str, sets: &[String]) -> Summary {
@@ -27,7 +27,7 @@ fn summary(case: &str, sets: &[String]) -> Summary {
     run(&loaded)
 }
 
-/// Settings of a run that writes little.
+/// Settings of a run that writes few files.
 fn without_files() -> [String; 4] {
     [
         "output.frames=0",
@@ -38,13 +38,13 @@ fn without_files() -> [String; 4] {
     .map(String::from)
 }
 
-fn run(loaded: &Loaded) -> Summary {
+fn run(loaded: &LoadedCase) -> Summary {
     scene::finished(loaded, scene::built(loaded), |_| {})
 }
 
-/// Pulls one bond in steps of an opening (m) until it is long broken, with damage law and coupling
-/// as given.
-fn pulled(case: &str, opening: f64, sets: &[&str]) -> (BondEnergies, Summary) {
+/// Pulls one bond in steps of an opening (m) beyond its break, with the given damage law and
+/// coupling.
+fn pulled(case: &str, opening: f64, sets: &[&str]) -> (InterfaceBonds, Summary) {
     let step = opening / SPEED;
     let mut all = vec![
         format!("time.step={step:e}"),
@@ -62,18 +62,18 @@ fn pulled(case: &str, opening: f64, sets: &[&str]) -> (BondEnergies, Summary) {
 /// The damage that a step uses in its impulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Used {
-    /// That at its start.
+    /// The damage at the start of the step.
     Start,
     /// The mean of start and end: at a constant speed the prediction is exact.
     Mean,
-    /// That at its end.
+    /// The damage at the end of the step.
     End,
 }
 
 impl Used {
     const ALL: [Self; 3] = [Self::Start, Self::Mean, Self::End];
 
-    /// The coupling of a case with it.
+    /// The corresponding coupling of a case.
     fn coupling(self) -> &'static str {
         match self {
             Self::Start => "coupling=Explicit",
@@ -91,15 +91,15 @@ impl Used {
     }
 }
 
-/// Released over w by a MAC bond (b = 0) that is opened in steps of d u_0 and breaks below
-/// `broken`: beta = (u_0/u)^2 from u_0 on. The stored energy is beta^2 C u^2/2; a step lowers it at
-/// its start to what it is with the damage used in the impulse, and at its end to what it is with
-/// the new one.
+/// Ratio of released energy to w of a MAC bond (b = 0) that is opened in steps of d u_0 and breaks
+/// below `broken`: beta = (u_0/u)^2 from u_0 on. The stored energy is beta^2 C u^2/2. A step
+/// reduces it, at the opening at its start, to the value with the damage used in the impulse, and,
+/// at the opening at its end, to the value with the new damage.
 fn overshoot(d: f64, broken: f64, used: Used) -> f64 {
     overshoot_from(0.0, d, broken, used)
 }
 
-/// [`overshoot`] of a bond that begins, undamaged, at the opening `start` times u_0.
+/// Does as [`overshoot`] for a bond that begins, undamaged, at the opening `start` times u_0.
 fn overshoot_from(start: f64, d: f64, broken: f64, used: Used) -> f64 {
     let (mut beta, mut u, mut sum) = (1.0f64, start, 0.0);
     while beta > 0.0 {
@@ -118,9 +118,8 @@ fn overshoot_from(start: f64, d: f64, broken: f64, used: Used) -> f64 {
 
 const CUT: &str = "interfaces.grain.parameters.damage.beta_broken=1e-3";
 
-/// In modes I, II and mixed a slow pull releases what the law declares, w less the tail of
-/// beta_broken/2, with an error of the first order in the step: d u_0 times 0.66 by the closed
-/// form.
+/// In modes I, II and mixed a slow pull releases the declared energy, w less the tail of
+/// beta_broken/2, with an error of first order in the step: d u_0 times 0.66 by the closed form.
 #[test]
 fn a_slow_pull_releases_what_the_law_declares() {
     for case in ["bond_mode_1", "bond_mode_2", "bond_mixed"] {
@@ -136,7 +135,7 @@ fn a_slow_pull_releases_what_the_law_declares() {
                 (ratio / exact - 1.0).abs() < 1e-4,
                 "{case} {used:?}: {ratio} for {exact}"
             );
-            // Area 0.5 m^2.
+            // The area is 0.5 m^2.
             assert!((bond.declared.unwrap() / (0.5 * W) - 1.0).abs() < 1e-12);
             assert_eq!(bond.broken_at_once, Some(0.0));
             let slide = bond.slide_mean.unwrap() * CRITICAL / d;
@@ -157,8 +156,8 @@ fn warning(summary: &Summary) -> Option<&String> {
     warnings.find(|w| w.starts_with("BONDS NOT RESOLVED"))
 }
 
-/// In steps of 0.2 to 5 critical openings a bond releases what its overshoot says, with each
-/// coupling; the run says that it is not resolved.
+/// In steps of 0.2 to 5 critical openings a bond releases the energy of its overshoot, with each
+/// coupling; the run reports that it is not resolved.
 #[test]
 fn a_bond_pulled_in_large_steps_releases_what_the_overshoot_says() {
     for criticals in [0.2, 1.0, 2.0, 5.0] {
@@ -180,8 +179,8 @@ fn a_bond_pulled_in_large_steps_releases_what_the_overshoot_says() {
     }
 }
 
-/// A bond that one step takes beyond where it breaks, from no damage, is counted; of a brittle bond
-/// this is no fault of the step.
+/// A bond that one step takes from no damage beyond its break is counted; for a brittle bond this
+/// is no error of the step.
 #[test]
 fn bonds_that_break_within_one_step_are_counted() {
     let wide = [
@@ -190,7 +189,7 @@ fn bonds_that_break_within_one_step_are_counted() {
     ];
     let (bond, summary) = pulled("bond_mode_1", CRITICAL * U0, &wide);
     assert_eq!(bond.broken_at_once, Some(1.0));
-    // What is stored at beta = 1.
+    // This is the energy stored at beta = 1.
     let exact = 0.5 * CRITICAL * CRITICAL / (1.0 - 0.05 / 2.0);
     let ratio = bond.released_over_declared.unwrap();
     assert!((ratio / exact - 1.0).abs() < 1e-3, "{ratio} for {exact}");
@@ -199,7 +198,8 @@ fn bonds_that_break_within_one_step_are_counted() {
         text.contains("100 % of them broke within one step"),
         "{text}"
     );
-    // Brittle: strength s, energy s^2/(2 k) as a slow pull has it, as the law declares none.
+    // The brittle bond has strength s and, in a slow pull, the energy s^2/(2 k), since the law
+    // declares none.
     let brittle = [
         "interfaces.grain.cohesion=elastic-bond",
         "interfaces.grain.damage=mohr-coulomb-brittle",
@@ -210,12 +210,12 @@ fn bonds_that_break_within_one_step_are_counted() {
     let (bond, summary) = pulled("bond_mode_1", 1.0004e-8, &brittle);
     assert!(bond.reference == Reference::SlowPull && bond.comparable);
     assert_eq!(bond.broken_at_once, Some(1.0));
-    // It breaks at the first step beyond 1 um, its hundredth.
+    // The bond breaks at the first step beyond 1 um, of which a step is a hundredth.
     let exact = 1.0004f64.powi(2);
     let ratio = bond.released_over_declared.unwrap();
     assert!((ratio / exact - 1.0).abs() < 2e-3, "{ratio} for {exact}");
     assert!(warning(&summary).is_none(), "{:?}", summary.run.warnings);
-    // With friction the strength depends on the pressure: there is nothing to compare with.
+    // With friction the strength depends on the pressure, so there is no reference.
     let pressed = [
         brittle[0],
         brittle[1],
@@ -249,7 +249,7 @@ fn a_slow_pull_on_the_bench_is_the_fracture_energy() {
         assert!((energy / exact - 1.0).abs() < 1e-3, "{angle}: {energy}");
     }
     assert!(bench.fracture_energy_is_constant().unwrap());
-    // Viscosity makes it depend on the speed; slowly it is w.
+    // With viscosity the energy depends on the speed; in a slow pull it is w.
     let viscous = found("interfaces.grain.parameters.damage.b=1e-6");
     assert_eq!(viscous.declared_fracture_energy(0.0), None);
     let mut bench = Bench::new(viscous, 2, 0.5);
@@ -258,8 +258,8 @@ fn a_slow_pull_on_the_bench_is_the_fracture_energy() {
     assert!(!bench.fracture_energy_is_constant().unwrap());
 }
 
-/// Begun at its gap of u_0/2, a bond has an energy from the start that its fracture contains: what
-/// it releases is still w.
+/// A bond that begins at its gap of u_0/2 has an energy from the start, which its fracture
+/// contains: it still releases w.
 #[test]
 fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     let gap = 2.0 + 0.5 * U0;
@@ -268,8 +268,9 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     let (bond, _) = pulled("bond_mode_1", 0.01 * U0, &sets);
     let ratio = bond.released_over_declared.unwrap();
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-    // Beyond u_0, at n u_0, its energy is n^2 w/2 at once, and the tail takes w/(2 n^2): more than
-    // the law's, which is no error. The gap is found in the middle of the first step.
+    // If it begins beyond u_0, at n u_0, its energy is n^2 w/2 at once, and the tail takes w/(2
+    // n^2): more than the law's energy, which is no error. The gap is found in the middle of the
+    // first step.
     let (n, d) = (2.0, 0.01);
     let place = format!("bodies.1.position=[0.0, {:?}]", 2.0 + n * U0);
     let sets = [
@@ -287,9 +288,9 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     assert!(!bond.comparable && warning(&summary).is_none());
 }
 
-/// Turns a parallel bond by bending or twist alone until it breaks, in steps of an angle (rad);
-/// gives what it released, and what is said of it.
-fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Option<String>) {
+/// Rotates a parallel bond in bending or twist alone until it breaks, in steps of an angle (rad);
+/// returns the released energy and the report on it.
+fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (InterfaceBonds, Option<String>) {
     let more = |sign: f64| {
         let to = sign * last;
         motion.replace(
@@ -307,7 +308,7 @@ fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Optio
     } else {
         "[0.0, 0.0, 0.0], 0.1"
     };
-    // The bond's radius is then the reduced radius of the balls, 0.05 m.
+    // The radius of the bond is then the reduced radius of the balls, 0.05 m.
     let factor = if S::D == 2 { 2.0 } else { 1.0 };
     let text = format!(
         r#"(
@@ -332,15 +333,17 @@ fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Optio
     (found.interfaces[0].clone(), found.warning())
 }
 
-/// A bond that bending or twist breaks stores sigma^2 R/(3 k_n) per depth in 2D, pi sigma^2 R^2/(8
-/// k_n) by bending and pi tau^2 R^2/(4 k_t) by twist in 3D: less than what opening takes, and no
-/// sign of a step that is too large. It is compared with a pull that turns it as far.
+/// A bond that breaks by bending or twist stores sigma^2 R/(3 k_n) per depth in 2D, pi sigma^2
+/// R^2/(8 k_n) by bending and pi tau^2 R^2/(4 k_t) by twist in 3D. This is less than the energy of
+/// an opening, and does not indicate a step that is too large. It is compared with a pull with an
+/// equal rotation.
 #[test]
 fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
     let (stress, stiffness, steps) = (1e6f64, 1e10, 2000);
-    let check = |bond: &BondEnergies, reported: &Option<String>, energy: f64| {
+    let check = |bond: &InterfaceBonds, reported: &Option<String>, energy: f64| {
         assert!(bond.broken == 1 && bond.comparable, "{bond:?}");
-        // Broken in the step after the critical angle, of which there are a thousand and more.
+        // The bond breaks in the step after the critical angle, which takes more than a thousand
+        // steps.
         let ratio = bond.released / energy;
         assert!(
             (1.0 - 1e-9..1.0 + 3e-3).contains(&ratio),

@@ -1,4 +1,4 @@
-//! Where bonds are made and from which opening they begin.
+//! Where bonds form, and the opening at which they begin.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::{InputError, load_text};
@@ -28,8 +28,8 @@ fn tried(alert: f64, bonds: &str, rest: &str) -> Result<Simulation<Dim2>, InputE
     loaded.build_in::<Dim2>(&search_path())
 }
 
-/// Eleven disks in a row whose gaps grow from 0.1 to 1 mm: how many are bonded does not depend on
-/// how far contacts are looked for.
+/// Eleven disks in a row whose gaps increase from 0.1 to 1 mm: the number of bonds does not depend
+/// on the alert distance.
 #[test]
 fn bonds_are_made_within_their_own_distance() {
     let mut x = 0.0;
@@ -54,16 +54,16 @@ fn bonds_are_made_within_their_own_distance() {
     for alert in [5e-4, 1e-3, 2e-3] {
         assert_eq!(made(alert, "bonds_within: 4.5e-4,"), 4, "alert {alert}");
     }
-    // Beyond the alert distance no contact is known.
+    // Contacts beyond the alert distance are not known.
     let refused = tried(4e-4, "bonds_within: 4.5e-4,", &row).unwrap_err();
     assert!(refused.to_string().contains("detection.alert"), "{refused}");
-    // Without it the alert distance decides.
+    // Without `bonds_within` the alert distance decides.
     assert_eq!([5.5e-4, 9.5e-4].map(|alert| made(alert, "")), [5, 9]);
 }
 
-/// Two disks 0.2 mm apart, one of which moves away: the bond pulls with k A d where cement fills
-/// the gap, with k A (g + d) where it begins at the gap, whose energy it has from the start; the
-/// ledger closes either way.
+/// Of two disks 0.2 mm apart one moves away. The bond pulls with k A d if cement fills the gap, and
+/// with k A (g + d) if it begins at the gap; it then has its energy from the start. The ledger
+/// closes in both cases.
 #[test]
 fn a_bond_begins_filled_or_at_its_gap() {
     let (gap, area, k) = (2e-4, 0.025, 1e9);
@@ -98,7 +98,8 @@ fn a_bond_begins_filled_or_at_its_gap() {
         let closes = s.state.energy.relative_residual();
         assert!(closes < 1e-12, "{opening}: {closes:e}");
     }
-    // Filled, the disks cannot come nearer; begun at the gap, they can until they touch.
+    // With cement the disks cannot approach; with a bond that begins at the gap they can until they
+    // touch.
     for (opening, nearest) in [("Filled", gap), ("Gap", 0.0)] {
         let push = pair
             .replace("Velocity(Constant(0.01))", "Force(Constant(-1e6))")

@@ -1,17 +1,17 @@
-//! Bonds in a run: every method gives the motion that the sweeps over bodies give, which solve a
-//! contact and its bond at once.
+//! Bonds in a run: every method gives the motion of the sweeps over bodies, which solve a contact
+//! and its bond together.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::Problem;
 use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, Options, solve};
+use fretwork::solve::{AutoState, SolverOptions, solve};
 
 const RADIUS: f64 = 0.1;
 
-/// A pile of balls in rows of 5, 4, 3 on a floor, pressed down and pushed aside. Every contact is
-/// bonded with `stiff` times the inverse of its W_nn; some bonds only pull. Where `blocks` is set
-/// contacts have levers and the inertia differs by axis.
+/// A pile of balls in rows of 5, 4, 3 on a floor, pressed down and pushed sideways. Every contact
+/// is bonded with `stiff` times the inverse of its W_nn; some bonds act in tension only. With
+/// `blocks` contacts have levers and the inertia differs by axis.
 fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>) {
     let mut problem = Problem::<S>::default();
     let along = |x: f64, y: f64| {
@@ -102,11 +102,11 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
 /// Velocities and spins (times the radius) of the bodies by a method.
 fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec<f64> {
     let (mut problem, forms) = pile::<S>(stiff, blocks);
-    let options = Options {
+    let options = SolverOptions {
         tolerance,
         max_iterations: 100_000,
         method,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let report = solve(
         &mut problem,
@@ -134,14 +134,16 @@ fn agree<S: Space>(stiff: f64, blocks: bool, methods: &[Method]) {
         let far = found.iter().zip(&known).map(|(a, b)| (a - b).abs());
         let far = far.fold(0.0f64, f64::max);
         let name = method.name();
-        // The error is measured against impulses over masses, which are larger than the velocities.
+        // The error is relative to impulses over masses, which are larger than the velocities.
         assert!(far <= 1e-5 * size, "{name} at {stiff}: {far:e} of {size:e}");
     }
 }
 
-/// Friction is low: at 0.3 the pile has several solutions, and each method finds one of its own.
+/// Friction is low, since at 0.3 the pile has several solutions, and each method finds a different
+/// one.
 fn every_method<S: Space>(blocks: bool) {
-    // Where levers couple the directions gradients stop short, at the root of rounding (2e-8).
+    // Where levers couple the directions, gradient methods stop at the root of the round-off
+    // (2e-8).
     let methods: Vec<Method> = Method::ALL
         .iter()
         .copied()
@@ -150,8 +152,8 @@ fn every_method<S: Space>(blocks: bool) {
     for stiff in [0.1, 1.0, 10.0] {
         agree::<S>(stiff, blocks, &methods);
     }
-    // Gradients and the symmetric sweeps hold a bond and its contact as two unknowns, which only
-    // methods that factorise separate well.
+    // Gradient methods and symmetric sweeps have two unknowns for a bond and its contact, which
+    // only methods that factorise separate well.
     let factorise = [Method::Newton, Method::Interior];
     agree::<S>(100.0, blocks, &factorise);
 }

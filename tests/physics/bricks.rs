@@ -1,22 +1,21 @@
-//! Free bricks that lie flush are one floor for what slides over them, and an edge that the error
-//! of the solver makes of them is reported.
+//! Free bricks that lie flush act as one floor for sliding bodies, and an edge that is due to the
+//! error of the solver is reported.
 
 use crate::extremes::bench::{Sketch, floor};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
-/// Width and height of free bricks, and the side of a box that slides over them (m), at the alert
-/// distance that a case has without one: a twentieth of the radius of the smallest grain; and how
-/// far its velocity may be off by the default tolerance: a box seven times as heavy as a brick
-/// moves it more.
+/// Width and height of free bricks, and side of a sliding box (m), at the default alert distance, a
+/// twentieth of the radius of the smallest grain. The last number is the permitted error of the
+/// box's velocity at the default tolerance; a box seven times as heavy as a brick has a larger one.
 const BRICKS: [([f64; 2], f64, f64, f64); 3] = [
     ([0.2, 0.2], 0.1, 3.5e-3, 1e-3),
     ([0.5, 0.2], 0.1, 3.5e-3, 1e-3),
     ([0.15, 0.06], 0.25, 4e-3, 2e-2),
 ];
 
-/// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed
-/// (m/s); `last` says whether the box is the last grain or the first.
+/// A row of flush bricks that lie free on a floor, and a box that slides over them at a speed
+/// (m/s); `last` tells whether the box is the last grain or the first.
 fn on_bricks<S: Space>(
     [width, height]: [f64; 2],
     side: f64,
@@ -67,8 +66,7 @@ struct Slide {
     last: bool,
 }
 
-/// The change of the velocity of the box over that at the start, after 1.5 m, and the number of
-/// edges that it met.
+/// Relative change of the velocity of the box after 1.5 m, and the number of edges that it met.
 fn slide<S: Space>(slide: &Slide) -> (f64, u64) {
     let Slide { speed, step, .. } = *slide;
     let (grains, slider) = on_bricks::<S>(slide.brick, slide.side, speed, slide.last);
@@ -110,9 +108,9 @@ fn slide<S: Space>(slide: &Slide) -> (f64, u64) {
     (changed, edges)
 }
 
-/// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart:
-/// the leading edge of the box is below the top of the next one by what they sank. Without friction
-/// it keeps its velocity.
+/// Free bricks sink by the tolerance of the solver under a sliding body, and drift apart: the
+/// leading edge of the box is below the top of the next brick by the distance sunk. Without
+/// friction the box keeps its velocity.
 fn slides_over_free_bricks<S: Space>(last: bool) {
     for (speed, step, solver) in [
         (0.2, 1e-3, ""),
@@ -149,8 +147,8 @@ fn free_bricks_are_one_floor() {
     }
 }
 
-/// Where the alert distance is small for the bricks they sink by more than counts as flush, and the
-/// box may be stopped by the next one: that is reported.
+/// If the alert distance is small for the bricks, they sink by more than counts as flush, and the
+/// next brick may stop the box, which is reported.
 #[test]
 fn an_edge_of_the_solution_is_told() {
     let mut reported = 0;

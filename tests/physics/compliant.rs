@@ -1,4 +1,4 @@
-//! Compliant contacts against closed forms: force, impact, chain, partial slip; energy; every
+//! Compliant contacts compared with closed forms: force, impact, chain, partial slip; energy; every
 //! method of the solver.
 
 use crate::scene;
@@ -10,7 +10,7 @@ use fretwork::step::Simulation;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// E* of `STEEL` on itself (Pa), and R.
+/// E* of two bodies of `STEEL` (Pa), and R.
 const MODULUS: f64 = 2e9 / (2.0 * (1.0 - 0.09));
 /// Hertz' spring of a material of 2 GPa.
 const HERTZ: &str = r#"contact: "hertz-mindlin""#;
@@ -38,7 +38,7 @@ fn built<S: Space>(law: &str, parameters: &str, step: f64, rest: &str) -> Simula
     scene::text::<S>(&text)
 }
 
-/// Keys of parameters are strings.
+/// Puts the keys of parameters into quotes.
 fn quote(text: &str) -> String {
     let mut out = text.to_owned();
     for name in [
@@ -108,8 +108,9 @@ fn a_body_at_rest_has_the_overlap_of_its_weight() {
     );
 }
 
-/// Two equal balls that meet: the time of contact 2.868 (m*^2/(R E*^2 v))^(1/5) (K. L. Johnson, eq.
-/// 11.25), and the restitution asked for. The loss of the scheme is of first order in the step.
+/// Impact of two equal balls: the duration is 2.868 (m*^2/(R E*^2 v))^(1/5) (K. L. Johnson, eq.
+/// 11.25), and the restitution is the given one. The loss of the scheme is of first order in the
+/// step.
 #[test]
 fn an_impact_lasts_and_rebounds_as_hertz_says() {
     let impact = |restitution: f64, step: f64| {
@@ -147,8 +148,8 @@ fn an_impact_lasts_and_rebounds_as_hertz_says() {
     }
 }
 
-/// A chain of n balls between walls, pressed together: the lowest frequency is 2 sqrt(k/m)
-/// sin(pi/(2 (n + 1))), which is the speed of sound of long waves, 2 R sqrt(k/m).
+/// A chain of n balls pressed together between walls: the lowest frequency is 2 sqrt(k/m) sin(pi/(2
+/// (n + 1))), which corresponds to the speed of sound of long waves, 2 R sqrt(k/m).
 #[test]
 fn a_chain_has_the_speed_of_sound_of_its_springs() {
     const N: usize = 20;
@@ -180,8 +181,8 @@ fn a_chain_has_the_speed_of_sound_of_its_springs() {
     let amplitude = |s: &Simulation<Dim3>| -> f64 {
         (0..N).map(|i| s.state.bodies.velocity[i].x * wave(i)).sum()
     };
-    // The velocity of the mode is a cosine: its first zero is a quarter of a period, its second
-    // three quarters.
+    // The velocity of the mode is a cosine: its first zero is at a quarter of a period, its second
+    // at three quarters.
     let (mut zeros, mut last) = (Vec::new(), amplitude(&s));
     while zeros.len() < 2 {
         steps(&mut s, 1);
@@ -195,8 +196,9 @@ fn a_chain_has_the_speed_of_sound_of_its_springs() {
     near(PI / (zeros[1] - zeros[0]), wanted, 1e-3);
 }
 
-/// A ball pressed on a plate that moves to and fro by less than slip needs: the loop of Mindlin and
-/// Deresiewicz, K. L. Johnson, eq. 7.57, with the compliances (2 - nu)/G of both bodies.
+/// A ball is pressed on a plate that moves to and fro by less than gross slip needs: the loop is
+/// that of Mindlin and Deresiewicz, K. L. Johnson, eq. 7.57, with the compliances (2 - nu)/G of
+/// both bodies.
 #[test]
 fn a_tangential_loop_takes_the_energy_of_partial_slip() {
     let (mu, press, radius, nu) = (0.4, 100.0, 0.05, 0.3);
@@ -235,8 +237,8 @@ fn a_tangential_loop_takes_the_energy_of_partial_slip() {
     }
 }
 
-/// A ball pushed along a plate beyond friction moves as over a rigid contact, whatever the
-/// stiffness; what the springs hold falls with 1/k.
+/// A ball pushed along a plate beyond the friction bound moves as on a rigid contact, for any
+/// stiffness; the energy of the springs decreases with 1/k.
 #[test]
 fn stiff_contacts_tend_to_rigid_ones() {
     let pushed = |law: &str, parameters: &str| {
@@ -252,7 +254,7 @@ fn stiff_contacts_tend_to_rigid_ones() {
         (s.state.bodies.velocity[0], s.state.bodies.spin[0])
     };
     let (rigid, turn) = pushed(r#"contact: "coulomb""#, "mu: 0.1");
-    // It slides: v = (g_x - mu g_y) t.
+    // The ball slides: v = (g_x - mu g_y) t.
     near(rigid.x, (4.905 - 0.981) * 0.2, 1e-6);
     let mut errors = Vec::new();
     for k in [1e6, 1e7, 1e8, 1e10] {
@@ -266,7 +268,7 @@ fn stiff_contacts_tend_to_rigid_ones() {
     assert!(errors[3] < 1e-6, "{errors:?}");
 }
 
-/// A heap that settles under its weight, by every method: the same positions within the tolerance.
+/// A heap settles under its weight: every method gives equal positions within the tolerance.
 #[test]
 fn every_method_serves_compliant_contacts() {
     let heap = |method: &str| {
@@ -312,8 +314,8 @@ fn every_method_serves_compliant_contacts() {
     }
 }
 
-/// Two balls that overlap at the start fly apart with the energy of their spring, which is booked
-/// as supplied.
+/// Two balls that overlap at the start separate with the energy of their spring, which is booked as
+/// supplied.
 #[test]
 fn overlaps_of_the_initial_state_bring_their_energy() {
     let (overlap, k) = (1e-4, 1e6);
@@ -335,8 +337,8 @@ fn overlaps_of_the_initial_state_bring_their_energy() {
     near(s.state.energy.scheme, stored - s.state.energy.kinetic, 1e-2);
 }
 
-/// A stiff Hertz contact finds its equilibrium in large steps too, k h^2/m of 30 to 3e4, and after
-/// a kick.
+/// A stiff Hertz contact reaches its equilibrium in large steps too, k h^2/m from 30 to 3e4, and
+/// after a kick.
 #[test]
 fn stiff_contacts_come_to_rest_in_large_steps() {
     for step in [2e-4, 1e-3, 5e-3] {
@@ -361,7 +363,7 @@ fn stiff_contacts_come_to_rest_in_large_steps() {
 }
 
 /// A ball hangs below a plate by an attraction of twice its weight, and does not creep along it
-/// when gravity is tilted: the spring carries what the attraction leaves of the weight.
+/// when gravity is tilted: the spring carries the difference of attraction and weight.
 #[test]
 fn attraction_presses_a_spring() {
     let (k, angle) = (1e6, 0.1f64);
@@ -382,7 +384,7 @@ fn attraction_presses_a_spring() {
             9.81 * angle.cos()
         ),
     );
-    // It does not roll.
+    // The ball cannot roll.
     s.state.bodies.inverse_inertia[0] = 0.0;
     steps(&mut s, 4000);
     let overlap = weight * (2.0 - angle.cos()) / k;
@@ -391,8 +393,8 @@ fn attraction_presses_a_spring() {
     assert!(speed < 1e-3 * weight / (k * 0.4), "{speed:e}");
 }
 
-/// Moduli come from the materials of the interface, in its order, unless the case gives them; a
-/// material without them is refused.
+/// Moduli are those of the materials of the interface, in its order, unless the case gives them; a
+/// material without them is rejected.
 #[test]
 fn moduli_come_from_the_materials() {
     let moduli = |first: &str, parameters: &str| {
@@ -433,8 +435,9 @@ fn moduli_come_from_the_materials() {
     );
 }
 
-/// Damped bonds in tension only on springs, with damage: they open, close, pull while closed and
-/// would push while open. What damping takes closes the ledger with any step.
+/// Damped bonds that act in tension only on springs, with damage: they open and close, pull while
+/// closed, and would push while open. With the dissipation of the damping the ledger closes for any
+/// step.
 #[test]
 fn damped_bonds_on_springs_keep_the_ledger() {
     for step in [1e-3, 1e-4, 1e-5] {
@@ -454,7 +457,7 @@ fn damped_bonds_on_springs_keep_the_ledger() {
             steps(&mut s, (0.2 / step) as usize);
             let e = s.state.energy;
             let bonds = s.state.network.memory.iter().flat_map(|m| &m.bonds);
-            let lost: f64 = bonds.map(|b| b.life.viscous).sum();
+            let lost: f64 = bonds.map(|b| b.energies.viscous).sum();
             assert!(
                 lost > 1e-3 * e.initial_kinetic,
                 "bonds lost {lost:e}: {e:?}"

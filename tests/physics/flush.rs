@@ -1,5 +1,5 @@
-//! Convex shapes side by side are one surface, and what passes another body closer than it moves in
-//! a step passes it untouched.
+//! Convex shapes side by side act as one surface, and a body that passes another at less than its
+//! displacement in a step does so undisturbed.
 
 use crate::extremes::bench::{G, Sketch};
 use crate::stepping::steps;
@@ -72,7 +72,7 @@ fn sliders<S: Space>(v: f64) -> [String; 2] {
     }
 }
 
-/// Over a floor for four metres: at the speed at which it started, without turning.
+/// Slides over a floor for four metres, at the initial speed and without rotation.
 fn slides_on<S: Space>(floor: &str, bodies: &str) {
     for v in [1.0, 0.05, 7.0] {
         for (grain, name) in sliders::<S>(v).into_iter().zip(["box", "ball"]) {
@@ -84,7 +84,7 @@ fn slides_on<S: Space>(floor: &str, bodies: &str) {
                 ..Sketch::default()
             });
             let step = s.options.scheme.h;
-            // Slow ones over one joint.
+            // Slow grains slide over one joint.
             let way = if v < 0.5 { 0.3 } else { 4.0 };
             steps(&mut s, (way / (v * step)) as usize);
             let (velocity, spin) = motion(&s);
@@ -93,7 +93,7 @@ fn slides_on<S: Space>(floor: &str, bodies: &str) {
                 S::D
             );
             assert!(
-                // The solver's tolerance of 1e-10 in each of thousands of steps.
+                // The error is the solver's tolerance of 1e-10 in each of thousands of steps.
                 (velocity[0] / v - 1.0).abs() < 1e-8,
                 "{floor}, {name}, {v}: {velocity:?}"
             );
@@ -107,7 +107,7 @@ fn slides_on<S: Space>(floor: &str, bodies: &str) {
     }
 }
 
-/// All shapes as one body, or each as its own.
+/// Puts all shapes into one body, or each into its own.
 fn as_bodies(shapes: &[String], one: bool) -> String {
     let body = |name: usize, shapes: &str| {
         format!("(name: \"b{name}\", material: \"m0\", shapes: [{shapes}]),")
@@ -131,7 +131,7 @@ fn a_grain_slides_over_flush_blocks_as_over_one() {
     }
 }
 
-/// What is thrown past the corner of a block, or over it, at a clearance that is less than its
+/// A body is thrown past the corner of a block, or over it, at a clearance smaller than its
 /// displacement in a step.
 fn passes<S: Space>(past: &str) {
     let (v, step) = (1.0, 1e-3);
@@ -140,7 +140,7 @@ fn passes<S: Space>(past: &str) {
             for up in [0.0, 0.3] {
                 let clear = share * v * step;
                 for grain in sliders::<S>(v) {
-                    // Rising, it passes the corner of the block at the clearance at least.
+                    // A rising body passes the corner of the block at least at the clearance.
                     let corner = 0.5 - 0.3 - 0.1;
                     let drop = up * (corner - start * step) / v;
                     let places = ["at: [0.3, 0.1]", "at: [0.3, 0.03, 0.1]"];
@@ -188,17 +188,17 @@ fn what_passes_a_corner_closer_than_it_moves_is_not_touched() {
     ));
 }
 
-/// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts:
-/// what holds it up acts upwards alone, whatever it is over.
+/// A grain slides over a floor with a small overlap, as springs have it and as rigid contacts
+/// drift: its support acts only upwards, at any position.
 fn slides_deep<S: Space>(floor: &str, bodies: &str) {
-    // They move less than the alert distance in a step.
+    // The grains move less than the alert distance in a step.
     let rigid = ("coulomb", String::new(), 5e-4);
     let springs = [1e5, 1e6, 1e7].map(|stiffness: f64| {
         let more = format!(", \"stiffness\": {stiffness:?}, \"ratio\": 0.0, \"restitution\": 0.2");
         ("linear-contact", more, 1e-4)
     });
     for (contact, of_contact, step) in std::iter::once(rigid).chain(springs) {
-        // 0.1 % and 0.5 % of the grain's height.
+        // The overlaps are 0.1 % and 0.5 % of the grain's height.
         for depth in [2e-4, 1e-3] {
             for (grain, name) in sliders::<S>(1.0).into_iter().zip(["box", "ball"]) {
                 let ball = name == "ball";
@@ -226,8 +226,8 @@ fn slides_deep<S: Space>(floor: &str, bodies: &str) {
                     S::D
                 );
                 println!("{what}");
-                // A box on springs of which there are more over a joint rocks, and its weight has a
-                // part along its own faces.
+                // A box on springs, of which there are more over a joint, rocks, and its weight has
+                // a component along its own faces.
                 let bound = if ball || contact == "coulomb" {
                     1e-8
                 } else {
@@ -249,8 +249,8 @@ fn a_grain_slides_over_flush_blocks_in_which_it_lies_a_little() {
     }
 }
 
-/// The next block is higher by 1 % or 10 % of the height of a box that slides into it, deep in the
-/// first one: it is stopped, also where a tread of a tenth of that is before it.
+/// A block that is higher by 1 % or 10 % of the height of the sliding box stops the box, also if a
+/// step of a tenth of that lies before it.
 fn stops_at_a_step<S: Space>() {
     let rigid = ("coulomb", String::new(), 1e-3);
     let springs = [1e6, 1e7].map(|stiffness: f64| {
@@ -305,7 +305,7 @@ fn stops_at_a_step<S: Space>() {
                     S::D
                 );
                 println!("{what}");
-                // It tips by 13 degrees at most: its middle goes on by 0.024 m.
+                // The box tips by at most 13 degrees, by which its middle moves 0.024 m farther.
                 assert!(farthest > 0.89 && farthest < 0.9 + 0.04, "{what}");
                 assert!(velocity[0] < 0.2, "{what}");
             }
@@ -326,7 +326,7 @@ const TOLERANCES: ContactTolerances = ContactTolerances {
 };
 
 /// The gap of the lowest corner of `over`, 2.5 m above the middle of `block` and shifted along the
-/// plane of its upper face, is among those of the points on that plane, whichever of both is the
+/// plane of its upper face, is among the gaps of the points on that plane, whichever body is the
 /// candidate.
 fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[S::Vector]) {
     let up = S::D - 1;
@@ -366,8 +366,8 @@ fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[
     }
 }
 
-/// A body that is turned over the edge of a face is kept above the plane of the face by its lowest
-/// corner, which is beside it.
+/// A body turned over the edge of a face is kept above the plane of the face by its lowest corner,
+/// which is beside the face.
 #[test]
 fn the_points_on_a_plane_have_the_lowest_corner() {
     let block = Polyhedron::cuboid([2.0; 3]);
@@ -384,8 +384,8 @@ fn the_points_on_a_plane_have_the_lowest_corner() {
     lowest_corner_is_found::<Dim2>(&square, &turned, turned.points());
 }
 
-/// The plane that takes the place of the nearest points of a ball and a core that turns leaves more
-/// room at the end of the step, over all corners of the core.
+/// The plane that replaces the nearest points of a ball and a rotating core leaves more room at the
+/// end of the step, over all corners of the core.
 #[test]
 fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
     let mut rng = Pcg64::seed_from_u64(31);
@@ -427,15 +427,15 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
             - Vector2::new(-before.on_antagonist.y, before.on_antagonist.x) * motion.turns[1].x;
         let least = before.gap + before.normal.dot(&moved);
         assert!(left > least, "{left} {least}");
-        // What acts there turns the pair by nothing.
+        // A force at the point exerts no moment on the pair.
         let way = point.on_candidate - point.on_antagonist;
         assert!((way - n * point.gap).norm() < 1e-12, "{point:?}");
     }
     assert!(taken > 100, "{taken}");
 }
 
-/// An equally low edge between bodies at rest belongs to the case: it stops a box, and is not
-/// counted as an error of the solution.
+/// An edge between bodies at rest that is equally low belongs to the case: it stops a box, and does
+/// not count as an error of the solution.
 #[test]
 fn an_edge_of_the_case_is_none_of_the_solution() {
     let floor = [

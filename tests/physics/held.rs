@@ -1,4 +1,4 @@
-//! Contacts that hold each other: columns of springs between fixed plates, and stacks of unlike
+//! Contacts that hold each other: columns of springs between fixed plates, and stacks of different
 //! weights.
 
 use crate::scene;
@@ -74,9 +74,9 @@ fn stays<S: Space>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
     }
 }
 
-/// All forces are k times the overlap, to the error that the tolerance permits (a hundredth of the
-/// work), from the first step on: what balances each other leaves no velocity by which an error
-/// could be measured, and is no error.
+/// All forces are k times the overlap from the first step on, within the permitted error (a
+/// hundredth of the work). Forces that balance leave no velocity against which an error could be
+/// measured, but they are not an error.
 #[test]
 fn a_column_of_springs_holds_itself() {
     for (grains, stiffness) in [(1, 1e6), (3, 1e6), (3, 1e4), (10, 1e6), (30, 1e5)] {
@@ -96,18 +96,18 @@ fn a_column_of_springs_holds_itself() {
     }
 }
 
-/// Of stacks that stand, see [`stand`].
+/// Results for stacks that stand, see [`stand`].
 struct Standing {
-    /// How far a top one moved at most (m).
+    /// Largest displacement of a top cube (m).
     moved: f64,
-    /// Kinetic energy at the end over that of a step of free fall.
+    /// Ratio of the kinetic energy at the end to that of a step of free fall.
     energy: f64,
-    /// Mean sweeps of a step.
+    /// Mean number of sweeps per step.
     sweeps: f64,
 }
 
-/// Stacks, 1 m apart, of five cubes of 0.2 m with one of another density on top, a little off their
-/// axis.
+/// Stacks, 1 m apart, of five cubes of 0.2 m with a cube of another density on top, slightly off
+/// their axis.
 fn stand(density: f64, stacks: usize, tolerance: f64, time: f64) -> Standing {
     let (mut cubes, mut tops) = (Vec::new(), Vec::new());
     let mass = density * 0.008;
@@ -161,12 +161,12 @@ fn stand(density: f64, stacks: usize, tolerance: f64, time: f64) -> Standing {
     }
 }
 
-/// Blocks at rest stay at the default tolerance, within a fiftieth of their size in five seconds,
-/// whatever lies on top, and a tenth of the tolerance leaves a tenth of that. (Without the part of
-/// the error that counts powers of either sign, the top moved by 20 mm under a ratio of 1000.)
-/// Stacks that do not touch each other stand as one alone does: what they get wrong together was
-/// shared out among all of their contacts, and sixteen under a ratio of 1000 fell, with a third of
-/// the kinetic energy of a step of free fall after half a second.
+/// Blocks at rest move by less than a fiftieth of their size in five seconds at the default
+/// tolerance, whatever lies on top, and by a tenth of that at a tenth of the tolerance. (Without
+/// the part of the error that counts powers of either sign, the top moved by 20 mm under a ratio of
+/// 1000.) Stacks that do not touch each other stand like a single one. An error shared out among
+/// all contacts made sixteen stacks under a ratio of 1000 fall, with a third of the kinetic energy
+/// of a step of free fall after half a second.
 #[test]
 fn light_blocks_carry_heavy_ones() {
     for (ratio, stacks, tolerance, time, bound) in [
@@ -190,9 +190,10 @@ fn light_blocks_carry_heavy_ones() {
     }
 }
 
-/// A ball that attraction holds to a plate in steady motion carries nothing, and costs no sweeps:
-/// what rounding and the tolerance leave of its impulses, beside a ball that is pressed on a floor,
-/// is no error of the step. With friction, which the plate's motion along itself needs once.
+/// A ball that attraction holds to a plate in steady motion carries no force, and costs no sweeps.
+/// The residual of its impulses from round-off and the tolerance, beside a ball that is pressed on
+/// a floor, is not an error of the step. The friction by the tangential motion of the plate must be
+/// found once.
 #[test]
 fn a_grain_that_sticks_to_a_moving_plate_is_no_error() {
     let text = r#"(

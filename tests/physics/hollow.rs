@@ -1,11 +1,11 @@
-//! What swings and turns in hollow bodies stays on them: closed forms of the pendulum, of rolling,
-//! and of a wall that carries its grains round.
+//! Bodies that swing and rotate in hollow bodies remain on them: closed forms of the pendulum, of
+//! rolling, and of a wall that carries its grains.
 
 use crate::extremes::bench::{G, Sketch, place};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
-/// Radius of the drum and of the grain (m), and the circle of its centre.
+/// Radius of the drum and of the grain (m), and of the circle of the grain's centre.
 const DRUM: f64 = 0.5;
 const GRAIN: f64 = 0.07;
 const ARM: f64 = DRUM - GRAIN;
@@ -41,9 +41,9 @@ fn swinging<S: Space>(amplitude: f64, mu: f64, step: f64) -> Simulation<S> {
     })
 }
 
-/// Follows a swing: how far the centre leaves its circle, over the grain's radius, how much energy
-/// is lost, as a share of that between amplitude and bottom, and the times at which it is at the
-/// bottom.
+/// Follows a swing. Returns the deviation of the centre from its circle over the grain's radius,
+/// the energy loss relative to the difference between amplitude and bottom, and the times at which
+/// it is at the bottom.
 struct Swing {
     out: f64,
     lost: f64,
@@ -76,10 +76,10 @@ fn swing<S: Space>(s: &mut Simulation<S>, end: f64) -> Swing {
     found
 }
 
-/// Frictionless, the centre is a pendulum of length R - r: T = 4 sqrt(L/g) K(sin(amplitude/2)).
-/// Rolling, the inertia about the contact takes the place of the mass: T is longer by sqrt(1 + I/(m
-/// r^2)). At rest, at the amplitude, rolling takes mu = tan(amplitude)/(1 + m r^2/I), 0.86 for a
-/// disk.
+/// Without friction the centre is a pendulum of length R - r: T = 4 sqrt(L/g) K(sin(amplitude/2)).
+/// If the grain rolls, the inertia about the contact replaces the mass: T is longer by sqrt(1 +
+/// I/(m r^2)). At rest, at the amplitude, rolling needs mu = tan(amplitude)/(1 + m r^2/I), 0.86 for
+/// a disk.
 fn keeps_swinging<S: Space>(end: f64, step: f64) {
     let amplitude: f64 = 1.2;
     let inertia = if S::D == 2 { 0.5 } else { 0.4 };
@@ -116,8 +116,8 @@ fn a_sphere_swings_in_a_cylinder() {
     keeps_swinging::<Dim3>(20.0, 1e-3);
 }
 
-/// The start of the swing above is 1.2 rad from the bottom. Off the wall, without gravity, it goes
-/// round with the speed that it has.
+/// The swing above starts 1.2 rad from the bottom. Along the wall, without gravity, the grain moves
+/// with its initial speed.
 #[test]
 fn a_disk_goes_round_a_drum_with_the_speed_that_it_has() {
     let mut s = build::<Dim2>(&Sketch {
@@ -144,9 +144,9 @@ fn a_disk_goes_round_a_drum_with_the_speed_that_it_has() {
     assert!((s.state.bodies.velocity[0].norm() / 2.0 - 1.0).abs() < 1e-5);
 }
 
-/// A box of planes and one of convex shapes that turn: what lies on their walls goes round with
-/// them, at m w^2 r. A disk in the middle of a wall is not stable: rolling, it leaves by exp(w t
-/// sqrt(2/3)), so that it is followed for a turn only.
+/// A box of planes and a box of convex shapes rotate: grains on their walls rotate with them, at m
+/// w^2 r. A disk in the middle of a wall is not stable: it rolls away as exp(w t sqrt(2/3)), so it
+/// is followed for one turn only.
 #[test]
 fn turning_walls_carry_their_grains_round() {
     let (turns, r) = (6.0, 0.02);
@@ -195,8 +195,8 @@ fn turning_walls_carry_their_grains_round() {
     }
 }
 
-/// A disk that slides without friction from the top of a fixed one leaves it where cos = 2/3 of the
-/// speed at rest there; until then its energy is kept.
+/// A disk that slides without friction from the top of a fixed one leaves it where the cosine of
+/// the angle is 2/3; until then its energy is conserved.
 #[test]
 fn a_disk_leaves_another_one_at_two_thirds() {
     let start: f64 = 0.02;

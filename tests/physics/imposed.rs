@@ -1,6 +1,6 @@
-//! Contacts of bodies whose motion is imposed: springs, bonds and dampers carry what their laws say
-//! of the places and velocities that are given, the drives feel it, and their work is what springs
-//! store and friction takes.
+//! Contacts of bodies whose motion is imposed: springs, bonds and dampers carry the forces that
+//! their laws give for the imposed positions and velocities. The drives feel them, and supply the
+//! energy that springs store and friction dissipates.
 
 use crate::scene;
 use crate::stepping::{closes, go};
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 const RADIUS: f64 = 0.02;
 
-/// A ball over a plate that stays; `dofs` are those of the ball. Interfaces are given with their
+/// A ball over a fixed plate; `dofs` are those of the ball. Interfaces are given with their
 /// parameters.
 fn ball<S: Space>(interface: &str, step: f64, dofs: &str, more: &str) -> Simulation<S> {
     let (normal, place) = match S::D {
@@ -47,7 +47,7 @@ fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     closes(s, 1e-12);
 }
 
-/// The force that the contacts put on the ball (N; N/m in 2D) and their moment (N m).
+/// Force of the contacts on the ball (N; N/m in 2D) and their moment (N m).
 fn felt<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
     let named = |d: &Driven| d.name == "ball";
     let place = s.state.bodies.driven.iter().position(named).unwrap();
@@ -68,9 +68,9 @@ const HERTZ: &str = r#"contact: "hertz-mindlin", parameters: (contact: {
 
 const PUSH: &str = "Displacement(Ramp(from: 0.0, to: -2e-6, start: 0.0, end: 0.01))";
 
-/// F = 4/3 E* sqrt(R) d^(3/2), its work 2/5 F d; a cylinder F = pi/4 E* d, and F d/2 (K. L.
-/// Johnson, Contact Mechanics, 4.2). By every method; when the ball is drawn back the force is
-/// gone, and does not pull.
+/// A ball has F = 4/3 E* sqrt(R) d^(3/2) and the work 2/5 F d; a cylinder F = pi/4 E* d and F d/2
+/// (K. L. Johnson, Contact Mechanics, 4.2). All methods are tested. When the ball is drawn back the
+/// force is zero, and does not pull.
 #[test]
 fn an_imposed_indentation_is_that_of_hertz() {
     let (modulus, depth) = (7e10 / (2.0 * (1.0 - 0.33 * 0.33)), 2e-6f64);
@@ -97,7 +97,8 @@ fn an_imposed_indentation_is_that_of_hertz() {
     assert_eq!(felt(&s).0.norm(), 0.0);
 }
 
-/// A ball that is pressed by a displacement and dragged: friction is mu F, and takes its work.
+/// A ball that is pressed by a displacement and dragged has the friction mu F, which dissipates its
+/// work.
 #[test]
 fn an_imposed_drag_has_the_friction_of_its_spring() {
     let (k, depth, speed, mu) = (1e6, 1e-5, 0.01, 0.25);
@@ -130,8 +131,7 @@ fn an_imposed_drag_has_the_friction_of_its_spring() {
     near(work, mu * k * depth * speed * 0.01 * 2f64.sqrt(), 1e-9);
 }
 
-/// A ball that turns on an axle which is held presses a spring; another is free along one axis
-/// alone.
+/// A ball that turns on a fixed axle presses a spring; another ball is free along one axis only.
 #[test]
 fn a_ball_on_an_axle_is_pressed_and_turned() {
     let (k, depth, mu) = (1e6, 1e-5, 0.25);
@@ -143,7 +143,7 @@ fn a_ball_on_an_axle_is_pressed_and_turned() {
     let mut s: Simulation<Dim2> = ball(&law, 1e-5, &dofs, "");
     steps(&mut s, 400);
     near(felt(&s).0.y, k * depth, 1e-9);
-    // Friction turns it until it rolls, and swings on its spring about that.
+    // Friction turns the ball until it rolls, and then oscillates on its spring.
     steps(&mut s, 20_000);
     let b = s.state.bodies.driven[1].body as usize;
     near(s.state.bodies.spin[b][0], -0.01 / RADIUS, 0.2);
@@ -153,7 +153,8 @@ fn a_ball_on_an_axle_is_pressed_and_turned() {
     near(felt(&s).0.z, k * depth, 1e-9);
 }
 
-/// A bond carries k x A along and across, its damping d v A; the work of the drives is its energy.
+/// A bond carries k x A along and across, and its damping d v A; the work of the drives is its
+/// energy.
 #[test]
 fn an_imposed_opening_pulls_a_bond() {
     let law = r#"contact: "coulomb", cohesion: "elastic-bond", bonds: Start, bonds_within: 1e-6,
@@ -192,8 +193,8 @@ fn an_imposed_opening_pulls_a_bond() {
     near(felt(&still).0.x, -1e12 * 1e-7 * a, 1e-3);
 }
 
-/// A body of finite elements whose upper side is in a holder, under a ball that is pushed into it:
-/// no point that the ball touches can move.
+/// A ball is pushed into a body of finite elements whose upper side is held: no point that the ball
+/// touches can move.
 #[test]
 fn a_held_side_of_a_deformable_body_presses_a_spring() {
     let text = r#"(

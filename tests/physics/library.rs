@@ -1,4 +1,4 @@
-//! Scenes made in Rust, without any file: the same scenes as those of case files.
+//! Scenes made in Rust without any file are equal to those of case files.
 
 use crate::scene;
 use fretwork::bodies::{Dof, TimeFunction};
@@ -19,8 +19,7 @@ fn axes<S: Space>(up: f64) -> Vec<f64> {
 
 /// A bonded layer of grains between a floor and a lid that presses and slides.
 fn layer<S: Space>() -> CaseBuilder {
-    // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and how high they
-    // stand.
+    // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and their height.
     let rise = 4e-3 * 0.75f64.sqrt();
     let (count, top) = if S::D == 2 {
         (36, 4e-3 + 2.0 * rise)
@@ -90,7 +89,7 @@ fn layer<S: Space>() -> CaseBuilder {
 fn bits<S: Space>(through_text: bool) -> Vec<u64> {
     let builder = layer::<S>();
     let loaded = if through_text {
-        // The material of one's own is a file there; in a text it can only be named.
+        // A material defined in code is a file here, since a text can only name it.
         let text = builder.case().to_ron().unwrap_or_else(|e| panic!("{e}"));
         let material = fretwork::scene::material::Material {
             doc: String::new(),
@@ -162,7 +161,7 @@ fn contacts_carry_the_weight_of_a_cuboid() {
         ));
     let built = case.build(&search_path()).unwrap_or_else(|e| panic!("{e}"));
     let mut s = built.simulation.into_dimension::<Dim3>().unwrap();
-    // Stopped from within at the tenth step, then gone on.
+    // The run is stopped by the callback at the tenth step, and then continued.
     let ended = s.run_until(1.0, |now, _| {
         if now.state.steps == 10 {
             ControlFlow::Break(now.state.time)
@@ -193,7 +192,7 @@ fn refusal(builder: CaseBuilder) -> InputError {
     }
 }
 
-/// What is wrong is said in the sentences of case files, with the path or the name at fault.
+/// Errors are reported in the sentences of case files, with the path or the name of the cause.
 #[test]
 fn mistakes_are_refused_in_the_sentences_of_case_files() {
     let ball = || GrainSpec::balls("powder", [OneGrain::new([0.0, 0.03], 1e-3)]);

@@ -1,4 +1,4 @@
-//! Physics: closed forms, identities and peers' figures, through the public library.
+//! Physics: closed forms, identities and results of other programs, through the public library.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,5 @@
-//! Blocks: convex polygons with several contact points a pair, and the closed forms of masonry.
+//! Blocks: convex polygons with several contact points per pair, compared with closed forms of
+//! masonry.
 
 use crate::scene;
 use crate::stepping::until;
@@ -13,7 +14,7 @@ fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
     scene::simulation(&scene::loaded(case, sets))
 }
 
-/// One step.
+/// Makes one step.
 fn one(s: &mut Simulation<Dim2>) {
     let end = s.state.time + s.options.scheme.h;
     until(s, end);
@@ -30,7 +31,7 @@ fn fastest(s: &Simulation<Dim2>) -> f64 {
     speeds.fold(0.0, f64::max)
 }
 
-/// Names of all contacts.
+/// Keys of all contacts.
 fn names(s: &Simulation<Dim2>) -> Vec<Key> {
     s.state.network.contacts.iter().map(|c| c.key).collect()
 }
@@ -70,8 +71,8 @@ fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
             let found = s.state.bodies.velocity[0].x / s.state.time;
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
         } else {
-            // About the lower corner: (b^2 + h^2)/3 alpha = g (h sin - b cos)/2, growing little at
-            // first.
+            // The block rotates about its lower corner: (b^2 + h^2)/3 alpha = g (h sin - b cos)/2,
+            // which grows little at first.
             let s = run(critical + 0.1, 0.02);
             let expected = -0.5 * G * (h * a.sin() - b * a.cos()) / ((b * b + h * h) / 3.0);
             let found = s.state.bodies.spin[0][0] / s.state.time;
@@ -102,7 +103,7 @@ fn a_tower_carries_its_weight_and_a_leaning_one_falls_where_it_should() {
     until(&mut s, 0.1);
     let weight = s.state.bodies.mass[0] * G;
     for k in 0..8 {
-        // The joint below block k carries it and those above it.
+        // The joint below block k carries it and the blocks above.
         let joint = s.state.network.contacts.iter().filter(|c| {
             let mut of = c.bodies;
             of.sort_unstable();
@@ -136,8 +137,8 @@ fn a_tower_carries_its_weight_and_a_leaning_one_falls_where_it_should() {
     }
 }
 
-/// Limit thickness over radius of a semicircular arch; limit analysis of rigid blocks that do not
-/// slide, of which 27 and more approach Milankovitch's 0.1075.
+/// Limit of thickness over radius of a semicircular arch, from limit analysis of rigid blocks that
+/// do not slide. With 27 and more blocks it approaches Milankovitch's 0.1075.
 #[test]
 fn an_arch_stands_above_its_least_thickness_and_falls_below() {
     let curved = [(5, 0.09661), (7, 0.09624), (11, 0.10491), (27, 0.10678)];
@@ -160,8 +161,8 @@ fn an_arch_stands_above_its_least_thickness_and_falls_below() {
 
 #[test]
 fn an_arch_needs_friction() {
-    // 27 straight blocks: mu 0.32 asks for t/R = 0.184, 0.38 for 0.121; below 0.30 none stands up
-    // to 0.4.
+    // 27 straight blocks need t/R = 0.184 at mu 0.32 and 0.121 at 0.38; below 0.30 none stands with
+    // t/R up to 0.4.
     for (mu, thickness, falls) in [(0.5, 0.12, false), (0.32, 0.12, true), (0.28, 0.3, true)] {
         let sets = [
             format!("interfaces.joints.parameters.contact.mu={mu}"),
@@ -217,7 +218,7 @@ fn painleves_rod_has_a_finite_impulse() {
     for _ in 0..1000 {
         one(&mut s);
         let now = energy(&s);
-        // The turning of the arms within a step is of second order in it.
+        // The rotation of the arms within a step has an effect of second order in the step.
         assert!(now <= before + 1e-6 * start, "{now} {before}");
         before = now;
         for c in &s.state.network.contacts {
@@ -231,7 +232,7 @@ fn painleves_rod_has_a_finite_impulse() {
 #[test]
 fn a_heap_of_polygons_settles_and_its_ledger_closes() {
     let mut s = scene("verification/polygon_heap", &[]);
-    let fixed = s.state.bodies.still();
+    let fixed = s.state.bodies.fixed_bodies();
     let moving = (0..s.state.bodies.len()).filter(|b| !fixed[*b]);
     let weight: f64 = moving.map(|b| s.state.bodies.mass[b]).sum::<f64>() * G;
     let (mut carried, mut deepest) = (0.0, 0.0f64);

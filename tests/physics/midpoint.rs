@@ -1,9 +1,9 @@
-//! Damage coupled at the middle of a step: laws with internal variables, and bonds that turn.
+//! Damage coupled at the midpoint of a step: laws with internal variables, and bonds that rotate.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
 
-/// What is left of a bond: damage, internal variables, and the energy that it released (J/m).
+/// State of a bond: damage, internal variables, and the energy that it released (J/m).
 #[derive(Debug, PartialEq)]
 struct Left {
     damage: f64,
@@ -11,8 +11,8 @@ struct Left {
     released: f64,
 }
 
-/// The bond of the verification cases between disks of radius 1 m, whose upper one moves as given,
-/// after `steps` steps of 20 ms in all.
+/// The bond of the verification cases between disks of radius 1 m, the upper of which has an
+/// imposed motion, after `steps` steps of 20 ms in total.
 fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
     let mut sets = vec![
         format!("bodies.1.dofs={dofs}"),
@@ -35,11 +35,11 @@ fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
     }
 }
 
-/// Three pulls, each further than the one before.
+/// Three pulls, each longer than the one before.
 const PULLS: &str = "(x: Velocity(Constant(0.0)), rz: Fixed, y: Displacement(Table([(0.0, 0.0), (0.004, 6e-6), (0.008, 1e-6), (0.012, 7e-6), (0.016, 1e-6), (0.02, 8e-6)])))";
 
-/// Openings that are given leave nothing to the coupling: damage and internal variables are those
-/// of explicit coupling, to the last bit, so that a prediction leaves no trace in them.
+/// With imposed openings nothing is left to the coupling: damage and internal variables are those
+/// of explicit coupling, to the last bit, so the prediction has no effect on them.
 #[test]
 fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
     let elastic = [
@@ -78,7 +78,7 @@ fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
             (explicit.damage, &explicit.variables),
             "{law}"
         );
-        // What the bond released differs, by the first order of explicit coupling.
+        // The released energy differs by the first-order error of explicit coupling.
         assert!(
             middle.released != explicit.released && middle.released > 0.0,
             "{law}: {middle:?}"
@@ -86,7 +86,7 @@ fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
     }
 }
 
-/// A pull with a turn: shear, tension and a bending moment of the same bond. What it releases
+/// A pull with a rotation: shear, tension and a bending moment of one bond. The released energy
 /// converges with the second order of the step, that of explicit coupling with the first.
 #[test]
 fn what_a_turned_bond_releases_is_of_the_second_order() {
@@ -98,7 +98,7 @@ fn what_a_turned_bond_releases_is_of_the_second_order() {
         "damage=exponential-softening",
         "parameters.damage={\"strength\": 1e6, \"energy\": 10.0}",
     ];
-    // Of second order to 1e-9 of it.
+    // The reference has a relative second-order error of 1e-9.
     let exact = moved(dofs, &laws, "Midpoint", 20_000).released;
     let error = |coupling: &str, steps: u32| {
         let left = moved(dofs, &laws, coupling, steps);
@@ -112,7 +112,7 @@ fn what_a_turned_bond_releases_is_of_the_second_order() {
         (explicit[0] / explicit[2] - 4.0).abs() < 0.2,
         "{explicit:?}"
     );
-    // The onset of damage lies somewhere in a step, so that single ratios scatter about four.
+    // The onset of damage lies somewhere in a step, so single ratios scatter about four.
     assert!(middle[0] / middle[2] > 10.0, "{middle:?}");
     assert!(middle[2].abs() < 0.02 * explicit[2].abs(), "{middle:?}");
 }

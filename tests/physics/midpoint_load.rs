@@ -1,5 +1,5 @@
-//! Damage laws that read the load of a contact, at the middle of a step: it is predicted under the
-//! impulses of the step before.
+//! Damage laws that depend on the load of a contact, with coupling at the midpoint: damage is
+//! predicted under the impulses of the previous step.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::{BuiltInLaws, SearchPath};
@@ -15,7 +15,7 @@ const FRICTION: f64 = 0.25;
 const PRESSURE: f64 = 2e6;
 
 parameters! {
-    /// Softens linearly in shear, from a strength that grows with the pressure.
+    /// A law that softens linearly in shear, from a strength that grows with the pressure.
     pub struct Pressed {
         cohesion: "Pa" = COHESION, 0.0, 1e30, "shear strength without pressure";
         friction: "" = FRICTION, 0.0, 1e3, "growth of the strength with the pressure";
@@ -108,7 +108,7 @@ fn area<S: Space>() -> f64 {
     }
 }
 
-/// Takes steps until the bond breaks: the largest shear that it carried (Pa).
+/// Makes steps until the bond breaks; returns the largest shear that it carried (Pa).
 fn strength<S: Space>(s: &mut Simulation<S>) -> f64 {
     let mut most = 0.0f64;
     while s.state.network.bonds_broken() == 0 {
@@ -129,7 +129,8 @@ fn strength<S: Space>(s: &mut Simulation<S>) -> f64 {
 
 const SHEAR: &str = r#"damage: "mohr-coulomb-brittle","#;
 
-/// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the step changes on the way.
+/// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the
+/// step changes on the way.
 fn breaks_at_the_envelope<S: Space>() {
     let force = format!("Constant({:e})", -PRESSURE * area::<S>());
     let expected = COHESION + FRICTION * PRESSURE;
@@ -144,7 +145,7 @@ fn breaks_at_the_envelope<S: Space>() {
             let mut s = sheared::<S>(law, coupling, &force, step, &search_path());
             let found = strength(&mut s);
             println!("{}D {law} {coupling}: {found} for {expected}", S::D);
-            // Implicit coupling already lacks the step in which the bond breaks.
+            // With implicit coupling the step in which the bond breaks is missing.
             assert!(
                 found <= expected && found > expected - 2.0 * increment,
                 "{law} {coupling}: {found} for {expected}"
@@ -186,17 +187,18 @@ fn released(coupling: &str, pressure: &str, steps: u32) -> f64 {
     s.state.energy.fracture
 }
 
-/// Under a constant pressure the coupling keeps its second order. Under one that changes, the load
-/// of the step before is behind by a step, and what is released is off by the first order, by less
-/// than that of explicit coupling.
+/// Under a constant pressure the coupling keeps its second order. Under a varying one the load of
+/// the previous step is late by a step, and the released energy has an error of first order,
+/// smaller than that of explicit coupling.
 #[test]
 fn the_order_of_the_coupling_under_pressure() {
     let counts = [200, 400, 800];
     let errors = |coupling: &str, pressure: &str, exact: f64| {
         counts.map(|n| released(coupling, pressure, n) / exact - 1.0)
     };
-    // The area under the curve to 3.1e-5 m less what is stored there, with a strength of 0.8 MPa:
-    // 14.9875 - 3.4875 J/m^2; the shear turns the normal by 8e-5, and so changes the load.
+    // The area under the curve to 3.1e-5 m less the energy stored there, with a strength of 0.8
+    // MPa, is 14.9875 - 3.4875 J/m^2. The shear rotates the normal by 8e-5, and thereby changes the
+    // load.
     let constant = format!("Constant({:e})", -PRESSURE * 0.1);
     let exact = released("Midpoint", &constant, 12_800);
     assert!((exact / 1.15 - 1.0).abs() < 2e-5, "{exact}");
@@ -214,7 +216,7 @@ fn the_order_of_the_coupling_under_pressure() {
         -PRESSURE * 0.1,
         -3.0 * PRESSURE * 0.1
     );
-    // Of the first order too: twice a quarter of the way.
+    // The error is of first order too: twice a quarter of the path.
     let exact = 2.0 * released("Midpoint", &ramp, 6400) - released("Midpoint", &ramp, 3200);
     let [explicit, middle] = ["Explicit", "Midpoint"].map(|c| errors(c, &ramp, exact));
     println!("ramp: {explicit:?} and {middle:?}");

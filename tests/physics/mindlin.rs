@@ -1,6 +1,6 @@
-//! Tangential forces of compliant contacts under loads that change: against an integration annulus
-//! by annulus; friction takes energy in every step, and its bound is that of the force with
-//! damping.
+//! Tangential forces of compliant contacts under varying loads are compared with an integration
+//! annulus by annulus. Friction dissipates energy in every step, and its bound is that of the force
+//! including damping.
 
 use crate::scene;
 use crate::stepping::{closes, go};
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 const RADIUS: f64 = 0.02;
 const YOUNG: f64 = 7e10;
 const POISSON: f64 = 0.33;
-/// E* and G* = 1/(2 (2 - nu)/G) of a material on itself (Pa).
+/// E* and G* = 1/(2 (2 - nu)/G) of two bodies of one material (Pa).
 const MODULUS: f64 = YOUNG / (2.0 * (1.0 - POISSON * POISSON));
 const SHEAR: f64 = YOUNG / (4.0 * (1.0 + POISSON) * (2.0 - POISSON));
 
@@ -44,10 +44,10 @@ fn hertz(more: &str) -> String {
     )
 }
 
-/// Overlap, and displacements along x and y (m), at a share of the run.
+/// Overlap, and displacements along x and y (m), at a fraction of the run.
 type Path3 = fn(f64) -> [f64; 3];
 
-/// A ball that is led along a path in a number of steps of 1 us.
+/// A ball that follows a path in a number of steps of 1 us.
 fn led(law: &str, path: Path3, count: usize) -> Simulation<Dim3> {
     let table = |of: &dyn Fn([f64; 3]) -> f64| {
         let point = |k: usize| {
@@ -73,9 +73,9 @@ fn led(law: &str, path: Path3, count: usize) -> Simulation<Dim3> {
     )
 }
 
-/// The tangential force of springs side by side, each followed by itself: at the radius x the
-/// pressure 2 E* (d - x^2/R) and the tangential stiffness 8 G* per width, |q| <= mu p (Cattaneo and
-/// Mindlin for any history, as a sum over flat punches: M. Ciavarella, J. Jaeger).
+/// Tangential force of independent springs side by side, each followed separately: at the radius x
+/// the pressure is 2 E* (d - x^2/R) and the tangential stiffness 8 G* per width, |q| <= mu p
+/// (Cattaneo and Mindlin for any history, as a sum over flat punches: M. Ciavarella, J. Jaeger).
 struct Annuli {
     at: Vec<[f64; 2]>,
     width: f64,
@@ -112,7 +112,7 @@ impl Annuli {
     }
 }
 
-/// Whatever friction gave back it has taken before.
+/// Energy that friction supplies was dissipated by it before.
 fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     for _ in 0..n {
         go(s, 1);
@@ -137,7 +137,7 @@ fn ramp(t: f64, points: &[(f64, f64)]) -> f64 {
     }
 }
 
-/// Pressed, sheared, and lifted by half: T falls by sqrt(2).
+/// The contact is pressed, sheared, and lifted by half: T decreases by sqrt(2).
 fn lifted(t: f64) -> [f64; 3] {
     let depth = ramp(t, &[(0.0, 0.0), (0.3, 2e-6), (0.6, 2e-6), (0.9, 1e-6)]);
     [
@@ -147,7 +147,7 @@ fn lifted(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Load and displacement out of phase.
+/// Load and displacement are out of phase.
 fn out_of_phase(t: f64) -> [f64; 3] {
     let s = (5.0 * TAU * t).sin();
     let start = ramp(t, &[(0.0, 0.0), (0.1, 1.0)]);
@@ -158,7 +158,7 @@ fn out_of_phase(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Sheared once, and then under a load that comes and goes.
+/// The contact is sheared once, and then the load varies.
 fn held(t: f64) -> [f64; 3] {
     let start = ramp(t, &[(0.0, 0.0), (0.1, 1.0)]);
     let cycles = ramp(t, &[(0.0, 0.0), (0.2, 0.0), (0.25, 1.0)]);
@@ -166,7 +166,7 @@ fn held(t: f64) -> [f64; 3] {
     [depth, ramp(t, &[(0.0, 0.0), (0.1, 0.0), (0.2, 5e-7)]), 0.0]
 }
 
-/// Pushed in obliquely, and drawn out in another direction.
+/// The contact is loaded obliquely, and unloaded in another direction.
 fn oblique(t: f64) -> [f64; 3] {
     let depth = 2e-6 * ramp(t, &[(0.0, 0.0), (0.5, 1.0), (1.0, 0.05)]);
     [
@@ -176,8 +176,8 @@ fn oblique(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Forces along paths of overlap and displacement against the annuli, at a friction of which a part
-/// slips, all, and none.
+/// Forces along paths of overlap and displacement are compared with the annuli, with friction at
+/// which a part slips, all slips, and nothing slips.
 #[test]
 fn forces_follow_any_history_of_load_and_displacement() {
     let paths: [(&str, Path3); 4] = [
@@ -203,7 +203,7 @@ fn forces_follow_any_history_of_load_and_displacement() {
                 worst = worst.max((got[0] - wanted[0]).hypot(got[1] - wanted[1]));
                 largest = largest.max(wanted[0].hypot(wanted[1]));
             }
-            // With the friction of a rack the profile has more corners than are kept.
+            // With very large friction the profile has more corners than are stored.
             let allowed = if mu > 1.0 { 0.16 } else { 0.06 };
             assert!(
                 worst < allowed * largest,
@@ -213,9 +213,9 @@ fn forces_follow_any_history_of_load_and_displacement() {
     }
 }
 
-/// T of a contact that sticks falls with the radius of the contact: 6.30 N at 2 um, 6.30/sqrt(2) N
-/// at 1 um, and what the springs held of that part, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction. At
-/// mu = 10 the rim slips a little, where the pressure vanishes: the annuli have 1 % less.
+/// T of a sticking contact decreases with its radius: 6.30 N at 2 um, 6.30/sqrt(2) N at 1 um, and
+/// the energy of the lost springs, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction. At mu = 10 the rim
+/// slips a little, where the pressure vanishes: the annuli have 1 % less.
 #[test]
 fn a_lifted_contact_carries_less() {
     const COUNT: usize = 2000;
@@ -244,8 +244,8 @@ fn a_lifted_contact_carries_less() {
     );
 }
 
-/// Wear by slip counts the displacement that is not elastic, delta - T/k_0: under a constant load 4
-/// (D - T_D/k_0) in a loop of amplitude D, T_D = mu P (1 - (1 - D/D_s)^1.5) (Mindlin and
+/// Wear by slip counts the displacement that is not elastic, delta - T/k_0: under a constant load
+/// it is 4 (D - T_D/k_0) in a loop of amplitude D, T_D = mu P (1 - (1 - D/D_s)^1.5) (Mindlin and
 /// Deresiewicz).
 #[test]
 fn wear_counts_the_slip_of_partial_slip() {
@@ -253,7 +253,7 @@ fn wear_counts_the_slip_of_partial_slip() {
     const K: f64 = 1e-14;
     const MU: f64 = 0.5;
     const DEPTH: f64 = 2e-6;
-    /// Where all slips, and the amplitude (m).
+    /// Displacement from which all slips, and the amplitude (m).
     const WHOLE: f64 = MU * MODULUS * DEPTH / (4.0 * SHEAR);
     const AMPLITUDE: f64 = 0.8 * WHOLE;
     fn path(t: f64) -> [f64; 3] {
@@ -264,7 +264,7 @@ fn wear_counts_the_slip_of_partial_slip() {
     let wears = format!("}}, wear: {{\"k\": {K:e}}})");
     let law = hertz(&format!("\"mu\": {MU:?}")).replace("})", &wears) + ", wear: \"archard\"";
     let mut s = led(&law, path, COUNT);
-    // From the second peak to the third.
+    // The loop is taken from the second peak to the third.
     let (mut worn, mut from) = (0.0, 0.0);
     let at = |turns: f64| (COUNT as f64 * (0.2 + 0.8 * turns / 2.25)).round() as usize;
     for k in 0..at(2.25) {
@@ -283,9 +283,8 @@ fn wear_counts_the_slip_of_partial_slip() {
     assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
 }
 
-/// A sphere (a disk) that meets a plate and slides throughout: the impulse of friction is mu times
-/// that along the normal, by which it turns, omega = 5 mu (1 + e) v_n/(2 R) (a disk 2 mu (1 + e)
-/// v_n/R).
+/// A sphere (a disk) hits a plate and slides throughout: the impulse of friction is mu times the
+/// normal one, by which it rotates, omega = 5 mu (1 + e) v_n/(2 R) (a disk 2 mu (1 + e) v_n/R).
 #[test]
 fn friction_is_that_of_the_force_with_its_damping() {
     const MU: f64 = 0.1;
@@ -325,8 +324,8 @@ fn friction_is_that_of_the_force_with_its_damping() {
             (&stiff, thrown::<Dim2>(&stiff, 0.5)),
         ] {
             let (slowed, turned) = found;
-            // Under much damping it sticks for a moment, until its spring has the force of
-            // friction.
+            // With large damping it sticks for a moment, until its spring has reached the friction
+            // bound.
             let allowed = if e < 0.3 { 0.03 } else { 0.01 };
             assert!((slowed - 1.0).abs() < allowed, "{e} {law}: {slowed}");
             assert!((turned - 1.0).abs() < allowed, "{e} {law}: {turned}");
@@ -334,9 +333,9 @@ fn friction_is_that_of_the_force_with_its_damping() {
     }
 }
 
-/// No compliant law makes energy by friction on a rough path through contact, slip and separation:
-/// linear springs take some in every step. The profile of `hertz-mindlin`, which keeps few corners,
-/// gives back little of what it has taken.
+/// No compliant law creates energy by friction on a rough path through contact, slip and
+/// separation: linear springs dissipate in every step. The profile of `hertz-mindlin`, which stores
+/// few corners, returns little of the energy that it has dissipated.
 #[test]
 fn friction_of_springs_takes_energy() {
     fn rough(t: f64) -> [f64; 3] {

@@ -1,4 +1,4 @@
-//! Linear and angular momentum of isolated bodies, whatever the law of their contacts.
+//! Linear and angular momentum of isolated bodies, for any law of their contacts.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -10,7 +10,7 @@ fn built<S: Space>(text: &str) -> Simulation<S> {
     scene::text::<S>(text)
 }
 
-/// Linear and angular momentum about the origin, and the sums of their sizes.
+/// Linear and angular momentum about the origin, and the sums of their magnitudes.
 fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
     let bodies = &s.state.bodies;
     let (mut linear, mut angular, mut sizes) = (S::Vector::zero(), S::Spin::zero(), [0.0; 2]);
@@ -25,8 +25,8 @@ fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
     (linear, angular, sizes)
 }
 
-/// Takes steps, in some of which contacts act; returns how far momentum drifted, over the sums of
-/// the sizes at the start. The ledger says the same.
+/// Makes steps, in some of which contacts act; returns the drift of momentum relative to the sums
+/// of the magnitudes at the start. The ledger must give equal values.
 fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     let (linear, angular, sizes) = momentum(s);
     let mut acted = 0;
@@ -50,8 +50,8 @@ fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     [found[0] / sizes[0], found[1] / sizes[1]]
 }
 
-/// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come
-/// together at a rate (1/s), and turn.
+/// Five balls (2D: disks) of different sizes, separated by a twentieth of their radius, which
+/// approach at a rate (1/s) and rotate.
 fn cluster<S: Space>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
     let places = [
         ([0.0, 0.0, 0.0], 0.010),
@@ -87,10 +87,10 @@ fn cluster<S: Space>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
     ))
 }
 
-/// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is
-/// kept to rounding. Rigid balls, which come together by 8e-4 of their radius in a step, act on
-/// their surfaces, which are apart by what the step leaves of their gap: what they lose is less
-/// than that over their radius.
+/// Every shipped law in its slot. With a bond, a spring or an attraction angular momentum is
+/// conserved up to round-off. Rigid balls, which approach by 8e-4 of their radius per step, have
+/// contact forces on their surfaces, which are separated by the remaining gap: the relative loss is
+/// smaller than this gap over their radius.
 fn every_law<S: Space>() {
     let laws = built_in();
     let mut count = 0;
@@ -109,7 +109,7 @@ fn every_law<S: Space>() {
         };
         let heat =
             plugin.kind == Kind::TRANSPORT || plugin.flags & fretwork_abi::FLAG_TEMPERATURE != 0;
-        // Bonds hold a gentle approach; what they do not join is to meet otherwise.
+        // Bonds hold at a slow approach; bodies without bonds approach faster.
         let opens = plugin.flags & fretwork_abi::FLAG_OPENING != 0;
         let bonds = opens || kind.spec().word == "damage";
         let rate = if bonds { 4.0 } else { 40.0 };
@@ -141,8 +141,8 @@ fn every_law_keeps_the_momentum_of_an_isolated_cluster_in_space() {
     every_law::<Dim3>();
 }
 
-/// Two balls on a bond over a gap that turn about each other twice: neither is anything lost, nor
-/// does a turn as a whole shear the bond.
+/// Two balls on a bond over a gap rotate about each other twice: nothing is lost, and the rigid
+/// rotation does not shear the bond.
 fn turning_pair<S: Space>(gap: f64, bond: &str) {
     let (radius, rate) = (0.01, 20.0);
     let half = radius * (1.0 + 0.5 * gap);

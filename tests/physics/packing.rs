@@ -1,14 +1,15 @@
-//! Conjugate gradients on a step of a real packing: a biaxial compression in motion.
+//! Conjugate gradients on a step of a packing during biaxial compression.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
 use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::solver::{Limits, Method, solve};
 
-/// The contact problems of steps in which 100 disks are compressed, by the seed of the sample.
+/// Contact problems of steps in which 100 disks are compressed, by the seed of the sample.
 fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     let mut sets: Vec<String> = [
-        // The alert distance by default: how the methods compare hangs on the packing.
+        // The alert distance is the default, since the comparison of the methods depends on the
+        // packing.
         "detection=()",
         "grains.0.count=100",
         "grains.0.high=[0.13,0.135]",
@@ -31,9 +32,9 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     problems
 }
 
-/// Where sliding contacts fell behind their thresholds, stick and slip alternated in every
-/// iteration and the conjugate gradients were no faster than the plain ones. In the median over
-/// several steps: in a single one any of the methods may stagnate.
+/// If sliding contacts fell behind their thresholds, stick and slip alternated in every iteration,
+/// and conjugate gradients were no faster than plain gradients. The median over several steps is
+/// compared, since any of the methods may stagnate in a single step.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
     for mu in ["0", "0.1", "0.4"] {
@@ -41,14 +42,15 @@ fn conjugate_gradients_are_faster_than_sweeps() {
     }
 }
 
-/// With the most friction, over several samples.
+/// The largest friction, over several samples.
 #[test]
 #[ignore = "nightly: six samples; one is in conjugate_gradients_are_faster_than_sweeps"]
 fn conjugate_gradients_are_faster_over_samples() {
     are_faster("0.4", &[11, 1, 2, 3, 4, 5]);
 }
 
-/// Two times fewer iterations than either of the others take, in the median of the problems.
+/// Conjugate gradients need at most half as many iterations as either of the other methods, in the
+/// median of the problems.
 fn are_faster(mu: &str, seeds: &[u64]) {
     let problems: Vec<LocalProblem> = seeds.iter().flat_map(|seed| steps(mu, *seed)).collect();
     let iterations = |method: Method| {

@@ -1,6 +1,6 @@
-//! Three traps of a peer (LMGC90 on the scenes of `cases/benchmarks/`), which ours must not have:
-//! absolute thresholds, a norm that calls a packing solved before the load has crossed it, and
-//! threads that change the results.
+//! Three errors of LMGC90 on the scenes of `cases/benchmarks/` that this program must not have:
+//! absolute thresholds, a norm that accepts a packing before the load has crossed it, and threads
+//! that change the results.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
@@ -10,8 +10,8 @@ fn scene<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     scene::case(&format!("benchmarks/{case}"), sets)
 }
 
-/// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is the
-/// same and every operation only changes exponents.
+/// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is
+/// unchanged and every operation only changes exponents.
 fn shrink(s: &mut Simulation<Dim2>) {
     let (length, time) = (2f64.powi(-20), 2f64.powi(-10));
     let b = &mut s.state.bodies;
@@ -60,7 +60,7 @@ fn a_scene_has_no_scale() {
     assert!(same.into_iter().all(|(a, b)| *a == *b * 2f64.powi(20)));
 }
 
-/// Share of the grains' weight that the walls carry.
+/// Fraction of the grains' weight that the walls carry.
 fn carried(s: &Simulation<Dim2>) -> f64 {
     let movable = (0..s.state.bodies.len()).filter(|b| !s.state.bodies.immovable(*b));
     let weight: f64 = movable.map(|b| s.state.bodies.mass[b] * 9.81).sum();
@@ -75,8 +75,7 @@ fn carried(s: &Simulation<Dim2>) -> f64 {
 
 #[test]
 fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
-    // After as many sweeps as the peer's first step took, and no more relaxed, the walls carry 77.7
-    // %.
+    // After as many plain sweeps as the first step of LMGC90, the walls carry 77.7 %.
     let early = [
         "solver.method=Nlgs",
         "solver.max_iterations=6330",
@@ -94,15 +93,15 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
     let mut s: Simulation<Dim2> = scene("disks_box_5000", &["solver.max_iterations=200000"]);
     let solved = s.step().unwrap();
     assert!(solved.solver.converged);
-    // The second part of the error bounds what is missing by the root of the tolerance and some.
+    // The second part of the error limits the missing fraction to about the root of the tolerance.
     assert!(
         (carried(&s) - 1.0).abs() < 0.05,
         "the walls carry {}",
         carried(&s)
     );
 
-    // A tighter solution is nearer; grains that rattle in their cages fall freely and weigh on
-    // nothing.
+    // A tighter solution is nearer; grains that rattle in their cages fall freely and exert no
+    // force.
     let mut s: Simulation<Dim2> = scene(
         "disks_box_5000",
         &["solver.max_iterations=200000", "solver.tolerance=1e-6"],
@@ -116,7 +115,7 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
     );
 }
 
-/// All bits of the state after some steps on so many threads.
+/// All bits of the state after some steps on a given number of threads.
 fn bits<S: Space>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -141,9 +140,9 @@ fn bits<S: Space>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
     })
 }
 
-/// LMGC90 has broken 255 bonds of the cohesive scene after 251 steps; with its conventions for
-/// bonds, its step and its tolerance so does ours within 4 %: bonds act in the middle of their gaps
-/// here, there on the surface of each disk (`cases/benchmarks/README.md`).
+/// LMGC90 has broken 255 bonds of the cohesive scene after 251 steps. With its conventions for
+/// bonds, its step and its tolerance this program breaks as many within 4 %: bonds act in the
+/// middle of their gaps here, and on the surface of each disk there (`cases/benchmarks/README.md`).
 #[test]
 fn as_many_bonds_break_as_in_the_peer_with_its_conventions() {
     let mut s = scene::<Dim2>("cohesive_disks_3000_gap", &[]);

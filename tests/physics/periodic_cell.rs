@@ -1,5 +1,5 @@
-//! A shear cell of spheres that is periodic along x and y: what it keeps, and that an image is as
-//! good as a grain.
+//! A shear cell of spheres that is periodic along x and y: conserved quantities, and equivalence of
+//! an image and a grain.
 
 use crate::scene;
 use fretwork::geometry::space::Dim3;
@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 const CELL: [f64; 2] = [0.05, 0.042];
 const STEPS: usize = 500;
 
-/// 120 spheres thrown at random between two walls with friction; the upper one presses and moves
-/// obliquely.
+/// 120 spheres at random positions between two walls with friction; the upper wall presses and
+/// moves obliquely.
 fn cell() -> Simulation<Dim3> {
     let text = r#"(
     name: "cell",
@@ -59,8 +59,8 @@ fn across(s: &Simulation<Dim3>, axis: usize) -> usize {
         .count()
 }
 
-/// What the grains gain in momentum is what the walls give, step by step: contacts across either
-/// boundary give nothing, as each acts on both its grains. No mass leaves.
+/// The momentum that the grains gain is supplied by the walls, step by step: contacts across either
+/// boundary supply nothing, since each acts on both of its grains. No mass is lost.
 #[test]
 fn a_cell_keeps_mass_and_momentum() {
     let mut s = cell();
@@ -91,7 +91,7 @@ fn a_cell_keeps_mass_and_momentum() {
             *count += across(&s, axis);
         }
     }
-    // The lid drags the grains along, obliquely as it moves; the layer is loaded across both
+    // The lid drags the grains along in its oblique direction; the layer is loaded across both
     // boundaries.
     assert!(given.x > 0.0 && given.y < 0.0, "{given}");
     assert!(crossing.iter().all(|n| *n > 1000), "{crossing:?}");
@@ -112,8 +112,8 @@ fn a_cell_keeps_mass_and_momentum() {
     assert!(s.state.energy.relative_residual() < 1e-9);
 }
 
-/// Two thirds of the grains are replaced by images of theirs, whole periods away: nothing else
-/// changes. Rounding grows by a factor of ten in some 20 steps of collisions, from 1e-17 m.
+/// Two thirds of the grains are replaced by their images, whole periods away, which changes nothing
+/// else. Round-off grows by a factor of ten in some 20 steps of collisions, from 1e-17 m.
 #[test]
 fn an_image_is_as_good_as_its_grain() {
     let (mut one, mut twin) = (cell(), cell());

@@ -1,12 +1,12 @@
-//! Bodies held between others by friction alone, where contacts are hyperstatic: Coulomb's bound on
-//! the sum of the friction forces says whether they hang or fall.
+//! Bodies held between others by friction alone, where contacts are hyperstatic: whether they hang
+//! or fall follows from Coulomb's bound on the sum of the friction forces.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 
-/// Mass of what is held (kg), force of each pad (N), gravity (m/s^2).
+/// Mass of the held body (kg), force of each pad (N), gravity (m/s^2).
 const MASS: f64 = 0.045;
 const FORCE: f64 = 1.2;
 const G: f64 = 9.81;
@@ -16,7 +16,7 @@ fn least_friction() -> f64 {
     MASS * G / (2.0 * FORCE)
 }
 
-/// A body between two pads that are pressed together along x; names of the bodies with "held" are
+/// A body between two pads that are pressed together along x; bodies with "held" in their names are
 /// watched.
 struct Pinched {
     bodies: String,
@@ -34,7 +34,7 @@ impl Pinched {
         }
     }
 
-    /// Copies of what two pads pinch, 0.1 m apart, which have nothing to do with each other.
+    /// Returns independent copies of a pinched body, 0.1 m apart.
     fn copies(count: usize, pad: &str, bodies: &[(&str, [f64; 3], f64)]) -> Self {
         let all = (0..count).map(|k| {
             let at = [0.0, 0.1 * k as f64, 0.0];
@@ -47,7 +47,7 @@ impl Pinched {
         }
     }
 
-    /// Two pads at a place, and what they pinch.
+    /// Returns two pads at a position, and the body that they pinch.
     fn pinched(
         dimension: usize,
         pad: &str,
@@ -104,7 +104,7 @@ impl Pinched {
         scene::text::<S>(&text)
     }
 
-    /// The largest speed and displacement of what is held after a time, along gravity.
+    /// Largest speed and displacement of held bodies along gravity after a time.
     fn falls<S: Space>(&self, mu: f64, solver: &str, step: f64, time: f64) -> [f64; 2] {
         let mut s: Simulation<S> = self.scene(mu, solver, step);
         let held: Vec<usize> = s
@@ -143,7 +143,7 @@ fn capsule(direction: [f64; 3]) -> String {
     )
 }
 
-/// What is held, by name.
+/// Held bodies, by name.
 fn shapes() -> Vec<(&'static str, Pinched)> {
     let at = [0.0; 3];
     let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -198,12 +198,12 @@ fn flat_shapes() -> Vec<(&'static str, Pinched)> {
     ]
 }
 
-/// Time of the runs (s): a body in free fall would be at 0.39 m/s and 7.8 mm.
+/// Time of the runs (s), after which a body in free fall would have 0.39 m/s and 7.8 mm.
 const TIME: f64 = 0.04;
 
-/// With 1.05 times the least friction what is pinched hangs: its displacement is within the error
-/// of the solution, at most the tolerance times some of the velocity p/m that the force of a pad
-/// would give it in a step, and that for all of the time.
+/// With 1.05 times the least friction a pinched body hangs: its displacement is within the error of
+/// the solution, the tolerance times a multiple of the velocity p/m that the force of a pad would
+/// give it in a step, over the whole time.
 #[test]
 fn a_pinched_body_hangs_below_the_capacity_of_its_contacts() {
     let mu = 1.05 * least_friction();
@@ -232,7 +232,7 @@ fn a_pinched_body_hangs_below_the_capacity_of_its_contacts() {
     }
 }
 
-/// With 0.95 times the least friction it falls at g/20: all contacts slide at their bound.
+/// With 0.95 times the least friction the body falls at g/20: all contacts slide at their bound.
 #[test]
 fn a_pinched_body_falls_above_the_capacity_of_its_contacts() {
     for (name, pinched) in shapes() {
@@ -253,7 +253,7 @@ fn a_pinched_body_falls_above_the_capacity_of_its_contacts() {
     }
 }
 
-/// The step in which a second solution was found says so.
+/// The step in which a second solution was found reports it.
 #[test]
 fn several_solutions_are_reported() {
     let all = shapes();
@@ -268,9 +268,9 @@ fn several_solutions_are_reported() {
     assert!(!s.step().unwrap().solver.several);
 }
 
-/// Seventeen pinched capsules that have nothing to do with each other hang, and one does beside
-/// balls at rest on a floor, whose contacts are more than the search takes in one set; the number
-/// of solutions is reported in the first step, and no set is too large.
+/// Seventeen independent pinched capsules hang, and so does one beside balls at rest on a floor,
+/// whose contacts are more than the search accepts in one set. The number of solutions is reported
+/// in the first step, and no set is too large.
 #[test]
 fn what_is_pinched_hangs_whatever_else_there_is() {
     let mu = 1.05 * least_friction();
@@ -311,8 +311,8 @@ fn what_is_pinched_hangs_whatever_else_there_is() {
     }
 }
 
-/// Bodies that slide one by one on a floor are sets of their own: each has one solution, since its
-/// load is that of its weight, and the friction of a step is mu m g h whatever the others do.
+/// Bodies that slide separately on a floor are separate sets: each has one solution, since its load
+/// is its weight, and the friction of a step is mu m g h whatever the others do.
 #[test]
 fn blocks_that_slide_have_one_solution() {
     let blocks: Vec<String> = (0..20)
@@ -351,9 +351,10 @@ fn blocks_that_slide_have_one_solution() {
     }
 }
 
-/// Where a set is too large to search, a loaded contact of it that begins to slide is reported:
-/// capsules that two pads hold between plates without gravity, and drop with it. Not while they
-/// hold, nor of fewer, nor of those that the pads hold themselves, whose sets are searched.
+/// If a set is too large to search, a loaded contact of it that begins to slide is reported:
+/// capsules that two pads hold between plates without gravity, and that fall with it. Nothing is
+/// reported while they hold, for fewer capsules, or for capsules held by the pads themselves, whose
+/// sets are searched.
 #[test]
 fn sets_too_large_to_search_are_told() {
     let level = capsule([0.0, 1.0, 0.0]);
@@ -385,7 +386,7 @@ fn sets_too_large_to_search_are_told() {
             solver.not_searched
         };
         let held = (0..3).all(|_| !not_searched(&mut s));
-        // Plates move a little until they fit what they hold.
+        // Plates move a little until they fit the held bodies.
         assert!(held || plates, "{count} that hold");
         s.state.gravity = gravity;
         assert_eq!(not_searched(&mut s), reported, "{count} that fall");
@@ -395,13 +396,13 @@ fn sets_too_large_to_search_are_told() {
 /// Friction between pads and debris.
 const MU: f64 = 0.7;
 
-/// How far the lowest grain falls in half a second (m).
+/// Displacement of the lowest grain in half a second (m).
 fn fallen<S: Space>(s: Simulation<S>) -> f64 {
     fallen_but(s, &[])
 }
 
-/// How far the bodies that are not among `but` fall. If they fall, the run reports it before they
-/// are down by a tenth of a millimetre.
+/// Checks the displacement of the bodies that are not among `but`. If they fall, the run must
+/// report it before they are lower by a tenth of a millimetre.
 fn fallen_but<S: Space>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     let driven: Vec<usize> = (s.state.bodies.driven.iter())
         .map(|d| d.body as usize)
@@ -422,9 +423,9 @@ fn fallen_but<S: Space>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     fallen
 }
 
-/// How far the lowest of balls or disks side by side falls in half a second (m), between two pads
-/// whose friction carries 1.3 times their weight; the force of the pads varies by a share of it, 20
-/// times a second.
+/// Displacement of the lowest of balls or disks side by side in half a second (m), between two pads
+/// whose friction carries 1.3 times their weight; the force of the pads varies by a fraction of it,
+/// 20 times per second.
 fn debris_falls(dimension: usize, count: i32, solver: &str, varies: f64) -> f64 {
     let pinched = debris(dimension, count, varies);
     match dimension {
@@ -433,7 +434,8 @@ fn debris_falls(dimension: usize, count: i32, solver: &str, varies: f64) -> f64 
     }
 }
 
-/// How far pinched disks fall while a disk bounces on a floor beside them and another rolls on it.
+/// Displacement of pinched disks while a disk bounces on a floor beside them and another rolls on
+/// it.
 fn debris_falls_beside(count: i32) -> f64 {
     let mut pinched = debris(2, count, 0.1);
     pinched.bodies += r#"(name: "floor", material: "grain", position: [2.0, 0.0], shapes: [Polygon(points: [(-1.0, -0.1), (1.0, -0.1), (1.0, 0.0), (-1.0, 0.0)])]),"#;
@@ -448,7 +450,7 @@ fn debris_falls_beside(count: i32) -> f64 {
     fallen_but(s, &moves)
 }
 
-/// Two pads and what they hold, see [`debris_falls`].
+/// Two pads and the bodies between them, see [`debris_falls`].
 fn debris(dimension: usize, count: i32, varies: f64) -> Pinched {
     let (radius, capacity) = (4e-3, 1.3);
     let volume = match dimension {
@@ -491,22 +493,22 @@ fn debris(dimension: usize, count: i32, varies: f64) -> Pinched {
     }
 }
 
-/// What friction can hold hangs from the first step, in sets of more contacts than those that are
-/// searched in every step: a sweep would load the first of them alone, and sweeps in one order from
-/// step to step would have what is left of rounding grow until one slides.
+/// Bodies that friction can hold hang from the first step, in sets with more contacts than those
+/// that are searched in every step. A sweep would load only the first contact, and sweeps in one
+/// order from step to step would amplify round-off until one slides.
 #[test]
 fn what_many_contacts_pinch_hangs() {
     for (dimension, count) in [(3, 40), (3, 127), (3, 500), (2, 34), (2, 60), (2, 127)] {
         let fallen = debris_falls(dimension, count, "", 0.0);
         println!("{dimension}D, {count}: {fallen:e} m");
-        // Free fall is 1.2 m.
+        // The free fall is 1.2 m.
         assert!(fallen < 1e-5, "{dimension}D, {count}: {fallen:e} m");
     }
 }
 
-/// Under a force that varies by a tenth, or beside what moves, the errors of a step move
-/// hyperstatic impulses until some slide at the default tolerance, which is reported; Newton's
-/// method at 1e-6 leaves them.
+/// Under a force that varies by a tenth, or beside moving bodies, the errors of a step change
+/// hyperstatic impulses until some contacts slide at the default tolerance, which is reported; with
+/// Newton's method at 1e-6 they do not.
 #[test]
 fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {
     for (dimension, count) in [(3, 127), (2, 60), (2, 129), (2, 500)] {

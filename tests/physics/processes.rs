@@ -1,16 +1,17 @@
-//! Processes beside a scene that is stepped by hand: what they do between steps survives a saved
-//! state and the end, and what their impulses send bodies through is reported.
+//! Processes in a scene that is stepped by hand: their state between steps is saved with the
+//! simulation and complete at the end, and bodies that their impulses send through others are
+//! reported.
 
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::process::{Process, ProcessError};
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::scene::CaseBuilder;
 use fretwork::scene::case::{GrainSpec, InterfaceSpec, OneGrain};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector2;
 
-/// Counts the states that it has seen between steps.
+/// Counts the states between steps.
 #[derive(Debug, Default)]
 struct Counter(u64);
 
@@ -24,11 +25,11 @@ impl<S: Space> Process<S> for Counter {
         Ok(())
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.0)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.0 = decode(from)?;
         Ok(())
     }
@@ -76,8 +77,8 @@ fn count(s: &Simulation<Dim2>) -> u64 {
     s.process::<Counter>().expect("the counter").0
 }
 
-/// A state that is saved directly after a step goes on with what was due between steps; and the
-/// last state is seen at the end.
+/// A state that is saved directly after a step continues with what is due between steps; the
+/// process also receives the last state.
 #[test]
 fn what_is_due_between_steps_is_not_lost() {
     let mut s = two_grains();
@@ -102,8 +103,8 @@ fn what_is_due_between_steps_is_not_lost() {
     }
 }
 
-/// An impulse that sends a grain through another within the move before detection is reported; one
-/// that does not is not.
+/// An impulse that sends a grain through another in the half step before detection is reported; an
+/// impulse that does not is not.
 #[test]
 fn an_impulse_that_sends_a_grain_through_another_is_reported() {
     for (speed, reported) in [(0.5, false), (160.0, true)] {

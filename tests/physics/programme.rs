@@ -1,4 +1,5 @@
-//! What changes during a run: gravity, pressures, gates, phases; and drums. Against closed forms.
+//! Changes during a run: gravity, pressures, gates, phases; and drums. All are compared with closed
+//! forms.
 
 use crate::scene;
 use crate::stepping::steps;
@@ -51,8 +52,8 @@ fn close(obtained: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// A free grain under a gravity that turns by a right angle in a second: v = g (2/pi) (1, -1), and
-/// the ledger holds the work.
+/// A free grain under gravity that rotates by a right angle in a second: v = g (2/pi) (1, -1), and
+/// the ledger has the work.
 #[test]
 fn gravity_turns() {
     let mut s = build::<Dim2>(
@@ -67,7 +68,7 @@ fn gravity_turns() {
     assert!(s.state.energy.relative_residual() < 1e-12);
 }
 
-/// A lid under p between walls that part at V: v = p (L0 t + V t^2/2)/m.
+/// A lid under p between walls that separate at V: v = p (L0 t + V t^2/2)/m.
 #[test]
 fn a_servo_follows_the_length() {
     let (p, l0, speed, m, t) = (-200.0, 0.5, 0.3, 4.0, 0.4);
@@ -108,8 +109,8 @@ fn a_gate_vanishes() {
     assert!(s.state.network.contacts.is_empty());
 }
 
-/// A block is pushed for 0.2 s without friction, then slides freely with a friction of 0.3 until it
-/// rests: it takes v/(mu g), and the path is v^2/(2 mu g).
+/// A block is pushed for 0.2 s without friction, then slides freely with a friction of 0.3 to rest:
+/// it takes v/(mu g), over a path of v^2/(2 mu g).
 #[test]
 fn phases_hand_the_state_over() {
     let mut s = build::<Dim2>(
@@ -143,7 +144,7 @@ fn phases_hand_the_state_over() {
     let slid = 1.0 / (2.0 * 0.3 * G);
     close(places[0], 0.2, 1e-14);
     close(places[1] - places[0], slid, 1e-3);
-    // The ramp runs on the time since the phase began: 0.1 s of rest, then 0.1 s to 2 m/s.
+    // The ramp uses the time since the phase began: 0.1 s of rest, then 0.1 s to 2 m/s.
     close(places[2] - places[1], 0.5 * 2.0 * 0.1, 1e-14);
     let begun = s.state.control.begun();
     let ends: Vec<_> = begun.iter().map(|b| b.ended_by).collect();
@@ -216,7 +217,8 @@ fn phases_that_cannot_be_followed_are_refused() {
     }
 }
 
-/// In a drum that turns at W a disk rolls on the spot at the lowest point with the spin W R/r.
+/// In a drum that rotates at W a disk rolls at a fixed position at the lowest point with the spin W
+/// R/r.
 #[test]
 fn a_disk_rolls_in_a_drum() {
     let mut s = build::<Dim2>(
@@ -234,7 +236,7 @@ fn a_disk_rolls_in_a_drum() {
     close(drum.1[0] / weight / 0.2, 0.0, 1e-4);
 }
 
-/// A sphere that rolls in a fixed cylinder swings like a pendulum of 7/5 (R - r).
+/// A sphere that rolls in a fixed cylinder oscillates like a pendulum of length 7/5 (R - r).
 #[test]
 fn a_sphere_swings_in_a_cylinder() {
     let (big, small, angle) = (0.2, 0.02, 0.05f64);
@@ -257,8 +259,8 @@ fn a_sphere_swings_in_a_cylinder() {
     close(s.state.bodies.position[0].y, 0.3, 1e-9);
 }
 
-/// A block rubs to and fro under its weight, five cycles of a group of two phases: it ends where it
-/// began, and friction has taken mu m g along the whole path.
+/// A block slides to and fro under its weight in five cycles of a group of two phases: it ends at
+/// its initial position, and friction has dissipated mu m g along the whole path.
 #[test]
 fn a_group_of_phases_is_repeated() {
     let (stroke, cycles) = (0.02, 5);
@@ -299,7 +301,7 @@ fn a_group_of_phases_is_repeated() {
 }
 
 /// A floor taps a grain three times: it flies for 2 V/g each time, and the next tap waits until it
-/// rests.
+/// is at rest.
 #[test]
 fn taps_wait_for_rest() {
     let (v, held) = (0.3, 0.02);

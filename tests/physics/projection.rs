@@ -1,5 +1,5 @@
-//! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what
-//! stays.
+//! Removal of overlaps by moving bodies: displacements, supplied energy, and quantities that do not
+//! change.
 
 use crate::scene;
 use fretwork::contact::Network;
@@ -8,10 +8,11 @@ use fretwork::step::Simulation;
 use nalgebra::{Vector2, Vector3};
 
 const G: f64 = 9.81;
-/// Depth of the overlaps (m): below what a case may begin with.
+/// Depth of the overlaps (m), below what a case may begin with.
 const DEPTH: f64 = 4e-4;
 
-/// Builds a case of grains of radius 0.1 m or so, of 1000 kg/m^3, with `head` for what differs.
+/// Builds a case of grains of a radius of about 0.1 m and 1000 kg/m^3, with `head` for fields that
+/// differ.
 fn built<S: Space>(head: &str) -> Simulation<S> {
     let text = format!(
         r#"(
@@ -34,8 +35,8 @@ fn close(got: f64, wanted: f64, off: f64) {
     assert!((got - wanted).abs() <= off, "{got:e} is not {wanted:e}");
 }
 
-/// Of two disks with masses 4 : 1 the light one goes four times as far, through a periodic boundary
-/// too.
+/// Of two disks with masses 4 : 1 the light one moves four times as far, also through a periodic
+/// boundary.
 #[test]
 fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
     for (period, shift) in [("", 0.0), ("periodic: (x: 1.0),", 0.95)] {
@@ -55,7 +56,7 @@ fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
             .map(|b| s.state.bodies.position[b] - from[b])
             .collect();
         let normal = Vector2::new(0.8, 0.6);
-        // Grains are put in order along space.
+        // Grains are sorted in space.
         let light = usize::from(s.state.bodies.mass[1] < s.state.bodies.mass[0]);
         for (moved, wanted) in [(moved[1 - light], -0.2), (moved[light], 0.8)] {
             close(moved.dot(&normal), wanted * DEPTH, 1e-15);
@@ -64,7 +65,7 @@ fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
         assert!(s.state.bodies.velocity.iter().all(|v| v.norm() == 0.0));
         let e = &s.state.energy;
         assert_eq!([e.kinetic, e.potential, e.correction, e.residual], [0.0; 4]);
-        // Nothing is left to be done.
+        // A second projection has nothing to do.
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.projected.is_none());
     }
@@ -87,8 +88,7 @@ fn what_is_within_the_bound_stays() {
     assert!(report.projected.is_some());
 }
 
-/// Two disks sunk into each other and into the floor by d: they rise by d and 2 d, which takes 3 m
-/// g d.
+/// Two disks that overlap each other and the floor by d rise by d and 2 d, which takes 3 m g d.
 #[test]
 fn a_column_is_lifted_and_its_weight_is_booked() {
     let [low, high] = [0.1 - DEPTH, 0.3 - 2.0 * DEPTH];
@@ -105,7 +105,7 @@ fn a_column_is_lifted_and_its_weight_is_booked() {
     let (ground, heights) = (s.state.bodies.position[floor], [low, high]);
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.projected.is_some());
-    // To the tolerance of the moves.
+    // Positions are exact to the tolerance of the displacements.
     for (k, b) in grains.iter().enumerate() {
         let risen = s.state.bodies.position[*b].y - heights[k];
         close(risen, (k as f64 + 1.0) * DEPTH, 2e-3 * DEPTH);
@@ -124,8 +124,8 @@ fn a_column_is_lifted_and_its_weight_is_booked() {
     assert!(e.residual.abs() < 1e-13 * given, "{:e}", e.residual);
 }
 
-/// A disk between a floor and a lid that a force presses: the lid is lifted against its load, the
-/// floor stays.
+/// A disk between a floor and a lid with an imposed force: the lid is lifted against its load, the
+/// floor does not move.
 #[test]
 fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     const LOAD: f64 = 50.0;
@@ -149,7 +149,7 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     let projected = report.projected.expect("overlaps are beyond the bound");
     let moved = s.state.bodies.position[lid] - from[lid];
     close(moved.y, 2.0 * DEPTH, 4e-3 * DEPTH);
-    // The imposed motion is what it was, 0.25 h.
+    // The imposed motion is unchanged, 0.25 h.
     close(moved.x, 0.25e-3, 1e-15);
     assert_eq!(s.state.bodies.position[floor], from[floor]);
     let given = 2.0 * LOAD * DEPTH;
@@ -160,7 +160,7 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
 }
 
 /// Two bonded disks, whose cement fills an overlap, are hit by a third: they keep their distance
-/// and their energy, and move as one.
+/// and their energy, and move as one body.
 #[test]
 fn a_bond_that_holds_is_not_pulled_apart() {
     let second = 0.2 - DEPTH;
@@ -205,8 +205,8 @@ fn a_bond_that_holds_is_not_pulled_apart() {
     close(s.state.energy.kinetic, 0.0, 0.0);
 }
 
-/// A cuboid that spins about no axis of its own, a corner in a wall and leaving it: it turns, and
-/// no energy comes of it.
+/// A cuboid that spins about no principal axis leaves a wall in which its corner is: it turns,
+/// without supplying energy.
 #[test]
 fn a_body_whose_inertia_differs_by_axis_keeps_its_energy_as_it_is_turned() {
     let corner = Vector3::new(0.3f64, 0.2, 0.1) * 0.5;

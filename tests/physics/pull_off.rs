@@ -1,5 +1,5 @@
-//! Attraction that depends on the gap: the force at which it lets go and the work of separation,
-//! against closed forms, at several steps.
+//! Attraction that depends on the gap: pull-off force and work of separation are compared with
+//! closed forms at several steps.
 //!
 //! JKR: 3 pi w R/2 under a force (K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324
 //! (1971) 301-313); DMT: 2 pi w R, and z_0 times that as work of the law's force over the gap; van
@@ -30,17 +30,17 @@ struct Attraction {
     range: f64,
 }
 
-/// Between balls, or a ball and a plane, of the reduced radius `r`.
+/// Attractions between balls, or a ball and a plane, of the reduced radius `r`.
 fn in_space(r: f64) -> Vec<Attraction> {
     let lambda = 0.9 / 2f64.sqrt() * (1e-18 / (2.0 * r)).sqrt();
     let bridge = 2.0 * PI * 0.072 * 2.0 * r;
-    // The neck: 4 P_c (x^(3/2) - x^3) over the approach (a_0^2/R)(x^2 - 2/3 x^(1/2)), from x =
-    // (1/6)^(2/3) to (2/3)^(2/3); integrated in closed form.
+    // The neck has 4 P_c (x^(3/2) - x^3) over the approach (a_0^2/R)(x^2 - 2/3 x^(1/2)), from x =
+    // (1/6)^(2/3) to (2/3)^(2/3), integrated in closed form.
     let (w, modulus) = (0.23, 2e9);
     let pull_off = 1.5 * PI * w * r;
     let length = (4.5 * PI * w / modulus / r).cbrt().powi(2) * r;
     let integral = |x: f64| {
-        // of 4 (x^(3/2) - x^3)(2 x - x^(-1/2)/3).
+        // This is the integral of 4 (x^(3/2) - x^3)(2 x - x^(-1/2)/3).
         4.0 * (2.0 / 3.5 * x.powf(3.5) - x.powi(2) / 6.0 - 0.4 * x.powi(5) + x.powf(3.5) / 10.5)
     };
     let [torn, closed] = [1.0 / 6.0, 2.0 / 3.0f64].map(|x: f64| x.powf(2.0 / 3.0));
@@ -84,7 +84,7 @@ fn in_space(r: f64) -> Vec<Attraction> {
     ]
 }
 
-/// Between a disk and a line.
+/// Attractions between a disk and a line.
 fn in_the_plane() -> Vec<Attraction> {
     let root = RADIUS.sqrt();
     vec![
@@ -105,7 +105,7 @@ fn in_the_plane() -> Vec<Attraction> {
     ]
 }
 
-/// A ball on a floor, or on another ball that does not move, under a force upwards.
+/// A ball on a floor, or on another ball that is fixed, under an upward force.
 fn scene<S: Space>(
     contact: &str,
     attraction: &Attraction,
@@ -154,7 +154,7 @@ fn step<S: Space>(s: &mut Simulation<S>) -> StepReport {
         "step {}: the ledger is off by {closes:e}",
         s.state.steps
     );
-    // From 2 % on a run says LAWS NOT MET.
+    // A run reports LAWS NOT MET from 2 % on.
     let differs = report.agreement.attraction;
     assert!(
         differs < 0.02,
@@ -164,13 +164,13 @@ fn step<S: Space>(s: &mut Simulation<S>) -> StepReport {
     report
 }
 
-/// How far the gap has opened (m).
+/// Increase of the gap (m).
 fn opened<S: Space>(s: &Simulation<S>) -> f64 {
     s.state.bodies.position[1][S::D - 1] - RADIUS
 }
 
-/// The force at which the ball leaves, under one that grows by half a per mille of what is expected
-/// in a step, from eight tenths of it on.
+/// Force at which the ball leaves. The force increases by half a per mille of the expected value
+/// per step, from eight tenths of it on.
 fn pull_off<S: Space>(contact: &str, attraction: &Attraction, on_a_ball: bool, h: f64) -> f64 {
     let (from, to) = (0.8 * attraction.force, 1.2 * attraction.force);
     let ramp = format!(
@@ -181,9 +181,9 @@ fn pull_off<S: Space>(contact: &str, attraction: &Attraction, on_a_ball: bool, h
     let mut s = scene::<S>(contact, attraction, on_a_ball, h, &ramp);
     for n in 0..820 {
         step(&mut s);
-        // A neck opens before it lets go. Others let go where they begin to open: the inertia of a
-        // ball that has let go delays what opens after that, by 40 steps of 1 us up to a tenth of
-        // the range.
+        // A neck opens before it breaks. Other attractions fail when they begin to open: the
+        // inertia of the ball delays the opening after that, by 40 steps of 1 us for a tenth of the
+        // range.
         let held = if attraction.law == "jkr" { 1.1 } else { 1e-3 };
         if opened(&s) > held * attraction.range {
             return from + (to - from) * f64::from((n - 19).max(0)) / 800.0;
@@ -224,8 +224,8 @@ fn compliant_balls_are_pulled_off_at_the_force_of_their_law() {
     compare::<Dim3>(HERTZ, &in_space(RADIUS), false, &[1e-5, 1e-6]);
 }
 
-/// A ball that leaves at a speed has lost the work of separation when it is free, whether a step is
-/// a tenth of the range or ten times it.
+/// A ball that leaves at a speed has lost the work of separation when it is free, for steps of a
+/// tenth of the range or ten times the range.
 #[test]
 fn a_ball_that_leaves_loses_the_work_of_separation() {
     fn check<S: Space>(attractions: &[Attraction]) {
@@ -233,11 +233,11 @@ fn a_ball_that_leaves_loses_the_work_of_separation() {
             for share in [0.05, 1.0, 10.0] {
                 let probe = scene::<S>(COULOMB, attraction, false, 1e-6, "Free");
                 let mass = probe.state.bodies.mass[1];
-                // Four times the work.
+                // The kinetic energy is four times the work.
                 let speed = (8.0 * attraction.work / mass).sqrt();
                 let h = share * attraction.range / speed;
                 let mut s = scene::<S>(COULOMB, attraction, false, h, "Free");
-                // At rest in contact, and then thrown.
+                // The ball is at rest in contact, and then thrown.
                 s.step().unwrap_or_else(|e| panic!("{e}"));
                 s.state.bodies.velocity[1][S::D - 1] = speed;
                 while opened(&s) < 1.9e-6 {

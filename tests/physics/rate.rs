@@ -1,10 +1,10 @@
-//! Friction that depends on the velocity of sliding, against closed forms: creep, a step of
+//! Friction that depends on the sliding velocity, compared with closed forms: creep, a step of
 //! velocity, stability on a spring, elastic bodies.
 //!
-//! Rate-and-state friction: mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c), steady mu_0 + (a - b)
-//! ln(V/V_0); a step from V_1 to V_2 gives a ln(V_2/V_1) at once and (a - b) ln(V_2/V_1) in the end
-//! (A. Ruina, J. Geophys. Res. 88 (1983) 10359-10370); sliding on a spring is steady above the
-//! stiffness (b - a) P/D_c, and not below (ibid.).
+//! Rate-and-state friction: mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c), in steady sliding mu_0 +
+//! (a - b) ln(V/V_0). A step from V_1 to V_2 changes friction by a ln(V_2/V_1) at once and by (a -
+//! b) ln(V_2/V_1) in the end (A. Ruina, J. Geophys. Res. 88 (1983) 10359-10370). Sliding on a
+//! spring is steady above the stiffness (b - a) P/D_c, and not below (ibid.).
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -80,8 +80,8 @@ fn near(what: &str, got: f64, wanted: f64, share: f64) {
     );
 }
 
-/// V = V_0 exp((F/P - mu_0)/(a - b)) under a force, at steps far above 2 V m/(a P) = 4e-5 s, at
-/// which a velocity at the start of the step would decide.
+/// V = V_0 exp((F/P - mu_0)/(a - b)) under a force, in steps far above 2 V m/(a P) = 4e-5 s, with
+/// which the velocity at the start of the step would determine the result.
 #[test]
 fn creep_under_a_force_has_its_velocity_at_any_step() {
     let (a, load) = (0.015, 100.0);
@@ -112,8 +112,8 @@ fn creep_under_a_force_has_its_velocity_at_any_step() {
     }
 }
 
-/// + a ln 10 in the very step in which the velocity rises tenfold, and then V_2/D_c as the rate at
-///   which the slip law decays to (a - b) ln 10.
+/// Friction increases by a ln 10 in the step in which the velocity increases tenfold, and then
+/// decays at the rate V_2/D_c of the slip law to a change of (a - b) ln 10.
 #[test]
 fn a_step_of_velocity_is_the_textbook_one() {
     let (a, b, d_c) = (0.01, 0.015, 1e-5);
@@ -124,7 +124,7 @@ fn a_step_of_velocity_is_the_textbook_one() {
         let mut s = block::<Dim2>(&law, 1e-2, 1.0, dofs);
         (0..99).for_each(|_| drop(step(&mut s)));
         near("before", mu(&s), MU_0, 1e-6);
-        // The velocity rises at the end of the first of these.
+        // The velocity increases at the end of the first of these steps.
         (0..2).for_each(|_| drop(step(&mut s)));
         near("at once", mu(&s) - MU_0, a * decade, 0.02);
         for n in 1..400 {
@@ -133,7 +133,7 @@ fn a_step_of_velocity_is_the_textbook_one() {
             let expected = if slip_law {
                 (a - b + b * state) * decade
             } else {
-                // theta = D_c/V_2 (1 + 9 exp(-V_2 t/D_c)).
+                // The exact state is theta = D_c/V_2 (1 + 9 exp(-V_2 t/D_c)).
                 (a - b) * decade + b * (1.0 + 9.0 * state).ln()
             };
             let got = mu(&s) - MU_0;
@@ -143,7 +143,7 @@ fn a_step_of_velocity_is_the_textbook_one() {
 }
 
 /// A block pulled at V_0 through a spring slides steadily above K_c = (b - a) P/D_c; below it a
-/// disturbance grows until it sticks and slips.
+/// disturbance grows to stick-slip.
 #[test]
 fn a_spring_is_stable_above_the_critical_stiffness() {
     let (a, b, d_c, load) = (0.01, 0.015, 1e-5, 100.0);
@@ -175,7 +175,7 @@ fn a_spring_is_stable_above_the_critical_stiffness() {
             );
             let mut s = built::<Dim2>(&text);
             let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-            // The force is that of steady sliding and a disturbance of 2 % in velocity; 600 s are
+            // The force is that of steady sliding with a disturbance of 2 % in velocity; 600 s are
             // 60 D_c/V_0.
             while s.state.time < 600.0 && (steady || low > 0.9 && high < 1.1) {
                 step(&mut s);
@@ -193,8 +193,8 @@ fn a_spring_is_stable_above_the_critical_stiffness() {
     }
 }
 
-/// A law that rises on elastic half-spaces: all cells slide, and friction is mu_0 + (a - b)
-/// ln(V/V_0) at any step.
+/// A law with increasing friction on elastic half-spaces: all cells slide, and friction is mu_0 +
+/// (a - b) ln(V/V_0) for any step.
 #[test]
 fn elastic_cells_slide_steadily_under_a_law_that_rises() {
     let (a, b, v) = (0.015, 0.005, 1e-4);
@@ -232,9 +232,8 @@ fn elastic_cells_slide_steadily_under_a_law_that_rises() {
     }
 }
 
-/// Falling friction: a block that brakes under mu(V) = mu_d + (mu_s - mu_d) exp(-V/V_s) has, at the
-/// end of every step, the friction of its velocity there, and comes to rest without a step at which
-/// it does not.
+/// Decreasing friction: a block that decelerates under mu(V) = mu_d + (mu_s - mu_d) exp(-V/V_s) has
+/// at the end of every step the friction of its velocity, and comes to rest without an exception.
 #[test]
 fn falling_friction_is_that_at_the_end_of_the_step() {
     let law = r#"contact: "velocity-weakening", parameters: (contact: {"mu_s": 0.6, "mu_d": 0.2, "v_s": 0.5})"#;

@@ -1,10 +1,10 @@
-//! Newton's restitution beside what else changes the velocity asked of a contact.
+//! Newton's restitution together with other terms that change the velocity required at a contact.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
-/// A ball that moves towards a plane which it overlaps by 0.1 mm.
+/// A ball moves towards a plane that it overlaps by 0.1 mm.
 fn ball<S: Space>(speed: f64, correction: f64) -> Simulation<S> {
     let (up, at, velocity) = match S::D {
         2 => ("0.0, 1.0", "0.0, 9.9e-3", format!("0.0, {:e}", -speed)),
@@ -29,7 +29,7 @@ fn ball<S: Space>(speed: f64, correction: f64) -> Simulation<S> {
 }
 
 fn rebounds<S: Space>() {
-    // The correction alone would ask for 0.3 m/s.
+    // The correction alone would require 0.3 m/s.
     for speed in [0.1, 0.35, 2.0] {
         for correction in [0.0, 0.3] {
             let mut s = ball::<S>(speed, correction);
@@ -45,8 +45,8 @@ fn rebounds<S: Space>() {
     }
 }
 
-/// A bounce leaves with e times the approach velocity, whatever correction its overlap would get
-/// without.
+/// A bounce leaves with e times the approach velocity, whatever correction its overlap would
+/// otherwise receive.
 #[test]
 fn a_bounce_takes_the_place_of_the_correction() {
     rebounds::<Dim2>();

@@ -1,5 +1,6 @@
-//! A wheel that rolls on a compliant rail against the closed form of a brush: depth and length of
-//! the patch, friction from creep to full slip, and the power of its forces against the heat.
+//! A wheel that rolls on a compliant rail, compared with the closed form of a brush: depth and
+//! length of the patch, friction from creep to full slip, and the power of its forces against the
+//! dissipation.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
@@ -7,34 +8,34 @@ use fretwork::geometry::space::Dim2;
 const RADIUS: f64 = 0.46;
 const LOAD: f64 = 1.333e7;
 const MU: f64 = 0.4;
-/// Stiffnesses of the skin's crest (Pa/m), those of the case: along the rail shear and bending in
-/// series, with the arm of 0.3 mm from the middle of the gap under a grain, where the bond acts, to
-/// its crest.
+/// Stiffnesses of the crest of the surface layer (Pa/m), those of the case. Along the rail shear
+/// and bending act in series, with the arm of 0.3 mm from the middle of the gap under a grain,
+/// where the bond acts, to its crest.
 const NORMAL: f64 = 1.292e13;
 const TANGENTIAL: f64 = 1.0 / (1.0 / 1.0254e13 + 9e-8 / 4.844e6);
 
 #[derive(Debug, Default)]
 struct Rolling {
-    /// Force along the rail, moment over radius, power of the contact forces, heat of friction, all
-    /// that is lost and what more is stored over v, all over the load.
+    /// Force along the rail, moment over radius, and, over v, the power of the contact forces, heat
+    /// of friction, total dissipation and increase of the stored energy, all relative to the load.
     force: f64,
     moment: f64,
     power: f64,
     heat: f64,
     lost: f64,
     stored: f64,
-    /// Mean depth of the wheel (m), and mean length over which the skin carries it (m).
+    /// Mean depth of the wheel (m), and mean length over which the surface layer carries it (m).
     depth: f64,
     length: f64,
     missed: u32,
 }
 
-/// The case with its third body; or without, on a shorter rail.
+/// The case with its third body, or without it on a shorter rail.
 fn roll(creepage: f64, step: f64, layered: bool) -> Rolling {
     roll_until(if layered { 0.06 } else { 0.04 }, creepage, step, layered)
 }
 
-/// The means are those of the time from 0.03 s to `end` (s).
+/// Means over the time from 0.03 s to `end` (s).
 fn roll_until(end: f64, creepage: f64, step: f64, layered: bool) -> Rolling {
     let spin = -(1.0 + creepage) / RADIUS;
     let mut sets = vec![
@@ -95,9 +96,9 @@ fn patch() -> (f64, f64) {
     (a, NORMAL * a * a / (2.0 * RADIUS))
 }
 
-/// Bristles stick from the leading edge on and drag k_t xi x, until that is mu p: Q/(mu P) = 1 -
-/// (1 - s)^3, s = k_t xi a/(2 mu p0). The disk's surface is slower along the rail than its rim, by
-/// a^2/(6 R^2) on average.
+/// Bristles stick from the leading edge on and carry k_t xi x up to mu p: Q/(mu P) = 1 - (1 - s)^3,
+/// s = k_t xi a/(2 mu p0). The surface of the disk is slower along the rail than its rim, by a^2/(6
+/// R^2) on average.
 fn brush(creepage: f64) -> f64 {
     let (a, p0) = patch();
     let s = TANGENTIAL * (creepage - a * a / (6.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);
@@ -107,26 +108,26 @@ fn brush(creepage: f64) -> f64 {
 #[test]
 fn friction_against_creepage_is_a_brushs() {
     let (a, p0) = patch();
-    // Full slip from 1.17 % on; the brush sticks nearly all over in the first, slips over a quarter
-    // in the second.
+    // There is full slip from 1.17 % on; the brush sticks nearly everywhere in the first run, and
+    // slips over a quarter in the second.
     assert!((2.0 * MU * p0 / (TANGENTIAL * a) - 0.0117).abs() < 1e-4);
     for creepage in [0.0005, 0.003, 0.015] {
         let seen = roll(creepage, 4e-5, false);
         println!("{creepage}: {:.5} expected, {seen:?}", brush(creepage));
         assert_eq!(seen.missed, 0);
         assert!((seen.depth / (a * a / (2.0 * RADIUS)) - 1.0).abs() < 0.01);
-        // To one grain at either end.
+        // The length is exact to one grain at either end.
         assert!((seen.length - 2.0 * a).abs() < 4e-4);
         assert!((seen.force - brush(creepage)).abs() < 0.01 * MU);
         assert!((seen.moment - seen.force).abs() < 0.001 * MU);
-        // What the forces put in is lost, in steady rolling.
+        // In steady rolling the work of the forces is dissipated.
         assert!((seen.power - seen.lost).abs() < 0.01 * seen.power);
     }
 }
 
-/// In steady rolling the forces' power is creepage times friction, but for what the arc of the
-/// wheel and the strained skin change of it, and it is heat, but for what the scheme damps of the
-/// springs: half of it with half the step.
+/// In steady rolling the power of the forces is creepage times friction, except for the effects of
+/// the arc of the wheel and of the strain of the surface layer. It is heat, except for the damping
+/// of the springs by the scheme, of which half the step leaves half.
 #[test]
 fn creepage_times_friction_is_heat() {
     let missing = [4e-5, 2e-5, 1e-5].map(|step| {
@@ -139,8 +140,8 @@ fn creepage_times_friction_is_heat() {
     assert!(missing[1] < 0.6 * missing[0] && missing[2] < 0.6 * missing[1]);
 }
 
-/// Over three rows of debris friction is far below that of the bare contact, and what the forces
-/// put in is lost or stored.
+/// On three rows of debris friction is far below that of the bare contact, and the work of the
+/// forces is dissipated or stored.
 #[test]
 fn a_third_body_lowers_friction() {
     let seen = roll_until(0.04, 0.005, 4e-5, true);
@@ -156,10 +157,10 @@ fn bears_a_third_body(seen: &Rolling) {
     assert!(seen.force > 0.0 && seen.force < MU);
 }
 
-/// Over three rows of debris: friction from forces is friction from dissipation, up to what is
-/// stored; it is far below that of the bare contact at a small creepage, as measured curves of
-/// contaminated rails are (O. Polach, Wear 258 (2005) 992-1000), and rises on where the bare
-/// contact slips fully, never to the coefficient of the grains.
+/// On three rows of debris friction from forces is friction from dissipation, up to the stored
+/// energy. At a small creepage it is far below that of the bare contact, like measured curves of
+/// contaminated rails (O. Polach, Wear 258 (2005) 992-1000). It increases further where the bare
+/// contact slips fully, but never reaches the coefficient of the grains.
 #[test]
 #[ignore = "nightly: three long runs; one shorter one is a_third_body_lowers_friction"]
 fn a_third_body_lowers_and_flattens_the_curve() {
@@ -174,8 +175,8 @@ fn a_third_body_lowers_and_flattens_the_curve() {
     assert!(brush(0.02) == MU && seen[1] < 0.8 * MU);
 }
 
-/// A foundation that is made over an overlap is at rest there: taking overlaps out does not stretch
-/// it.
+/// A foundation that is formed over an overlap is at rest there: the removal of overlaps does not
+/// stretch it.
 #[test]
 fn a_foundation_over_an_overlap_is_at_rest() {
     let sets = [

@@ -1,24 +1,25 @@
-//! Silo, drum and plane shear, smaller than in `cases/`: what an expert would look at first.
+//! Silo, drum and plane shear, smaller than in `cases/`: main results that an expert would check
+//! first.
 
 use crate::scene;
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use fretwork::step::Simulation;
-use fretwork_observe::picture::Shows;
+use fretwork_observe::picture::PictureContent;
 use std::path::Path;
 
 const G: f64 = 9.81;
 
-fn case<S: Space>(name: &str, sets: &[&str]) -> (Loaded, Simulation<S>) {
+fn case<S: Space>(name: &str, sets: &[&str]) -> (LoadedCase, Simulation<S>) {
     let loaded = scene::loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
     let simulation = scene::simulation(&loaded);
     (loaded, simulation)
 }
 
-/// Runs a case to its end, in a folder that is left for `look` and then removed.
+/// Runs a case to its end in a folder, which `look` evaluates and which is then removed.
 fn finished(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     scene::ran(name, sets, look)
 }
@@ -35,9 +36,9 @@ fn held(s: &Simulation<Dim2>) -> f64 {
     inside.map(|b| s.state.bodies.mass[b]).sum()
 }
 
-/// While the gate is lowered slowly gate and walls carry the weight together, the walls a good part
-/// of it (Janssen). Opened, the silo discharges at a rate that does not depend on how much it
-/// holds, and of Beverloo's size.
+/// While the gate is lowered slowly, gate and walls carry the weight together, the walls a large
+/// part of it (Janssen). When it is open, the silo discharges at a rate that does not depend on the
+/// fill height, and has the magnitude of Beverloo's law.
 #[test]
 fn a_silo_saturates_and_drains_at_a_constant_rate() {
     let sets = ["grains.0.count=600", "grains.0.high=[0.16,0.5]"];
@@ -74,7 +75,7 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     // glass.
     let beverloo = 0.58 * 2500.0 * 0.8 * G.sqrt() * (0.064f64 - 1.4 * 0.008).powf(1.5);
     println!("rates {early:.2} and {late:.2} kg/(m s), Beverloo {beverloo:.2}");
-    // Each is a flow of 120 grains, which comes in bursts.
+    // Each flow has 120 grains and is intermittent.
     assert!((early / late - 1.0).abs() < 0.25, "{early} and {late}");
     assert!((0.5..2.0).contains(&(early / beverloo)));
 }
@@ -110,7 +111,7 @@ fn plane_shear_has_the_friction_of_its_inertial_number() {
     assert!((0.01..0.2).contains(&i), "{i}");
     assert!((p / 1000.0 - 1.0).abs() < 0.01, "{p}");
     assert!(m("p_kinetic") > 0.0 && m("p_kinetic") < 0.02 * p);
-    // Two per cent, and the error of averaging over a strain of ten.
+    // The tolerance is two per cent, plus the error of averaging over a strain of ten.
     assert!(averaging < 0.03 * mu, "{averaging}");
     assert!(
         (mu - expected).abs() < 0.02 * expected + averaging,
@@ -122,8 +123,8 @@ fn plane_shear_has_the_friction_of_its_inertial_number() {
     assert_eq!(phases, ["press", "shear"]);
 }
 
-/// A bed in a turning drum keeps an angle; below its flowing layer it turns with the drum, and on
-/// the surface grains run down.
+/// A bed in a rotating drum has a constant angle; below its flowing layer it rotates with the drum,
+/// and grains flow down its surface.
 #[test]
 fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     let sets = [
@@ -152,11 +153,11 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     let slope = summary.found.number("measures.slope").unwrap().to_degrees();
     println!("slope {slope:.1} degrees");
     assert!((12.0..35.0).contains(&slope), "{slope}");
-    // Slices: y, solid fraction, velocity along the slope and across, spin.
+    // The columns of a slice are y, solid fraction, velocity along the slope and across, spin.
     let filled: Vec<_> = rows.iter().filter(|r| r[1] > 0.3).collect();
     let (deep, top) = (filled[0], filled[filled.len() - 1]);
     println!("{rows:?}");
-    // Up the slope at the wall, as the drum: -omega y with y < 0.
+    // At the wall the velocity is that of the drum, up the slope: -omega y with y < 0.
     let rigid = -0.63 * deep[0];
     assert!(
         (deep[2] / rigid - 1.0).abs() < 0.2,
@@ -166,7 +167,7 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     assert!(top[2] < 0.0, "the surface flows down: {}", top[2]);
 }
 
-/// What is not drawn or written in a test.
+/// Settings without pictures and with little output.
 const QUIET: [&str; 3] = ["output.frames=0", "output.views=0", "output.figures=false"];
 
 /// Attraction N acts as a pressure of its own, that of its forces by Love and Weber, sum N l/(2 A),
@@ -227,14 +228,14 @@ fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
     );
     assert!((p / 1000.0 - 1.0).abs() < 0.1, "{p}");
     assert!(attraction > 1000.0, "{attraction}");
-    // An estimate: it has every contact within the range pull, and the friction of the layer
-    // unchanged. Without the attraction it would be a third of this.
+    // This is an estimate: it assumes that every contact within the range pulls, and that the
+    // friction of the layer is unchanged. Without the attraction it would be a third of this.
     assert!((tau / expected - 1.0).abs() < 0.3, "{tau} and {expected}");
 }
 
-/// End walls that turn with a drum carry the layer between them: in a drum four diameters wide the
-/// surface is steeper than without them; without them it has the angle of the field's drums, 20 to
-/// 30 degrees.
+/// End walls that rotate with a drum support the layer between them: in a drum four diameters wide
+/// the surface is steeper than without them. Without them it has the angle of usual drums, 20 to 30
+/// degrees.
 #[test]
 #[ignore = "nightly: long statistics; a drum without end walls is a_drum_has_a_steady_slope_over_a_turning_bed"]
 fn end_walls_make_a_narrow_drum_steeper() {
@@ -261,12 +262,14 @@ fn end_walls_make_a_narrow_drum_steeper() {
     assert!(walls > endless + 3.0, "{walls} and {endless}");
 }
 
-/// The picture of a scene as it stands: its pixels, red, green and blue.
-fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
+/// Returns the picture of a scene in its present state: its red, green and blue pixels.
+fn pictured(s: &Simulation<Dim3>, loaded: &LoadedCase, name: &str) -> Vec<[u8; 3]> {
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
     let camera = Camera::new(s, &loaded.case.output);
-    let frame = camera.frame(s, &Shows::Scene, "", Vec::new()).unwrap();
+    let frame = camera
+        .frame(s, &PictureContent::Scene, "", Vec::new())
+        .unwrap();
     frame.draw(&path).unwrap_or_else(|e| panic!("{e}"));
     let picture = tiny_skia::Pixmap::load_png(&path).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);
@@ -274,7 +277,7 @@ fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
     pixels.map(|p| [p.red(), p.green(), p.blue()]).collect()
 }
 
-/// A frame in space shows the drum about the grains, and colours those that move by their speed.
+/// A frame in 3D shows the drum around the grains, and colours moving grains by their speed.
 #[test]
 fn frames_in_space_show_the_drum_and_the_speed() {
     let sets = |more: &[&'static str]| -> Vec<&'static str> {
@@ -291,7 +294,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
     };
     let still = pictured(&s, &loaded, "still");
     let filled = share(&still, &|p| *p != [255; 3]);
-    // A circle fills 0.79 of the square about it, the grains alone less than a tenth.
+    // A circle fills 0.79 of its square, the grains alone less than a tenth.
     assert!((0.45..0.9).contains(&filled), "{filled}");
     assert!(share(&still, &|p| is(p, true)) < 1e-3);
     for _ in 0..10 {
@@ -300,7 +303,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
     let moving = pictured(&s, &loaded, "moving");
     let coloured = share(&moving, &|p| is(p, true));
     assert!(coloured > 0.01, "{coloured}");
-    // Without first bodies near, the ground is white.
+    // Without first bodies nearby, the background is white.
     let (loaded, cradle) = case("newton_cradle", &["output.width=400"]);
     let cradle = pictured(&cradle, &loaded, "cradle");
     assert!(share(&cradle, &|p| *p == [255; 3]) > 0.3);
@@ -308,7 +311,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
 
 type Vector = nalgebra::Vector2<f64>;
 
-/// Smaller layers over a base that moves: 640 disks of twice the size, without bonds.
+/// Smaller layers over a moving base: 640 disks of twice the size, without bonds.
 const COARSE: [&str; 4] = [
     "grains.0.count=640",
     "grains.0.radius=(3.2e-3,4.8e-3)",
@@ -316,8 +319,8 @@ const COARSE: [&str; 4] = [
     "solver.tolerance=1e-4",
 ];
 
-/// A layer that was moved: where its grains were when the second phase began, how far they went,
-/// and how far the block of its base went.
+/// A layer that was moved: positions of its grains when the second phase began, their
+/// displacements, and that of the block of its base.
 struct Moved {
     grains: Vec<(Vector, Vector)>,
     block: Vector,
@@ -354,8 +357,8 @@ impl Moved {
         sum / n
     }
 
-    /// That this is another scene in the mirror x = 0.25 m: in ten columns no more than `most` of
-    /// the block's way apart.
+    /// Checks that this is the mirror image of another scene at x = 0.25 m: in ten columns they
+    /// differ by no more than `most` of the block's displacement.
     fn mirrors(&self, other: &Self, most: f64) {
         for k in 0..10 {
             let (from, to) = (0.05 * f64::from(k), 0.05 * f64::from(k + 1));
@@ -369,7 +372,7 @@ impl Moved {
     }
 }
 
-/// A case with its grains in the mirror x = 0.25 m.
+/// A case with its grains mirrored at x = 0.25 m.
 fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
     let mut s = case::<Dim2>(name, sets).1;
     for b in s.state.bodies.grains().collect::<Vec<_>>() {
@@ -378,13 +381,13 @@ fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
     s
 }
 
-/// Beside a fault both sides of the layer move as what they stand on; the ledger closes.
+/// Beside a fault both sides of the layer move with their base; the ledger closes.
 #[test]
 fn a_fault_offsets_its_layer_by_its_throw() {
     let sets = [&QUIET[..], &COARSE].concat();
     let straight = Moved::new(case("fault_propagation", &sets).1);
     let block = straight.block;
-    // 40 mm/s for 0.75 s less half of the 0.02 s of the ramp, along 60 degrees.
+    // The displacement is 40 mm/s for 0.75 s less half of the ramp of 0.02 s, along 60 degrees.
     let (sin, cos) = 60f64.to_radians().sin_cos();
     let throw = Vector::new(-cos, sin) * 0.04 * 0.74;
     assert!((block - throw).norm() < 1e-3 * throw.norm(), "{block}");
@@ -412,8 +415,8 @@ fn a_fault_in_the_mirror_is_the_fault() {
     Moved::new(mirrored).mirrors(&straight, 0.25);
 }
 
-/// Over the middle of a block that rises the layer rises with it, far from it nothing moves, and
-/// the grains in the mirror do the same in the mirror.
+/// Over the middle of a rising block the layer rises with it, far from it nothing moves, and the
+/// mirrored grains have the mirrored motion.
 #[test]
 fn a_fold_lifts_its_layer_with_the_block() {
     let sets = [&QUIET[..], &COARSE].concat();
@@ -444,8 +447,8 @@ fn as_many_balls_leave_a_cradle_as_come() {
     assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");
 }
 
-/// The cylinder of a fretting test is a ball and bears its name where it is large in the window;
-/// the flat has a surface.
+/// The cylinder of a fretting test is a ball and is labelled if it is large in the window; the flat
+/// has a surface.
 #[test]
 fn a_first_body_that_is_a_ball_is_named() {
     let s = &scene::case::<Dim2>("fretting_scar", &[]);
@@ -456,7 +459,7 @@ fn a_first_body_that_is_a_ball_is_named() {
 }
 
 /// Grains that are pressed from tooth to tooth of a rough floor by some hundredths of their radius
-/// a step meet each tooth before they overlap it.
+/// per step meet each tooth before they overlap it.
 #[test]
 fn collapse_on_teeth_sees_its_contacts_in_time() {
     let summary = finished("collapse", &["output.frames=0"], |_| {});

@@ -1,4 +1,5 @@
-//! Solids in space: polyhedra, capsules, clusters and meshes, and inertia that differs by axis.
+//! Solids in 3D: polyhedra, capsules, clusters and meshes, and moments of inertia that differ by
+//! axis.
 
 use crate::scene;
 use crate::stepping::until;
@@ -62,7 +63,7 @@ fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
                 s.state.bodies.velocity[0][axis],
             );
             if slides < topples {
-                // g (sin a - mu cos a) t.
+                // The velocity is g (sin a - mu cos a) t.
                 let a = (critical + 0.5).to_radians();
                 let known = G * (a.sin() - mu * a.cos()) * 0.4;
                 assert!(
@@ -71,7 +72,7 @@ fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
                 );
             } else {
                 assert!(spin > 0.01 && v > 0.0, "{spin} {v}");
-                // About the lower edge: across the tilt alone.
+                // The block rotates about its lower edge, across the tilt alone.
                 assert!(
                     s.state.bodies.spin[0][axis].abs() + s.state.bodies.spin[0][2].abs() < 1e-9
                 );
@@ -87,8 +88,8 @@ fn a_rod_that_falls_on_its_end_gets_the_impulse_of_its_lever() {
     let inverse = s.state.bodies.inverse_tensor(0).entry(1, 1);
     assert!((inverse * m * (1.0 + 0.05f64.powi(2)) / 12.0 - 1.0).abs() < 1e-12);
     until(&mut s, 0.1);
-    // Turned about y by 0.4 the end at +x is low; of its two lower corners the one on the lower
-    // face.
+    // Rotated about y by 0.4 the end at +x is low; the contact is at the one of its two lower
+    // corners that lies on the lower face.
     let (sin, cos) = 0.4f64.sin_cos();
     let lever = 0.5 * cos - 0.025 * sin;
     let impulse = v / (1.0 / m + lever * lever * inverse);
@@ -99,7 +100,7 @@ fn a_rod_that_falls_on_its_end_gets_the_impulse_of_its_lever() {
         (turning - V::new(0.0, spin, 0.0)).norm() < 1e-9 * spin.abs(),
         "{turning:?} {spin}"
     );
-    // What the impact takes: half of m_eff v^2.
+    // The impact dissipates half of m_eff v^2.
     let lost = 0.5 * impulse * v;
     assert!((s.state.energy.residual / lost).abs() < 1e-12);
     assert!((s.state.bodies.kinetic_energy() - (0.5 * m * v * v - lost)).abs() < 1e-9 * lost);
@@ -144,7 +145,7 @@ fn solids_of_all_kinds_come_to_rest_on_a_mesh() {
     // The ball still rolls from one slope to the other.
     let rest: f64 = (1..6).map(|b| s.state.bodies.energy_of(b)).sum();
     assert!(rest < 1e-4 * start, "{:e}", s.state.bodies.kinetic_energy());
-    // All above the two slopes.
+    // All bodies are above the two slopes.
     for x in &s.state.bodies.position[..6] {
         let floor = x.x.abs() * 0.36397023;
         assert!(x.z > floor && x.z < floor + 0.4, "{x:?}");
@@ -161,7 +162,7 @@ fn solids_of_all_kinds_come_to_rest_on_a_mesh() {
 
 #[test]
 fn a_free_body_turns_under_a_moment_by_its_own_axis() {
-    // A moment of 0.02 N m about z on a plate that is free: I_zz = m (a^2 + b^2)/12.
+    // A moment of 0.02 N m about z acts on a free plate: I_zz = m (a^2 + b^2)/12.
     let mut s = scene("verification/turned_plate", &[]);
     let m = s.state.bodies.mass[0];
     let inertia = m * (0.3f64.powi(2) + 0.2f64.powi(2)) / 12.0;
@@ -210,7 +211,8 @@ fn a_fixed_axis_stays_fixed_on_a_slope() {
 fn a_wall_that_was_turned_and_turns_again_strikes() {
     let mut s = scene("verification/turned_wall", &[]);
     until(&mut s, 1.0);
-    // It lies in the plane x sin a + y cos a = 0 and comes at the ball after 0.41 s of its turn.
+    // The rod lies in the plane x sin a + y cos a = 0 and reaches the ball after 0.41 s of its
+    // rotation.
     let fast = s
         .state
         .bodies

@@ -1,11 +1,12 @@
-//! Imposed motions that nothing can obey: no finite impulses are a solution, and a run says so with
-//! the names of the bodies.
+//! Imposed motions that no forces can enforce: no finite impulses are a solution, and a run reports
+//! this with the names of the bodies.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::{ImpossibleMotions, Simulation};
 
-/// A lid over a floor with grains between them; the solver's settings and the contact law.
+/// A lid over a floor with grains between them; the arguments are the solver's settings and the
+/// contact law.
 fn pressed<S: Space>(lid: &str, grains: &str, solver: &str, law: &str) -> Simulation<S> {
     let (up, down, over, axis) = if S::D == 2 {
         ("[0.0, 1.0]", "[0.0, -1.0]", "[0.0, 0.02]", "y")
@@ -38,7 +39,7 @@ const DRIVEN: &str = "Displacement(Ramp(from: 0, to: -5e-3, start: 0, end: 0.05)
 const RIGID: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.3})"#;
 const SPRINGS: &str = r#"contact: "linear-contact", parameters: (contact: {"stiffness": 1e6, "restitution": 0.5, "mu": 0.3})"#;
 
-/// One grain, two beside each other, a column of two, and columns of twelve.
+/// Scenes of one grain, two side by side, a column of two, and columns of twelve.
 fn grains(dimension: usize) -> Vec<String> {
     let columns = |count: i32, rows: i32| {
         let radius = 0.01 / f64::from(rows);
@@ -53,8 +54,8 @@ fn grains(dimension: usize) -> Vec<String> {
     vec![columns(1, 1), columns(2, 1), columns(1, 2), columns(6, 12)]
 }
 
-/// What a run of some steps says of its imposed motions, the largest force on the lid (N), and how
-/// many of the steps converged.
+/// Report of a run of some steps on its imposed motions, the largest force on the lid (N), and the
+/// number of converged steps.
 fn reported<S: Space>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
     let (mut reported, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
     for _ in 0..steps {
@@ -75,7 +76,7 @@ fn cannot_be_obeyed<S: Space>() {
             let (reported, force, converged) = reported(&mut s, 3);
             let name = format!("{}D, {method}, {list}: {reported:?}, {force:e} N", S::D);
             assert_eq!(converged, 0, "{name}");
-            // The interior point may end without any impulses, which says nothing but that the
+            // The interior point method may end without any impulses, which shows only that the
             // steps did not converge.
             if method == "Interior" && force == 0.0 {
                 continue;
@@ -88,14 +89,14 @@ fn cannot_be_obeyed<S: Space>() {
                 "{text}"
             );
             assert!(!text.contains("time.step"), "{text}");
-            // What the forces come to has no meaning, which is what the run says. A sweep stops all
-            // grains at the speed of the lid and sets them off again: it adds m v at most, twice
-            // that where it is relaxed beyond one, and each step starts from the last.
+            // The magnitude of the forces has no meaning, as the run reports. A sweep stops all
+            // grains at the speed of the lid and sets them in motion again: it adds m v at most,
+            // twice that with over-relaxation, and each step starts from the last.
             let bodies = &s.state.bodies;
             let mass: f64 = bodies.grains().map(|b| bodies.mass[b]).sum();
             let sweep = 2.0 * mass * 0.1 / s.options.scheme.h;
             assert!(force < 3.0 * 2000.0 * sweep, "{name}");
-            // All others see early that there is no solution.
+            // All other methods detect early that there is no solution.
             assert!(method == "Nlgs" || force < 1e5, "{name}");
         }
     }
@@ -107,7 +108,7 @@ fn grains_between_driven_plates_cannot_yield() {
     cannot_be_obeyed::<Dim3>();
 }
 
-/// With a force in place of the motion, or springs in place of rigid contacts, all is possible.
+/// With a force instead of the motion, or springs instead of rigid contacts, there is a solution.
 fn can_be_obeyed<S: Space>() {
     for (lid, law) in [("Force(-10.0)", RIGID), (DRIVEN, SPRINGS)] {
         for list in grains(S::D) {
@@ -124,8 +125,8 @@ fn forces_and_springs_can() {
     can_be_obeyed::<Dim3>();
 }
 
-/// Two driven bodies that move into each other are named; with springs between them they are not,
-/// nor where they part or slide.
+/// Two driven bodies that move into each other are reported by name; with springs between them, or
+/// if they separate or slide, they are not.
 #[test]
 fn driven_bodies_that_overlap_are_named() {
     let scene = |motion: &str, law: &str| -> Simulation<Dim3> {
@@ -145,7 +146,7 @@ fn driven_bodies_that_overlap_are_named() {
     };
     let down = "z: Velocity(-0.1)";
     let (reported_of, ..) = reported(&mut scene(down, RIGID), 10);
-    // 1e-3 m after ten steps.
+    // The overlap is 1e-3 m after ten steps.
     assert!(
         (reported_of.overlap / 1e-3 - 1.0).abs() < 0.01,
         "{reported_of:?}"
@@ -155,7 +156,7 @@ fn driven_bodies_that_overlap_are_named() {
         text.contains("`lower`") && text.contains("`upper`") && text.contains("both imposed"),
         "{text}"
     );
-    // However little: 1e-5 of their size. The overlap counts as one of rigid bodies.
+    // Even 1e-5 of their size is reported. The overlap counts as one of rigid bodies.
     let mut slow = scene("z: Velocity(-2e-5)", RIGID);
     let (reported_of, ..) = reported(&mut slow, 10);
     assert!(

@@ -1,8 +1,8 @@
-//! The sweep of Gauss-Seidel gives the same bits on any number of threads.
+//! The Gauss-Seidel sweep gives bit-identical results on any number of threads.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, solve, sweeps};
-use fretwork::solve::{ContactForm, Options, Problem};
+use fretwork::solve::{ContactForm, Problem, SolverOptions};
 
 /// Balls of a square lattice, pressed down on a floor: `side` to the power of the dimension.
 fn lattice<S: Space>(side: u32) -> Problem<S> {
@@ -64,17 +64,17 @@ fn bits<S: Space>(p: &Problem<S>) -> Vec<u64> {
 
 fn check<S: Space>(side: u32) {
     let mut one = lattice::<S>(side);
-    // Many blocks of 512 contacts and more.
+    // The scene has many blocks of 512 contacts and more.
     assert!(one.contacts() > 20_000);
     prepare(&mut one);
     sweeps(&mut one, 20, 1.2, false);
-    let whole = Options {
+    let whole = SolverOptions {
         max_iterations: 30,
         parallel: true,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let mut solved = lattice::<S>(side);
-    let alone = Options {
+    let alone = SolverOptions {
         parallel: false,
         ..whole
     };

@@ -1,5 +1,5 @@
-//! The third body against closed forms: affine and rigid fields, cut disks and balls, a column
-//! under gravity, stress, and energies by place against the ledger.
+//! The third body compared with closed forms: affine and rigid fields, cut disks and balls, a
+//! column under gravity, stress, and energies by place against the ledger.
 
 use crate::scene;
 use fretwork::energy::Energy;
@@ -10,7 +10,7 @@ use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary};
-use fretwork::scene::{Loaded, load_text};
+use fretwork::scene::{LoadedCase, load_text};
 use fretwork::step::Simulation;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -39,7 +39,7 @@ fn case(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn opened(text: &str) -> Result<Loaded, String> {
+fn opened(text: &str) -> Result<LoadedCase, String> {
     load_text("test.ron", text, Path::new("."), &[]).map_err(|e| e.to_string())
 }
 
@@ -74,7 +74,7 @@ fn between<S: Space>(height: f64, grains: &[([f64; 3], f64)], bins: usize) -> St
     case(S::D, &text)
 }
 
-/// What a measure says of one state.
+/// Results of a measure for one state.
 struct Seen<S: Space> {
     row: BTreeMap<String, f64>,
     profile: BTreeMap<String, Vec<f64>>,
@@ -82,7 +82,7 @@ struct Seen<S: Space> {
     simulation: Simulation<S>,
 }
 
-/// Changes a scene, looks at it once a second later, and reads what is written.
+/// Changes a scene, evaluates it once a second later, and reads the files.
 fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
     let mut s = scene::simulation::<S>(&loaded);
@@ -107,7 +107,7 @@ fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S
     };
     let drawn = write_outputs(&out, &observers.figures(&end), end.table);
     drawn.unwrap_or_else(|e| panic!("{e}"));
-    // Slice 0 is all of the time.
+    // Slice 0 is the whole time.
     let mut profile = read(&out.join("layer.csv"));
     let first: Vec<bool> = profile["slice"].iter().map(|s| *s == 0.0).collect();
     for column in profile.values_mut() {
@@ -125,7 +125,7 @@ fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S
     }
 }
 
-/// Columns of a file by name, units left off; text is not a number.
+/// Columns of a file by name, without units; text is read as NaN.
 fn read(path: &Path) -> BTreeMap<String, Vec<f64>> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{e}"));
     let mut lines = text.lines();
@@ -171,8 +171,9 @@ fn sheared(s: &mut Simulation<Dim2>, v: impl Fn(f64) -> f64) {
     s.state.bodies.velocity[wheel].x = v(2.0);
 }
 
-/// An affine field: the profile is straight and through both walls, the granular temperature null,
-/// whether bins follow the rows or not; the lattice fills pi/4 of every bin that holds whole rows.
+/// An affine field: the profile is straight and passes through both walls, and the granular
+/// temperature is zero, whether bins coincide with the rows or not; the lattice fills pi/4 of every
+/// bin that contains whole rows.
 #[test]
 fn an_affine_field_is_couette_without_granular_temperature() {
     for bins in [10, 20, 7, 33] {
@@ -185,7 +186,7 @@ fn an_affine_field_is_couette_without_granular_temperature() {
         {
             close(*w, *y, 1e-12);
         }
-        // Against V^2 = 0.36.
+        // The values are relative to V^2 = 0.36.
         assert!(
             p["granular_temperature"].iter().all(|t| t.abs() < 1e-26),
             "{bins}"
@@ -221,7 +222,8 @@ fn a_layer_may_be_looked_at_from_above() {
     close(seen.row["layer_sliding"], -0.6, 1e-15);
 }
 
-/// A layer that moves as one at 0.3 of the wheel: no granular temperature, slip of 0.3 and 0.7.
+/// A layer that moves rigidly at 0.3 of the wheel's velocity has no granular temperature, and slip
+/// of 0.3 and 0.7.
 #[test]
 fn a_rigid_layer_is_a_plug() {
     let text = between::<Dim2>(2.0, &lattice(), 20);
@@ -233,7 +235,7 @@ fn a_rigid_layer_is_a_plug() {
     assert!(seen.regime.starts_with("plug"), "{}", seen.regime);
 }
 
-/// Velocities +u and -u in turn in each row: <v> is null and T = u^2/2 in the plane.
+/// With velocities +u and -u alternating in each row, <v> is zero and T = u^2/2 in 2D.
 #[test]
 fn a_granular_temperature_is_the_mean_square_by_the_dimension() {
     let text = between::<Dim2>(2.0, &lattice(), 10);
@@ -259,8 +261,8 @@ fn a_granular_temperature_is_the_mean_square_by_the_dimension() {
     assert!(!seen.profile.contains_key(kelvin[0]) && !seen.row.contains_key(kelvin[1]));
 }
 
-/// Ten rows of a poor conductor at 300 K below ten of steel at 400 K: both between, by mass, where
-/// a bin is cut in half by the border.
+/// Ten rows of a poor conductor at 300 K lie below ten rows of steel at 400 K: a bin that is cut in
+/// half by the border has their mean by mass.
 #[test]
 fn temperatures_of_a_layer_are_means_by_mass() {
     let (below, above): (Vec<_>, Vec<_>) = lattice().into_iter().partition(|(at, _)| at[1] < 1.0);
@@ -295,8 +297,8 @@ fn temperatures_of_a_layer_are_means_by_mass() {
     );
 }
 
-/// A grain of unit radius in the middle of three bins of a metre: the outer ones hold a segment of
-/// height 1/2.
+/// A grain of unit radius in the middle of three bins of a metre: the outer bins contain a segment
+/// of height 1/2.
 #[test]
 fn a_grain_is_cut_exactly() {
     let segment = PI / 3.0 - 3f64.sqrt() / 4.0;
@@ -322,8 +324,8 @@ fn a_grain_is_cut_exactly() {
     }
 }
 
-/// A column of eight disks: between a centre and the contact above it the stress is the weight of
-/// what is above.
+/// In a column of eight disks the stress between a centre and the contact above it is the weight
+/// above.
 #[test]
 fn a_column_carries_the_weight_above() {
     let disks: Vec<_> = (0..8)
@@ -338,7 +340,7 @@ fn a_column_carries_the_weight_above() {
     let grain = s.state.bodies.grains().next().unwrap_or_default();
     let weight = 9.81 * s.state.bodies.mass[grain];
     for (k, p) in seen.profile["stress_across"].iter().enumerate() {
-        // Lower half of disk j: its own weight too.
+        // In the lower half of disk j the weight of the disk counts too.
         let above = (8 - k.div_ceil(2)) as f64;
         close(*p, above * weight, 1e-6 * weight);
     }
@@ -347,14 +349,15 @@ fn a_column_carries_the_weight_above() {
             .iter()
             .all(|t| t.abs() < 1e-6 * weight)
     );
-    // Heavier below than the mean: the lower half of the column is a chain, upright.
+    // The load is above the mean in the lower half of the column, which is therefore an upright
+    // chain.
     close(seen.row["layer_chain_angle"], 0.0, 1e-6);
     close(seen.row["layer_chains"], 0.5, 1e-12);
     close(seen.row["layer_chain_length"], 4.0, 1e-12);
     assert_eq!(seen.row["layer_coordination"], 15.0 / 8.0);
 }
 
-/// The bins' stresses add up to that of the whole layer, in the plane and in space.
+/// The stresses of the bins add up to that of the whole layer, in 2D and 3D.
 #[test]
 fn stresses_of_the_bins_add_up() {
     fn added<S: Space>(grains: &[([f64; 3], f64)]) {
@@ -389,7 +392,7 @@ fn stresses_of_the_bins_add_up() {
             );
             let mean = &seen.profile[&format!("stress_{name}")];
             let mean = mean.iter().sum::<f64>() / mean.len() as f64;
-            // Nothing slides: the sign of a sliding of 0 is +.
+            // Without sliding the sign of the shear stress is +.
             close(mean, value, 1e-12 * scale);
         }
         if S::D == 3 {
@@ -427,8 +430,8 @@ fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     scene::ran("wheel_rail_rigid", sets, look)
 }
 
-/// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction
-/// coefficient of the sliding's work is that of what was dissipated and kept.
+/// Energies by place and by bin add up to those of the ledger, mechanism by mechanism; the friction
+/// coefficient from the work of sliding is that from dissipated and stored energy.
 #[test]
 fn energies_by_place_are_those_of_the_ledger() {
     let sets = [
@@ -453,7 +456,7 @@ fn energies_by_place_are_those_of_the_ledger() {
     ];
     for (name, value) in booked {
         close(m(&format!("dissipated_{name}")), value, 1e-12 * e.scale);
-        // Five places, then the bins.
+        // There are five places, followed by the bins.
         let column = &table[name];
         close(column[..5].iter().sum(), value, 1e-12 * e.scale);
         close(column[5..].iter().sum(), value, 1e-12 * e.scale);

@@ -1,4 +1,4 @@
-//! A run that chooses its step: for a law that asks for a smaller one, and for an accuracy.
+//! A run that chooses its step, for a law that requests a smaller one, and for an accuracy.
 
 use crate::temp::TempFolder;
 use serde_json::Value;
@@ -73,7 +73,7 @@ impl Folder {
         serde_json::from_str(&text).unwrap()
     }
 
-    /// Columns of the statistics by name, without that of the step.
+    /// Columns of the statistics by name, without `step`.
     fn statistics(&self, out: &str) -> Vec<Vec<String>> {
         let mut rows = csv::Reader::from_path(self.0.join(out).join("statistics.csv")).unwrap();
         let names = rows.headers().unwrap().clone();
@@ -114,8 +114,8 @@ pub fn reported(output: &Output) -> String {
 
 const LIMIT: &str = "interfaces.0.parameters.contact.limit=2.5e-4";
 
-/// A law that accepts a quarter of the step has every step made in four parts: the bits are those
-/// of a run with that step.
+/// With a law that accepts a quarter of the step every step is made in four parts: results are
+/// bit-identical to those of a run with that step.
 #[test]
 fn a_law_that_asks_for_smaller_steps_gets_them() {
     let (folder, case) = with_careful_law("law");
@@ -133,13 +133,13 @@ fn a_law_that_asks_for_smaller_steps_gets_them() {
         assert_eq!((asked.len(), differs), (fine.len(), None), "{}", asked[0]);
     }
     let accuracy = &folder.summary("asked")["accuracy"];
-    // One step of 8e-4, then from 4e-4 again whenever steps were calm for a while.
+    // There is one step of 8e-4, then steps of 4e-4 whenever there was no request for a while.
     assert_eq!(accuracy["steps"][2], 2e-4);
     assert!(accuracy["requests"].as_u64().unwrap() >= 2, "{accuracy}");
     assert_eq!(folder.summary("asked")["steps"], 400);
 }
 
-/// Without an accuracy, or beyond its bound, the run ends and says what to change.
+/// Without an accuracy, or beyond its bound, the run ends with a message and advice.
 #[test]
 fn a_run_that_may_not_choose_its_step_ends_where_a_law_asks_for_it() {
     let (folder, case) = with_careful_law("refused");
@@ -186,15 +186,15 @@ fn bonds_that_break_in_a_part_of_a_step_are_recorded() {
             .read_raw()
             .unwrap();
         assert_eq!(times.len(), 1, "{name}");
-        // In one of the three it is no last part.
+        // In one of the three the break is not in the last part.
         println!("{name}: parts of {} at {} steps", 0.25, times[0] / step);
     }
 }
 
-/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 %; 0.3 %
-/// are asked for. The reference has a tenth of the step and a tenth of the tolerance, which is
-/// tight in both: at 1e-6 it leaves the friction of the coarse steps open by 0.4 %, whichever way
-/// contacts are swept.
+/// The scar of a cylinder in steps of a twentieth of a cycle: the error of its friction is 1.4 %;
+/// 0.3 % are requested. The reference has a tenth of the step and a tenth of the tolerance, which
+/// is tight in both: at 1e-6 the friction with coarse steps is uncertain by 0.4 %, in any order of
+/// sweeps.
 #[test]
 fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference() {
     let folder = Folder::new("scar");
@@ -230,7 +230,7 @@ fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference
         "{accuracy}"
     );
     assert!(summary["steps"].as_u64() < reference["steps"].as_u64());
-    // Nothing is chosen where nothing is to be gained.
+    // Settings are not changed without benefit.
     let (same, summary) = friction("loose", &[&coarse[..], &["accuracy=0.1"]].concat());
     assert_eq!(same, fixed);
     assert_eq!(summary["accuracy"]["reached"], true);

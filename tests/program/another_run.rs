@@ -1,4 +1,4 @@
-//! Grains of every shape taken from another run: places, orientations, velocities, spins, mass,
+//! Grains of every shape read from another run: positions, orientations, velocities, spins, mass,
 //! inertia and outlines.
 
 use fretwork::contact::detect::centre;
@@ -13,7 +13,7 @@ use super::grains::{Folder, case};
 const STEPS: u32 = 400;
 
 impl Folder {
-    /// Runs a case into the folder `out`, and in this process too: the same bits.
+    /// Runs a case into the folder `out`, and in this process too, with bit-identical results.
     fn run<S: Space>(&self, case: &str) -> Simulation<S> {
         self.record(case);
         let mut first = self
@@ -30,7 +30,7 @@ impl Folder {
 const STATE: &str = r#"State(results: "out", material: "grain")"#;
 
 /// All numbers of a grain: those that must agree to the bit, and those that may differ by round-off
-/// (its place where that follows from one of its parts, and what is in the world's axes).
+/// (its position if that follows from one of its parts, and values in world axes).
 fn numbers<S: Space>(s: &Simulation<S>, b: usize) -> (Vec<f64>, Vec<f64>) {
     let bodies = &s.state.bodies;
     let mut same = bodies.velocity[b].padded().to_vec();
@@ -56,7 +56,7 @@ fn numbers<S: Space>(s: &Simulation<S>, b: usize) -> (Vec<f64>, Vec<f64>) {
     (same, near)
 }
 
-/// The grains of two simulations are the same; gives how many.
+/// Checks that the grains of two simulations are equal; returns their number.
 fn compare<S: Space>(first: &Simulation<S>, second: &Simulation<S>) -> usize {
     let of = |s: &Simulation<S>| s.state.bodies.grains().collect::<Vec<_>>();
     let (ours, mut theirs) = (of(first), of(second));
@@ -107,7 +107,7 @@ fn begins_where_the_other_ended<S: Space>(name: &str, grains: &str, count: usize
     let case_itself = folder.build::<S>(&case(S::D, "stone", grains, ""));
     let case_itself = case_itself.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(compare(&case_itself.simulation, &start.simulation), count);
-    // Twice the density: twice the mass and inertia, to the bit.
+    // Twice the density gives twice the mass and inertia, to the bit.
     let heavy = folder.build::<S>(&case(S::D, "heavy", STATE, ""));
     let heavy = heavy
         .unwrap_or_else(|e| panic!("{e}"))
@@ -122,7 +122,7 @@ fn begins_where_the_other_ended<S: Space>(name: &str, grains: &str, count: usize
 }
 
 /// Balls, sharp and rounded polygons, capsules, unions, and voussoirs whose mass is not that of
-/// their outline; some reach over the period.
+/// their outline; some extend across the period.
 const PLANE: &str = r#"
     List(material: "grain", grains: [(at: [0.02, 0.0101], radius: 0.01, velocity: [0.1, -0.5], spin: [3.0]),
         (at: [0.05, 0.031], radius: 0.01, velocity: [0.0, -0.5])]),
@@ -160,7 +160,7 @@ fn grains_of_every_shape_go_on_in_space() {
     begins_where_the_other_ended::<Dim3>("solid", SOLID, 6);
 }
 
-/// A layer of polygons falls and comes to lie in one run, and is sheared by a lid in the next.
+/// A layer of polygons settles in one run, and is sheared by a lid in the next.
 #[test]
 fn a_layer_of_polygons_settles_in_one_run_and_is_sheared_in_the_next() {
     let folder = Folder::new("shear");
@@ -189,7 +189,7 @@ fn a_layer_of_polygons_settles_in_one_run_and_is_sheared_in_the_next() {
     assert!(momentum(&second) > before, "the lid drags nothing");
 }
 
-/// A file that lists polygons, or balls of one grain, and no shapes, as older versions wrote it.
+/// A file of an older version that lists polygons, or balls of one grain, without shapes.
 #[test]
 fn a_file_without_shapes_is_refused_with_a_sentence() {
     let folder = Folder::new("older");

@@ -1,10 +1,9 @@
-//! `fretwork check` lists what a scene has switched on and what is off, with the bytes that each
-//! takes.
+//! `fretwork check` lists the features that a scene enables or not, with the bytes of each.
 
 use crate::temp::TempFolder;
 use std::process::Command;
 
-/// What `check` says of a case: the features that are on, those that are off, and the whole text.
+/// Output of `check` for a case: the enabled features, the disabled ones, and the whole text.
 fn check(case: &str, sets: &[&str]) -> (Vec<String>, Vec<String>, String) {
     let path = format!("cases/{case}.ron");
     let mut args = vec!["check", &path];
@@ -30,7 +29,7 @@ fn check(case: &str, sets: &[&str]) -> (Vec<String>, Vec<String>, String) {
     (on, off, text)
 }
 
-/// The text of a feature that is on.
+/// Text of an enabled feature.
 fn on<'a>(features: &'a [String], name: &str) -> &'a str {
     let found = features
         .iter()
@@ -86,7 +85,7 @@ fn bonds_damage_and_history_are_listed_with_their_bytes() {
     assert!(on(&shear, "wear").contains("archard"));
     assert!(on(&shear, "projection of overlaps").starts_with("beyond 1e-4 "));
     assert_eq!(on(&shear, "periodic"), "along x, y");
-    // Outputs as the case has them.
+    // Outputs are those of the case.
     assert!(on(&shear, "views").starts_with("10, "));
     let (quiet, off, _) = check("shear_cell_3d", &["output.views=0", "output.frames=0"]);
     assert!(off.contains(&"views".to_owned()) && off.contains(&"frames".to_owned()));
@@ -105,8 +104,8 @@ fn the_row_of_a_contact_is_as_small_as_its_numbers() {
     );
 }
 
-/// What changes during a run and what is measured: of `silo` the gate, of `plane_shear` the servo
-/// and the drive of a phase.
+/// Changes during the run and measures are listed: the gate of `silo`, the servo and the drive of a
+/// phase of `plane_shear`.
 #[test]
 fn the_programme_and_the_measures_are_listed() {
     let (silo, off, _) = check("silo", &[]);
@@ -157,7 +156,7 @@ impl Made {
     }
 }
 
-/// Two bonded disks of 0.1 m that are free, beside a wall that moves at 1 mm/s.
+/// Two bonded free disks of 0.1 m, beside a wall that moves at 1 mm/s.
 const PAIR: &str = r#"(
     name: "a bonded pair",
     dimension: 2,
@@ -187,9 +186,9 @@ fn near(got: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// MAC: strength sqrt(w C) at u_0 = sqrt(w/C), a hundredth of it left at 4.64 u_0. Two disks of
-/// mass m and inertia m r^2/2 with a bond of k a N/m, a = r/2: omega^2 = 2 k a/m along the normal,
-/// three times that along the tangent.
+/// MAC: the strength is sqrt(w C) at u_0 = sqrt(w/C), and a hundredth of it is left at 4.64 u_0.
+/// For two disks of mass m and inertia m r^2/2 with a bond of k a N/m, a = r/2, omega^2 = 2 k a/m
+/// along the normal, and three times that along the tangent.
 #[test]
 fn bonds_are_weighed_against_step_and_load_by_driving_them() {
     let made = Made::new("pair", PAIR);
@@ -208,7 +207,7 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
     let omega = (2.0 * 1e9 * 0.05 / mass).sqrt();
     near(after(&text, "frequency of a bond: "), 1e-4 * omega, 1e-2);
     near(after(&text, " opened, "), 1e-4 * omega * 3f64.sqrt(), 1e-2);
-    // Unfavourable: said, with what to change.
+    // Unfavourable values are reported with advice.
     let fast = made.check(&["time.step=1e-2", "time.end=1.0"]);
     assert!(
         fast.contains("NOT RESOLVED: a bond that takes all of it breaks within"),
@@ -220,7 +219,7 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
     );
     let advised = after(&fast, "its fracture energy is wrong; time.step of ");
     near(advised, 0.07 * critical / 1e-3, 0.1);
-    // Another law that carries the same needs no name of its own.
+    // Another law with equal response gives an equal report.
     let other = made.check(&[
         "interfaces.bond.cohesion=elastic-bond",
         "interfaces.bond.damage=linear-softening",
@@ -228,7 +227,7 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
         "interfaces.bond.parameters.damage={}",
     ]);
     assert!(other.contains("opened: strength "), "{other}");
-    // What breaks at its peak has no softening whose energy could be wrong.
+    // A bond that breaks at its peak has no softening whose energy could be wrong.
     let brittle = made.check(&[
         "time.step=1e-1",
         "time.end=1.0",
@@ -246,12 +245,12 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
     );
 }
 
-/// Against the pressure: the weight of what lies above.
+/// The pressure is the weight of the grains above.
 #[test]
 fn strength_is_told_over_the_pressure_of_the_scene() {
     let made = Made::new("weight", PAIR);
     let text = made.check(&["gravity=[0.0, -10.0]"]);
-    // Two disks of 31.4 kg on 0.4 m.
+    // Two disks have 31.4 kg each, on 0.4 m.
     let pressure = 2.0 * 1000.0 * std::f64::consts::PI * 0.01 * 10.0 / 0.4;
     assert!(
         text.contains("estimated from the weight of the grains"),
@@ -264,8 +263,8 @@ fn strength_is_told_over_the_pressure_of_the_scene() {
     assert!(weak.contains("WEAK"), "{weak}");
 }
 
-/// The run time is that of a few steps; a step that fails is reported and is no crash;
-/// `--no-timing` leaves it out.
+/// The run time is estimated from a few steps; a failing step is reported and does not crash;
+/// `--no-timing` omits the steps.
 #[test]
 fn the_run_time_is_estimated() {
     let (_, _, text) = check("silo", &[]);
@@ -288,9 +287,9 @@ fn the_run_time_is_estimated() {
     assert!(!String::from_utf8_lossy(&output.stdout).contains("run time"));
 }
 
-/// A small disk at the side of a bonded pair: the median pair is that of the large ones, the
-/// lightest pair has its own radius and masses; before there are contacts the lightest grain is
-/// paired with every other one.
+/// A small disk is beside a bonded pair: the median pair is that of the large disks, the lightest
+/// pair has its own radius and masses. Before there are contacts the lightest grain is paired with
+/// every other one.
 #[test]
 fn grains_of_different_size_are_weighed_in_pairs() {
     let (large, small) = (0.1, 0.02);
@@ -314,14 +313,15 @@ fn grains_of_different_size_are_weighed_in_pairs() {
         let made = Made::new(&format!("sizes-{gap}"), &text);
         let bonds = made.check(&[]);
         assert_eq!(bonds.contains("no contact yet"), gap > 0.0, "{bonds}");
-        // Of all pairs of these sizes, and for a wall, the ratio of area to mass decides.
+        // Of all pairs of these sizes, and with a wall, the ratio of area to mass decides.
         let lightest = ratio(large, small).max(small / mass(small));
         let normal = 1e-4 * (1e9 * lightest).sqrt();
         near(after(&bonds, "frequency of a bond: "), normal, 1e-2);
-        // The tangent of two disks: three times the stiffness over mass, by their rotation.
+        // Along the tangent two disks have three times the ratio of stiffness to mass, due to their
+        // rotation.
         let median = 1e-4 * (1e9 * 3.0 * ratio(large, large)).sqrt();
         near(after(&bonds, "pair of bodies ("), median, 1e-2);
-        // A spring of 1e9 N/m a metre on the same pairs.
+        // A spring of 1e9 N/m per metre acts on these pairs.
         let springs = made.check(&[
             "interfaces.bond.contact=linear-contact",
             "interfaces.bond.parameters.contact={\"stiffness\": 1e9, \"restitution\": 0.5, \"mu\": 0.3}",
@@ -336,8 +336,7 @@ fn grains_of_different_size_are_weighed_in_pairs() {
     }
 }
 
-/// Their numbers are compared with what is allocated in
-/// `cargo test -p fretwork-elastic --test memory`.
+/// `cargo test -p fretwork-elastic --test memory` compares these numbers with the allocated memory.
 #[test]
 fn the_memory_and_cost_of_deformable_bodies_are_told() {
     let (_, _, text) = check("cylinder_on_flat_fretting", &[]);

@@ -1,4 +1,5 @@
-//! `fretwork check` says which methods a case can use, and refuses one that it cannot before a run.
+//! `fretwork check` lists the methods that support a case, and rejects an unsupported method before
+//! a run.
 
 use std::process::{Command, Output};
 
@@ -10,7 +11,7 @@ fn fretwork(args: &[&str]) -> Output {
         .unwrap()
 }
 
-/// What `check` prints of a verification case.
+/// Output of `check` for a verification case.
 fn check(case: &str, sets: &[&str]) -> (bool, String) {
     let path = format!("cases/verification/{case}.ron");
     let mut args = vec!["check", &path];
@@ -25,7 +26,7 @@ fn check(case: &str, sets: &[&str]) -> (bool, String) {
     )
 }
 
-/// A line by its label.
+/// Returns a line by its label.
 fn line<'a>(text: &'a str, label: &str) -> &'a str {
     let found = text.lines().find_map(|l| {
         let (name, rest) = l.trim_start().split_once(' ')?;
@@ -45,12 +46,12 @@ const COHESIVE: [&str; 2] = [
 
 #[test]
 fn the_methods_of_a_case_are_listed() {
-    // Coulomb friction alone: all of them.
+    // Coulomb friction is supported by all methods.
     let (fine, text) = check("column", &[]);
     assert!(fine);
     assert_eq!(line(&text, "methods"), ALL);
     assert_eq!(line(&text, "method"), "auto supports this case");
-    // Bonds: all of them, unless the law asks for shear cohesion too.
+    // Bonds are supported by all methods, unless the law has shear cohesion too.
     let (fine, text) = check("beam_2d", &["solver.method=Newton"]);
     assert!(fine);
     assert_eq!(
@@ -58,7 +59,7 @@ fn the_methods_of_a_case_are_listed() {
         format!("{GRADIENTS}, newton, interior?")
     );
     assert_eq!(line(&text, "method"), "newton supports this case");
-    // Friction against rotation: neither of the two.
+    // Friction against rotation is supported by neither of the two.
     let (fine, text) = check("rolling_stop_sphere", &[]);
     assert!(fine);
     assert_eq!(line(&text, "methods"), GRADIENTS);
@@ -66,8 +67,8 @@ fn the_methods_of_a_case_are_listed() {
         text.contains("not newton, interface `") && text.contains("rotation"),
         "{text}"
     );
-    // Shear cohesion where surfaces touch: not the interior point, and of rotation the samples
-    // alone are known.
+    // Shear cohesion at touching surfaces is not supported by the interior point method; for
+    // rotation only the samples are known.
     let (_, text) = check("column", &COHESIVE);
     assert_eq!(line(&text, "methods"), format!("{GRADIENTS}, newton?"));
     assert!(

@@ -1,4 +1,4 @@
-//! `fretwork contact-patch`: what an engineer asks, and what is refused.
+//! `fretwork contact-patch`: answers, and rejected questions.
 
 use serde_json::Value;
 use std::process::{Command, Output};
@@ -48,7 +48,7 @@ const WHEEL: [&str; 8] = [
     "wheel_steel_er7,rail_steel_r260",
 ];
 
-/// The pressure at the head of cases/wheel_rail_fretting.ron, which takes the circle of sqrt(R1
+/// The pressure in the header of cases/wheel_rail_fretting.ron is that of a circle with sqrt(R1
 /// R2); the ellipse of these radii differs from it by less than a percent.
 #[test]
 fn a_wheel_on_a_rail() {
@@ -66,7 +66,7 @@ fn a_wheel_on_a_rail() {
         1.5 * 75e3 / (std::f64::consts::PI * along * across),
         1e-12,
     );
-    // 1.6 Y of Y = H/2.8, of the softer steel: 235 HBW.
+    // The limit is 1.6 Y with Y = H/2.8 of the softer steel, 235 HBW.
     near(
         number(&got, "/strength/first_yield"),
         1.6 * 235.0 * 9.80665e6 / 2.8,
@@ -74,8 +74,8 @@ fn a_wheel_on_a_rail() {
     );
 }
 
-/// Carter's case of the documentation (cases/carter_rolling.ron): a 1 mm, full slip at 0.06 %,
-/// Q/(mu P) = 3/4 at half of it.
+/// Carter's case of the documentation (cases/carter_rolling.ron): a is 1 mm, full slip begins at
+/// 0.06 %, and Q/(mu P) = 3/4 at half of it.
 #[test]
 fn a_line_that_rolls() {
     let got = json(&[
@@ -147,8 +147,8 @@ fn a_ball_that_frets() {
     assert_eq!(number(&small, "/tangential/local_slip/value"), 0.0);
 }
 
-/// Of an interval of friction and of K each rate has one, and the harder wheel wears less: V is
-/// proportional to 1/H.
+/// With intervals of friction and of K each rate has an interval, and the harder wheel wears less:
+/// V is proportional to 1/H.
 #[test]
 fn friction_and_wear_have_intervals() {
     let rolls = [
@@ -171,8 +171,8 @@ fn friction_and_wear_have_intervals() {
             "{path}"
         );
     }
-    // The work of friction a metre is Q times the creepage, and Archard's volume k over mu times
-    // it.
+    // The work of friction per metre is Q times the creepage, and Archard's volume is k over mu
+    // times it.
     let q = number(&got, "/rolling/adhesion/value") * 75e3;
     near(number(&got, "/rolling/energy/value"), 0.005 * q, 1e-12);
     let k = number(&got, "/wear/archard/0/coefficient/value");
@@ -187,7 +187,7 @@ fn friction_and_wear_have_intervals() {
     let harder = json(&[&WHEEL[..], &rolls, &hard].concat());
     let of = |v: &Value| number(v, "/wear/archard/0/volume/value");
     near(of(&harder), 0.5 * of(&got), 1e-12);
-    // The text has depths that an engineer can judge.
+    // The text gives depths that an engineer can judge.
     let text = said(&[&WHEEL[..], &rolls, &["--wear", "1e-4..1e-3"]].concat());
     for words in [
         "Hertz pressure",

@@ -1,5 +1,5 @@
-//! Grains that deform taken from another run: a deposit that is sheared in a second case moves as
-//! in one run; rigid grains become ones that deform, and the other way; what does not fit is named.
+//! Deformable grains of another run: a deposit that is sheared in a second case moves as in one
+//! run; rigid grains become deformable, and vice versa; mismatches are named.
 
 use super::grains::Folder;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -22,7 +22,7 @@ fn soft(young: &str) -> String {
     )
 }
 
-/// A ball, and a brick across the border of the period that turns as it falls.
+/// A ball, and a brick across the border of the period that rotates as it falls.
 fn grains<S: Space>() -> String {
     match S::D {
         2 => "List(material: \"grain\", grains: [(at: [0.1, 0.0101], radius: 0.01, spin: [3.0])]), \
@@ -36,7 +36,7 @@ fn grains<S: Space>() -> String {
     }
 }
 
-/// On a floor that begins to move along x at a time.
+/// The grains are on a floor that begins to move along x at a given time.
 fn case<S: Space>(grains: &str, elastic: &str, begins: f64) -> String {
     let (up, weight) = match S::D {
         2 => ("0.0, 1.0", "0.0, -9.81"),
@@ -75,7 +75,7 @@ fn built<S: Space>(folder: &Folder, case: &str) -> (Simulation<S>, String) {
     (built.simulation, built.samples.concat())
 }
 
-/// The force of all contacts on what is above (N; N/m in 2D).
+/// Force of all contacts on the upper bodies (N; N/m in 2D).
 fn force<S: Space>(s: &Simulation<S>) -> S::Vector {
     let contacts = s.state.network.contacts.iter();
     contacts.fold(S::Vector::zero(), |sum, c| {
@@ -84,7 +84,7 @@ fn force<S: Space>(s: &Simulation<S>) -> S::Vector {
     })
 }
 
-/// Places of the points of all grains, beside the origin where there is a period.
+/// Positions of the points of all grains, moved near the origin if there is a period.
 fn places<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
     let mut out = Vec::new();
     for k in 0..s.state.systems.len() {

@@ -1,7 +1,7 @@
-//! What pages say of the program and what its help says of files, against the program and the
-//! files.
+//! Statements of pages about the program, and of its help about files, are compared with the
+//! program and the files.
 
-use fretwork::laws::{Kind, Place};
+use fretwork::laws::{Kind, LawLocation};
 use fretwork::shipped::built_in;
 use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// What a call of the program answers.
+/// Returns the output of a call of the program.
 fn answer(words: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     let output = command.args(words).current_dir(root()).output().unwrap();
@@ -23,7 +23,7 @@ fn answer(words: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// All pages: README and docs.
+/// Returns all pages: README and docs.
 fn pages() -> Vec<PathBuf> {
     let mut out = vec![root().join("README.md")];
     let mut folders = vec![root().join("docs")];
@@ -63,7 +63,7 @@ fn helps() -> Vec<(String, String)> {
     out
 }
 
-/// Words that are paths of this repository.
+/// Returns the words that are paths of this repository.
 fn paths(text: &str) -> impl Iterator<Item = &str> {
     let of_path = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
     let words = text
@@ -104,7 +104,10 @@ fn helps_name_files_that_are_there_and_every_kind_of_law() {
 #[test]
 fn pages_know_how_many_laws_there_are() {
     let laws = search_path().laws();
-    let own = laws.iter().filter(|law| law.2 == Place::BuiltIn).count();
+    let own = laws
+        .iter()
+        .filter(|law| law.2 == LawLocation::BuiltIn)
+        .count();
     let own = own.max(built_in().names().count());
     let listed = answer(&["law", "list"]);
     for (kind, name) in built_in().names() {
@@ -121,7 +124,7 @@ fn pages_know_how_many_laws_there_are() {
     assert!(reported >= 2, "{reported}");
 }
 
-/// Numbers in digits before `laws`, `shipped laws` or `shipped ones`, with these words.
+/// Returns the numbers in digits before `laws`, `shipped laws` or `shipped ones`, with these words.
 fn numbers_of_laws(text: &str) -> Vec<(usize, String)> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let plain = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).to_owned();
@@ -149,7 +152,8 @@ fn numbers_of_laws_are_found_in_a_text() {
     assert!(found("39 cases, laws of 3 kinds, 39, laws, eleven laws").is_empty());
 }
 
-/// Files that the README links to, and cases that it runs; it runs none that is not checked.
+/// Files to which the README links, and cases that it runs, exist; it runs only cases that are
+/// checked.
 #[test]
 fn the_readme_names_files_that_are_there() {
     let text = read(&root().join("README.md"));
@@ -173,8 +177,7 @@ fn the_readme_names_files_that_are_there() {
     }
 }
 
-/// The case by which the README, the page of `trade` and its help show it is one whose results are
-/// trusted.
+/// The case in the README, the page of `trade` and its help is one whose results are trusted.
 #[test]
 fn the_example_of_trade_is_a_case_that_can_be_trusted() {
     let example = |page: &str, begins: &str| {

@@ -1,4 +1,4 @@
-//! Cases of grains on a floor, each in a folder of its own.
+//! Cases of grains on a floor, each in its own folder.
 
 use crate::temp::TempFolder;
 use fretwork::geometry::space::Space;
@@ -30,17 +30,17 @@ pub fn case(dimension: usize, material: &str, grains: &str, bodies: &str) -> Str
     )
 }
 
-/// A folder of a test, with two materials; it goes with it.
+/// A folder of a test with two materials, removed at its end.
 pub struct Folder(pub TempFolder);
 
-/// A simulation, and what is said of grains that were made at random or read.
+/// A simulation, and the description of grains that were generated or read.
 pub struct Sampled<S: Space> {
     pub simulation: Simulation<S>,
     pub samples: Vec<String>,
 }
 
 impl Folder {
-    /// A new one of this name.
+    /// Makes a new folder of this name.
     pub fn new(name: &str) -> Self {
         let folder = TempFolder::new(&format!("grains-{name}"));
         std::fs::create_dir_all(folder.join("materials")).unwrap();
@@ -50,14 +50,14 @@ impl Folder {
         folder
     }
 
-    /// Writes a file there.
+    /// Writes a file in the folder.
     pub fn write(&self, name: &str, text: &str) -> PathBuf {
         let path = self.0.join(name);
         std::fs::write(&path, text).unwrap();
         path
     }
 
-    /// Runs a case, written there, into the folder `out`, which is returned.
+    /// Writes and runs a case with the results in the folder `out`, which is returned.
     pub fn record(&self, case: &str) -> PathBuf {
         let (path, out) = (self.write("first.ron", case), self.0.join("out"));
         let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
@@ -70,7 +70,7 @@ impl Folder {
         out
     }
 
-    /// Builds a case, written there.
+    /// Writes and builds a case.
     pub fn build<S: Space>(&self, case: &str) -> Result<Sampled<S>, String> {
         let path = self.write("case.ron", case);
         let loaded = load(&path, &[]).map_err(|e| e.to_string())?;

@@ -1,11 +1,11 @@
-//! Steps that grow where nothing moves, and shrink before something does.
+//! Steps that grow where nothing moves, and shrink before a motion begins.
 
 use crate::accuracy::{Folder, reported};
 use std::collections::BTreeMap;
 
 const G: f64 = 9.81;
 const STEP: f64 = 1e-3;
-/// Of `verification_grain`, times a depth of 1 m (kg/m^2).
+/// Density of `verification_grain` times a depth of 1 m (kg/m^2).
 const DENSITY: f64 = 1000.0;
 
 /// Two disks on a floor, and one above them that is released at 0.5 s.
@@ -75,9 +75,9 @@ fn at(row: &BTreeMap<String, f64>, time: f64) -> bool {
     (row["time"] - time).abs() < 1e-9
 }
 
-/// A stack at rest carries its weight in steps of any length; the disk is released in a step of the
-/// case that begins when the drive says so, falls by its parabola and lands in the step in which it
-/// has fallen by its height.
+/// A stack at rest carries its weight in steps of any length. A disk is released in the step of the
+/// case in which the drive says so, falls on its parabola and lands in the step in which it has
+/// fallen by its height.
 #[test]
 fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
     let folder = Folder::new("drop");
@@ -89,7 +89,7 @@ fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
     for row in &rest {
         assert!((carried(row) / (mass * G) - 1.0).abs() < 1e-9, "{row:?}");
     }
-    // Half a second in a few steps, of which one ends at the event.
+    // Half a second takes a few steps, of which one ends at the event.
     assert!(
         rest.len() < 20 && at(rest[rest.len() - 1], 0.5),
         "{}",
@@ -106,12 +106,13 @@ fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
             (row["ball_y"] - 0.7 + 0.5 * G * t * t).abs() < 1e-9,
             "{row:?}"
         );
-        // At most some of the tenth of a radius that the accuracy permits.
+        // The displacement is at most a part of the tenth of a radius that the accuracy permits.
         assert!(row["step_length"] * G * t < 0.01, "{row:?}");
     }
     let last = falls[falls.len() - 1];
     assert!(landing - last["time"] < 1.5 * STEP, "{last:?}");
-    // The floor receives its momentum and the weights; what it has fallen is the energy lost.
+    // The floor receives the momentum of the disk and the weights; the lost energy is that of the
+    // fall.
     let stopping = &landed[..4];
     let received: f64 = stopping
         .iter()
@@ -138,7 +139,7 @@ fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
     assert!(summary["accuracy"]["grown"].as_f64().unwrap() > 0.8);
 }
 
-/// Kinks of a drive end steps, slow sliding is made in long ones, and the work is that of friction
+/// Kinks of a drive end steps, slow sliding is made in long steps, and the work is that of friction
 /// over the path.
 #[test]
 fn a_slow_drive_is_followed_in_long_steps() {
@@ -175,8 +176,8 @@ fn a_slow_drive_is_followed_in_long_steps() {
     assert!(end["step_length"] > 20.0 * STEP && end["residual"].abs() < 1e-14);
 }
 
-/// Rows every so many steps of the case are where they are without growth, and a largest step is
-/// kept.
+/// Rows every given number of steps of the case are at equal times as without growth, and a largest
+/// step is kept.
 #[test]
 fn records_stay_where_they_are_and_the_largest_step_is_kept() {
     let folder = Folder::new("records");
@@ -215,7 +216,7 @@ fn records_stay_where_they_are_and_the_largest_step_is_kept() {
     }
 }
 
-/// Any number of threads gives the same rows.
+/// Rows are equal for any number of threads.
 #[test]
 fn steps_that_grow_have_the_same_bits_on_any_number_of_threads() {
     let folder = Folder::new("threads");
@@ -253,7 +254,7 @@ fn steps_that_grow_have_the_same_bits_on_any_number_of_threads() {
     assert!(read[0] == read[1]);
 }
 
-/// What cannot be is refused with the field and what it may be.
+/// Invalid bounds are rejected with the field and its valid values.
 #[test]
 fn bounds_that_cannot_be_are_refused() {
     let folder = Folder::new("refused");

@@ -1,4 +1,4 @@
-//! The example of `docs/half_spaces.md`, as it stands there.
+//! The example of `docs/half_spaces.md` is run as it is in the page.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::Command;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// The column of a table whose name begins so.
+/// Returns the column of a table whose name begins with a text.
 fn column(text: &str, name: &str) -> Vec<f64> {
     let mut rows = text.lines().filter(|l| !l.starts_with('#'));
     let header = rows.next().unwrap().split(',');
@@ -18,8 +18,8 @@ fn column(text: &str, name: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Hertz's pressure, and Carter's force of rolling 1 - (1 - s)^2 of mu P at s = xi R/(mu a) = 1/2,
-/// which 20 cells over a have 0.9 % too high.
+/// The results are Hertz's pressure, and Carter's force of rolling 1 - (1 - s)^2 of mu P at s = xi
+/// R/(mu a) = 1/2, which is 0.9 % too high with 20 cells over a.
 #[test]
 fn example_of_half_spaces_runs_and_meets_what_its_page_says() {
     let page = std::fs::read_to_string(Path::new(ROOT).join("docs/half_spaces.md")).unwrap();
@@ -49,7 +49,7 @@ fn example_of_half_spaces_runs_and_meets_what_its_page_says() {
     let carter = 0.3 * 178.9e3 * 0.75;
     let ratio = force.last().unwrap().abs() / carter;
     assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
-    // It says how many elements slip, and that the heat is a few per cent low.
+    // The summary gives the number of slipping elements, and a heat that is a few per cent low.
     let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
     let reported = summary["resolution"][0]["heat_error"].as_f64().unwrap();
     assert!(reported > 0.02 && reported < 0.08, "{reported}");

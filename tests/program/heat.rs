@@ -1,5 +1,5 @@
-//! What a run says of its heat: an account that does not close, half-spaces, laws that are not
-//! asked, laws with a clock of their own.
+//! Reports of a run on its heat: an account that does not close, half-spaces, laws that are not
+//! called, laws with their own clock.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
@@ -7,11 +7,11 @@ use fretwork::record::heat::HeatChecks;
 use fretwork::record::statistics::Table;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary, run_observers};
-use fretwork::scene::{Built, Loaded};
+use fretwork::scene::{Built, LoadedCase};
 use std::process::Command;
 use std::time::Duration;
 
-fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
+fn built(case: &str, sets: &[&str]) -> (LoadedCase, Built) {
     let fixed = ["output.figures=false", "uncertainty.repeats=0"];
     let sets = [&fixed[..], sets].concat();
     let loaded = scene::loaded(&format!("verification/thermal/{case}"), &sets);
@@ -19,7 +19,7 @@ fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
     (loaded, built)
 }
 
-fn ran((loaded, built): (Loaded, Built)) -> Summary {
+fn ran((loaded, built): (LoadedCase, Built)) -> Summary {
     scene::finished(&loaded, built, |_| {})
 }
 
@@ -40,7 +40,7 @@ fn an_account_of_heat_that_does_not_close_is_a_reason() {
     let summary = ran(built("half_space", &[]));
     assert!(residual(&summary) < 1e-9);
     assert!(summary.run.trustworthy, "{:?}", summary.run.warnings);
-    // A joule that nothing put in, to the ten that flow.
+    // A joule without a source is added to the ten that flow.
     let (loaded, mut built) = built("half_space", &[]);
     let heat = built.simulation.get_mut::<Dim2>().unwrap();
     let heat = heat.state.heat.as_mut().unwrap();
@@ -78,7 +78,7 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
         let found = &summary.found.get::<HeatChecks>().unwrap().half_spaces[0];
         assert!((found.reach / reach - 1.0).abs() < 1e-9);
         let given = depth.unwrap_or(6.0 * reach);
-        // To the next point of the grid.
+        // The depth is rounded to the next point of the grid.
         assert!((given..1.3 * given).contains(&found.depth), "{found:?}");
         let notes = of(&summary, "SHALLOW HALF-SPACES");
         assert_eq!(notes.len(), usize::from(reported), "{notes:?}");
@@ -86,7 +86,7 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
     }
 }
 
-/// Both corners of the block conduct alike, and one of them is beside the range of the floor.
+/// Both corners of the block conduct equally, and one of them is beside the range of the floor.
 #[test]
 fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
     let summary = ran(built("two_half_spaces", &["time.end=1e-4"]));
@@ -104,7 +104,7 @@ fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
     assert!(reported[0].contains("50 % for `floor`") && reported[0].contains("`over`"));
 }
 
-/// Of the friction at the two corners of a block that conducts nothing, that of the rear one is
+/// Of the friction at the two corners of a block that does not conduct, that of the rear corner is
 /// beside the range.
 #[test]
 fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {

@@ -1,4 +1,4 @@
-//! Phases of what holds deformable bodies.
+//! Phases of holders of deformable bodies.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -71,7 +71,7 @@ fn same(case: &str, common: &[&str], phases: &[&str], stages: &[&str], moves: &s
     assert!((most / 1e-6 - 1.0).abs() < 0.02, "{most}");
 }
 
-/// A half-space that phases press, rub and hold moves as with the same drives in stages.
+/// A half-space that phases press, move and hold moves as with equal drives in stages.
 #[test]
 fn a_phase_drives_a_half_space() {
     let load =
@@ -104,7 +104,7 @@ const COARSE: [&str; 8] = [
     "friction.start=5e-3",
 ];
 
-/// Phases that repeat in rounds drive a part of a body of finite elements.
+/// Phases that repeat in groups drive a part of a body of finite elements.
 #[test]
 fn phases_drive_a_part_of_a_body_of_elements() {
     let phases = r#"phases=[
@@ -114,7 +114,7 @@ fn phases_drive_a_part_of_a_body_of_elements() {
     ]"#;
     let mut stages = vec!["(until: 5e-3, drive: Fixed)".to_owned()];
     for k in 1..7 {
-        // Ends of steps as the run counts them.
+        // The times are the ends of steps as the run counts them.
         let (begin, end) = (
             20.0 * f64::from(k) * 2.5e-4,
             20.0 * f64::from(k + 1) * 2.5e-4,
@@ -169,7 +169,7 @@ fn column<'a>(table: &'a [(String, Vec<f64>)], name: &str) -> &'a [f64] {
     &found.unwrap_or_else(|| panic!("no {name}")).1
 }
 
-/// A phase that begins where all is at rest rubs as one that begins at that time.
+/// A phase that begins when all is at rest moves the body as a drive that begins at that time.
 #[test]
 fn a_phase_that_begins_at_rest_drives_a_half_space() {
     let load =
@@ -242,7 +242,7 @@ const BLOCK: &str = r#"(
     output: (frames: 0, views: 0, every: 1, figures: false),
 )"#;
 
-/// A servo on the holder of a deformable body holds the pressure while the area grows and the
+/// A servo on the holder of a deformable body keeps the pressure while the area grows and the
 /// surface slips: Q = mu P.
 #[test]
 fn a_servo_presses_what_holds_a_deformable_body() {

@@ -1,4 +1,4 @@
-//! `fretwork law drive` gives the numbers of the field's tables.
+//! `fretwork law drive` gives known reference values.
 
 use serde_json::Value;
 use std::process::Command;
@@ -37,7 +37,8 @@ fn close(name: &str, got: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Peak sqrt(w C) and area w (1 - u_0^2/(2 u^2)...) of MAC: of w, u_0^2 C/2 w is still stored at u.
+/// Peak sqrt(w C) and area w (1 - u_0^2/(2 u^2)...) of MAC: u_0^2 C/2 w of the energy w is still
+/// stored at u.
 #[test]
 fn mac_has_its_peak_and_area() {
     let path =
@@ -49,7 +50,7 @@ fn mac_has_its_peak_and_area() {
         .fold(0.0, f64::max);
     close("peak", peak, 0.316228e6, 1e-3);
     let last = rows.last().unwrap();
-    // From u_0 on the traction is w^2/(C u^3): w/2 + w/2 (1 - u_0^2/u^2).
+    // From u_0 on the traction is w^2/(C u^3), with the area w/2 + w/2 (1 - u_0^2/u^2).
     let share = 0.1 / 1e12 / 1e-10;
     close(
         "area",
@@ -78,7 +79,7 @@ fn viscous_mac_meets_its_table() {
     }
 }
 
-/// Benzeggagh and Kenane's mixes of AS4/PEEK: G_II/G_T is sin^2 of the angle.
+/// For Benzeggagh and Kenane's mode mixes of AS4/PEEK, G_II/G_T is sin^2 of the angle.
 #[test]
 fn mixed_modes_take_their_energy() {
     for (share, energy) in [(0.2f64, 987.99), (0.5, 1123.00), (0.8, 1419.52)] {
@@ -117,8 +118,8 @@ fn under_force_the_bond_fails_at_its_strength() {
     assert!(out.contains("peak traction 3.15"), "{out}");
 }
 
-/// A neck holds what JKR says: 8/9 of the pull-off in contact, the pull-off at most, nothing after
-/// the tear.
+/// A neck carries the forces of JKR: 8/9 of the pull-off in contact, the pull-off at most, and
+/// nothing after it breaks.
 #[test]
 fn a_neck_is_pulled() {
     let rows = rows("jkr --to 2e-9 --steps 2000 --set w=0.1 --set modulus=1e11");
@@ -135,8 +136,8 @@ fn a_neck_is_pulled() {
     assert_eq!(force(rows.last().unwrap()), 0.0);
 }
 
-/// The interface of a case with its parameters, on the path that the law's own scale gives: the
-/// peak of MAC is sqrt(w C), and its curve has fallen to a hundredth of it at 4.64 u_0.
+/// The interface of a case with its parameters is driven along a path by the law's own scale: the
+/// peak of MAC is sqrt(w C), and its curve has decreased to a hundredth of it at 4.64 u_0.
 #[test]
 fn an_interface_of_a_case_is_driven_with_its_parameters() {
     let peak = |rows: &[Value]| {
@@ -149,14 +150,14 @@ fn an_interface_of_a_case_is_driven_with_its_parameters() {
     close("peak", peak(&own), (0.1f64 * 1e12).sqrt(), 1e-3);
     let last = number(own.last().unwrap(), "opening_n");
     close("path", last, 1.2 * 100f64.cbrt() * u_0, 2e-2);
-    // A case of one interface needs no name; --set changes the case: four times w is twice the
-    // peak, at twice the opening.
+    // A case with one interface needs no name; --set changes the case: four times w gives twice the
+    // peak at twice the opening.
     let set = "--set interfaces.grain.parameters.damage.w=0.4";
     let other = rows(&format!("{case} {set} --steps 20000"));
     close("peak", peak(&other), 2.0 * peak(&own), 1e-3);
     let farther = number(other.last().unwrap(), "opening_n");
     close("path", farther, 2.0 * last, 2e-2);
-    // Parameters that stand in a file of materials, and the laws that the case composes.
+    // Parameters may come from a file of materials, and the case composes the laws.
     let fretting = "--case cases/wheel_rail_fretting.ron --interface third_body --mode II";
     let (code, out, error) = drive(fretting);
     assert_eq!(code, Some(0), "{error}");
@@ -168,8 +169,7 @@ fn an_interface_of_a_case_is_driven_with_its_parameters() {
     );
 }
 
-/// Without `--to` a law is driven through its own scale: a neck until it tears, a bond until it
-/// breaks.
+/// Without `--to` a law is driven through its own scale: a neck and a bond until they break.
 #[test]
 fn a_path_without_a_length_has_the_laws_own() {
     let bond = rows("elastic-bond linear-softening --mode II");
@@ -222,12 +222,12 @@ fn bad_requests_are_refused() {
         assert_eq!(code, Some(2), "{line}: {error}");
         assert!(error.contains(part), "{line}: {error}");
     }
-    // An interface is of a case: laws by name are of no use beside it.
+    // `--interface` requires a case: it is useless beside laws given by name.
     let (_, _, error) = drive("--interface x");
     assert!(!error.contains("<LAWS>"), "{error}");
 }
 
-/// The example of a case that the help shows.
+/// The example with a case in the help text runs.
 #[test]
 fn the_example_of_the_help_runs() {
     let (_, help, _) = drive("--help");

@@ -21,7 +21,7 @@ impl Place {
         Command::new(program)
             .args(&words[1..])
             .current_dir(&self.0)
-            // One build folder, so that the crates of the interface are compiled once.
+            // One build folder is used, so that the crates of the interface are compiled once.
             .env("CARGO_TARGET_DIR", self.0.join("target"))
             .output()
             .unwrap_or_else(|e| panic!("{line}: {e}"))
@@ -60,7 +60,7 @@ fn follow(language: &str) {
             .replace("CASE", case.to_str().unwrap())
             .replace("INTERFACE", "grain");
         let fitting = match kind {
-            // The parameters of the case are those of the laws that stood there.
+            // The parameters of the case are those of the laws that it had before.
             "cohesion" => " --set interfaces.grain.parameters.cohesion={}",
             "damage" => " --set interfaces.grain.parameters.damage={}",
             _ => "",
@@ -90,7 +90,7 @@ fn in_fortran() {
     follow("fortran");
 }
 
-/// Runs a case with the damage law `my-damage` that lies in `folder`; gives exit code and error.
+/// Runs a case with the damage law `my-damage` in `folder`; returns exit code and error.
 fn run_with(place: &Place, folder: &str) -> (Option<i32>, String) {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
     let output = place.shell(&format!(
@@ -101,8 +101,8 @@ fn run_with(place: &Place, folder: &str) -> (Option<i32>, String) {
     (output.status.code(), error)
 }
 
-/// What goes wrong in a law ends the run with a sentence, exit code 1; what cannot be loaded is
-/// refused, 2.
+/// An error in a law ends the run with a message and exit code 1; a library that cannot be loaded
+/// is rejected with code 2.
 #[test]
 fn laws_that_fail_in_a_run_are_named() {
     let place = Place::new("failing");

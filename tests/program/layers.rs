@@ -1,11 +1,10 @@
-//! The layers are crates, so that an import upwards does not compile; here their manifests are
-//! read, so that nobody turns an arrow round by naming a layer, or brings HDF5 or fonts into the
-//! core by a library.
+//! The layers are crates, so an import upwards does not compile. This test reads their manifests,
+//! so that no layer depends on one above it, and no library brings HDF5 or fonts into the core.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What a crate of mathematics, numbers in and numbers out, does without.
+/// Crates that a crate of mathematics does not need.
 const BESIDE_NUMBERS: [&str; 7] = [
     "rust-hdf5",
     "clap",
@@ -16,8 +15,8 @@ const BESIDE_NUMBERS: [&str; 7] = [
     "libloading",
 ];
 
-/// Each layer, the layers it may name, and libraries that neither it nor what it stands on may
-/// bring.
+/// Each layer, the layers that it may name, and libraries that must not be among its direct or
+/// indirect dependencies.
 const LAYERS: [(&str, &[&str], &[&str]); 9] = [
     ("math", &[], &BESIDE_NUMBERS),
     (
@@ -85,8 +84,8 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
     out
 }
 
-/// What every package of the lock file names, by its name; several versions of one are taken
-/// together.
+/// Dependencies of every package of the lock file, by its name; several versions of one package are
+/// combined.
 fn locked(lock: &str) -> BTreeMap<&str, BTreeSet<&str>> {
     let mut out: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     let mut name = "";
@@ -103,7 +102,7 @@ fn locked(lock: &str) -> BTreeMap<&str, BTreeSet<&str>> {
     out
 }
 
-/// A package and all that it stands on.
+/// A package and all its dependencies, direct and indirect.
 fn closure<'a>(of: &'a str, locked: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
     let (mut known, mut open) = (BTreeSet::new(), vec![of]);
     while let Some(package) = open.pop() {
@@ -148,7 +147,7 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
     let lock = read("Cargo.lock");
     let locked = locked(&lock);
     for library in ["rust-hdf5", "clap", "tiny-skia", "ron"] {
-        // It is there at all, so that the search below can find it.
+        // HDF5 is a dependency of the program, so that the search below can find it.
         assert!(closure("fretwork", &locked).contains(library), "{library}");
     }
     for (layer, _, refused) in LAYERS {
@@ -205,7 +204,7 @@ fn source_files(folder: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// No module of the core names one above it, so that there is no circle between them.
+/// No module of the core names one above it, so there is no cycle between them.
 #[test]
 fn modules_of_the_core_name_those_below_them() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/src"));
@@ -220,14 +219,14 @@ fn modules_of_the_core_name_those_below_them() {
             continue;
         }
         let above = place(&own).unwrap_or_else(|| panic!("the module {own} has no place"));
-        // Unit tests may build what they need from modules above.
+        // Unit tests may build scenes with modules above.
         if inside.ends_with("tests.rs") {
             continue;
         }
         let text = std::fs::read_to_string(&file).unwrap();
         let text = text.split("#[cfg(test)]\nmod tests").next().unwrap();
         for name in named(text) {
-            // Macros stand at the root of the crate.
+            // Macros are at the root of the crate.
             if name == "commit_hook" {
                 continue;
             }
@@ -243,7 +242,8 @@ fn modules_of_the_core_name_those_below_them() {
     assert!(seen.contains(&("step".to_owned(), "laws".to_owned())));
 }
 
-/// The list of the stages of a step names nothing that only some scenes have: that acts at stages.
+/// The list of the stages of a step names nothing that only some scenes have: such features act at
+/// stages.
 #[test]
 fn the_stepper_names_no_feature() {
     let text = read("crates/core/src/step/one_step.rs").to_lowercase();
@@ -274,10 +274,10 @@ fn the_stepper_names_no_feature() {
 /// Folders of the step, each after those that it may name.
 const STAGES: [&str; 5] = ["motion", "detection", "control", "problem", "ledger"];
 
-/// Files of the step that hold data only.
+/// Files of the step that contain only data.
 const DATA: [&str; 5] = ["options", "error", "report", "state", "workspace"];
 
-/// No stage of the step names one after it, and what holds data names no simulation.
+/// No stage of the step names one after it, and files of data do not name the simulation.
 #[test]
 fn stages_of_the_step_name_those_before_them() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/src/step"));

@@ -1,10 +1,10 @@
-//! What a program that uses the library links: by each feature the crates that it brings, and none
-//! of the others. Asks `cargo tree`, which reads the manifests and the lock file.
+//! Crates that a program links with the library: those of each feature, and no others. The test
+//! calls `cargo tree`, which reads the manifests and the lock file.
 
 use std::collections::BTreeSet;
 use std::process::Command;
 
-/// Each feature with the features that it stands on and a crate that only it brings.
+/// Each feature with the features that it requires and a crate that only it links.
 const FEATURES: [(&str, &[&str], &[&str]); 6] = [
     ("laws", &[], &["fretwork-laws"]),
     ("results", &[], &["fretwork-store", "rust-hdf5"]),
@@ -41,7 +41,7 @@ fn linked(features: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
-/// A feature and all that it stands on.
+/// A feature and all features that it requires.
 fn asked(feature: &str) -> BTreeSet<&'static str> {
     let known = FEATURES.iter().find(|f| f.0 == feature);
     let (name, on, _) = known.unwrap_or_else(|| panic!("no feature {feature}"));
@@ -64,7 +64,7 @@ fn each_feature_brings_its_crates_and_the_library_none_of_them() {
     }
 }
 
-/// The features that the manifest has are those of the page on the library.
+/// The features of the manifest are those of the page on the library.
 #[test]
 fn the_page_explains_each_feature() {
     let page = include_str!("../../docs/library.md");

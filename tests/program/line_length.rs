@@ -1,7 +1,7 @@
 //! Lines of comments and of documentation end at 100 columns, in the folders that are listed here.
 //!
-//! Code is formatted by rustfmt. Code blocks, tables, headings and what has no space to break at
-//! may be longer.
+//! Code is formatted by rustfmt. Code blocks, tables, headings and lines without a space to break
+//! at may be longer.
 
 use std::path::{Path, PathBuf};
 
@@ -38,13 +38,13 @@ fn files(path: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// The text of a comment, of a line of Rust that is one.
+/// Returns the text of a comment, if a line of Rust is one.
 fn comment(line: &str) -> Option<&str> {
     let text = line.trim_start().strip_prefix("//")?;
     Some(text.trim_start_matches(['/', '!']))
 }
 
-/// Numbers of the lines that are too long and could be broken.
+/// Returns the numbers of the lines that are too long and could be broken.
 fn long_lines(text: &str, rust: bool) -> Vec<usize> {
     let (mut out, mut in_code) = (Vec::new(), false);
     for (number, line) in text.lines().enumerate() {
@@ -59,7 +59,7 @@ fn long_lines(text: &str, rust: bool) -> Vec<usize> {
         let whole = ["| ", "|-", "#", "<", "[", "!["]
             .iter()
             .any(|s| said.trim_start().starts_with(s));
-        // A line that is one word behind what introduces it cannot be broken.
+        // A line with a single word after its marker cannot be broken.
         let words = said.trim_start_matches(['-', '*', '>', ' ']);
         let breaks = words.trim_end().contains(' ');
         if line.chars().count() > COLUMNS && !in_code && !fence && !whole && breaks {

@@ -1,5 +1,5 @@
-//! The program: its commands, input, files, plugins, and that a run can be resumed and repeated bit
-//! by bit.
+//! The program: its commands, input, files and plugins; a run can be resumed and repeated bit by
+//! bit.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,11 +1,11 @@
-//! Laws of a material: the name of a material chooses the parameters of the laws at its contacts.
+//! Laws of a material: the material's name selects the parameters of the laws at its contacts.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 
-/// A folder with a copy of the sliding block, and materials of these names and laws.
+/// Makes a folder with a copy of the sliding block, and materials of these names and laws.
 fn folder(name: &str, materials: &[(&str, &str)]) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("fretwork-laws-{name}-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("materials")).unwrap();
@@ -19,8 +19,8 @@ fn folder(name: &str, materials: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// The block that slides on a profile, of this material, with what the interface says of
-/// parameters.
+/// Returns the block that slides on a profile, of this material, with these parameters of the
+/// interface.
 fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Simulation<Dim2>, String> {
     let sets = [
         format!("materials.grain={material}"),
@@ -51,12 +51,12 @@ fn the_name_of_a_material_chooses_the_parameters_of_its_laws() {
     let from_file = "(contact: {}, wear: {})";
     let soft = worn(slides(&folder, "soft", from_file).unwrap());
     let hard = worn(slides(&folder, "hard", from_file).unwrap());
-    // V = k F s.
+    // The volume is V = k F s.
     assert!(
         hard > 0.0 && (soft / hard - 2.0).abs() < 1e-12,
         "{soft} {hard}"
     );
-    // What the case gives itself goes first.
+    // Values in the case take precedence.
     let own = worn(slides(&folder, "soft", "(contact: {}, wear: {\"k\": 1e-8})").unwrap());
     assert_eq!(own, hard);
     std::fs::remove_dir_all(&folder).unwrap();
@@ -72,7 +72,7 @@ fn laws_of_a_material_that_are_missing_or_wrong_are_refused_at_their_place() {
         none.contains("the file `none.ron` of the material `grain` has no `laws`"),
         "{none}"
     );
-    // A material that is none of the case.
+    // The material does not belong to the case.
     let sets = [
         "materials.grain=bad",
         "interfaces.grain.parameters_from=none",

@@ -1,4 +1,5 @@
-//! What the loader accepts, what it refuses and with which words: small plugins in C, made here.
+//! Libraries that the loader accepts, and those that it rejects with their messages: small plugins
+//! in C, made here.
 use crate::temp::TempFolder;
 use fretwork::laws::{Call, Kind, LawError, Plugin, SearchPath, search};
 use fretwork::shipped::search_path;
@@ -8,7 +9,7 @@ use std::process::Command;
 
 const INCLUDE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include");
 
-/// A folder of its own for each test, removed at its end.
+/// A separate folder for each test, removed at its end.
 struct Folder(TempFolder);
 
 impl Folder {
@@ -31,7 +32,7 @@ impl Folder {
         library
     }
 
-    /// A damage law with `fields` of the table set over those of a good one.
+    /// Compiles a damage law with `fields` of the table replacing those of a valid one.
     fn law(&self, name: &str, fields: &str) -> PathBuf {
         self.compile(
             &search::file_name(Kind::DAMAGE, name),
@@ -161,7 +162,7 @@ fn a_newer_minor_with_a_longer_table_loads() {
     assert!(plugin.validate(&[0.2, 0.3]).is_ok());
 }
 
-/// A plugin built before the last field of the table was there: the host takes that field as
+/// In a plugin built before the last field of the table existed, the host takes that field as
 /// absent.
 #[test]
 fn an_older_minor_with_a_shorter_table_loads() {
@@ -267,7 +268,7 @@ fn the_search_goes_by_kind_and_name() {
     std::fs::copy(&library, first.join(&file)).unwrap();
     let other = folder.law("slow-rot", "table.version = \"second\";");
     std::fs::copy(&other, second.join(&file)).unwrap();
-    // One library under the names of two kinds.
+    // One library has two names of different kinds.
     std::fs::copy(
         &library,
         first.join(search::file_name(Kind::WEAR, "slow-rot")),
@@ -296,7 +297,7 @@ fn the_search_goes_by_kind_and_name() {
         }
         other => panic!("{other}"),
     }
-    // Nothing but a plain name is looked up, even where the file is there.
+    // Only plain names are looked up, even where the file exists.
     for bad in ["../first/slow-rot", "SLOW-ROT", "", ".", "slow-rot.so"] {
         let refused = path.find(Kind::DAMAGE, bad);
         assert!(matches!(refused, Err(LawError::Unknown { .. })), "{bad}");
@@ -331,9 +332,9 @@ fn the_shipped_laws_are_found_and_agree_with_their_names() {
     }
 }
 
-/// The program alone, copied elsewhere, without anything in its environment: shipped laws and
-/// materials are found, a case runs to the bits of a run in the checkout, and a library on the path
-/// takes no shipped law's place.
+/// The program alone, copied elsewhere, without environment: shipped laws and materials are found,
+/// a case gives results that are bit-identical to those in the checkout, and a library on the path
+/// does not replace a shipped law.
 #[test]
 fn the_program_alone_runs_a_case() {
     let folder = Folder::new("alone");
@@ -369,7 +370,7 @@ fn the_program_alone_runs_a_case() {
     for plugin in alone.0.as_array().unwrap() {
         let path = plugin["path"].as_str().unwrap();
         assert_eq!(Path::new(path), program.canonicalize().unwrap(), "{plugin}");
-        // That of the program, one for all.
+        // All built-in laws have the SHA-256 of the program.
         assert_eq!(
             (&plugin["sha256"], &plugin["certified"]),
             (&sum, &true.into())
@@ -392,7 +393,7 @@ fn the_program_alone_runs_a_case() {
     let (_, shown, _) = call(&program, &words);
     assert!(shown.contains("built into"), "{shown}");
 
-    // What is not there is said with where it was looked for.
+    // If a law is missing, the message tells where it was searched.
     for set in ["interfaces.grain.damage=mak", "materials.grain=glas_bead"] {
         let (code, _, err) = call(&program, &["run", "case.ron", "--set", set]);
         assert_eq!(code, Some(2), "{err}");

@@ -1,10 +1,10 @@
-//! Equal input gives equal bits: every shipped case, twice and on two threads and three, and
-//! all shapes in motion. Contacts in another order are another path of the solver: in a hyperstatic
-//! set of contacts it ends in other forces, whose sums are compared instead.
+//! Equal input gives equal bits: every shipped case, twice and on two and three threads, and all
+//! shapes in motion. Contacts in another order give another path of the solver: in a hyperstatic
+//! set of contacts it ends with other forces, so sums are compared instead.
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::{Space, VectorLike};
-use fretwork::scene::{Loaded, load, load_text};
+use fretwork::scene::{LoadedCase, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::threads::divide_loops_from;
@@ -23,12 +23,13 @@ fn cases() -> Vec<PathBuf> {
     cases
 }
 
-fn built(loaded: &Loaded) -> AnySimulation {
+fn built(loaded: &LoadedCase) -> AnySimulation {
     let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-/// All bits of bodies and contacts, and how many steps led there: for so long (s), or so many.
+/// All bits of bodies and contacts, and the number of steps; for a duration (s), or a number of
+/// steps.
 fn stepped<S: Space>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
     let clock = Instant::now();
     let goes_on = |done: u64| match steps {
@@ -53,12 +54,12 @@ fn stepped<S: Space>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Ve
     (bits, s.state.steps)
 }
 
-fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
+fn bits(loaded: &LoadedCase, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .unwrap();
-    // Small scenes too.
+    // Threads are used in small scenes too.
     divide_loops_from((threads > 1).then_some(0));
     pool.install(|| {
         let mut simulation = built(loaded);
@@ -94,8 +95,8 @@ fn all_cases_repeat(time: Duration, more_threads: &[usize]) {
     }
 }
 
-/// A case in which grains of all shapes fall fast on a surface in their way, and over each other.
-fn falling(dimension: usize, floor: &str, period: &str) -> Loaded {
+/// A case in which grains of all shapes fall fast on a surface, and over each other.
+fn falling(dimension: usize, floor: &str, period: &str) -> LoadedCase {
     let mut grains = [String::new(), String::new(), String::new()];
     for k in 0..48u32 {
         let t = f64::from(k);
@@ -204,12 +205,12 @@ fn all_shapes_on_every_surface_on_any_number_of_threads() {
     }
 }
 
-/// What the contacts do together.
+/// Sums over the contacts.
 #[derive(Default)]
 struct Sums {
     /// Sum of normal impulses over contacts and steps (N s).
     pressed: f64,
-    /// What friction and impacts took (J).
+    /// Energy dissipated by friction and impacts (J).
     lost: f64,
     contacts: usize,
     broken: u64,
@@ -224,8 +225,8 @@ impl Sums {
     }
 }
 
-/// The state after some steps with the grains' balls in their order, or the other way round: names,
-/// order and sides of contacts follow.
+/// State after some steps with the grains' balls in their order, or in reverse order: names, order
+/// and sides of contacts follow.
 fn sums<S: Space>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
     if turned {
         let grain: Vec<bool> = s.state.bodies.grain_flags();
@@ -255,8 +256,7 @@ fn sums<S: Space>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
 #[test]
 fn contacts_in_another_order_give_the_same_sums() {
     let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
-    // Columns that collapse are others after each impact: what they have in common is the mean of
-    // some.
+    // Collapsing columns differ after each impact: only averages over some of them agree.
     for (case, steps, samples) in [
         ("biaxial", 600, 1),
         ("plane_shear", 600, 1),

@@ -1,4 +1,4 @@
-//! Grains that are made at random or read: from tables, grading curves and other runs.
+//! Grains that are generated at random or read from tables, grading curves and other runs.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use std::path::Path;
@@ -67,7 +67,7 @@ fn a_grading_curve_gives_the_sizes() {
     let (below, total) = cubes.fold((0.0, 0.0), |(b, t), (r, c)| {
         (if r <= 4e-3 { b + c } else { b }, t + c)
     });
-    // By no more than the heaviest grain, twice for the total.
+    // The difference is at most the heaviest grain, twice relative to the total.
     assert!((below / total - 0.5_f64).abs() < 2.0 * 8e-3f64.powi(3) / total);
     for (curve, line, says) in [
         ("size,passing\n4e-3,0.1\n8e-3,1\n", ":2:", "must be 0"),
@@ -139,8 +139,8 @@ fn a_table_gives_grains() {
     );
 }
 
-/// Positions, velocities and spins of a run's end are those that another case begins with, bit by
-/// bit.
+/// Positions, velocities and spins at the end of a run are those with which another case begins,
+/// bit by bit.
 fn round_trip<S: Space>(name: &str, grains: &str) {
     let folder = Folder::new(name);
     let first = case(S::D, "stone", grains, "");
@@ -178,7 +178,7 @@ fn round_trip<S: Space>(name: &str, grains: &str) {
                     s.state.bodies.spin[b].padded(),
                 );
                 let numbers = [at, v, w, [ball.radius, 0.0, 0.0]].concat();
-                // -0 is 0.
+                // Negative zero counts as 0.
                 numbers.iter().map(|x| (x + 0.0).to_bits()).collect()
             })
             .collect();
@@ -194,7 +194,7 @@ fn round_trip<S: Space>(name: &str, grains: &str) {
             .iter()
             .any(|w| *w != S::Spin::zero())
     );
-    // An earlier state, and one that is not there.
+    // An earlier state, and one that does not exist, are read.
     let number = |n: u32| state.replace(")", &format!(", frame: Number({n}))"));
     let start = folder
         .sample::<S>(&number(0))

@@ -1,4 +1,4 @@
-//! `fretwork solve` from outside: exit codes, sentences, JSON, the file of the solution.
+//! `fretwork solve` from outside: exit codes, messages, JSON, the file of the solution.
 
 use crate::temp::TempFolder;
 use fretwork::record::fclib::{self, Problem};
@@ -8,7 +8,7 @@ use fretwork::solve::local::{Csr, GlobalProblem, LocalProblem, Reduction};
 use serde_json::Value;
 use std::process::{Command, Output};
 
-/// A folder of its own, removed at the end.
+/// A separate folder, removed at the end.
 struct Folder(TempFolder);
 
 impl Folder {
@@ -154,7 +154,7 @@ fn json_says_all_and_the_solution_read_back_has_the_error_printed() {
                 (form.local, v)
             }
         };
-        // To the last digit or so, which a reader of JSON may lose.
+        // The last digit may be lost in reading JSON.
         let (again, printed) = (field_error(&local, &solution.r), &said["error"]);
         let printed = printed.as_f64().unwrap();
         assert!((again - printed).abs() <= 1e-14 * printed);
@@ -177,7 +177,7 @@ fn several_files_give_several_answers() {
         (&"local".into(), &"global".into())
     );
 
-    // A wrong one does not keep the others from being solved, and decides the exit code.
+    // An invalid file does not prevent the solution of the others, and determines the exit code.
     let output = solve(&["nowhere.hdf5", &files[0], "--tolerance", "1e-4"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stdout).contains("solved"));
@@ -282,8 +282,8 @@ fn a_problem_without_contacts_is_solved() {
 fn one_contact_sticks_slides_or_parts() {
     let folder = Folder::new();
     let out = folder.path("out.hdf5");
-    // W = diag(2, 1, 1): sticking needs p = (0.5, -0.1, 0); sliding p_t = -mu p_n; without friction
-    // none.
+    // With W = diag(2, 1, 1) sticking needs p = (0.5, -0.1, 0), sliding p_t = -mu p_n; there is
+    // none without friction.
     for (mu, q, exact) in [
         (0.5, [-1.0, 0.1, 0.0], [0.5, -0.1, 0.0]),
         (0.5, [-1.0, 0.0, 3.0], [0.5, 0.0, -0.25]),
@@ -391,7 +391,7 @@ fn local_of(name: &str) -> LocalProblem {
     }
 }
 
-/// W times s: the same motion, with impulses over s.
+/// W times s: the motion is unchanged, impulses are divided by s.
 fn rescaled(problem: &LocalProblem, s: f64) -> LocalProblem {
     let mut out = problem.clone();
     out.w.values.iter_mut().for_each(|w| *w *= s);
@@ -405,8 +405,7 @@ const LOCAL: [&str; 4] = [
     "fc3d_OneObject-i1028-138",
 ];
 
-/// Changing the units of a motion does not change the figure: not by a bit where they differ by a
-/// power of two.
+/// A change of units does not change the error, not by a bit if units differ by a power of two.
 #[test]
 fn the_scale_free_error_knows_no_units() {
     for name in LOCAL {
@@ -418,7 +417,7 @@ fn the_scale_free_error_knows_no_units() {
             seconds: 10.0,
         };
         let mut p = solver::solve(&problem, Method::Nlgs, &limits).p;
-        // Away from the solution, so that the figure is no rounding.
+        // The point is away from the solution, so that the error is not round-off.
         p.iter_mut().for_each(|p| *p *= 1.01);
         let figure = scale_free_error(&problem, &p);
         assert!(figure > 1e-6, "{name}: {figure:e}");
@@ -436,13 +435,13 @@ fn the_scale_free_error_knows_no_units() {
     }
 }
 
-/// The field's figure of a problem whose W is 1e-9 of its own passes with velocities that are wrong
-/// by their own size: it is flagged, refused by the exit code where that is asked for, and solved
-/// to both where there are iterations for it.
+/// The FCLIB error of a problem with 1e-9 times its W passes although velocities are wrong by their
+/// own size. It is flagged, gives exit code 1 if the scale-free error is required, and is solved to
+/// both errors if there are enough iterations.
 #[test]
 fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
     let folder = Folder::new();
-    // The others are solved exactly by a sweep, in any units.
+    // The other problems are solved exactly by a sweep, in any units.
     for name in ["fc3d_OneObject-i1028-138"] {
         let problem = local_of(name);
         let whole = folder.local("whole.hdf5", &problem);
@@ -474,7 +473,8 @@ fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
             "{text}"
         );
 
-        // Asked for, and the iterations do not reach: exit code 1, with both figures.
+        // The scale-free error is required, and the iterations do not suffice: exit code 1, with
+        // both errors.
         let few = [
             &file,
             "--tolerance",
@@ -491,7 +491,8 @@ fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
         assert_eq!(output.status.code(), Some(1), "{error}");
         assert!(error.contains("--scale-free-tolerance 1e-6"), "{error}");
 
-        // Asked for, and reached: both figures hold, recomputed from the file that was written.
+        // The scale-free error is required and reached: both errors hold, recomputed from the
+        // written file.
         let out = folder.path("out.hdf5");
         let said = json(&[
             &file,
@@ -510,7 +511,7 @@ fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
         let r = fclib::read_solution(out.as_ref()).unwrap().unwrap().r;
         let small = rescaled(&problem, 1e-9);
         assert!(field_error(&small, &r) <= 1e-6 && scale_free_error(&small, &r) <= 1e-6);
-        // By every solver.
+        // Every solver reaches them.
         let limits = Limits {
             tolerance: 1e-6,
             scale_free: Some(1e-6),

@@ -1,13 +1,13 @@
-//! Wear coefficients from K and the hardness of the materials: another steel wears differently.
+//! Wear coefficients from K and the hardness of the materials: wear depends on the steel.
 
 use fretwork::scene::material::{Material, Sourced};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// A block that slides on a profile: the wear law takes what is in `wear`, and the two materials
-/// have these hardnesses.
+/// A block slides on a profile: the wear law has the parameters `wear`, and the two materials have
+/// these hardnesses.
 fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<Built, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/worn_slide.ron");
     let sets = [
@@ -20,7 +20,7 @@ fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<B
         &format!("interfaces.0.parameters.wear={wear}"),
     ]
     .map(str::to_owned);
-    let mut loaded: Loaded = load(&path, &sets).map_err(|e| e.to_string())?;
+    let mut loaded: LoadedCase = load(&path, &sets).map_err(|e| e.to_string())?;
     for (name, hardness) in ["soft", "hard"].into_iter().zip(hardness) {
         let sourced = |value, unit: &str| Sourced {
             value,
@@ -66,8 +66,8 @@ fn twice_the_hardness_wears_half_the_volume() {
     let (once, twice) = (at([SOFT, HARD]), at([Some((520.0, "HBW")), HARD]));
     assert!(once > 0.0);
     assert!((twice / once - 0.5).abs() < 1e-12, "{twice} {once}");
-    // It equals k = K/H by hand: the softer material counts, wherever it stands, and whether or
-    // not the other has a hardness.
+    // The result equals k = K/H: the softer material counts, at either position, and even if the
+    // other has no hardness.
     let k = 3e-4 / (260.0 * 9.80665e6);
     let by_hand = worn(slides(&format!(r#"{{"k": {k:e}}}"#), "archard", [None, None]).unwrap());
     for hardness in [[SOFT, HARD], [HARD, SOFT], [SOFT, None], [None, SOFT]] {

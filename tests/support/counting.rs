@@ -1,11 +1,11 @@
-//! Counts what is allocated, to the byte, and refuses what no test may ask for.
+//! Counts allocated memory to the byte, and rejects allocations that no test may make.
 #![allow(dead_code, reason = "each who counts takes the part that it needs")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Bytes held at a time beyond which an allocation fails: the test then ends in an abort, with the
-/// input kept, and the machine stays usable.
+/// Limit on the bytes held at one time, above which an allocation fails: the test then aborts, with
+/// the input kept, and the machine remains usable.
 const MAX_ALLOCATION: usize = 6 << 30;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -23,14 +23,14 @@ fn allowed(bytes: usize) -> bool {
     HELD.load(Relaxed).saturating_add(bytes) <= MAX_ALLOCATION
 }
 
-// SAFETY: every call goes to the system's allocator with the caller's own arguments, or returns
-// null, which stands for an allocation that failed; the counters do not allocate.
+// SAFETY: every call is passed to the system's allocator with the caller's own arguments, or
+// returns null, which means a failed allocation; the counters do not allocate.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !allowed(layout.size()) {
             return std::ptr::null_mut();
         }
-        // SAFETY: the caller's own layout.
+        // SAFETY: the layout is the caller's.
         let at = unsafe { System.alloc(layout) };
         if !at.is_null() {
             took(layout.size());
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
         if !allowed(layout.size()) {
             return std::ptr::null_mut();
         }
-        // SAFETY: the caller's own layout.
+        // SAFETY: the layout is the caller's.
         let at = unsafe { System.alloc_zeroed(layout) };
         if !at.is_null() {
             took(layout.size());
@@ -51,8 +51,8 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: every block comes from the system's allocator, and layouts are passed on as they
-        // are.
+        // SAFETY: every block comes from the system's allocator, and layouts are passed on
+        // unchanged.
         unsafe { System.dealloc(at, layout) };
         HELD.fetch_sub(layout.size(), Relaxed);
     }
@@ -61,7 +61,7 @@ unsafe impl GlobalAlloc for Counting {
         if !allowed(size) {
             return std::ptr::null_mut();
         }
-        // SAFETY: as for `dealloc`; the size is the caller's own.
+        // SAFETY: the block comes from the system's allocator; layout and size are the caller's.
         let new = unsafe { System.realloc(at, layout, size) };
         if !new.is_null() {
             took(size);
@@ -76,7 +76,8 @@ pub fn held() -> usize {
     HELD.load(Relaxed)
 }
 
-/// The most bytes held at a time beyond those held at the start, while `work` ran, on all threads.
+/// Returns the largest number of bytes held on all threads while `work` ran, beyond those held at
+/// the start.
 pub fn peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = HELD.load(Relaxed);
     PEAK.store(before, Relaxed);

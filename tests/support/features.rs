@@ -1,10 +1,10 @@
-//! Features of a scene of grains by the `--set`s that switch them on, for what measures their cost
-//! and their memory.
+//! Features of a scene of grains by the `--set` arguments that enable them, for measurements of
+//! their cost and memory.
 
-/// A feature: its name and its `--set`s.
+/// Name of a feature and its `--set` arguments.
 pub type Feature = (&'static str, &'static [&'static str]);
 
-/// What the others are compared with.
+/// Feature with which the others are compared.
 pub const BASE: Feature = ("Coulomb friction (the base)", &[]);
 
 /// Bonds without damage.
@@ -13,7 +13,7 @@ pub const BONDS: Feature = (
     &["interfaces.0.cohesion=elastic-bond"],
 );
 
-/// Those that both measure.
+/// Features measured for cost and for memory.
 pub const FEATURES: [Feature; 8] = [
     (
         "no friction",

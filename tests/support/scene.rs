@@ -5,36 +5,36 @@
 use crate::temp::TempFolder;
 use fretwork::geometry::space::Space;
 use fretwork::record::{RunOptions, Summary, run};
-use fretwork::scene::{Built, Loaded, load, load_text};
+use fretwork::scene::{Built, LoadedCase, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 
-/// The file of a case, by its name below `cases`.
+/// Returns the file of a case, by its name below `cases`.
 pub(crate) fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"))
 }
 
-/// A case of the repository, by its name below `cases`, with changes as those of `--set`.
-pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> Loaded {
+/// Reads a case of the repository, by its name below `cases`, with changes like those of `--set`.
+pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> LoadedCase {
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_owned()).collect();
     load(&file(name), &sets).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A case in text.
-pub(crate) fn loaded_text(text: &str) -> Loaded {
+pub(crate) fn loaded_text(text: &str) -> LoadedCase {
     let loaded = load_text("test.ron", text, Path::new("."), &[]);
     loaded.unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// The scene of a case, with what its files declare.
-pub(crate) fn built(loaded: &Loaded) -> Built {
+/// Builds the scene of a case, with the declarations of its files.
+pub(crate) fn built(loaded: &LoadedCase) -> Built {
     let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The simulation of a case.
-pub(crate) fn simulation<S: Space>(loaded: &Loaded) -> Simulation<S> {
+pub(crate) fn simulation<S: Space>(loaded: &LoadedCase) -> Simulation<S> {
     let simulation = loaded.build_in(&search_path());
     simulation.unwrap_or_else(|e| panic!("{e}"))
 }
@@ -49,8 +49,8 @@ pub(crate) fn text<S: Space>(text: &str) -> Simulation<S> {
     simulation(&loaded_text(text))
 }
 
-/// Runs a scene to its end in a folder of its own, which is left for `look` and then removed.
-pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) -> Summary {
+/// Runs a scene to its end in a separate folder, which `look` evaluates and which is then removed.
+pub(crate) fn finished(loaded: &LoadedCase, built: Built, look: impl FnOnce(&Path)) -> Summary {
     let out = TempFolder::new("finished");
     let options = RunOptions {
         out: out.to_owned(),
@@ -61,7 +61,7 @@ pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) 
     summary
 }
 
-/// [`finished`] with a case of the repository, without repeated steps.
+/// Does as [`finished`] with a case of the repository, without repeated steps.
 pub(crate) fn ran(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let loaded = loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
     finished(&loaded, built(&loaded), look)

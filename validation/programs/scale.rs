@@ -24,7 +24,7 @@ struct Row {
     contacts: f64,
     /// Duration of the fastest step at rest (s).
     step: f64,
-    /// Its parts in detection, laws and solver (s).
+    /// Parts of the step in detection, laws and solver (s).
     parts: [f64; 3],
     /// Iterations per step.
     sweeps: f64,

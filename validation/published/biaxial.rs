@@ -13,7 +13,7 @@ pub const COMPARISON: Comparison = Comparison {
     show,
 };
 
-/// Name in `validation/biaxial.csv`, our column, what it is, digits.
+/// Name in `validation/biaxial.csv`, our column, label, and digits.
 const QUANTITIES: [(&str, &str, &str, usize); 4] = [
     (
         "compacity",

@@ -30,7 +30,7 @@ const COLUMNS: [&str; 7] = ["velocity", "step", "tolerance", MU, I, PHI, CORE];
 fn show(inputs: &Inputs) -> Result<Results, Failure> {
     let table = inputs.table("cohesive_shear", &COLUMNS)?;
     table.require(&["eta", "range"])?;
-    // Without cohesion: the points of plane shear at the same velocities.
+    // The points of plane shear at these velocities are the values without cohesion.
     let plain = inputs.table("plane_shear", &COLUMNS)?;
     plain.require(&["restitution", "mu"])?;
     let plain = plain.settings(|r| {
@@ -52,8 +52,8 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
     let mut results = Results::default();
     let varied = table.settings(|r| !usual(r));
     let fine = varied.iter().find(|s| s.factor("tolerance") < 1e-3);
-    // Over the value without cohesion at the same inertial number, from the straight line through
-    // its points, less 1.
+    // The relative change from the value without cohesion, which the straight line through its
+    // points gives at this inertial number.
     let share = |s: &Setting, column: &str| {
         let without = case.iter().filter(|s| eta_of(s) == 0.0);
         let points: Vec<_> = without.map(|s| (s.mean(I), s.mean(column))).collect();
@@ -216,7 +216,7 @@ fn eta_of(s: &Setting) -> f64 {
     s.runs[0].optional("eta").unwrap_or(0.0)
 }
 
-/// What runs say of themselves, with the number of runs.
+/// Returns the reasons why runs are not trustworthy, with the number of runs.
 fn not_trustworthy(s: &Setting) -> String {
     let said: Vec<&str> = s.runs.iter().map(|r| r.text("not_trustworthy")).collect();
     let mut kinds: Vec<&str> = said.iter().copied().filter(|t| !t.is_empty()).collect();

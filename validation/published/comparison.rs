@@ -1,4 +1,4 @@
-//! A comparison: its studies, and what it shows of their tables.
+//! A comparison: its studies, and the results drawn from their tables.
 
 use crate::published::Published;
 use crate::row::Row;
@@ -16,19 +16,19 @@ pub struct Comparison {
     pub title: &'static str,
     /// `validation/STUDY.ron`.
     pub studies: &'static [&'static str],
-    /// Whether the reference is published; else it is of an independent program.
+    /// Whether the reference is published. Otherwise it is from an independent program.
     pub published: bool,
     pub show: fn(&Inputs) -> Result<Results, Failure>,
 }
 
-/// What a comparison is made of: tables of its studies, and the published numbers.
+/// Inputs of a comparison: tables of its studies, and the published numbers.
 pub struct Inputs {
     pub tables: BTreeMap<String, Table>,
     pub published: Published,
 }
 
 impl Inputs {
-    /// The table of a study, whose runs have numbers in these columns.
+    /// Returns the table of a study, whose runs have numbers in these columns.
     pub fn table(&self, study: &str, columns: &[&str]) -> Result<&Table, Failure> {
         let table = self
             .tables
@@ -41,7 +41,7 @@ impl Inputs {
     }
 }
 
-/// Rows of the summary, a table in Markdown of the single points, and charts of the figure.
+/// Rows of the summary, a Markdown table of the single points, and charts of the figure.
 #[derive(Default)]
 pub struct Results {
     pub rows: Vec<Row>,
@@ -49,7 +49,7 @@ pub struct Results {
     pub charts: Vec<Chart>,
 }
 
-/// Where a study keeps its runs.
+/// Returns the folder in which a study keeps its runs.
 pub fn folder(root: &Path, study: &str) -> PathBuf {
     root.join("target/validation").join(study)
 }

@@ -1,4 +1,4 @@
-//! Numbers of others beside ours: runs the studies of `validation/`, draws a figure for each
+//! Published numbers beside ours: runs the studies of `validation/`, draws a figure for each
 //! comparison and writes `docs/validation.md`.
 //!
 //! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`,
@@ -112,7 +112,7 @@ fn make(root: &Path, study: &str, options: &Options) -> Result<(), Failure> {
             options.program.display()
         )
     })?;
-    // What cannot be collected is not results; the program has said why.
+    // A study that cannot be collected has no results; the program has printed the reason.
     if !status.success() && options.runs {
         return Err(format!("the study `{study}` ended with {status}").into());
     }

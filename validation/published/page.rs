@@ -11,18 +11,18 @@ use std::path::Path;
 /// Pixels of a figure: under 120 kB as a file.
 const SIZE: (u32, u32) = (660, 440);
 
-/// A comparison with what was found of it.
+/// A comparison with its results.
 pub struct Section {
     name: &'static str,
     title: &'static str,
     /// `validation/NAME.md`.
     text: String,
     results: Option<Results>,
-    /// Why it is not results, or what of it is missing.
+    /// Reasons why the results are missing or incomplete.
     missing: Vec<String>,
     /// Whether the reference is published.
     published: bool,
-    /// Of its studies, by name.
+    /// Tables of its studies, by name.
     studies: Vec<(String, Table)>,
 }
 
@@ -67,7 +67,7 @@ impl Section {
         Ok(section)
     }
 
-    /// Draws each chart to a file of its own.
+    /// Draws each chart to a separate file.
     pub fn draw(&self, root: &Path) -> Result<(), Failure> {
         for (chart, file) in self.figures() {
             let chart = Chart {
@@ -140,7 +140,7 @@ fn programs(folder: &Path, table: &Table) -> Result<Vec<String>, Failure> {
 }
 
 impl Section {
-    /// Rows of the summary. A verdict from a study whose runs are not all done says so.
+    /// Returns the rows of the summary. A verdict from an incomplete study says so.
     fn rows(&self) -> Vec<Vec<String>> {
         let link = format!(
             "[{}](#{})",

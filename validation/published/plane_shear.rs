@@ -69,10 +69,10 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
             &smooth
         }
     };
-    // Differences from the DEM, each run at its own inertial number.
+    // Differences from the DEM are taken at the inertial number of each run.
     let off_mu = |s: &Setting| s.over(|r| r.number(MU) - law_of(s).at(r.number(I)));
     let off_phi = |s: &Setting| s.over(|r| r.number(PHI) - phi_0 - phi_1 * r.number(I));
-    // The change at the point that was repeated stands for all points of that friction, as a share.
+    // The relative change at the point that was repeated is used for all points of that friction.
     let finer = |s: &Setting, off: &dyn Fn(&Setting) -> Estimate, column: &str| -> Option<Finer> {
         let same_grains = |o: &&&Setting| o.factor("mu") == s.factor("mu") && is_fine(o);
         let fine = others.iter().find(same_grains)?;
@@ -153,7 +153,7 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
     );
     let mut cells = Vec::new();
     for setting in &others {
-        // Beside the row that differs in one thing only.
+        // Each row is compared with the row that differs in one setting only.
         let differs = |s: &Setting| {
             let other = |name: &str| s.factor(name) != setting.factor(name);
             [

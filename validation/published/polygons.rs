@@ -1,4 +1,4 @@
-//! Regular polygons and disks with the rolling resistance that is to stand for them.
+//! Regular polygons, and disks with the rolling resistance that should be equivalent to them.
 
 use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Reference, Row};
@@ -21,7 +21,7 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
     let mut results = Results::default();
     let mut cells = Vec::new();
     let (mut polygons, mut disks) = ((Vec::new(), Vec::new()), (Vec::new(), Vec::new()));
-    // From the least resistance up.
+    // The sides are in the order of increasing resistance.
     for sides in [12, 6] {
         let study = format!("polygons_{sides}");
         if !inputs.tables.contains_key(&study) {

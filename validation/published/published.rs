@@ -1,4 +1,4 @@
-//! Numbers of others: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`,
+//! Published numbers: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`,
 //! `source`; `#` begins a comment.
 
 use crate::comparison::Failure;

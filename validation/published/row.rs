@@ -2,12 +2,13 @@
 
 use crate::sample::Estimate;
 
-/// A difference beyond its intervals, but below this share of the reference, is called so.
+/// A difference beyond its intervals, but below this fraction of the reference, has its own
+/// verdict.
 pub const CLOSE: f64 = 0.02;
-/// A comparison is not decided if its intervals add up to more than this share of the reference.
+/// A comparison is not decided if its intervals add up to more than this fraction of the reference.
 pub const WIDE: f64 = 0.1;
 
-/// From the best to the worst.
+/// Verdicts, from the best to the worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Agrees,
@@ -27,8 +28,8 @@ impl Verdict {
     }
 }
 
-/// `difference` from the reference, and half of the range of the reference. Also for a change that
-/// is to be 0, as a part of `reference`.
+/// Judges `difference` from the reference, with half of the range of the reference. Also used for a
+/// change that should be 0, as a fraction of `reference`.
 pub fn judge(difference: Estimate, range: f64, reference: f64) -> Verdict {
     let reach = difference.half + range;
     let off = difference.mean.abs();
@@ -71,7 +72,7 @@ pub struct Row {
     pub verdict: String,
 }
 
-/// A number of others, with half of its range (0 if none is given), and how it is written.
+/// A published number, with half of its range (0 if none is given), and its text.
 pub struct Reference {
     pub value: f64,
     pub range: f64,
@@ -93,17 +94,17 @@ impl Reference {
     }
 }
 
-/// What finer step and tolerance give.
+/// Results with finer step and tolerance.
 #[derive(Clone, Copy)]
 pub struct Finer {
     /// Change of the difference from the reference.
     pub change: Estimate,
-    /// The difference itself, where the same point was repeated.
+    /// The difference itself, if the same point was repeated.
     pub difference: Option<Estimate>,
 }
 
-/// The difference that is judged: with finer settings where they were run. A change of another
-/// point shifts the difference and widens its interval.
+/// Returns the difference that is judged: with finer settings where they were run. A change at
+/// another point shifts the difference and widens its interval.
 pub fn judged(difference: Estimate, finer: Option<Finer>) -> Estimate {
     finer.map_or(difference, |f| {
         f.difference.unwrap_or(difference.plus(f.change))
@@ -111,8 +112,8 @@ pub fn judged(difference: Estimate, finer: Option<Finer>) -> Estimate {
 }
 
 impl Row {
-    /// A number of ours beside a reference. `difference` is that of each seed from the reference at
-    /// its own conditions.
+    /// Returns the row of one of our numbers beside a reference. `difference` is that of each seed
+    /// from the reference at its own conditions.
     pub fn number(
         quantity: impl Into<String>,
         ours: Estimate,
@@ -131,7 +132,8 @@ impl Row {
         }
     }
 
-    /// A published statement without a number; without a verdict what cannot be wrong.
+    /// Returns the row of a published statement without a number. A statement that cannot be wrong
+    /// has no verdict.
     pub fn statement(
         quantity: impl Into<String>,
         ours: impl Into<String>,

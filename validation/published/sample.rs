@@ -29,7 +29,7 @@ impl Estimate {
         Self { mean, half: 0.0 }
     }
 
-    /// Lower end; NaN for one seed, for which a figure has no bar and a comparison no answer.
+    /// Lower end; NaN for one seed, for which a figure has no bar and a comparison no verdict.
     pub fn low(self) -> f64 {
         self.end(-1.0)
     }
@@ -47,7 +47,7 @@ impl Estimate {
         }
     }
 
-    /// In other units.
+    /// Returns the number in other units.
     pub fn scaled(self, by: f64) -> Self {
         Self {
             mean: self.mean * by,
@@ -72,7 +72,7 @@ impl Estimate {
         }
     }
 
-    /// In per cent of `whole`, with sign.
+    /// Formats the number in per cent of `whole`, with sign.
     pub fn percent(self, whole: f64) -> String {
         let e = self.scaled(100.0 / whole.abs());
         if e.half.is_finite() {
@@ -95,7 +95,8 @@ pub struct Line {
     pub slope: f64,
     middle: f64,
     square: f64,
-    /// Abscissa, and half-width of the ordinate with that of the abscissa times the slope.
+    /// Returns the abscissa, and the half-width of the ordinate including that of the abscissa
+    /// times the slope.
     points: Vec<(f64, f64)>,
 }
 
@@ -142,7 +143,7 @@ mod tests {
     #[test]
     fn three_values_have_students_interval() {
         let e = Estimate::of(&[1.0, 2.0, 3.0]);
-        // t of 97.5 % for two degrees of freedom is 4.302653 (Student's table); s = 1.
+        // Student's t of 97.5 % for two degrees of freedom is 4.302653 (table), and s = 1.
         assert!((e.mean - 2.0).abs() < 1e-12 && (e.half - 4.302_653 / 3f64.sqrt()).abs() < 1e-5);
         assert!(Estimate::of(&[1.0]).half.is_infinite());
     }
@@ -158,8 +159,8 @@ mod tests {
         };
         let line = Line::through(&[0.0, 1.0, 3.0].map(point));
         assert!((line.intercept - 1.0).abs() < 1e-12 && (line.slope - 2.0).abs() < 1e-12);
-        // h² (1/n + (x - x̄)²/Σ(x_k - x̄)²), of regression with equal errors: x̄ = 4/3, the sum is
-        // 14/3.
+        // The half-width is h² (1/n + (x - x̄)²/Σ(x_k - x̄)²), of regression with equal errors:
+        // x̄ = 4/3, the sum is 14/3.
         let expected = |x: f64| 0.3 * (1.0 / 3.0 + (x - 4.0 / 3.0).powi(2) * 3.0 / 14.0f64).sqrt();
         for x in [0.0, 4.0 / 3.0, 5.0] {
             assert!((line.half_at(x) - expected(x)).abs() < 1e-12);

@@ -24,7 +24,7 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
         return Err("the cohesions 0, 4 and 8 are not all done".into());
     };
     let mut results = Results::default();
-    // Unknown if one run does not know it.
+    // The error is unknown if one run does not estimate it.
     let errors: Option<Vec<f64>> = settings
         .iter()
         .flat_map(|s| &s.runs)
@@ -53,7 +53,7 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
         later.text(2),
         numerical,
         "levels off",
-        // Level: no change, neither up nor down.
+        // "Levels off" means no change, neither up nor down.
         Some(judge(later, 0.0, four.mean(MU).mean)),
     ));
     let cells: Vec<Vec<String>> = settings

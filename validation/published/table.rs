@@ -30,7 +30,7 @@ impl Run {
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     pub runs: Vec<Run>,
-    /// Runs of the study, those that are not done included.
+    /// Number of runs of the study, including those that are not done.
     pub wanted: usize,
     /// Processor time of the runs that are done (s).
     pub seconds: f64,
@@ -115,7 +115,7 @@ impl Setting<'_> {
         self.factor("setting")
     }
 
-    /// A factor, the same in all runs.
+    /// Returns the value of a factor, which is equal in all runs.
     pub fn factor(&self, column: &str) -> f64 {
         self.runs[0].number(column)
     }
@@ -140,7 +140,7 @@ mod tests {
         let settings = table.settings(|_| true);
         assert_eq!((settings.len(), settings[0].mean("p").mean), (1, 3.0));
         assert!(table.require(&["p"]).is_ok());
-        // An absent column, and an empty cell of a run that is done.
+        // The tests are an absent column, and an empty cell of a run that is done.
         let refusal = |t: &Table, c: &str| t.require(&[c]).unwrap_err().to_string();
         assert!(refusal(&table, "q").contains("`q`"));
         let mut empty = table.clone();

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// Name, description and value of an entry of a ledger.
 pub type LedgerEntry = (&'static str, &'static str, f64);
 
-/// The entries of a ledger by its fields, without those named first. Every field is named, so that
-/// a new one does not compile until it is listed.
+/// Lists the entries of a ledger by its fields, except those named first. Every field is named, so
+/// that a new one does not compile until it is listed.
 macro_rules! entries {
     ($ledger:expr, $($no_entry:ident),+; $($name:ident: $doc:literal,)+) => {{
         let Self { $($name,)+ $($no_entry: _,)+ } = *$ledger;
@@ -27,8 +27,8 @@ pub(crate) use entries;
 /// energy of their deformation in `elastic`, their weight in `potential`, their damping in
 /// `viscous`, forces and motions imposed on them in `external_work`, and their numerical
 /// dissipation in `scheme`. The impulses of contacts do work on a system through the velocities of
-/// its nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides of
-/// a contact together it is the friction, impact and adhesion of the contact, the change of its
+/// its nodes; this work has no entry of its own, like the work on rigid bodies: summed over both
+/// sides of a contact it is the friction, impact and adhesion of the contact, the change of its
 /// bond, and the work of the correction. Energy that a system stores when it is added counts as
 /// external work, its kinetic energy as initial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,18 +41,18 @@ pub struct Energy {
     pub elastic: f64,
     /// Energy released by damage.
     pub fracture: f64,
-    /// Dissipated by friction, at contacts of bodies and of dynamical systems.
+    /// Energy dissipated by friction, at contacts of bodies and of dynamical systems.
     pub friction: f64,
-    /// Dissipated by impacts, of bodies and of nodes of dynamical systems.
+    /// Energy dissipated by impacts, of bodies and of nodes of dynamical systems.
     pub impact: f64,
     /// Work done against cohesion without an opening.
     pub adhesion: f64,
-    /// Dissipated by damping of bonds, compliant contacts and dynamical systems.
+    /// Energy dissipated by damping of bonds, compliant contacts and dynamical systems.
     pub viscous: f64,
     /// Work of removing penetrations, negative where energy is added; see `solver.correction` and
     /// `solver.projection`.
     pub correction: f64,
-    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and for dynamical systems
+    /// Energy dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and for dynamical systems
     /// [`crate::bodies::SystemWork::scheme`]; zero at theta = 1/2 except for nonlinear systems and
     /// for compliant contacts, whose springs are integrated by implicit Euler.
     pub scheme: f64,
@@ -69,9 +69,9 @@ pub struct Energy {
     pub initial_kinetic: f64,
     /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
-    /// Energy that friction of compliant contacts gave back, summed over the steps in which these
-    /// together dissipated less than nothing by it. A law of friction cannot make energy. Rigid
-    /// contacts do so within the error of a step only, where their friction is p_t . u_t.
+    /// Energy that friction of compliant contacts returned, summed over the steps in which the sum
+    /// of their friction work is negative. A law of friction cannot create energy. Rigid contacts
+    /// do so only within the error of a step, since their friction work is p_t . u_t.
     pub given_by_friction: f64,
 }
 
@@ -82,11 +82,11 @@ pub struct BodyWork {
     pub potential: f64,
     /// Work of imposed forces and motions.
     pub external: f64,
-    /// Dissipated by damping in dynamical systems.
+    /// Energy dissipated by damping in dynamical systems.
     pub damping: f64,
-    /// Dissipated by the scheme.
+    /// Energy dissipated by the scheme.
     pub scheme: f64,
-    /// Done by thermal expansion.
+    /// Work of thermal expansion.
     pub expansion: f64,
 }
 
@@ -224,7 +224,7 @@ mod tests {
             // The entries before expansion sum to the supplied energy.
             let sum: f64 = energy.entries()[..11].iter().map(|e| e.2).sum();
             assert_eq!(sum, energy.external_work + energy.expansion + at_start);
-            // A smaller energy leaves the scale as it is, a larger one raises it.
+            // A smaller energy does not change the scale, a larger one raises it.
             energy.raise_scale(-1.0);
             assert_eq!(energy.scale, all);
             energy.raise_scale(-16.0);
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// Each energy alone raises the scale; without any the relative residual is zero.
+    /// Each energy alone raises the scale; without any energy the relative residual is zero.
     #[test]
     fn every_energy_raises_the_scale() {
         let scale = |given: Energy| {
@@ -269,8 +269,8 @@ mod tests {
         }
     }
 
-    /// A body that is lifted by h at constant velocity against its weight, by a force of that
-    /// weight: no energy is missing.
+    /// A body is lifted by h at constant velocity by a force equal to its weight: the balance is
+    /// closed.
     #[test]
     fn a_projection_takes_its_work_from_the_correction() {
         let mut energy = Energy::default();

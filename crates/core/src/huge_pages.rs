@@ -1,18 +1,18 @@
-//! Memory of large arrays in huge pages: a step passes over arrays that are larger than what the
-//! processor's table of pages of 4 KiB covers.
+//! Memory of large arrays in huge pages: the arrays of a step are larger than the memory that the
+//! processor's translation buffer covers with pages of 4 KiB.
 
-use crate::out_of_memory::refused;
+use crate::out_of_memory::report_allocation_failure;
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// Allocations from this size on ask for huge pages (bytes): any block of this size contains a
-/// whole page of the usual 2 MiB.
+/// Size from which allocations request huge pages (bytes): any block of this size contains a whole
+/// page of the usual 2 MiB.
 const LARGE: usize = 4 << 20;
 
-/// The system's allocator, which on Linux asks for transparent huge pages (`madvise`,
-/// `MADV_HUGEPAGE`) for large allocations. Where the kernel has none or may not give them, it is
-/// the system's allocator.
+/// The system's allocator, which on Linux requests transparent huge pages (`madvise`,
+/// `MADV_HUGEPAGE`) for large allocations. Where the kernel does not provide them, it is the plain
+/// allocator of the system.
 ///
-/// A program chooses it by
+/// A program selects it by
 /// ```
 /// #[global_allocator]
 /// static ALLOCATOR: fretwork_core::huge_pages::HugePages = fretwork_core::huge_pages::HugePages;
@@ -20,7 +20,7 @@ const LARGE: usize = 4 << 20;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HugePages;
 
-/// Asks for huge pages for an allocation, where it is large. One that the system refused is
+/// Requests huge pages for an allocation if it is large. A refused allocation is
 /// [reported](crate::out_of_memory).
 ///
 /// The advice remains where the system reuses the memory for small blocks; the memory that the
@@ -28,7 +28,7 @@ pub struct HugePages;
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
     if start.is_null() {
-        refused(size);
+        report_allocation_failure(size);
     }
     /// A multiple of the page size of any usual machine, which `madvise` asks for.
     const PAGE: usize = 64 << 10;
@@ -40,7 +40,7 @@ fn advise(start: *mut u8, size: usize) {
         return;
     }
     // SAFETY: the range is inside the allocation, and the advice changes no contents. A kernel
-    // without huge pages refuses, which must not be seen in `errno` of a caller.
+    // without huge pages refuses, which must not appear in `errno` of a caller.
     unsafe {
         let error = *libc::__errno_location();
         libc::madvise(
@@ -55,11 +55,11 @@ fn advise(start: *mut u8, size: usize) {
 #[cfg(not(target_os = "linux"))]
 fn advise(start: *mut u8, size: usize) {
     if start.is_null() {
-        refused(size);
+        report_allocation_failure(size);
     }
 }
 
-// SAFETY: every call is the system allocator's.
+// SAFETY: every call is passed to the system's allocator.
 unsafe impl GlobalAlloc for HugePages {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: guaranteed by the caller.
@@ -92,7 +92,7 @@ unsafe impl GlobalAlloc for HugePages {
 mod tests {
     use super::*;
 
-    /// Contents survive growth and shrinkage across the size from which huge pages are asked for.
+    /// Contents survive growth and shrinkage across the size from which huge pages are requested.
     #[test]
     fn contents_survive() {
         let layout = |size| Layout::from_size_align(size, 64).expect("a layout");
@@ -103,7 +103,7 @@ mod tests {
             LARGE + 1,
             LARGE / 3,
         ];
-        // SAFETY: each block is used within its size, and with the layout that it has.
+        // SAFETY: each block is used within its size, and with its layout.
         unsafe {
             let mut block = HugePages.alloc_zeroed(layout(sizes[0]));
             block.write(7);
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Flags of the memory at an address, from the system's list.
+    /// Returns the flags of the memory at an address, from the system's list.
     #[cfg(target_os = "linux")]
     fn flags(address: usize) -> String {
         let list = std::fs::read_to_string("/proc/self/smaps").expect("the list");
@@ -148,7 +148,7 @@ mod tests {
         if !std::path::Path::new("/sys/kernel/mm/transparent_hugepage").exists() {
             return;
         }
-        // Above the size up to which the system takes blocks from its heap.
+        // This is above the size up to which the system takes blocks from its heap.
         let layout = Layout::from_size_align(80 << 20, 64).expect("a layout");
         // SAFETY: each block has its layout.
         unsafe {

@@ -9,11 +9,11 @@
 //! the named moments of a step), and [`view`] (a simulation without its dimension). State goes to
 //! bytes and back by [`code`].
 //!
-//! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the
+//! A [`Simulation`](step::Simulation) holds the data of a case (shapes, laws, phases), the
 //! [`Options`](step::Options) of the computation, which no step changes, and its
-//! [`State`](step::State), which a checkpoint holds whole. It steps; its
+//! [`State`](step::State), which a checkpoint contains. Between steps, its
 //! [`contacts`](step::Simulation::contacts), [`positions`](step::Simulation::positions) and
-//! [`energies`](step::Simulation::energies) are read between steps:
+//! [`energies`](step::Simulation::energies) can be read:
 //!
 //! ```
 //! use fretwork_core::bodies::Bodies;
@@ -48,8 +48,7 @@
 //! # Ok::<(), fretwork_core::step::StepError>(())
 //! ```
 //!
-//! Scenes with interface laws are made with less work by the layer above,
-//! `fretwork_scene::CaseBuilder`.
+//! The layer above, `fretwork_scene::CaseBuilder`, makes scenes with interface laws with less code.
 //!
 //! The core neither parses cases nor writes result files; the layers above it do.
 
@@ -58,8 +57,8 @@
 pub mod assembly;
 pub mod bodies;
 pub mod certify;
-pub mod code;
 pub mod contact;
+pub mod encoding;
 pub mod energy;
 pub mod geometry;
 pub mod heat;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Momentum gained by the free rigid bodies since the start, less the impulses of gravity and of
 /// contacts with other bodies (N s and N m s; per metre of depth in 2D). It is zero up to rounding
-/// if contacts act on the same position on both bodies.
+/// if contacts act at the same position on both bodies.
 ///
 /// First bodies and dynamical systems count as other bodies. Changes between steps are not counted:
 /// removing, adding, pushing and displacing bodies are external.
@@ -19,18 +19,19 @@ pub struct Momentum {
     /// Mean position of the free bodies at the start (m); `None` before the first step. In periodic
     /// scenes angular momentum is not computed.
     pub about: Option<[f64; 3]>,
-    /// Largest sums so far of the sizes of the bodies' linear and angular momenta (N s, N m s).
+    /// Largest sums so far of the magnitudes of the bodies' linear and angular momenta (N s, N m
+    /// s).
     pub scale: [f64; 2],
 }
 
 /// Momentum of some bodies, or a change of it.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentumSum<S: Space> {
-    /// Linear (N s).
+    /// Linear momentum (N s).
     pub linear: S::Vector,
-    /// Angular (N m s).
+    /// Angular momentum (N m s).
     pub angular: S::Spin,
-    /// Sums of sizes of the momenta (N s, N m s).
+    /// Sums of the magnitudes of the momenta (N s, N m s).
     pub sizes: [f64; 2],
 }
 
@@ -82,7 +83,7 @@ impl Momentum {
         })
     }
 
-    /// Every entry: name, description, value (N s, N m s).
+    /// Returns every entry: name, description, value (N s, N m s).
     pub fn entries(&self) -> [LedgerEntry; 2] {
         let [linear, angular] = self.drift();
         [

@@ -11,13 +11,13 @@ static HANDLER: OnceLock<fn(usize)> = OnceLock::new();
 ///
 /// The function is called only if the allocator of the program is
 /// [`HugePages`](crate::huge_pages::HugePages).
-pub fn on_refusal(handler: fn(usize)) {
+pub fn on_allocation_failure(handler: fn(usize)) {
     let _ = HANDLER.set(handler);
 }
 
 /// Reports that the system refused an allocation of `size` bytes.
 #[cold]
-pub(crate) fn refused(size: usize) {
+pub(crate) fn report_allocation_failure(size: usize) {
     if let Some(handler) = HANDLER.get() {
         handler(size);
     }

@@ -1,7 +1,7 @@
-//! The program that this process runs: its file, and how its command line is called again.
+//! The program of this process: its file, and how its command line is started.
 //!
 //! Both are those of the executable, unless a process that loads this code as a library, such as a
-//! Python interpreter, declares others before it uses them.
+//! Python interpreter, declares others first.
 //!
 //! ```standalone_crate
 //! use fretwork_core::program::{self, Program};
@@ -28,10 +28,10 @@ static DECLARED: OnceLock<Program> = OnceLock::new();
 /// A program in place of the executable of the process.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// The file with this code: its SHA-256 identifies the built-in laws, and shipped libraries are
-    /// looked for beside it.
+    /// File with this code: its SHA-256 identifies the built-in laws, and shipped libraries are
+    /// searched in its folder.
     pub file: PathBuf,
-    /// Program and arguments that start the command line; empty where it cannot be called.
+    /// Program and arguments that start the command line; empty if there is none.
     pub command: Vec<OsString>,
 }
 
@@ -40,7 +40,7 @@ pub fn declare(program: Program) {
     let _ = DECLARED.set(program);
 }
 
-/// The file with this code.
+/// Returns the file with this code.
 ///
 /// # Errors
 /// The system does not tell the path of the executable.
@@ -51,10 +51,11 @@ pub fn file() -> std::io::Result<PathBuf> {
     }
 }
 
-/// Starts the command line, without arguments yet.
+/// Returns a command that starts the command line, without further arguments.
 ///
 /// # Errors
-/// The system does not tell the path of the executable, or a declared program has no command line.
+/// The system does not provide the path of the executable, or a declared program has no command
+/// line.
 pub fn command() -> std::io::Result<Command> {
     let Some(program) = DECLARED.get() else {
         return Ok(Command::new(std::env::current_exe()?));

@@ -9,18 +9,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Smallest work for which other threads are used (ns): many times the cost of waking them, since
 /// other programs may run on their cores.
-const LEAST_WORK: u64 = 170_000;
+const MIN_WORK: u64 = 170_000;
 
-/// Least items of a task in [`fill`].
-const LEAST_ITEMS: usize = 256;
+/// Smallest number of items of a task in [`fill`].
+const MIN_ITEMS: usize = 256;
 
-static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
+static LEAST: AtomicU64 = AtomicU64::new(MIN_WORK);
 
-/// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured
-/// one. Results do not depend on it: tests set zero, so that small scenes run on several threads
-/// too.
+/// Sets the least work (ns) that is divided, for the whole process; `None` restores the default.
+/// Results do not depend on it: tests set zero, so that small scenes run on several threads too.
 pub fn divide_loops_from(nanoseconds: Option<u64>) {
-    LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
+    LEAST.store(nanoseconds.unwrap_or(MIN_WORK), Ordering::Relaxed);
 }
 
 /// Returns the size of the chunks of a loop whose results do not depend on it; it is reduced if all
@@ -41,8 +40,8 @@ pub fn worth_dividing(parallel: bool, items: usize, each: f64) -> bool {
         && rayon::current_num_threads() > 1
 }
 
-/// Returns the results of `of` for each chunk of `size` items, which it gets with the index of the
-/// first; in the order of the chunks.
+/// Returns the results of `of` for each chunk of `size` items and the index of its first item, in
+/// the order of the chunks.
 pub fn map_chunks<T: Sync, R: Send>(
     divide: bool,
     items: &[T],
@@ -70,8 +69,8 @@ pub fn map_ranges<R: Send>(
     }
 }
 
-/// Returns the results of `of` for each chunk of `size` items, which it may change and gets with
-/// the index of the first; in the order of the chunks.
+/// Returns the results of `of` for each mutable chunk of `size` items and the index of its first
+/// item, in the order of the chunks.
 pub fn map_chunks_mut<T: Send, R: Send>(
     divide: bool,
     items: &mut [T],
@@ -87,8 +86,8 @@ pub fn map_chunks_mut<T: Send, R: Send>(
     }
 }
 
-/// Returns the results of `of` for each pair of chunks of `size` items of two lists of the same
-/// length, which it may change and gets with the index of the first; in the order of the chunks.
+/// Returns the results of `of` for each pair of mutable chunks of `size` items of two lists of the
+/// same length and the index of the first item, in the order of the chunks.
 pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     divide: bool,
     size: usize,
@@ -116,7 +115,7 @@ pub fn fill<T: Send>(
     empty(list, count);
     let out = SharedSlots(list.as_mut_ptr());
     let tasks = if divide {
-        count.div_ceil(LEAST_ITEMS).max(1)
+        count.div_ceil(MIN_ITEMS).max(1)
     } else {
         1
     };
@@ -131,7 +130,7 @@ pub fn fill<T: Send>(
     } else {
         task(0);
     }
-    // SAFETY: all are written.
+    // SAFETY: all items are written.
     unsafe { list.set_len(count) };
 }
 
@@ -142,18 +141,18 @@ unsafe impl<T: Send> Sync for SharedSlots<T> {}
 
 impl<T> SharedSlots<T> {
     /// # Safety
-    /// The place is in the allocation, and nobody else uses it.
+    /// The place must be in the allocation, and nobody else may use it.
     unsafe fn put(&self, place: u32, item: T) {
         // SAFETY: guaranteed by the caller.
         unsafe { self.0.add(place as usize).write(item) }
     }
 
-    /// Writes the result of `of` for each index to its place. A function of its own, so that `of`
-    /// is called from one place, where it is inlined and makes its items in the list: large ones
-    /// would be copied.
+    /// Writes the result of `of` for each index to its place. This is a separate function, so that
+    /// `of` is called from one place, where it is inlined and creates its items in the list: large
+    /// ones would otherwise be copied.
     ///
     /// # Safety
-    /// The places are in the allocation, and nobody else uses them.
+    /// The places must be in the allocation, and nobody else may use them.
     #[inline(never)]
     unsafe fn fill(&self, indices: Range<usize>, of: &impl Fn(usize) -> T) {
         for k in indices {
@@ -179,7 +178,7 @@ fn empty<T>(list: &mut Vec<T>, count: usize) {
 /// so that their inputs are read in order.
 ///
 /// # Safety
-/// `places` has each index below its length once.
+/// `places` must contain each index below its length once.
 pub unsafe fn fill_places<T: Send>(
     divide: bool,
     list: &mut Vec<T>,
@@ -192,12 +191,12 @@ pub unsafe fn fill_places<T: Send>(
     // SAFETY: places are below the capacity, and each is written once.
     let one = |k: usize| unsafe { spread.put(places[k], of(k)) };
     if divide {
-        let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
+        let items = (0..count).into_par_iter().with_min_len(MIN_ITEMS);
         items.for_each(one);
     } else {
         (0..count).for_each(one);
     }
-    // SAFETY: all are written.
+    // SAFETY: all items are written.
     unsafe { list.set_len(count) };
 }
 
@@ -325,7 +324,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             pool.build().unwrap().install(|| {
                 let (parallel, n) = (threads > 1, values.len());
-                // Long enough to be divided.
+                // The time per item is long enough for the loop to be divided.
                 let each = 1e6;
                 (
                     count(parallel, n, each, |k| values[k] > 0.5),

@@ -1,4 +1,4 @@
-//! Units of quantities. In 2D extensive quantities are per metre of depth; this module alone makes
+//! Units of quantities. In 2D extensive quantities are per metre of depth; only this module makes
 //! units depend on the dimension.
 
 /// The SI unit of a quantity, in space and in the plane.
@@ -10,7 +10,7 @@ pub struct Unit {
 
 /// A pure number.
 pub const ONE: Unit = Unit::of("1");
-/// No number: texts and flags.
+/// Unit of texts and flags, which are not numbers.
 pub const WORD: Unit = Unit::of("");
 /// Lengths.
 pub const METRE: Unit = Unit::of("m");
@@ -34,17 +34,17 @@ pub const POWER: Unit = Unit::by_depth("W", "W/m");
 pub const STIFFNESS: Unit = Unit::by_depth("N/m", "N/m per m");
 /// Masses.
 pub const MASS: Unit = Unit::by_depth("kg", "kg/m");
-/// Mass a time.
+/// Mass per time.
 pub const MASS_FLOW: Unit = Unit::by_depth("kg/s", "kg/(m s)");
 /// Volumes.
 pub const VOLUME: Unit = Unit::by_depth("m^3", "m^3/m");
-/// Areas, lengths in the plane.
+/// Areas; lengths in the plane.
 pub const AREA: Unit = Unit::by_depth("m^2", "m");
 /// Force times path.
 pub const LOAD_PATH: Unit = Unit::by_depth("N m", "N");
-/// Worn volume over load and path.
+/// Worn volume per load and sliding path.
 pub const WEAR_RATE: Unit = Unit::of("m^3/(N m)");
-/// Worn volume over energy.
+/// Worn volume per energy.
 pub const WEAR_PER_ENERGY: Unit = Unit::of("m^3/J");
 /// Momenta.
 pub const MOMENTUM: Unit = Unit::by_depth("N s", "N s/m");
@@ -54,7 +54,7 @@ pub const ANGULAR_MOMENTUM: Unit = Unit::by_depth("N m s", "N s");
 pub const RESISTANCE: Unit = Unit::by_depth("ohm", "ohm m");
 /// Electric currents.
 pub const CURRENT: Unit = Unit::by_depth("A", "A/m");
-/// Heat flow over a difference of temperature.
+/// Heat flow per difference of temperature.
 pub const CONDUCTANCE: Unit = Unit::by_depth("W/K", "W/(m K)");
 /// Electric conductances.
 pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
@@ -62,7 +62,7 @@ pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
 pub const INERTIA: Unit = Unit::by_depth("kg m^2", "kg m");
 
 impl From<&'static str> for Unit {
-    /// A unit that is the same in every dimension; an empty text is that of pure numbers.
+    /// A unit that is the same in every dimension; an empty text for pure numbers.
     fn from(symbol: &'static str) -> Self {
         match symbol {
             "" => ONE,
@@ -72,7 +72,7 @@ impl From<&'static str> for Unit {
 }
 
 impl Unit {
-    /// A unit that is the same in every dimension; `1` for pure numbers.
+    /// Creates a unit that is the same in every dimension; `1` for pure numbers.
     pub const fn of(symbol: &'static str) -> Self {
         Self::by_depth(symbol, symbol)
     }

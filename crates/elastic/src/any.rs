@@ -2,7 +2,7 @@
 
 use crate::body::ElasticBody;
 use crate::error::BodyError;
-use crate::generate::{Grid, mapped_grid};
+use crate::generate::{BlockGrid, mapped_grid};
 use crate::half_space::{HalfSpace, HalfSpaceError, HalfSpaceSpec};
 use crate::mesh::{Mesh, MeshError};
 use crate::spec::BodySpec;
@@ -13,17 +13,17 @@ use std::collections::BTreeMap;
 /// A mesh of the plane or of space.
 #[derive(Clone, Debug)]
 pub enum AnyMesh {
-    /// In two dimensions.
+    /// Mesh in two dimensions.
     Plane(Mesh<Dim2>),
-    /// In three dimensions.
+    /// Mesh in three dimensions.
     Space(Mesh<Dim3>),
 }
 
 impl AnyMesh {
-    /// A mesh in so many dimensions, see [`Mesh::new`].
+    /// Creates a mesh in a dimension, see [`Mesh::new`].
     ///
     /// # Errors
-    /// As [`Mesh::new`].
+    /// Returns the errors of [`Mesh::new`].
     pub fn new(
         dimension: usize,
         points: &[[f64; 3]],
@@ -36,13 +36,13 @@ impl AnyMesh {
         })
     }
 
-    /// The cells of a grid of so many dimensions, whose points are moved; see [`mapped_grid`].
+    /// Creates the mesh of a grid in a dimension, whose points are moved; see [`mapped_grid`].
     ///
     /// # Errors
-    /// As [`mapped_grid`].
+    /// Returns the errors of [`mapped_grid`].
     pub fn mapped(
         dimension: usize,
-        grid: &Grid,
+        grid: &BlockGrid,
         map: &dyn Fn([f64; 3]) -> [f64; 3],
     ) -> Result<Self, MeshError> {
         Ok(match dimension {
@@ -73,7 +73,7 @@ impl BodySpec<'_, AnyMesh> {
     /// Makes the body, see [`ElasticBody::new`].
     ///
     /// # Errors
-    /// See [`BodyError`].
+    /// Returns the errors that [`BodyError`] lists.
     pub fn build(self) -> Result<AnySystem, BodyError> {
         Ok(match self.mesh.clone() {
             AnyMesh::Plane(mesh) => AnySystem::Plane(Box::new(ElasticBody::new(self.of(mesh))?)),
@@ -83,10 +83,10 @@ impl BodySpec<'_, AnyMesh> {
 }
 
 impl HalfSpaceSpec<'_> {
-    /// Makes the half-space in so many dimensions, see [`HalfSpace::new`].
+    /// Creates the half-space in a dimension, see [`HalfSpace::new`].
     ///
     /// # Errors
-    /// See [`HalfSpaceError`].
+    /// Returns the errors that [`HalfSpaceError`] lists.
     pub fn build(self, dimension: usize) -> Result<AnySystem, HalfSpaceError> {
         Ok(match dimension {
             2 => AnySystem::Plane(Box::new(HalfSpace::new(self)?)),

@@ -5,10 +5,11 @@
 //! A = M + h theta C + h^2 theta^2 K
 //! ```
 //!
-//! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its
-//! corners. Contacts act on the points of a part of the boundary; columns of the compliance of
-//! these, P A^-1 P^T, are found once too, as points are touched. In large strain K is a tangent,
-//! and A is formed anew in each iteration of Newton's method, see [`crate::large_strain`].
+//! is factorised once for each h and theta. M is lumped: each corner gets a (D + 1)-th of the mass
+//! of an element. Contacts act on the points of a part of the boundary; the columns of the
+//! compliance of these points, P A^-1 P^T, are computed once, when a point is first touched. In
+//! large strain K is a tangent, and A is assembled again in each iteration of Newton's method, see
+//! [`crate::large_strain`].
 //!
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The
 //! non-smooth contact dynamics method", Comput. Methods Appl. Mech. Eng. 177 (1999).
@@ -22,7 +23,7 @@ use crate::error::BodyError;
 use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
 use crate::mesh::Mesh;
-use crate::model::{Formed, Model, assemble, contactors};
+use crate::model::{BodyModel, StepFactor, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
@@ -39,26 +40,27 @@ use std::sync::{Arc, OnceLock};
 /// A body of finite elements.
 #[derive(Clone, Debug)]
 pub struct ElasticBody<S: Space> {
-    pub(crate) model: Arc<Model<S>>,
-    pub(crate) formed: Option<Arc<Formed<S>>>,
+    pub(crate) model: Arc<BodyModel<S>>,
+    pub(crate) formed: Option<Arc<StepFactor<S>>>,
     /// The current drive of each held coordinate.
     pub(crate) drives: Vec<Dof>,
     pub(crate) displacement: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
-    /// Both at the start of the step.
+    /// Coordinates and velocities at the start of the step.
     pub(crate) start: [Vec<f64>; 2],
-    /// K q in small strain, now once it was computed, and at the start of the step (N).
+    /// K q in small strain (N): the current one, if it was computed, and that at the start of the
+    /// step.
     elastic: OnceLock<Vec<f64>>,
     elastic_at_start: Vec<f64>,
-    /// Moves since the step began: after two it has ended.
+    /// Number of moves since the step began: it has ended after two.
     moves: u32,
-    /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
+    /// Kinetic energy due to a jump of imposed velocities at the start of the step (J).
     jump: f64,
-    /// Of thermal expansion.
+    /// Free strain due to thermal expansion.
     pub(crate) free_strain: FreeStrain<S>,
     /// Impulse of contacts on the coordinates in the step (N s).
     pub(crate) contact: Vec<f64>,
-    /// Iterations of the step; unused in small strain.
+    /// State of the iterations of the step; unused in small strain.
     pub(crate) iterate: Iterate,
     /// The last step.
     step: Option<SystemStep<S>>,
@@ -68,7 +70,7 @@ impl<S: Space> ElasticBody<S> {
     /// A body at rest and without load.
     ///
     /// # Errors
-    /// A material, a support or a contactor is not possible; [`BodyError`] lists the reasons.
+    /// A material, a support or a contactor is invalid; [`BodyError`] lists the reasons.
     pub fn new(spec: BodySpec<Mesh<S>>) -> Result<Self, BodyError> {
         let BodySpec {
             name,
@@ -104,7 +106,7 @@ impl<S: Space> ElasticBody<S> {
         let (part, contactors) = contactors(&mesh, touching, surface_material)?;
         let total = freedoms.total();
         let start = crate::rigid::velocities(&mesh, &freedoms, &velocity, &spin);
-        let model = Model {
+        let model = BodyModel {
             name: name.to_owned(),
             mesh,
             material,
@@ -135,17 +137,17 @@ impl<S: Space> ElasticBody<S> {
         })
     }
 
-    /// Where a point of the mesh is now (m).
+    /// Returns the current position of a point of the mesh (m).
     fn point_now(&self, point: u32) -> S::Vector {
         self.model.mesh.points()[point as usize] + self.displacement(point)
     }
 
-    /// Displacement of a point of the mesh (m).
+    /// Returns the displacement of a point of the mesh (m).
     fn displacement(&self, point: u32) -> S::Vector {
         self.model.of(&self.displacement, point)
     }
 
-    /// v_theta, and q + h theta v_theta.
+    /// Returns v_theta, and q + h theta v_theta.
     fn average(&self, step: &SystemStep<S>) -> (Vec<f64>, Vec<f64>) {
         let [q, v] = &self.start;
         let SystemStep { h, theta, .. } = *step;
@@ -159,7 +161,7 @@ impl<S: Space> ElasticBody<S> {
         (average, at)
     }
 
-    /// K q in small strain (N).
+    /// Returns K q in small strain (N).
     fn elastic(&self) -> &[f64] {
         self.elastic.get_or_init(|| {
             let strained = self.model.strained(&self.displacement);
@@ -167,13 +169,13 @@ impl<S: Space> ElasticBody<S> {
         })
     }
 
-    /// K q in small strain at the start and at the end of the step (N), once it has ended.
+    /// Returns K q in small strain at the start and at the end of the step (N), once it has ended.
     pub(super) fn elastic_of_step(&self) -> Option<[&[f64]; 2]> {
         let ended = self.model.large.is_none() && self.moves == 2;
         ended.then(|| [&self.elastic_at_start[..], self.elastic()])
     }
 
-    /// Time function of a drive at a step, at its theta-point.
+    /// Returns the time function of a drive for a step, at its theta-point.
     pub(crate) fn force(drive: &Dof, step: &SystemStep<S>) -> f64 {
         let over = drive.over(step.time, step.h);
         over.force(step.time + step.theta * step.h)
@@ -278,8 +280,8 @@ impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
                 end[c] = speeds.end;
             }
         }
-        // With imposed coordinates at their final velocity, what the others lack is A^-1 of the
-        // rest of the forces.
+        // With imposed coordinates at their final velocity, the correction of the others is A^-1
+        // times the remaining forces.
         let pairs = v.iter().zip(&end);
         let average: Vec<f64> = pairs.map(|(v, w)| v + theta * (w - v)).collect();
         let at: Vec<f64> = q
@@ -387,7 +389,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn mass(&self) -> f64 {
-        // Each coordinate along the first axis has its share once.
+        // Each coordinate along the first axis counts once.
         let axes = self.model.freedoms.axis.iter();
         let along = axes.zip(&self.model.mass).filter(|(axis, _)| **axis == 0);
         along.map(|(_, m)| m).sum()

@@ -1,13 +1,13 @@
-//! Linear elasticity in a frame that turns with the element: F = R U, with the rotation R and the
+//! Linear elasticity in a frame that rotates with the element: F = R U, with the rotation R and the
 //! stretch U, and
 //!
 //! ```text
 //! W = mu |U - 1|^2 + lambda/2 (tr(U - 1))^2
 //! ```
 //!
-//! On simplices of constant strain its forces are those of the stiffness in the turned frame, R K
-//! (R^T x - X), and its tangent, taken from W, has all that R K R^T leaves out. U comes from the
-//! eigenvalues of C = U^2, so that no rotation is computed.
+//! On simplices of constant strain its forces are those of the stiffness in the rotated frame, R K
+//! (R^T x - X); its tangent, derived from W, contains the terms that R K R^T omits. U follows from
+//! the eigenvalues of C = U^2, so that no rotation is computed.
 //!
 //! Sources: C. A. Felippa and B. Haugen, "A unified formulation of small-strain corotational finite
 //! elements: I. Theory", Comput. Methods Appl. Mech. Eng. 194 (2005); I. Chao, U. Pinkall, P. Sanan
@@ -24,16 +24,16 @@ pub struct Corotational {
     shear: f64,
     /// Principal directions.
     directions: Matrix3<f64>,
-    /// Principal stretches, and what they are above 1.
+    /// Principal stretches, and the same less 1.
     stretch: Vector3<f64>,
     strain: Vector3<f64>,
 }
 
 impl Corotational {
-    /// At C - 1.
+    /// Evaluates the material at C - 1.
     pub fn new(material: &Elasticity, c_less_one: &Matrix3<f64>) -> Self {
         let principal = c_less_one.symmetric_eigen();
-        // A C that is none, of an iterate that is far off, is not followed further.
+        // A C that is not positive, in an iterate far from the solution, is not evaluated further.
         let stretch = principal.eigenvalues.map(|g| (1.0 + g).max(0.0).sqrt());
         let strain = principal
             .eigenvalues
@@ -47,13 +47,13 @@ impl Corotational {
         }
     }
 
-    /// W (Pa).
+    /// Returns W (Pa).
     pub fn energy(&self) -> f64 {
         let trace = self.strain.sum();
         self.shear * self.strain.norm_squared() + 0.5 * self.lambda * trace * trace
     }
 
-    /// S (Pa).
+    /// Returns S (Pa).
     pub fn stress(&self) -> Matrix3<f64> {
         let pressure = self.lambda * self.strain.sum();
         let principal = self
@@ -62,7 +62,7 @@ impl Corotational {
         self.turned(&Matrix3::from_diagonal(&principal))
     }
 
-    /// The change of S (Pa) by one of C: U dU + dU U = dC.
+    /// Returns the change of S (Pa) by a change of C: U dU + dU U = dC.
     pub fn change(&self, dc: &Matrix3<f64>) -> Matrix3<f64> {
         let own = self.directions.transpose() * dc * self.directions;
         let u = &self.stretch;
@@ -82,7 +82,7 @@ impl Corotational {
         self.turned(&out)
     }
 
-    /// From the principal axes to those of the element.
+    /// Rotates from the principal axes to those of the element.
     fn turned(&self, own: &Matrix3<f64>) -> Matrix3<f64> {
         self.directions * own * self.directions.transpose()
     }

@@ -4,7 +4,7 @@ use crate::material::{Elasticity, Symmetric};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::Matrix3;
 
-/// Most corners of a simplex.
+/// Largest number of corners of a simplex.
 pub const CORNERS: usize = 4;
 
 /// A simplex of D + 1 corners: its volume and the gradients of its shape functions.
@@ -12,12 +12,12 @@ pub const CORNERS: usize = 4;
 pub struct Simplex<S: Space> {
     /// Volume (m^3; area in 2D, m^2), positive where the corners are in order.
     pub volume: f64,
-    /// Gradients of the shape functions (1/m), of which the first D + 1 count.
+    /// Gradients of the shape functions (1/m); only the first D + 1 are used.
     pub gradients: [S::Vector; CORNERS],
 }
 
 impl<S: Space> Simplex<S> {
-    /// Creates the element from its corners (m); `None` if it has no volume at all.
+    /// Creates the element from its corners (m); `None` if its volume is zero.
     pub fn new(corners: &[S::Vector]) -> Option<Self> {
         let d = S::D;
         let mut edges = Matrix3::identity();
@@ -44,8 +44,8 @@ impl<S: Space> Simplex<S> {
         &self.gradients[..=S::D]
     }
 
-    /// The block of the stiffness (N/m) between two corners,
-    /// V (lambda g_a g_b^T + G (g_a . g_b) 1 + G g_b g_a^T).
+    /// Returns the block of the stiffness (N/m) between two corners, V (lambda g_a g_b^T + G (g_a .
+    /// g_b) 1 + G g_b g_a^T).
     pub fn stiffness(&self, material: &Elasticity, a: usize, b: usize) -> S::Matrix {
         let (lambda, shear) = (material.lambda(), material.shear());
         let (ga, gb) = (&self.gradients[a], &self.gradients[b]);
@@ -58,7 +58,7 @@ impl<S: Space> Simplex<S> {
             + S::Matrix::dyad(&(*gb * (self.volume * shear)), ga)
     }
 
-    /// Strain at displacements of the corners (m).
+    /// Returns the strain for displacements of the corners (m).
     pub fn strain(&self, displacements: &[S::Vector]) -> Symmetric {
         let mut gradient = Matrix3::<f64>::zeros();
         for (g, u) in self.gradients().iter().zip(displacements) {
@@ -72,7 +72,8 @@ impl<S: Space> Simplex<S> {
         [at(0, 0), at(1, 1), at(2, 2), at(1, 2), at(0, 2), at(0, 1)]
     }
 
-    /// Stress (Pa) at displacements of the corners (m); in plane strain with that along the depth.
+    /// Returns the stress (Pa) for displacements of the corners (m); in plane strain including the
+    /// stress along the depth.
     pub fn stress(&self, material: &Elasticity, displacements: &[S::Vector]) -> Symmetric {
         material.stress(&self.strain(displacements))
     }

@@ -1,26 +1,26 @@
-//! Why a body cannot be made.
+//! Reasons why a body cannot be created.
 
 use crate::material::ElasticityError;
 use crate::mesh::MeshError;
 
-/// Why a body cannot be made.
+/// Reason why a body cannot be created.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
-    /// Its mesh.
+    /// The mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Its material.
+    /// The material is invalid.
     #[error(transparent)]
     Material(#[from] ElasticityError),
-    /// A part that the mesh has not.
+    /// The mesh has no such part.
     #[error("the mesh has no part `{0}`; its parts are {1}")]
     NoPart(String, String),
-    /// Two different drives of one displacement.
+    /// One displacement has two different drives.
     #[error(
         "parts `{0}` and `{1}` share points that both drive along {2}: leave that axis out of one of them"
     )]
     Twice(String, String, &'static str),
-    /// Motion imposed at one time and a force at another.
+    /// A drive imposes motion at one time and a force at another.
     #[error(
         "the drive of part `{0}` imposes motion at one time and a force at another; a deformable body cannot change that within a run"
     )]
@@ -30,13 +30,13 @@ pub enum BodyError {
         "the part `{0}` is no single chain of segments with two ends, see the point at {1} m: name a part of the outline that is one, without its whole circumference"
     )]
     NoChain(String, String),
-    /// Facets that form no surface.
+    /// The facets form no surface.
     #[error("the part `{0}` cannot touch as a surface: {1}")]
     NoSurface(String, String),
-    /// Damping that is negative or not finite.
+    /// Damping is negative or not finite.
     #[error("factors of Rayleigh damping must not be negative, got {0:e} 1/s and {1:e} s")]
     Damping(f64, f64),
-    /// Nothing keeps the body from turning.
+    /// Nothing prevents rotation of the body.
     #[error(
         "nothing keeps the body `{0}` from turning, and small strain cannot follow a rotation: hold one of its parts along one axis more, or give it `strain: Corotational` or `strain: NeoHookean`"
     )]

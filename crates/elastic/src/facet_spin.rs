@@ -1,45 +1,46 @@
-//! How the facets of a surface that touches turn, by the velocities of their corners, and the
-//! forces on these that a moment on a facet is.
+//! Rotation of the facets of a contact surface from the velocities of their corners, and the forces
+//! on the corners that represent a moment on a facet.
 //!
 //! With the gradients g_a of the shape functions of a facet along it and its normal n, the curl of
-//! the velocity over the facet is c = sum_a g_a x v_a, and the facet turns with
+//! the velocity over the facet is c = sum_a g_a x v_a, and the facet rotates with
 //!
 //! ```text
 //! w = c - n (n . c)/2        in the plane w = c
 //! ```
 //!
-//! about axes along it with its normal, about its normal by half of the curl, that is by the skew
-//! part of the gradient. Forces f_a = (m - n (n . m)/2) x g_a are the dual of it: their sum is
-//! zero, their moment is m, and their power m . w.
+//! about axes along it as its normal does, and about its normal by half of the curl, the skew part
+//! of the gradient. Forces f_a = (m - n (n . m)/2) x g_a are dual to this spin: their sum is zero,
+//! their moment is m, and their power m . w.
 //!
 //! Source: L. E. Malvern, "Introduction to the Mechanics of a Continuous Medium" (1969), section
 //! 4.5, of the vorticity.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 
-/// A corner of a facet with its part in how a place turns.
+/// A corner of a facet with its contribution to the rotation of a position.
 #[derive(Clone, Copy, Debug)]
 struct Corner<S: Space> {
     /// Point of the mesh.
     point: u32,
-    /// Gradient of its shape function along the facet (1/m), times the share of the facet.
+    /// Gradient of the corner's shape function along the facet (1/m), times the share of the facet.
     gradient: S::Vector,
     /// Normal of the facet; zero in the plane.
     normal: S::Vector,
 }
 
-/// How a place of a surface turns: as its facet, or, at a point, as the mean of the facets at it by
-/// length or area.
+/// Rotation at a position of a surface: that of its facet, or, at a point, the mean over its facets
+/// weighted by length or area.
 #[derive(Clone, Debug)]
 pub struct FacetSpin<S: Space> {
     corners: Vec<Corner<S>>,
-    /// Length of the facets: by it spins are velocities like those of their corners (m).
+    /// Length of the facets (m), which converts spins to velocities comparable to those of their
+    /// corners.
     pub length: f64,
 }
 
 impl<S: Space> FacetSpin<S> {
-    /// Takes facets by the points of the mesh at their D corners. `position` gives the current
-    /// place of a point (m).
+    /// Creates the rotation from facets given by the points of the mesh at their D corners.
+    /// `position` gives the current position of a point (m).
     pub fn new(facets: &[[u32; 3]], position: impl Fn(u32) -> S::Vector) -> Self {
         let mut corners = Vec::with_capacity(S::D * facets.len());
         let mut total = 0.0;
@@ -71,7 +72,7 @@ impl<S: Space> FacetSpin<S> {
         sum * (1.0 / self.corners.len() as f64)
     }
 
-    /// The angular velocity (rad/s) by the velocities of the points of the mesh (m/s).
+    /// Returns the angular velocity (rad/s) from the velocities of the points of the mesh (m/s).
     pub fn spin(&self, velocity: impl Fn(u32) -> S::Vector) -> S::Spin {
         self.corners.iter().fold(S::Spin::zero(), |sum, corner| {
             let curl = S::moment(&corner.gradient, &velocity(corner.point));
@@ -84,7 +85,8 @@ impl<S: Space> FacetSpin<S> {
         self.corners.iter().map(|corner| corner.point)
     }
 
-    /// The angular velocity times the length, by axis (m/s): the velocity of the node that turns.
+    /// Returns the angular velocity times the length, by axis (m/s): the velocity of the node that
+    /// represents rotation.
     pub fn velocity(&self, velocity: impl Fn(u32) -> S::Vector) -> S::Vector {
         let spin = self.spin(velocity);
         let mut out = S::Vector::zero();
@@ -94,8 +96,8 @@ impl<S: Space> FacetSpin<S> {
         out
     }
 
-    /// The forces on points of the mesh that a moment (N m) is, a point of several facets several
-    /// times (N).
+    /// Returns the forces on points of the mesh (N) that represent a moment (N m); a point of
+    /// several facets occurs several times.
     pub fn forces(&self, moment: S::Spin) -> impl Iterator<Item = (u32, S::Vector)> {
         self.corners.iter().map(move |corner| {
             let moment = halved::<S>(&corner.normal, &moment);
@@ -104,14 +106,14 @@ impl<S: Space> FacetSpin<S> {
     }
 }
 
-/// A spin with half of its part about a normal; in the plane itself.
+/// Returns a spin with half of its part about a normal; in the plane the spin itself.
 fn halved<S: Space>(normal: &S::Vector, spin: &S::Spin) -> S::Spin {
     let (twist, _) = S::split_spin(normal, spin);
     *spin - S::spin_about(normal, 0.5 * twist)
 }
 
-/// Gradients of the shape functions of a facet along it (1/m), its normal (zero in the plane), and
-/// its length (m) or area (m^2).
+/// Returns the gradients of the shape functions of a facet along it (1/m), its normal (zero in the
+/// plane), and its length (m) or area (m^2).
 fn gradients<S: Space>(at: &[S::Vector; 3]) -> ([S::Vector; 3], S::Vector, f64) {
     let [a, b, c] = *at;
     let (u, v) = (b - a, c - a);
@@ -143,8 +145,7 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector1, Vector2, Vector3};
 
-    /// A rotation as a whole is found from any facets, and no translation or stretch is taken for
-    /// one.
+    /// A rigid rotation is found from any facets, and no translation or stretch counts as rotation.
     #[test]
     fn a_rotation_is_found() {
         let at = [
@@ -171,7 +172,8 @@ mod tests {
             Vector3::new(0.3 * x.x + 0.2 * x.y, 0.2 * x.x - 0.5 * x.y, 0.0)
         };
         assert!(facet.spin(stretch).norm() < 1e-15);
-        // Simple shear along x turns by half of its gradient, clockwise; a slope along x about -y.
+        // Simple shear along x rotates by half of its gradient, clockwise; a slope along x about
+        // -y.
         let shear = |p: u32| Vector3::new(flat[p as usize].y, 0.0, 0.0);
         assert!((facet.spin(shear) - Vector3::new(0.0, 0.0, -0.5)).norm() < 1e-15);
         let slope = |p: u32| Vector3::new(0.0, 0.0, flat[p as usize].x);
@@ -186,8 +188,8 @@ mod tests {
         assert!((facet.length - 1.0).abs() < 1e-15);
     }
 
-    /// A moment is forces without a sum, whose moment it is about any place, and whose power is
-    /// that of the moment at any velocities.
+    /// A moment is represented by forces without a resultant, whose moment about any point is that
+    /// moment, and whose power is that of the moment at any velocities.
     #[test]
     fn a_moment_is_a_couple_of_forces() {
         let at = [

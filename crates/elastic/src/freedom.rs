@@ -1,5 +1,5 @@
-//! Degrees of freedom of a mesh with supports: which displacement of which point is which
-//! generalised coordinate.
+//! Degrees of freedom of a mesh with supports: the generalised coordinate of each displacement of
+//! each point.
 
 use crate::error::BodyError;
 use crate::mesh::Mesh;
@@ -10,14 +10,14 @@ use std::marker::PhantomData;
 
 /// A coordinate that is held: the common displacement of a part along an axis.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct HeldCoordinate {
     /// Index of the support.
     pub support: usize,
     /// Name of the part.
     pub part: String,
     /// Index of the coordinate.
     pub coordinate: u32,
-    /// Its drive at the start; the body has the current one.
+    /// Drive at the start; the body has the current one.
     pub drive: Dof,
 }
 
@@ -30,8 +30,8 @@ pub struct Freedoms<S: Space> {
     /// Axis of each coordinate.
     pub axis: Vec<u8>,
     /// Held coordinates, those that are imposed last and in their order.
-    pub held: Vec<Held>,
-    /// Those with a force, and those that are imposed, by their place in `held`.
+    pub held: Vec<HeldCoordinate>,
+    /// Coordinates with a force, and imposed coordinates, by their index in `held`.
     forces: Vec<usize>,
     imposed: Vec<usize>,
     space: PhantomData<S>,
@@ -41,11 +41,11 @@ impl<S: Space> Freedoms<S> {
     /// Numbers the coordinates of a mesh.
     ///
     /// # Errors
-    /// A part that the mesh has not, a point in two parts that are driven differently along an
-    /// axis, or a drive that imposes motion at one time and a force at another.
+    /// The mesh has no such part, a point belongs to two parts with different drives along an axis,
+    /// or a drive imposes motion at one time and a force at another.
     pub fn new(mesh: &Mesh<S>, supports: &[Support]) -> Result<Self, BodyError> {
         let d = S::D;
-        // The holder of each displacement: support and axis.
+        // Holder of each displacement: support and axis.
         let mut held: Vec<Option<usize>> = vec![None; mesh.points().len() * d];
         for (s, support) in supports.iter().enumerate() {
             let Some(points) = mesh.points_of(&support.part) else {
@@ -62,7 +62,7 @@ impl<S: Space> Freedoms<S> {
                     match *slot {
                         Some(other) => {
                             let other: &Support = &supports[other];
-                            // At a common corner of two parts that do the same, either will do.
+                            // At a common corner of two parts with equal drives either may be used.
                             let same = other.axes[axis].as_ref() == Some(drive)
                                 && other.later(axis).eq(support.later(axis))
                                 && drive.imposes();
@@ -120,7 +120,7 @@ impl<S: Space> Freedoms<S> {
                 } else {
                     out.forces.push(out.held.len());
                 }
-                out.held.push(Held {
+                out.held.push(HeldCoordinate {
                     support: *s,
                     part: supports[*s].part.clone(),
                     coordinate,
@@ -134,13 +134,14 @@ impl<S: Space> Freedoms<S> {
         out
     }
 
-    /// Coordinates that may have a force, with their drives; `drives` has that of each of `held`.
+    /// Returns coordinates that may have a force, with their drives; `drives` has one entry per
+    /// entry of `held`.
     pub fn forces<'a>(&'a self, drives: &'a [Dof]) -> impl Iterator<Item = (usize, &'a Dof)> {
         let of = |k: &usize| (self.held[*k].coordinate as usize, &drives[*k]);
         self.forces.iter().map(of)
     }
 
-    /// Imposed coordinates with their drives, in their order.
+    /// Returns imposed coordinates with their drives, in their order.
     pub fn imposed<'a>(&'a self, drives: &'a [Dof]) -> impl Iterator<Item = (usize, &'a Dof)> {
         let of = |k: &usize| (self.held[*k].coordinate as usize, &drives[*k]);
         self.imposed.iter().map(of)
@@ -148,7 +149,7 @@ impl<S: Space> Freedoms<S> {
 
     /// The place in `held` of a part along an axis.
     pub fn find(&self, part: &str, axis: usize) -> Option<usize> {
-        let along = |h: &Held| usize::from(self.axis[h.coordinate as usize]) == axis;
+        let along = |h: &HeldCoordinate| usize::from(self.axis[h.coordinate as usize]) == axis;
         self.held.iter().position(|h| h.part == part && along(h))
     }
 
@@ -157,7 +158,7 @@ impl<S: Space> Freedoms<S> {
         self.axis.len()
     }
 
-    /// The coordinate that is the displacement of a point along an axis.
+    /// Returns the coordinate that is the displacement of a point along an axis.
     pub fn of(&self, point: u32, axis: usize) -> usize {
         self.of[point as usize * S::D + axis] as usize
     }

@@ -11,54 +11,55 @@ use crate::mesh::{Mesh, MeshError};
 use cells::{Cut, cells, cut};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use grid::Place;
-pub use grid::{Coarsening, Grid, GridError};
+pub use grid::{BlockGrid, Coarsening, GridError};
 use std::collections::BTreeMap;
 
 /// Names of the sides of a block, at the low and the high end of each axis. In 2D `bottom` and
-/// `top` are those of y, in 3D those of z.
+/// `top` are normal to y, in 3D to z.
 const SIDES: [&[[&str; 2]]; 2] = [
     &[["left", "right"], ["bottom", "top"]],
     &[["left", "right"], ["front", "back"], ["bottom", "top"]],
 ];
 
-/// A block with the given coordinates of its points along each axis (m), which must rise. Its sides
-/// are the parts `left` and `right` (x), `bottom` and `top` (y in 2D, z in 3D), `front` and `back`
-/// (y in 3D).
+/// Creates a block with the given coordinates of its points along each axis (m), which must
+/// increase. Its sides are the parts `left` and `right` (x), `bottom` and `top` (y in 2D, z in 3D),
+/// `front` and `back` (y in 3D).
 ///
-/// In 2D each cell is cut in four by its centre, so that all points of a side are alike. In 3D it
-/// is cut along the paths from one corner to the opposite one (Kuhn's simplices), mirrored from
-/// cell to cell so that no direction of the cuts is preferred; points of a side then have more and
-/// fewer elements in turn.
+/// In 2D each cell is divided in four by its centre, so that all points of a side are equivalent.
+/// In 3D it is divided along the paths from one corner to the opposite one (Kuhn's simplices),
+/// mirrored from cell to cell so that no direction is preferred; points of a side then have
+/// alternately more and fewer elements.
 ///
 /// # Errors
-/// Fewer than two coordinates along an axis, or some that do not rise: elements without volume.
+/// Fails with fewer than two coordinates along an axis, or coordinates that do not increase:
+/// elements would have no volume.
 pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
     mapped_block(coordinates, |x| *x)
 }
 
-/// A [`block`] whose points are moved before its cells are cut.
+/// Creates a [`block`] whose points are moved before its cells are divided.
 ///
 /// # Errors
-/// Fewer than two coordinates along an axis, coordinates that do not rise, or points or elements
-/// that the map makes invalid.
+/// Fails with fewer than two coordinates along an axis, coordinates that do not increase, or points
+/// or elements that the map makes invalid.
 pub fn mapped_block<S: Space>(
     coordinates: &[Vec<f64>],
     map: impl Fn(&S::Vector) -> S::Vector,
 ) -> Result<Mesh<S>, MeshError> {
-    let grid = Grid::new(coordinates).map_err(|_| MeshError::Empty(S::D))?;
+    let grid = BlockGrid::new(coordinates).map_err(|_| MeshError::Empty(S::D))?;
     mapped_grid(&grid, map)
 }
 
-/// The cells of a grid of as many axes as the space, whose points are moved before the cells are
-/// cut; its sides are parts as those of a [`block`].
+/// Creates the mesh of a grid in the dimension of the space, whose points are moved before the
+/// cells are divided; its sides are parts like those of a [`block`].
 ///
-/// A cell with a point of a smaller one on its side is cut by its centre, in triangles or, in 3D,
-/// in tetrahedra on the triangles of its faces, which its neighbours share.
+/// A cell with a point of a smaller cell on its side is divided by its centre, in triangles or, in
+/// 3D, in tetrahedra on the triangles of its faces, which its neighbours share.
 ///
 /// # Errors
-/// Points or elements that the map makes invalid; a grid of another dimension.
+/// Fails if the map makes points or elements invalid, or for a grid of another dimension.
 pub fn mapped_grid<S: Space>(
-    grid: &Grid,
+    grid: &BlockGrid,
     map: impl Fn(&S::Vector) -> S::Vector,
 ) -> Result<Mesh<S>, MeshError> {
     let (d, up) = (S::D, grid.axis());
@@ -68,7 +69,7 @@ pub fn mapped_grid<S: Space>(
     let lines = grid.lines();
     let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
     let mut points = Vec::with_capacity(grid.points());
-    // The first point of each plane between rows, and how far the next along each axis is.
+    // First point of each plane between rows, and index offset to the next point along each axis.
     let mut planes: Vec<(usize, Place)> = Vec::with_capacity(grid.rows() + 1);
     for k in 0..=grid.rows() {
         let stops = grid.plane(k);
@@ -144,15 +145,15 @@ fn name_sides(
     }
 }
 
-/// Coordinates from `from` to `to` (m) in `cells` equal parts.
+/// Returns coordinates from `from` to `to` (m) in `cells` equal parts.
 pub fn even(from: f64, to: f64, cells: usize) -> Vec<f64> {
     (0..=cells)
         .map(|k| from + (to - from) * (k as f64 / cells as f64))
         .collect()
 }
 
-/// Coordinates from `from` to `to` (m) whose parts have the length `first` at `from` and grow by at
-/// most the ratio `growth` from one to the next. The lengths are scaled to end at `to`.
+/// Returns coordinates from `from` to `to` (m) whose parts have the length `first` at `from` and
+/// grow by at most the ratio `growth` from one to the next. The lengths are scaled to end at `to`.
 pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Vec<f64> {
     let (length, mut part) = ((to - from).abs(), first);
     let mut sums = vec![0.0];

@@ -1,4 +1,4 @@
-//! Elements in large strain or rotation: what they do over a step, and their tangent.
+//! Elements in large strain or rotation: their forces over a step, and their tangent.
 //!
 //! With the gradients F and F+ of the motion at the start and at the end of a step, the forces of
 //! the step are those of
@@ -8,15 +8,15 @@
 //! F_theta = (1 - theta) F + theta F+,   C_theta = (1 - theta) F^T F + theta F+^T F+
 //! ```
 //!
-//! on the nodes f_a = V P g_a. The strain is averaged, not the place: a rotation over the step
-//! strains nothing, whatever its angle, where F_theta^T F_theta would shrink by a factor cos^2 of
+//! on the nodes f_a = V P g_a. The strain is averaged, not the position: a rotation over the step
+//! causes no strain, whatever its angle, where F_theta^T F_theta would shrink by a factor cos^2 of
 //! half the angle. At theta = 1/2 the moment of these forces about any point is zero at the middle
-//! of the step, so that angular momentum is kept, and their work is that of S along the change of
-//! C.
+//! of the step, so that angular momentum is conserved, and their work is that of S along the change
+//! of C.
 //!
-//! The tangent is that of P with the strain's own derivative taken at F_theta in place of F+, which
-//! makes it symmetric. At theta = 1 it is the exact tangent, K_t = df/dq; otherwise it is off by
-//! about half of (F+ - F), and iterations converge by that factor.
+//! The tangent is that of P with the derivative of the strain evaluated at F_theta in place of F+,
+//! which makes it symmetric. At theta = 1 it is the exact tangent, K_t = df/dq; otherwise its error
+//! is about half of (F+ - F), and iterations converge by that factor.
 //!
 //! Sources: J. C. Simo and N. Tarnow, "The discrete energy-momentum method", Z. Angew. Math. Phys.
 //! 43 (1992); J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis",
@@ -33,14 +33,14 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use std::sync::OnceLock;
 
-/// A step from coordinates to others (m).
+/// Motion of a step from some coordinates to others (m).
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch<'a> {
-    /// Coordinates at its start.
+    /// Coordinates at the start of the step.
     pub start: &'a [f64],
-    /// Coordinates at its end.
+    /// Coordinates at the end of the step.
     pub end: &'a [f64],
-    /// Its length (s).
+    /// Length of the step (s).
     pub h: f64,
     /// Theta.
     pub theta: f64,
@@ -51,11 +51,11 @@ pub struct Stretch<'a> {
 /// Internal forces of a step on each coordinate (N; N/m in 2D).
 #[derive(Clone, Debug, Default)]
 pub struct Forces {
-    /// Of elasticity.
+    /// Forces of elasticity.
     pub elastic: Vec<f64>,
-    /// Of damping by stiffness.
+    /// Forces of damping by stiffness.
     pub viscous: Vec<f64>,
-    /// Sum of the sizes of what elements contribute: the measure of what is small.
+    /// Sum of the magnitudes of the contributions of elements: the scale for small forces.
     pub size: Vec<f64>,
 }
 
@@ -69,13 +69,13 @@ pub struct LargeStrain<S: Space> {
     simplices: Vec<Simplex<S>>,
     /// Coordinates of the corners of each element, axis by axis.
     coordinates: Vec<u32>,
-    /// Where their entries stand in the stiffness, row by row.
+    /// Indices of the entries of each element in the stiffness, row by row.
     slots: Vec<u32>,
     /// Pattern of A, once known.
     pub pattern: OnceLock<Option<Pattern>>,
 }
 
-/// Most coordinates of an element.
+/// Largest number of coordinates of an element.
 const SIDE: usize = 3 * CORNERS;
 
 /// A matrix between the coordinates of an element.
@@ -83,7 +83,7 @@ type Block = [f64; SIDE * SIDE];
 
 /// An element over a step.
 struct Strained {
-    /// F_theta.
+    /// Gradient F_theta.
     gradient: Matrix3<f64>,
     response: Response,
     stress: Matrix3<f64>,
@@ -91,7 +91,7 @@ struct Strained {
 }
 
 impl<S: Space> LargeStrain<S> {
-    /// Of a mesh; none in small strain.
+    /// Creates the elements of a mesh; `None` in small strain.
     pub fn new(
         strain: Strain,
         material: &Elasticity,
@@ -130,7 +130,7 @@ impl<S: Space> LargeStrain<S> {
         Some(out)
     }
 
-    /// Coordinates of an element.
+    /// Returns the coordinates of an element.
     fn coordinates(&self, e: usize) -> &[u32] {
         let each = (S::D + 1) * S::D;
         &self.coordinates[e * each..(e + 1) * each]
@@ -142,7 +142,8 @@ impl<S: Space> LargeStrain<S> {
         let mut out = Matrix3::zeros();
         for (a, g) in self.simplices[e].gradients().iter().enumerate().skip(1) {
             for i in 0..S::D {
-                // Less that of the first corner: a translation leaves no rounding.
+                // Displacements are relative to the first corner, so that a translation leaves no
+                // rounding.
                 let u = q[at[a * S::D + i] as usize] - q[at[i] as usize];
                 for j in 0..S::D {
                     out[(i, j)] += u * g[j];
@@ -170,7 +171,7 @@ impl<S: Space> LargeStrain<S> {
         })
     }
 
-    /// Hooke's stress of a strain.
+    /// Returns Hooke's stress of a strain.
     fn hooke(&self, e: &Matrix3<f64>) -> Matrix3<f64> {
         let (lambda, shear) = (self.material.lambda(), self.material.shear());
         Matrix3::identity() * (lambda * e.trace()) + e * (2.0 * shear)
@@ -205,9 +206,30 @@ impl<S: Space> LargeStrain<S> {
         out
     }
 
-    /// The tangent of a step, with that of damping over h theta, in the pattern of the stiffness.
-    /// With `positive` what is negative of each element is left out.
-    pub fn tangent(&self, step: &Stretch, stiffness: &Sparse, positive: bool) -> Sparse {
+    /// Returns the tangent of a step, including that of damping over h theta, in the pattern of the
+    /// stiffness.
+    pub fn tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
+        self.sum_of_elements(step, stiffness, |_, _| {})
+    }
+
+    /// Returns the tangent without the negative part of each element.
+    pub fn positive_tangent(&self, step: &Stretch, stiffness: &Sparse) -> Sparse {
+        self.sum_of_elements(step, stiffness, |own, side| {
+            let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
+            modes.eigenvalues.apply(|l| *l = l.max(0.0));
+            // The matrix is symmetric: rows are columns.
+            own.copy_from_slice(modes.recompose().as_slice());
+        })
+    }
+
+    /// Returns the sum of the tangents of the elements, each changed by `edit`, which receives its
+    /// numbers and the number of its rows.
+    fn sum_of_elements(
+        &self,
+        step: &Stretch,
+        stiffness: &Sparse,
+        edit: impl Fn(&mut [f64], usize),
+    ) -> Sparse {
         let mut values = vec![0.0; stiffness.values().len()];
         let side = (S::D + 1) * S::D;
         for (e, simplex) in self.simplices.iter().enumerate() {
@@ -216,12 +238,7 @@ impl<S: Space> LargeStrain<S> {
             };
             let mut own = self.element_tangent(simplex, &at, step);
             let own = &mut own[..side * side];
-            if positive {
-                let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
-                modes.eigenvalues.apply(|l| *l = l.max(0.0));
-                // Symmetric: rows are columns.
-                own.copy_from_slice(modes.recompose().as_slice());
-            }
+            edit(own, side);
             let slots = &self.slots[e * side * side..(e + 1) * side * side];
             for (value, slot) in own.iter().zip(slots) {
                 values[*slot as usize] += value;
@@ -252,7 +269,7 @@ impl<S: Space> LargeStrain<S> {
                     change += self.hooke(&(dc * (0.5 * rate)));
                 }
                 let material = at.gradient * change;
-                // One triangle: the other differs by rounding.
+                // One triangle is computed: the other differs by rounding.
                 let column = b * S::D + k;
                 for (a, arm) in gradients.iter().enumerate().take(b + 1) {
                     let mut force = material * arm;
@@ -271,7 +288,8 @@ impl<S: Space> LargeStrain<S> {
         out
     }
 
-    /// Energy stored at coordinates with free strains of the elements, or none (J; J/m in 2D).
+    /// Returns the energy stored at coordinates with free strains of the elements, or none (J; J/m
+    /// in 2D).
     pub fn energy(&self, q: &[f64], free_strain: &[f64]) -> f64 {
         let free = |e: usize| free_strain.get(e).copied().unwrap_or(0.0);
         (0..self.simplices.len())
@@ -279,15 +297,15 @@ impl<S: Space> LargeStrain<S> {
             .sum()
     }
 
-    /// Energy stored in an element (J; J/m in 2D).
+    /// Returns the energy stored in an element (J; J/m in 2D).
     pub fn energy_of(&self, e: usize, q: &[f64], free_strain: f64) -> f64 {
         let c = less_one(&self.gradient(e, q));
         let response = Response::new(self.strain, &self.material, &c, free_strain);
         response.map_or(0.0, |r| r.energy() * self.simplices[e].volume)
     }
 
-    /// Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain with that
-    /// along the depth.
+    /// Returns the Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain
+    /// including the stress along the depth.
     pub fn stresses(&self, q: &[f64], free_strain: &[f64]) -> Vec<Symmetric> {
         let one = |e: usize| {
             let h = self.gradient(e, q);
@@ -308,10 +326,10 @@ impl<S: Space> LargeStrain<S> {
         (0..self.simplices.len()).map(one).collect()
     }
 
-    /// The place without load of an element that is inverted at coordinates, J <= 0.
+    /// Returns the unloaded position of an element that is inverted at coordinates, J <= 0.
     pub fn inverted(&self, mesh: &Mesh<S>, q: &[f64]) -> Option<String> {
         let volume = |e: usize| (Matrix3::identity() + self.gradient(e, q)).determinant();
-        // Also where it is not a number.
+        // This also finds NaN.
         let e = (0..self.simplices.len()).find(|e| volume(*e).is_nan() || volume(*e) <= 0.0)?;
         let points = mesh.elements().nth(e)?;
         let corners = mesh.corners(points);
@@ -320,7 +338,7 @@ impl<S: Space> LargeStrain<S> {
     }
 }
 
-/// C - 1 of a gradient of the displacement.
+/// Returns C - 1 for a gradient of the displacement.
 fn less_one(h: &Matrix3<f64>) -> Matrix3<f64> {
     h + h.transpose() + h.transpose() * h
 }

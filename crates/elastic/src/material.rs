@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Strain or stress by its components: xx, yy, zz, yz, xz, xy; shear strains are those of the
-/// tensor, half of the engineering ones.
+/// Components of a strain or stress: xx, yy, zz, yz, xz, xy; shear strains are those of the tensor,
+/// half of the engineering ones.
 pub type Symmetric = [f64; 6];
 
 /// A homogeneous isotropic linear elastic material. In two dimensions the strain is plane.
@@ -18,7 +18,7 @@ pub struct Elasticity {
     pub density: f64,
 }
 
-/// Why numbers are not those of an elastic material.
+/// Reason why numbers are not those of an elastic material.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ElasticityError {
     /// Young's modulus is not positive.
@@ -38,7 +38,7 @@ impl Elasticity {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is out of range.
+    /// Returns the first number that is out of range.
     pub fn check(&self) -> Result<(), ElasticityError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !positive(self.young) {
@@ -53,24 +53,24 @@ impl Elasticity {
         Ok(())
     }
 
-    /// First Lamé constant, E nu/((1 + nu)(1 - 2 nu)) (Pa).
+    /// Returns the first Lamé constant, E nu/((1 + nu)(1 - 2 nu)) (Pa).
     pub fn lambda(&self) -> f64 {
         let nu = self.poisson;
         self.young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
     }
 
-    /// Shear modulus G = E/(2 (1 + nu)) (Pa).
+    /// Returns the shear modulus G = E/(2 (1 + nu)) (Pa).
     pub fn shear(&self) -> f64 {
         0.5 * self.young / (1.0 + self.poisson)
     }
 
-    /// Three times the bulk modulus, 3 lambda + 2 G (Pa): the pressure of a free strain that is
-    /// held, over that strain.
+    /// Returns three times the bulk modulus, 3 lambda + 2 G (Pa): the pressure of a constrained
+    /// free strain, divided by that strain.
     pub fn thermal_modulus(&self) -> f64 {
         3.0 * self.lambda() + 2.0 * self.shear()
     }
 
-    /// Stress of a strain (Pa), lambda tr(epsilon) 1 + 2 G epsilon.
+    /// Returns the stress of a strain (Pa), lambda tr(epsilon) 1 + 2 G epsilon.
     pub fn stress(&self, strain: &Symmetric) -> Symmetric {
         let pressure = self.lambda() * (strain[0] + strain[1] + strain[2]);
         let mut stress = strain.map(|e| 2.0 * self.shear() * e);
@@ -78,7 +78,7 @@ impl Elasticity {
         stress
     }
 
-    /// Energy of a strain per volume (Pa), sigma : epsilon/2.
+    /// Returns the energy of a strain per volume (Pa), sigma : epsilon/2.
     pub fn energy(&self, strain: &Symmetric) -> f64 {
         let stress = self.stress(strain);
         let mut each = stress.iter().zip(strain).map(|(s, e)| s * e);
@@ -86,14 +86,15 @@ impl Elasticity {
         0.5 * normal + each.sum::<f64>()
     }
 
-    /// A strain less a free strain along each axis.
+    /// Returns a strain less a free strain along each axis.
     pub fn less(strain: &Symmetric, free: f64) -> Symmetric {
         let mut out = *strain;
         out[..3].iter_mut().for_each(|e| *e -= free);
         out
     }
 
-    /// E/(1 - nu^2) (Pa): two bodies in contact have 1/E* as the sum of the inverses of theirs.
+    /// Returns E/(1 - nu^2) (Pa): two bodies in contact have 1/E* as the sum of the inverses of
+    /// their moduli.
     pub fn plane_strain(&self) -> f64 {
         self.young / (1.0 - self.poisson * self.poisson)
     }

@@ -20,8 +20,8 @@ pub struct Sparse {
 }
 
 impl Sparse {
-    /// Builds the matrix from entries (row, column, value); entries at one place are added in their
-    /// order.
+    /// Builds the matrix from entries (row, column, value); entries with the same indices are added
+    /// in their order.
     pub fn from_entries(rows: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Self {
         let mut by_row: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); rows];
         for (row, column, value) in entries {
@@ -46,18 +46,18 @@ impl Sparse {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Its pattern for `faer`; rows of a symmetric matrix are its columns.
+    /// Returns the pattern for `faer`; rows of a symmetric matrix are its columns.
     fn pattern(&self) -> SymbolicSparseColMatRef<'_, u32> {
         let n = self.rows();
         SymbolicSparseColMatRef::new_checked(n, n, &self.starts, None, &self.columns)
     }
 
-    /// Where the entries of a row are.
+    /// Returns the range of the entries of a row.
     fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.starts[row] as usize..self.starts[row + 1] as usize
     }
 
-    /// Entries of a row, by column.
+    /// Iterates over the entries of a row, by column.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.range(row);
         let columns = self.columns[range.clone()].iter().map(|c| *c as usize);
@@ -69,7 +69,7 @@ impl Sparse {
         let row = |r: usize| {
             let range = self.range(r);
             let (columns, values) = (&self.columns[range.clone()], &self.values[range]);
-            // Two sums, so that one does not wait for the other.
+            // Two sums avoid that one addition waits for the previous one.
             let mut sums = [0.0; 2];
             let (pairs, of) = (columns.chunks_exact(2), values.chunks_exact(2));
             if let ([c], [a]) = (pairs.remainder(), of.remainder()) {
@@ -84,13 +84,13 @@ impl Sparse {
         (0..self.rows()).map(row).collect()
     }
 
-    /// x . A x.
+    /// Returns x . A x.
     pub fn form(&self, x: &[f64]) -> f64 {
         let product = self.times(x);
         product.iter().zip(x).map(|(a, b)| a * b).sum()
     }
 
-    /// Where an entry stands among the values; none outside of the pattern.
+    /// Returns the index of an entry among the values; `None` outside the pattern.
     pub fn slot(&self, row: usize, column: usize) -> Option<usize> {
         let range = self.range(row);
         let within = self.columns[range.clone()].binary_search(&(column as u32));
@@ -98,7 +98,7 @@ impl Sparse {
         Some(range.start + within)
     }
 
-    /// A matrix of the same pattern, with as many values as [`Self::values`] has.
+    /// Returns a matrix of the same pattern with other values, as many as [`Self::values`] has.
     pub fn with_values(&self, values: Vec<f64>) -> Self {
         Self {
             starts: self.starts.clone(),
@@ -107,12 +107,12 @@ impl Sparse {
         }
     }
 
-    /// All entries, row by row.
+    /// Returns all entries, row by row.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Its memory (bytes).
+    /// Returns its memory (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&self.starts[..])
             + size_of_val(&self.columns[..])
@@ -155,11 +155,11 @@ pub struct Factor {
     values: Vec<f64>,
 }
 
-/// The pattern of a matrix with the order of elimination, for factors of several matrices that
-/// share it.
+/// The pattern of a matrix with the order of elimination, shared by the factors of several
+/// matrices.
 #[derive(Clone, Debug, Default)]
 pub struct Pattern {
-    /// None without rows.
+    /// Order of elimination; `None` without rows.
     order: Option<Arc<Order>>,
 }
 
@@ -167,8 +167,8 @@ pub struct Pattern {
 #[derive(Debug)]
 struct Order {
     symbolic: SymbolicCholesky<u32>,
-    /// How solutions walk a factor whose columns share few rows; `None` for one that `faer` keeps
-    /// as dense blocks.
+    /// Panels by which solutions traverse a factor whose columns share few rows; `None` for a
+    /// factor that `faer` keeps as dense blocks.
     panels: Option<Panels>,
 }
 
@@ -185,7 +185,7 @@ impl Order {
         Some(Self { symbolic, panels })
     }
 
-    /// Where rows are in the order of elimination: the row of the matrix by the row of the factor.
+    /// Row of the matrix for each row of the factor, in the order of elimination.
     fn rows(&self) -> Option<&[u32]> {
         Some(self.symbolic.perm()?.arrays().0)
     }
@@ -237,7 +237,7 @@ impl Pattern {
     }
 }
 
-/// What a factor takes, known without factorising.
+/// Size of a factor, known without factorising.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FactorSize {
     /// Memory of its values and of its pattern (bytes).
@@ -249,8 +249,8 @@ pub struct FactorSize {
 }
 
 impl FactorSize {
-    /// Counts for a matrix, in the order of elimination that [`Pattern::of`] takes; `None` if it
-    /// has too many entries.
+    /// Computes the size for a matrix, with the order of elimination that [`Pattern::of`] uses;
+    /// `None` if it has too many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
         if a.rows() == 0 {
             return Some(Self::default());
@@ -275,14 +275,14 @@ impl FactorSize {
                         factorise += ((c as usize + below) as f64).powi(2);
                     }
                 }
-                // Rows of all blocks, the blocks of all rows, and for each block where it begins
-                // and ends.
+                // These are the rows of all blocks, the blocks of all rows, and start and end of
+                // each block.
                 let indices = 2 * blocks.row_idx().len() + 6 * blocks.n_supernodes();
                 values * size_of::<f64>() + indices * size_of::<u32>()
             }
         };
         Some(Self {
-            // And the order of elimination with its inverse.
+            // The order of elimination and its inverse are added.
             bytes: bytes + 2 * a.rows() * size_of::<u32>(),
             factorise,
             solve: 4.0 * values as f64,
@@ -296,7 +296,7 @@ impl Factor {
         Pattern::of(a)?.factor(a)
     }
 
-    /// x = A^-1 x, for as many columns as `x` holds one after the other.
+    /// Computes x = A^-1 x for a number of columns that `x` holds one after the other.
     pub fn solve(&self, x: &mut [f64], columns: usize) {
         let Some(order) = &self.pattern.order else {
             return;
@@ -332,8 +332,8 @@ impl Factor {
 mod tests {
     use super::*;
 
-    /// The Laplacian of a grid with several unknowns at each point that are coupled, as those of a
-    /// mesh, plus a diagonal.
+    /// Returns the Laplacian of a grid with several coupled unknowns at each point, as for a mesh,
+    /// plus a diagonal.
     fn coupled_grid(cells: [usize; 3], unknowns: usize) -> Sparse {
         let [nx, ny, nz] = cells;
         let at = |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;
@@ -365,7 +365,7 @@ mod tests {
         Sparse::from_entries(n, entries).leading(n, 1.0, &vec![0.05; n])
     }
 
-    /// Panels of one to four columns solve what the matrix says, in the plane and in space.
+    /// Panels of one to four columns give the solution of the matrix, in the plane and in space.
     #[test]
     fn factors_of_meshes_solve_by_panels_of_all_widths() {
         let mut widths = [0; 5];
@@ -393,7 +393,7 @@ mod tests {
 
     #[test]
     fn factors_solve() {
-        // A chain of springs, and a second one without mass at an end.
+        // The matrix is that of a chain of springs, and of a second one without mass at an end.
         let n = 200;
         let entries = (0..n - 1).flat_map(|k| {
             [
@@ -414,7 +414,7 @@ mod tests {
         for (k, x) in x.iter().enumerate() {
             assert!((b[k] - x).abs() < 1e-12 && (b[n + k] - 1.0).abs() < 1e-12);
         }
-        // Free at both ends it is singular; without the last node it is not.
+        // Free at both ends the matrix is singular; without the last node it is not.
         let singular = k.leading(n, 1.0, &vec![-1e-9; n]);
         assert!(Factor::new(&singular).is_none());
         assert!(Factor::new(&k.leading(n - 1, 1.0, &vec![0.0; n])).is_some());

@@ -20,10 +20,10 @@ pub struct Mesh<S: Space> {
     parts: BTreeMap<String, Vec<u32>>,
 }
 
-/// Why points and elements are no mesh of a body.
+/// Reason why points and elements do not form the mesh of a body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// No elements.
+    /// There are no elements.
     #[error(
         "the mesh has no elements of the dimension of the scene, {0}; in 2D it needs triangles, in 3D tetrahedra"
     )]
@@ -31,7 +31,7 @@ pub enum MeshError {
     /// A coordinate is not finite.
     #[error("point {0} of the mesh is not finite")]
     NotFinite(usize),
-    /// A corner that does not exist.
+    /// A corner does not exist.
     #[error("element {0} of the mesh has point {1}, which does not exist")]
     NoPoint(usize, u32),
     /// A point without an element.
@@ -45,12 +45,12 @@ pub enum MeshError {
     /// An element without volume.
     #[error("element {0} of the mesh, at {1} m, has no volume; make the mesh better there")]
     Flat(usize, String),
-    /// More than two elements at a facet.
+    /// A facet has more than two elements.
     #[error(
         "more than two elements share the facet at {0} m: elements of the mesh overlap there or are given twice"
     )]
     Shared(String),
-    /// More than one piece.
+    /// The mesh has more than one piece.
     #[error(
         "the mesh is in {0} pieces that no element connects, one of them with the point at {1} m; give each body a mesh of its own, or merge the points where the pieces meet"
     )]
@@ -67,8 +67,8 @@ pub(crate) fn place<V: VectorLike>(at: &V) -> String {
 }
 
 impl<S: Space> Mesh<S> {
-    /// Of points (m), the D + 1 points of each element one after the other, and named parts of the
-    /// boundary by the D points of each of their facets, in any order.
+    /// Creates a mesh from points (m), the D + 1 points of each element one after the other, and
+    /// named parts of the boundary by the D points of each of their facets, in any order.
     ///
     /// # Errors
     /// The mesh has no elements, or one of the defects that [`MeshError`] lists.
@@ -130,12 +130,12 @@ impl<S: Space> Mesh<S> {
         Ok(())
     }
 
-    /// Points without load (m).
+    /// Returns the points without load (m).
     pub fn points(&self) -> &[S::Vector] {
         &self.points
     }
 
-    /// The D + 1 points of each element.
+    /// Iterates over the D + 1 points of each element.
     pub fn elements(&self) -> impl ExactSizeIterator<Item = &[u32]> {
         self.elements.chunks_exact(S::D + 1)
     }
@@ -150,17 +150,17 @@ impl<S: Space> Mesh<S> {
         &self.boundary[f * S::D..(f + 1) * S::D]
     }
 
-    /// Names of the parts of the boundary.
+    /// Iterates over the names of the parts of the boundary.
     pub fn part_names(&self) -> impl Iterator<Item = &str> {
         self.parts.keys().map(String::as_str)
     }
 
-    /// Facets of a part of the boundary, in increasing order.
+    /// Returns the facets of a part of the boundary, in increasing order.
     pub fn part(&self, name: &str) -> Option<&[u32]> {
         self.parts.get(name).map(Vec::as_slice)
     }
 
-    /// Points of a part of the boundary, in increasing order.
+    /// Returns the points of a part of the boundary, in increasing order.
     pub fn points_of(&self, name: &str) -> Option<Vec<u32>> {
         let facets = self.part(name)?.iter();
         let mut points: Vec<u32> = facets
@@ -171,12 +171,12 @@ impl<S: Space> Mesh<S> {
         Some(points)
     }
 
-    /// Corners of an element or a facet (m).
+    /// Returns the corners of an element or a facet (m).
     pub fn corners(&self, points: &[u32]) -> Vec<S::Vector> {
         points.iter().map(|p| self.points[*p as usize]).collect()
     }
 
-    /// Area of a facet of the boundary (m^2; length in 2D, m).
+    /// Returns the area of a facet of the boundary (m^2; length in 2D, m).
     pub fn facet_area(&self, f: usize) -> f64 {
         let corners = self.corners(self.facet(f));
         let edge = corners[1] - corners[0];
@@ -188,8 +188,8 @@ impl<S: Space> Mesh<S> {
         0.5 * product.max(0.0).sqrt()
     }
 
-    /// Length or area of a part of the boundary that belongs to each point of the mesh: a D-th of
-    /// its facets there (m; m^2).
+    /// Returns the tributary length or area of each point of the mesh on a part of the boundary: a
+    /// D-th of its facets there (m; m^2).
     pub fn tributary(&self, part: &str) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for f in self.part(part).unwrap_or_default() {
@@ -266,19 +266,19 @@ fn check_connected<S: Space>(points: &[S::Vector], elements: &[u32]) -> Result<(
     }
 }
 
-/// The facets that one element has, in their order in the elements.
+/// Returns the facets that belong to one element only, in the order of the elements.
 fn boundary<S: Space>(points: &[S::Vector], elements: &[u32]) -> Result<Vec<u32>, MeshError> {
     let corners = S::D + 1;
     let mut count: HashMap<Vec<u32>, u32> = HashMap::new();
-    // The facet opposite to each corner. An element in order has its facets seen from outside after
-    // an even permutation.
+    // The facet opposite to each corner follows. The facets of a positively oriented element are
+    // anticlockwise seen from outside after an even permutation.
     let facet = |element: &[u32], opposite: usize| {
         let mut facet: Vec<u32> = (0..corners)
             .filter(|k| *k != opposite)
             .map(|k| element[k])
             .collect();
-        // In 2D the edges are (1, 2), (0, 2), (0, 1): the second is turned. In 3D those opposite to
-        // corners 1 and 3 are.
+        // In 2D the edges are (1, 2), (0, 2), (0, 1), of which the second is reversed. In 3D the
+        // facets opposite to corners 1 and 3 are reversed.
         if (S::D == 2 && opposite == 1) || (S::D == 3 && opposite % 2 == 1) {
             facet.swap(0, 1);
         }
@@ -334,13 +334,13 @@ mod tests {
                 a.perp(&b)
             })
             .sum();
-        // Green: twice the area where it is on the left.
+        // By Green's formula this is twice the area if the body is on the left.
         assert_eq!(turn, 2.0);
         assert_eq!(mesh.points_of("top").unwrap(), [2, 3]);
         assert_eq!(mesh.tributary("top"), [0.0, 0.0, 0.5, 0.5]);
     }
 
-    /// The volume by Gauss, from facets that are seen from outside.
+    /// The volume follows by Gauss's formula from facets that are anticlockwise seen from outside.
     #[test]
     fn facets_in_space_are_seen_from_outside() {
         let points = [

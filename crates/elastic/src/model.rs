@@ -1,4 +1,4 @@
-//! What of a body does not change: its mesh and what is assembled and factorised from it.
+//! Constant data of a body: its mesh, and the matrices assembled and factorised from it.
 
 use crate::element::Simplex;
 use crate::error::BodyError;
@@ -15,24 +15,24 @@ use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, Nodes, System
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-/// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column
-/// has as many numbers, 160 kB.
+/// Largest number of coordinates of a surface whose compliance is kept, as far as they were
+/// touched: a column has as many numbers, 160 kB.
 const MAX_SURFACE: usize = 20_000;
 
-/// What is formed for the length of a step.
+/// Data that depend on the length of a step.
 #[derive(Clone, Debug)]
-pub struct Formed<S: Space> {
-    /// h and theta.
+pub struct StepFactor<S: Space> {
+    /// Values of h and theta.
     pub of: [f64; 2],
-    /// None where A is not positive definite in double precision: velocities are then not finite,
-    /// and the step ends with an error.
+    /// Factor of A; `None` where A is not positive definite in double precision: velocities are
+    /// then not finite, and the step ends with an error.
     pub factor: Option<Factor>,
     /// Compliance of the points of the surface, column by column as they are touched; `None` where
     /// there are too many.
     pub surface: Option<Arc<Compliance<S>>>,
 }
 
-impl<S: Space> Formed<S> {
+impl<S: Space> StepFactor<S> {
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
             Some(factor) => factor.solve(x, 1),
@@ -41,24 +41,24 @@ impl<S: Space> Formed<S> {
     }
 }
 
-/// What does not change, shared by copies.
+/// Constant data, shared by copies.
 #[derive(Debug)]
-pub struct Model<S: Space> {
+pub struct BodyModel<S: Space> {
     pub name: String,
     pub mesh: Mesh<S>,
     pub material: Elasticity,
     pub damping: Rayleigh,
     pub freedoms: Freedoms<S>,
-    /// What follows rotations; none in small strain.
+    /// Elements that follow rotations; `None` in small strain.
     pub large: Option<LargeStrain<S>>,
     pub mass: Vec<f64>,
     pub stiffness: Sparse,
     pub contactors: Vec<Contactor>,
-    /// The part that touches.
+    /// The contact surface.
     pub part: Option<SurfacePart>,
 }
 
-impl<S: Space> Model<S> {
+impl<S: Space> BodyModel<S> {
     /// The entries of a vector of coordinates at a point.
     pub fn of(&self, values: &[f64], point: u32) -> S::Vector {
         let mut out = S::Vector::zero();
@@ -68,8 +68,8 @@ impl<S: Space> Model<S> {
         out
     }
 
-    /// Displacements less their mean along each axis, which strains nothing and would leave its
-    /// rounding in K q.
+    /// Returns displacements less their mean along each axis, which causes no strain and would
+    /// leave its rounding in K q.
     pub fn strained(&self, q: &[f64]) -> Vec<f64> {
         let (mut sum, mut count) = ([0.0; 3], [0.0; 3]);
         for (q, axis) in q.iter().zip(&self.freedoms.axis) {
@@ -84,7 +84,7 @@ impl<S: Space> Model<S> {
             .collect()
     }
 
-    /// C v in small strain; nothing without damping.
+    /// Returns C v in small strain; empty without damping.
     pub fn viscous(&self, v: &[f64]) -> Vec<f64> {
         let Rayleigh { mass, stiffness } = self.damping;
         let mut viscous = if stiffness > 0.0 {
@@ -106,7 +106,7 @@ impl<S: Space> Model<S> {
         }
     }
 
-    pub fn form(&self, h: f64, theta: f64) -> Formed<S> {
+    pub fn form(&self, h: f64, theta: f64) -> StepFactor<S> {
         let step = h * theta;
         let free = self.freedoms.free;
         let inertia = 1.0 + step * self.damping.mass;
@@ -116,7 +116,7 @@ impl<S: Space> Model<S> {
         self.formed([h, theta], Factor::new(&a))
     }
 
-    /// What its solutions need.
+    /// Returns memory and cost of its solutions.
     pub fn size(&self) -> SystemSize {
         let free = self.freedoms.free;
         let a = self.stiffness.leading(free, 1.0, &self.mass);
@@ -131,7 +131,7 @@ impl<S: Space> Model<S> {
         let large = self.large.is_some();
         SystemSize {
             unknowns: free,
-            // In large strain the tangent is kept beside the stiffness.
+            // In large strain the tangent is kept in addition to the stiffness.
             matrix: self.stiffness.bytes() * (1 + usize::from(large)),
             factor: factor.bytes,
             surface: points * column,
@@ -141,21 +141,21 @@ impl<S: Space> Model<S> {
         }
     }
 
-    /// With a factor of A.
-    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> Formed<S> {
+    /// Creates the data of a step with a factor of A.
+    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> StepFactor<S> {
         let points = self.part.as_ref().map(|part| &part.points);
         let points = points.filter(|points| S::D * points.len() <= MAX_SURFACE);
         let surface = points.map(|points| Arc::new(Compliance::new(points.clone())));
-        Formed {
+        StepFactor {
             of,
             factor,
             surface,
         }
     }
 
-    /// The column of the compliance of a surface point, of which the place in the list of the kept
-    /// compliance is given: of all surface points for an impulse on it.
-    pub fn column<'a>(&self, formed: &'a Formed<S>, at: usize) -> &'a [f64] {
+    /// Computes the column of the compliance for a surface point, by its index in the list of the
+    /// kept compliance: the response of all surface points to an impulse on it.
+    pub fn column<'a>(&self, formed: &'a StepFactor<S>, at: usize) -> &'a [f64] {
         let Some(surface) = &formed.surface else {
             return &[];
         };
@@ -178,7 +178,7 @@ impl<S: Space> Model<S> {
     }
 }
 
-/// The part of a mesh that touches, and its contactors.
+/// Returns the contact surface of a mesh, and its contactors.
 pub fn contactors<S: Space>(
     mesh: &Mesh<S>,
     touching: Touching,
@@ -219,7 +219,7 @@ pub fn contactors<S: Space>(
     }
 }
 
-/// The lumped mass of each coordinate (kg), and the stiffness.
+/// Returns the lumped mass of each coordinate (kg), and the stiffness.
 pub fn assemble<S: Space>(
     mesh: &Mesh<S>,
     material: &Elasticity,

@@ -16,7 +16,7 @@ pub struct NeoHookean {
     lambda: f64,
     shear: f64,
     c_less_one: Matrix3<f64>,
-    /// C^-1.
+    /// Inverse of C.
     inverse: Matrix3<f64>,
     /// J^2 - 1.
     swelling: f64,
@@ -25,7 +25,7 @@ pub struct NeoHookean {
 }
 
 impl NeoHookean {
-    /// At C - 1.
+    /// Evaluates the material at C - 1.
     pub fn new(material: &Elasticity, c_less_one: &Matrix3<f64>) -> Self {
         let c = Matrix3::identity() + c_less_one;
         let swelling = c_less_one.trace() + second(c_less_one) + c_less_one.determinant();
@@ -41,23 +41,23 @@ impl NeoHookean {
         }
     }
 
-    /// W (Pa).
+    /// Returns W (Pa).
     pub fn energy(&self) -> f64 {
-        // (I1 - 3)/2 - ln J = (J^2 - 1 - ln J^2)/2 less what of J^2 - 1 is not linear in C: no
-        // difference of large numbers.
+        // (I1 - 3)/2 - ln J = (J^2 - 1 - ln J^2)/2 less the part of J^2 - 1 that is not linear in
+        // C: no difference of large numbers occurs.
         let g = &self.c_less_one;
         let shape = 0.5 * (less_log(self.swelling) - second(g) - g.determinant());
         self.shear * shape + 0.5 * self.lambda * self.log * self.log
     }
 
-    /// S (Pa).
+    /// Returns S (Pa).
     pub fn stress(&self) -> Matrix3<f64> {
         let s =
             self.inverse * self.c_less_one * self.shear + self.inverse * (self.lambda * self.log);
         (s + s.transpose()) * 0.5
     }
 
-    /// The change of S (Pa) by one of C.
+    /// Returns the change of S (Pa) by a change of C.
     pub fn change(&self, dc: &Matrix3<f64>) -> Matrix3<f64> {
         let inner = self.inverse * dc;
         let trace = inner.trace();
@@ -72,12 +72,12 @@ fn second(a: &Matrix3<f64>) -> f64 {
     minor(0, 1) + minor(0, 2) + minor(1, 2)
 }
 
-/// x - ln(1 + x), also where the two are nearly equal.
+/// Returns x - ln(1 + x), also where the two are nearly equal.
 fn less_log(x: f64) -> f64 {
     if x.abs() > 0.02 {
         return x - x.ln_1p();
     }
-    // x^2/2 - x^3/3 + ...
+    // The series is x^2/2 - x^3/3 + ...
     (2..12)
         .rev()
         .fold(0.0, |sum, k| 1.0 / f64::from(k) - x * sum)

@@ -8,11 +8,11 @@
 //! ```
 //!
 //! until M (v_k+1 - v) = h (F - C v_theta - f_k+1) + P^T p. Contacts obey their laws in each
-//! iteration, with its compliance.
+//! iteration, with the compliance of that iteration.
 //!
-//! An iterate in which an element would turn inside out is drawn back towards the one before. Where
-//! A_k is not positive definite, what is negative of the tangent of each element is left out; that
-//! slows the iterations, and changes nothing of what they lead to.
+//! An iterate in which an element would be inverted is moved back towards the previous one. Where
+//! A_k is not positive definite, the negative part of the tangent of each element is left out; this
+//! slows the iterations, but does not change their limit.
 //!
 //! Source: P. Wriggers, "Computational Contact Mechanics", 2nd edition (2006), chapters 2 and 10.
 
@@ -23,45 +23,46 @@ use fretwork_core::bodies::SystemStep;
 use fretwork_core::geometry::space::Space;
 use std::sync::Arc;
 
-/// Imbalance at which the iterations end, as a share of the forces that balance.
+/// Imbalance at which the iterations end, relative to the balanced forces.
 const TOLERANCE: f64 = 1e-10;
-/// What rounding leaves of forces, as a share of stiffness times displacement.
+/// Rounding error of forces, relative to stiffness times displacement.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// Most iterations of a step.
+/// Largest number of iterations of a step.
 const MAX_ITERATIONS: u32 = 50;
-/// Most times that an iterate is drawn back by half.
+/// Largest number of times that an iterate is moved back by half.
 const MAX_HALVINGS: u32 = 40;
 
 /// The iterations of a step.
 #[derive(Clone, Debug, Default)]
 pub struct Iterate {
-    /// Velocities that the step is linearised at, its internal forces there, and h^2 theta^2 K_t.
+    /// Velocities at which the step is linearised, its internal forces there, and h^2 theta^2 K_t.
     velocity: Vec<f64>,
     forces: Forces,
     tangent: Sparse,
-    /// Internal forces at the velocities that the body has now, where they are known.
+    /// Internal forces at the current velocities of the body, if computed.
     reached: Option<Forces>,
-    /// Linearisations in the step.
+    /// Number of linearisations in the step.
     count: u32,
-    /// Imbalance of the iterate before, and the element that last had iterates drawn back.
+    /// Imbalance of the previous iterate, and the last element because of which an iterate was
+    /// moved back.
     imbalance: f64,
     inverted: Option<String>,
 }
 
 impl Iterate {
-    /// The body has other velocities.
+    /// Discards the forces, since the body has other velocities.
     pub fn moved(&mut self) {
         self.reached = None;
     }
 
-    /// Linearisations in the step.
+    /// Returns the number of linearisations in the step.
     pub fn count(&self) -> u32 {
         self.count
     }
 }
 
 impl<S: Space> ElasticBody<S> {
-    /// Coordinates at the end of a step at final velocities.
+    /// Returns the coordinates at the end of a step with given final velocities.
     fn end_of(&self, step: &SystemStep<S>, velocity: &[f64]) -> Vec<f64> {
         let [q, v] = &self.start;
         let SystemStep { h, theta, .. } = *step;
@@ -70,7 +71,7 @@ impl<S: Space> ElasticBody<S> {
         q.iter().zip(average).map(|(q, v)| q + h * v).collect()
     }
 
-    /// Internal forces of a step at final velocities.
+    /// Returns the internal forces of a step with given final velocities.
     fn forces_at(&self, large: &LargeStrain<S>, step: &SystemStep<S>, velocity: &[f64]) -> Forces {
         let end = self.end_of(step, velocity);
         large.forces(&Stretch {
@@ -82,8 +83,8 @@ impl<S: Space> ElasticBody<S> {
         })
     }
 
-    /// Internal forces of a step at the velocities that the body has, with their mean: of
-    /// elasticity, and of damping.
+    /// Returns the internal forces of a step at the current velocities, with the mean velocities:
+    /// of elasticity, and of damping.
     pub(crate) fn internal_of_step(
         &self,
         large: &LargeStrain<S>,
@@ -98,19 +99,19 @@ impl<S: Space> ElasticBody<S> {
         [forces.elastic, forces.viscous]
     }
 
-    /// The element that final velocities would turn inside out.
+    /// Returns the element that final velocities would invert.
     fn inverts(&self, step: &SystemStep<S>, velocity: &[f64]) -> Option<String> {
         let large = self.model.large.as_ref()?;
         large.inverted(&self.model.mesh, &self.end_of(step, velocity))
     }
 
     /// Linearises a step for the first time: at the velocities of its start, or as near to them as
-    /// no element is inverted.
+    /// possible without an inverted element.
     pub(crate) fn begin_iterations(&mut self, step: &SystemStep<S>) {
         self.iterate.count = 0;
         self.iterate.imbalance = f64::INFINITY;
         self.iterate.inverted = None;
-        // Velocities at which nothing moves over the step.
+        // With these velocities nothing moves over the step.
         let back = (1.0 - step.theta) / step.theta;
         let still: Vec<f64> = self.start[1].iter().map(|v| -back * v).collect();
         let wanted = self.start[1].clone();
@@ -118,7 +119,7 @@ impl<S: Space> ElasticBody<S> {
         self.linearise_at(step, velocity, None);
     }
 
-    /// The wanted velocities, or others between them and those of `from` at which no element is
+    /// Returns the wanted velocities, or velocities between them and `from` at which no element is
     /// inverted.
     fn drawn_back(
         &self,
@@ -139,7 +140,7 @@ impl<S: Space> ElasticBody<S> {
         Err(why)
     }
 
-    /// Linearises a step at final velocities, with its internal forces there where they are known.
+    /// Linearises a step at final velocities, with its internal forces there if known.
     fn linearise_at(&mut self, step: &SystemStep<S>, velocity: Vec<f64>, forces: Option<Forces>) {
         let model = Arc::clone(&self.model);
         let Some(large) = &model.large else { return };
@@ -160,10 +161,10 @@ impl<S: Space> ElasticBody<S> {
             let pattern = large.pattern.get_or_init(|| Pattern::of(&a));
             pattern.as_ref()?.factor(&a)
         };
-        let mut tangent = large.tangent(&stretch, &model.stiffness, false);
+        let mut tangent = large.tangent(&stretch, &model.stiffness);
         let mut formed = factor(&tangent);
         if formed.is_none() {
-            tangent = large.tangent(&stretch, &model.stiffness, true);
+            tangent = large.positive_tangent(&stretch, &model.stiffness);
             formed = factor(&tangent);
         }
         self.formed = Some(Arc::new(model.formed([h, theta], formed)));
@@ -173,8 +174,8 @@ impl<S: Space> ElasticBody<S> {
         self.iterate.count += 1;
     }
 
-    /// What velocities lack of balance without contacts (N s; N s/m in 2D), on coordinates that
-    /// move freely: M (v_k - v) - h (F - C v_theta - f).
+    /// Returns the imbalance without contacts at given velocities (N s; N s/m in 2D), on
+    /// coordinates that move freely: M (v_k - v) - h (F - C v_theta - f).
     fn imbalance(&self, step: &SystemStep<S>, velocity: &[f64], forces: &Forces) -> Vec<f64> {
         let model = &self.model;
         let SystemStep { h, theta, .. } = *step;
@@ -193,15 +194,15 @@ impl<S: Space> ElasticBody<S> {
         out
     }
 
-    /// v_free of the current linearisation.
+    /// Returns v_free of the current linearisation.
     pub(crate) fn free_velocity_at_iterate(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let at = &self.iterate;
         let SystemStep { time, h, theta, .. } = *step;
         let mut impulse = self.imbalance(step, &at.velocity, &at.forces);
         let mut end = at.velocity.clone();
-        // Imposed coordinates go to their final velocity, and the tangent says what that does to
-        // the others.
+        // Imposed coordinates get their final velocity, whose effect on the others follows from the
+        // tangent.
         let mut change = vec![0.0; end.len()];
         for (c, drive) in model.freedoms.imposed(&self.drives) {
             let drive = drive.over(time, h);
@@ -224,18 +225,18 @@ impl<S: Space> ElasticBody<S> {
         end
     }
 
-    /// Compares the forces of the step with the velocities that were reached, and linearises at
-    /// these where they do not balance; false where they do.
+    /// Compares the forces of the step with those at the reached velocities, and linearises at
+    /// these where they do not balance; returns false where they do.
     ///
     /// # Errors
-    /// They come to no balance, or an element turns inside out.
+    /// The iterations do not converge, or an element is inverted.
     pub(crate) fn iterate(&mut self, step: &SystemStep<S>) -> Result<bool, String> {
         let model = Arc::clone(&self.model);
         let Some(large) = &model.large else {
             return Ok(false);
         };
         if !self.velocity.iter().all(|v| v.is_finite()) {
-            // The caller looks at this itself.
+            // The caller handles this case.
             return Ok(false);
         }
         let forces = self.forces_at(large, step, &self.velocity);
@@ -245,7 +246,7 @@ impl<S: Space> ElasticBody<S> {
         }
         let off = lacks.iter().map(|r| r * r).sum::<f64>().sqrt();
         let [balanced, rounding] = self.scales(step, &forces);
-        // What rounding leaves is a bound: iterations go on while they gain.
+        // Rounding is a limit: iterations continue as long as they reduce the imbalance.
         let gains = off < 0.5 * self.iterate.imbalance;
         self.iterate.imbalance = off;
         if off <= TOLERANCE * balanced || (off <= rounding && !gains) {
@@ -277,7 +278,7 @@ impl<S: Space> ElasticBody<S> {
         })
     }
 
-    /// The size of what balances, and what rounding leaves of it (N s; N s/m in 2D).
+    /// Returns the magnitude of the balanced forces, and its rounding error (N s; N s/m in 2D).
     fn scales(&self, step: &SystemStep<S>, forces: &Forces) -> [f64; 2] {
         let model = &self.model;
         let h = step.h;

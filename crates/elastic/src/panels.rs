@@ -1,14 +1,14 @@
-//! Solutions with a sparse Cholesky factor L by panels: up to four columns of L whose rows below
-//! their diagonal are the same, as those of the coordinates of a point. A row of a panel is read at
-//! once, with one index for its entries; walked column by column the same factor takes twice the
-//! time, and a step of a body of finite elements has two solutions.
+//! Solutions with a sparse Cholesky factor L by panels: up to four columns of L with the same rows
+//! below their diagonal, such as those of the coordinates of a point. A row of a panel is read at
+//! once, with one index for its entries; column by column, the same factor takes twice the time,
+//! and a step of a body of finite elements has two solutions.
 //!
 //! Source: T. A. Davis, "Direct Methods for Sparse Linear Systems" (2006), sections 3.2 and 4.8
 //! (supernodes).
 
 use std::ops::Range;
 
-/// Most columns of a panel: more did not save time.
+/// Largest number of columns of a panel: more columns did not save time.
 const WIDEST: usize = 4;
 
 /// The pattern of a factor by panels.
@@ -17,7 +17,7 @@ pub struct Panels {
     panels: Vec<Panel>,
     /// Rows below the diagonal blocks, panel by panel.
     rows: Vec<u32>,
-    /// Number of values: of each panel the triangle of its diagonal block row by row, then its
+    /// Number of values: for each panel the triangle of its diagonal block row by row, then its
     /// other rows.
     values: usize,
 }
@@ -27,14 +27,14 @@ pub struct Panels {
 struct Panel {
     first: u32,
     width: u32,
-    /// Where its rows and its values begin.
+    /// Start of its rows and of its values.
     rows: u32,
     values: u32,
 }
 
 impl Panels {
-    /// Builds the panels of a factor in compressed columns, the first row of each being that of the
-    /// diagonal; `None` where it has too many values.
+    /// Builds the panels of a factor in compressed columns, in which the diagonal comes first;
+    /// `None` where it has too many values.
     pub fn new(starts: &[u32], rows: &[u32]) -> Option<Self> {
         u32::try_from(rows.len()).ok()?;
         let n = starts.len() - 1;
@@ -65,18 +65,18 @@ impl Panels {
         Some(out)
     }
 
-    /// Memory of the pattern and of the values (bytes).
+    /// Returns the memory of the pattern and of the values (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&self.panels[..]) + size_of_val(&self.rows[..]) + size_of::<f64>() * self.values
     }
 
-    /// How many columns each panel has.
+    /// Iterates over the number of columns of each panel.
     #[cfg(test)]
     pub fn widths(&self) -> impl Iterator<Item = usize> + '_ {
         self.panels.iter().map(|panel| panel.width as usize)
     }
 
-    /// Rows and values of the panel at a place.
+    /// Returns the ranges of rows and values of a panel.
     fn of(&self, at: usize) -> [Range<usize>; 2] {
         let Panel { rows, values, .. } = self.panels[at];
         let end = self.panels.get(at + 1);
@@ -86,7 +86,7 @@ impl Panels {
         [rows as usize..row_end, values as usize..value_end]
     }
 
-    /// The values by panels of a factor in compressed columns, its diagonal inverted.
+    /// Returns the values by panels of a factor in compressed columns, with inverted diagonal.
     pub fn arrange(&self, starts: &[u32], values: &[f64]) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.values);
         for (at, panel) in self.panels.iter().enumerate() {
@@ -104,7 +104,7 @@ impl Panels {
         out
     }
 
-    /// x = L^-T L^-1 x.
+    /// Computes x = L^-T L^-1 x.
     pub fn solve(&self, values: &[f64], x: &mut [f64]) {
         for at in 0..self.panels.len() {
             self.visit(at, values, x, true);
@@ -114,7 +114,7 @@ impl Panels {
         }
     }
 
-    /// Eliminates the panel at a place from the rows below it, or solves it with these known.
+    /// Eliminates a panel from the rows below it, or solves it with known values of these rows.
     #[inline]
     fn visit(&self, at: usize, values: &[f64], x: &mut [f64], forward: bool) {
         let Panel { first, width, .. } = self.panels[at];
@@ -133,7 +133,7 @@ impl Panels {
     }
 }
 
-/// Solves the diagonal block of a panel, and takes what it does from the rows below.
+/// Solves the diagonal block of a panel, and subtracts its contribution from the rows below.
 #[inline]
 fn eliminate<const W: usize>(first: usize, rows: &[u32], values: &[f64], x: &mut [f64]) {
     let (triangle, below) = values.split_at(W * (W + 1) / 2);
@@ -146,7 +146,7 @@ fn eliminate<const W: usize>(first: usize, rows: &[u32], values: &[f64], x: &mut
         x[first + r] = y[r];
         at += r + 1;
     }
-    // What is loaded at a few points alone reaches a part of the panels.
+    // A load at a few points affects only some of the panels.
     if y == [0.0; W] {
         return;
     }
@@ -156,7 +156,7 @@ fn eliminate<const W: usize>(first: usize, rows: &[u32], values: &[f64], x: &mut
     }
 }
 
-/// Solves a panel where the rows below it are known.
+/// Solves a panel with known values of the rows below it.
 #[inline]
 fn substitute<const W: usize>(first: usize, rows: &[u32], values: &[f64], x: &mut [f64]) {
     let (triangle, below) = values.split_at(W * (W + 1) / 2);

@@ -1,5 +1,5 @@
-//! Motions of a body as a rigid one: whether supports leave it free to turn, which small strain
-//! cannot follow, and how it starts.
+//! Rigid motions of a body: whether supports leave it free to rotate, which small strain does not
+//! permit, and its initial velocities.
 
 use crate::element::Simplex;
 use crate::freedom::Freedoms;
@@ -9,9 +9,9 @@ use fretwork_core::bodies::Dof;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::DMatrix;
 
-/// Whether some rigid motion with a rotation meets all supports: u = t + w x X, of which u along a
-/// held axis is zero where motion is imposed and the same at all points of a part elsewhere.
-/// (Imposed motion other than zero changes nothing: a part in its holder does not turn.)
+/// Returns whether some rigid motion with a rotation is compatible with all supports: u = t + w x
+/// X, with u along a held axis zero where motion is imposed, and otherwise equal at all points of a
+/// part. (A nonzero imposed motion does not matter: a part in its holder does not rotate.)
 pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
     let d = S::D;
     let spins = if d == 2 { 1 } else { 3 };
@@ -53,7 +53,7 @@ pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
                 }
             }
             if dof.imposes() {
-                // No common motion is left.
+                // No common motion remains.
                 normal[(next, next)] += 1.0;
             }
             next += 1;
@@ -69,9 +69,9 @@ pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
     })
 }
 
-/// Velocities of all coordinates of a body that moves as a rigid one, with a velocity of its centre
-/// of mass (m/s) and an angular velocity about it (rad/s). Parts that move as one do not turn, and
-/// imposed coordinates are at rest.
+/// Returns the velocities of all coordinates of a body that moves rigidly, with a velocity of its
+/// centre of mass (m/s) and an angular velocity about it (rad/s). Parts that move as one do not
+/// rotate, and imposed coordinates are at rest.
 pub fn velocities<S: Space>(
     mesh: &Mesh<S>,
     freedoms: &Freedoms<S>,
@@ -121,7 +121,7 @@ mod tests {
         let mesh = block::<Dim2>(&[even(0.0, 2.0, 2), even(0.0, 1.0, 2)]).unwrap();
         let held = |supports: &[Support]| !turns(&mesh, supports);
         assert!(!held(&[]));
-        // A holder that slides keeps it from turning; one along its own line does not.
+        // A sliding holder prevents rotation; one along its own line does not.
         assert!(held(&[support("bottom", &[None, Some(Dof::Free)])]));
         assert!(!held(&[support("bottom", &[Some(Dof::Fixed), None])]));
         let sides = [

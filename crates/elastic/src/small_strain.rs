@@ -1,13 +1,12 @@
-//! How small the strain of a body in small strain is: its elements take e = (H + H^T)/2 of the
-//! gradient H of the displacement for the strain e + H^T H/2, and the place without load for where
-//! forces act.
+//! Validity of small strain: its elements use e = (H + H^T)/2 of the gradient H of the displacement
+//! for the strain e + H^T H/2, and apply forces at unloaded positions.
 
 use crate::element::Simplex;
 use crate::mesh::Mesh;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{Matrix3, Vector3};
 
-/// The largest principal strain in an element by its size, and the largest rotation (rad).
+/// Returns the largest principal strain in an element by magnitude, and the largest rotation (rad).
 pub fn largest<S: Space>(mesh: &Mesh<S>, displacement: impl Fn(u32) -> S::Vector) -> [f64; 2] {
     let (mut strain, mut rotation) = (0.0f64, 0.0f64);
     for points in mesh.elements() {

@@ -1,14 +1,14 @@
-//! What a body is made of: the input of its constructor.
+//! Parameters of a deformable body.
 
 use crate::material::Elasticity;
 use crate::strain::Strain;
 use crate::support::{Rayleigh, Support};
 
-/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one
+/// Contact surface of a body. Where two surfaces meet one of them must touch by its points: the one
 /// with the finer mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Touching<'a> {
-    /// Nothing.
+    /// The body does not touch.
     #[default]
     Nothing,
     /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
@@ -18,34 +18,34 @@ pub enum Touching<'a> {
     Surface(&'a str),
 }
 
-/// What a body is made of. `M` is its mesh, [`crate::Mesh`] or [`crate::AnyMesh`].
+/// Parameters of a deformable body. `M` is its mesh, [`crate::Mesh`] or [`crate::AnyMesh`].
 #[derive(Clone, Debug)]
 pub struct BodySpec<'a, M> {
-    /// What a user calls it.
+    /// Name in messages.
     pub name: &'a str,
-    /// Its mesh.
+    /// Mesh.
     pub mesh: M,
-    /// Its material.
+    /// Material.
     pub material: Elasticity,
-    /// How its strain is measured.
+    /// Measure of strain.
     pub strain: Strain,
-    /// Its damping.
+    /// Damping.
     pub damping: Rayleigh,
-    /// What holds and drives it.
+    /// Supports with their drives.
     pub supports: &'a [Support],
-    /// What of it touches.
+    /// Contact surface.
     pub touching: Touching<'a>,
     /// Index of the material for interface laws.
     pub surface_material: u16,
-    /// Its velocity at the start (m/s), of all that is not held.
+    /// Initial velocity (m/s) of all that is not held.
     pub velocity: [f64; 3],
-    /// Its angular velocity at the start about its centre of mass (rad/s), about the third axis in
-    /// 2D; none in small strain, and of parts that move as one.
+    /// Initial angular velocity about the centre of mass (rad/s), about the third axis in 2D; must
+    /// be zero in small strain, and is zero for parts that move as one.
     pub spin: [f64; 3],
 }
 
 impl<'a, M> BodySpec<'a, M> {
-    /// The description with another mesh.
+    /// Returns the parameters with another mesh.
     pub(crate) fn of<N>(self, mesh: N) -> BodySpec<'a, N> {
         BodySpec {
             name: self.name,

@@ -1,8 +1,8 @@
-//! How the strain of a body is measured, and what stress and energy an element has by it.
+//! Measures of strain, and the resulting stress and energy of an element.
 //!
-//! For large strain both are functions of C = F^T F alone, with F the gradient of the motion, so
-//! that a rotation leaves no stress at all. C is kept as C - 1, of which small strains do not
-//! vanish in the rounding of 1.
+//! For large strain both are functions of C = F^T F only, with F the gradient of the motion, so
+//! that a rotation causes no stress. C - 1 is stored instead of C, so that small strains are not
+//! lost in the rounding of 1.
 
 use crate::corotational::Corotational;
 use crate::material::Elasticity;
@@ -10,14 +10,14 @@ use crate::neo_hookean::NeoHookean;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
-/// How the strain of a body is measured.
+/// Measure of the strain of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Strain {
     /// The symmetric part of the gradient of the displacement: linear elasticity, for strains and
     /// rotations that are small.
     #[default]
     Small,
-    /// Linear elasticity in a frame that turns with each element: any rotation, small strain.
+    /// Linear elasticity in a frame that rotates with each element: any rotation, small strain.
     Corotational,
     /// The compressible neo-Hookean material W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2: any
     /// rotation, large strain.
@@ -25,7 +25,7 @@ pub enum Strain {
 }
 
 impl Strain {
-    /// Whether it follows rotations; forces are then not linear in displacements.
+    /// Returns whether the measure permits rotations; forces are then not linear in displacements.
     pub fn is_finite(self) -> bool {
         self != Self::Small
     }
@@ -33,26 +33,27 @@ impl Strain {
 
 /// An element at a strain C - 1: its energy, stress and tangent.
 ///
-/// Where it expands freely by lambda = 1 + e its energy is lambda^3 W(C/lambda^2), that of F/lambda
-/// per volume before the expansion (M. E. Gurtin, E. Fried, L. Anand, "The Mechanics and
+/// An element that expands freely by lambda = 1 + e has the energy lambda^3 W(C/lambda^2), that of
+/// F/lambda per volume before the expansion (M. E. Gurtin, E. Fried, L. Anand, "The Mechanics and
 /// Thermodynamics of Continua" (2010), section 60).
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
     kind: Kind,
-    /// lambda.
+    /// Stretch lambda.
     stretch: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Large rotations and small strains, in the frame that turns with each element.
+    /// Large rotations and small strains, in the frame that rotates with each element.
     Corotational(Corotational),
     /// Large strains of a compressible neo-Hookean material.
     NeoHookean(NeoHookean),
 }
 
 impl Response {
-    /// At C - 1 with a free strain e; `None` for small strain, which does not depend on C.
+    /// Evaluates the measure at C - 1 with a free strain e; `None` for small strain, which does not
+    /// depend on C.
     pub fn new(
         strain: Strain,
         material: &Elasticity,
@@ -73,7 +74,7 @@ impl Response {
         })
     }
 
-    /// Energy per volume without load, W (Pa).
+    /// Returns the energy per unloaded volume, W (Pa).
     pub fn energy(&self) -> f64 {
         let energy = match &self.kind {
             Kind::Corotational(at) => at.energy(),
@@ -158,8 +159,8 @@ mod tests {
         }
     }
 
-    /// A body that does not move while it would expand by lambda: by hand from (1 + e)^3 W(F/(1 +
-    /// e)) at F = 1.
+    /// The displacement of a body that would expand by lambda is zero: the values follow by hand
+    /// from (1 + e)^3 W(F/(1 + e)) at F = 1.
     #[test]
     fn what_is_held_has_the_stress_of_its_free_strain() {
         let (l, g) = (RUBBER.lambda(), RUBBER.shear());

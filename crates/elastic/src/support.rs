@@ -4,7 +4,7 @@
 use fretwork_core::bodies::Dof;
 use serde::{Deserialize, Serialize};
 
-/// A part of the boundary in a holder that does not turn: along each axis all its points move as
+/// A part of the boundary in a holder that does not rotate. Along each axis all its points move as
 /// one: free, fixed, at an imposed velocity or displacement, or under a force. Along an axis that
 /// is `None` each point moves by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,14 +13,14 @@ pub struct Support {
     pub part: String,
     /// The drive along each axis; a force (N; N/m in 2D) acts on the part as a whole.
     pub axes: Vec<Option<Dof>>,
-    /// Drives that take over during the run: index of the phase at whose start the drive takes
-    /// over, axis, drive. [`ElasticBody`](crate::ElasticBody) is notified of the start of each
-    /// phase. Parts that share a corner must have equal ones.
+    /// Drives that take effect during the run: index of the phase at whose start the drive takes
+    /// effect, axis, drive. [`ElasticBody`](crate::ElasticBody) is notified of the start of each
+    /// phase. Parts that share a corner must have equal drives.
     pub later: Vec<(usize, usize, Dof)>,
 }
 
 impl Support {
-    /// The drives that take over along an axis, with the index of their phase.
+    /// Returns the later drives along an axis, with the index of their phase.
     pub(crate) fn later(&self, axis: usize) -> impl Iterator<Item = (usize, &Dof)> {
         let along = self.later.iter().filter(move |l| l.1 == axis);
         along.map(|(phase, _, drive)| (*phase, drive))
@@ -35,7 +35,8 @@ pub struct Rayleigh {
     /// its critical damping.
     #[serde(default)]
     pub mass: f64,
-    /// Factor beta of the stiffness (s): such a mode is damped by beta w/2 of its critical damping.
+    /// Factor beta of the stiffness (s): a mode of angular frequency w is damped by beta w/2 of its
+    /// critical damping.
     #[serde(default)]
     pub stiffness: f64,
 }

@@ -1,5 +1,5 @@
-//! A part of the boundary that touches as a surface: its vertices follow the points of the mesh,
-//! and an impulse anywhere on it goes to the points of the facet there, by its shape functions.
+//! A contact surface, a part of the boundary: its vertices follow the points of the mesh, and an
+//! impulse at any position acts on the points of the facet there, by its shape functions.
 
 use crate::error::BodyError;
 use crate::mesh::{Mesh, place};
@@ -7,16 +7,16 @@ use fretwork_core::bodies::Nodes;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Share of a facet within which a place is on an edge or at a vertex of it, where rounding decides
-/// which facet is nearest.
+/// Fraction of a facet within which a position counts as being on an edge or at a vertex, where
+/// rounding decides which facet is nearest.
 const AT_BORDER: f64 = 1e-9;
 
-/// What of a surface is nearest to a place.
+/// Part of a surface that is nearest to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NearestPart {
     /// A point of the mesh.
     Point(u32),
-    /// An edge (3D): the one after this corner of a facet.
+    /// An edge (3D): the one that starts at this corner of a facet.
     Edge(usize, usize),
     /// A facet.
     Facet(usize),
@@ -28,14 +28,14 @@ pub struct SurfacePart {
     /// Points of the mesh, in the order of the vertices of the surface: along the chain in 2D, with
     /// the body on its right.
     pub points: Vec<u32>,
-    /// The D vertices of each facet, by their place in `points`; outside is where they are
-    /// anticlockwise (3D).
+    /// The D vertices of each facet, by their index in `points`; anticlockwise seen from outside
+    /// (3D).
     pub facets: Vec<[u32; 3]>,
-    /// By point the facets at it, and its place among the corners of each.
+    /// Facets at each point, and its index among the corners of each.
     about: Vec<Vec<(u32, u8)>>,
-    /// Place in `points` of each point of the mesh on it.
+    /// Index in `points` of each point of the mesh on the surface.
     places: HashMap<u32, u32>,
-    /// Whether the vertices of a chain follow each other along its direction, so that a place on it
+    /// Whether the vertices of a chain are monotonic along its direction, so that a position on it
     /// is found by bisection.
     single_valued: bool,
     dimension: usize,
@@ -45,7 +45,7 @@ impl SurfacePart {
     /// A part of the boundary of a mesh.
     ///
     /// # Errors
-    /// A part that the mesh has not, or one that is no chain of segments with two ends (2D).
+    /// The mesh has no such part, or it is not a chain of segments with two ends (2D).
     pub fn new<S: Space>(mesh: &Mesh<S>, part: &str) -> Result<Self, BodyError> {
         let Some(facets) = mesh.part(part) else {
             let names: Vec<&str> = mesh.part_names().collect();
@@ -105,13 +105,13 @@ impl SurfacePart {
         })
     }
 
-    /// The point of the mesh that carries the frame of the surface: one in its middle.
+    /// Returns the point of the mesh that carries the frame of the surface: one in its middle.
     pub fn origin(&self) -> u32 {
         self.points[self.points.len() / 2]
     }
 
-    /// The facets at a point, by its place in `points`: the points of each, and which of them it
-    /// is. Of a chain the third point stands for nothing.
+    /// Returns the facets at a point, given by its index in `points`: the points of each facet, and
+    /// the index of the point among them. For a chain the third point is not used.
     pub fn facets_at(&self, k: usize) -> impl Iterator<Item = ([u32; 3], usize)> + '_ {
         let facets = self.about.get(k).into_iter().flatten();
         facets.map(|(facet, place)| {
@@ -126,8 +126,8 @@ impl SurfacePart {
         Nodes::sum(&terms.collect::<Vec<_>>())
     }
 
-    /// The nodes of a place on the surface, by the shape functions of its facet. `position` gives
-    /// the current place of a point of the mesh (m).
+    /// Returns the nodes of a position on the surface, by the shape functions of its facet.
+    /// `position` gives the current position of a point of the mesh (m).
     pub fn nodes<S: Space>(&self, at: &S::Vector, position: impl Fn(u32) -> S::Vector) -> Nodes {
         let vertex = |k: u32| self.points[k as usize];
         let (facet, weights) = self.nearest::<S>(at, position);
@@ -136,7 +136,7 @@ impl SurfacePart {
         Nodes::on_facet(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
     }
 
-    /// The points of the mesh at the corners of a facet, of which the first D count.
+    /// Returns the points of the mesh at the corners of a facet, of which the first D are used.
     pub fn corners(&self, facet: usize) -> [u32; 3] {
         self.facets[facet].map(|k| self.points[k as usize])
     }
@@ -151,7 +151,7 @@ impl SurfacePart {
             .map(|(facet, _)| *facet as usize)
     }
 
-    /// The facets at an edge, the one after a corner of a facet (3D).
+    /// Returns the facets at an edge, which starts at a corner of a facet (3D).
     pub fn facets_beside(&self, facet: usize, corner: usize) -> impl Iterator<Item = usize> + '_ {
         let of = self.facets[facet];
         let [from, to] = [of[corner], of[(corner + 1) % 3]];
@@ -159,8 +159,8 @@ impl SurfacePart {
         facets.filter(move |f| self.facets[*f].contains(&to))
     }
 
-    /// What of the surface is nearest to a place. `position` gives the current place of a point of
-    /// the mesh (m).
+    /// Returns the part of the surface nearest to a position. `position` gives the current position
+    /// of a point of the mesh (m).
     pub fn nearest_part<S: Space>(
         &self,
         at: &S::Vector,
@@ -172,7 +172,7 @@ impl SurfacePart {
             let vertex = self.facets[facet][corner];
             return NearestPart::Point(self.points[vertex as usize]);
         }
-        // The edge after the next corner is opposite to this one.
+        // The edge that starts at the next corner is opposite to this one.
         let opposite = corners.iter().position(|w| *w <= AT_BORDER);
         match opposite {
             Some(corner) => NearestPart::Edge(facet, (corner + 1) % 3),
@@ -180,9 +180,9 @@ impl SurfacePart {
         }
     }
 
-    /// The facet that is nearest to a place, the first of equally near ones, with the weights of
-    /// its corners at the nearest point. `position` gives the current place of a point of the mesh
-    /// (m).
+    /// Returns the facet nearest to a position, the first of equally near ones, with the weights of
+    /// its corners at the nearest point. `position` gives the current position of a point of the
+    /// mesh (m).
     pub fn nearest<S: Space>(
         &self,
         at: &S::Vector,
@@ -202,8 +202,8 @@ impl SurfacePart {
         found.unwrap_or((0, [1.0, 0.0, 0.0]))
     }
 
-    /// Area (m^2; length in the plane, m) that each point stands for: an equal share of each facet
-    /// at it.
+    /// Returns the tributary area of each point (m^2; length in the plane, m): an equal share of
+    /// each facet at it.
     pub fn areas<S: Space>(&self, position: impl Fn(u32) -> S::Vector) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for facet in &self.facets {
@@ -220,7 +220,7 @@ impl SurfacePart {
         out
     }
 
-    /// The segment of a chain that is nearest to a place, with its weights.
+    /// Returns the segment of a chain nearest to a position, with its weights.
     fn nearest_segment<S: Space>(
         &self,
         at: &S::Vector,
@@ -253,7 +253,7 @@ impl SurfacePart {
     }
 }
 
-/// By vertex the facets at it, of D corners, and its place among these.
+/// Returns for each vertex its facets, of D corners, and its index among these.
 fn about(facets: &[[u32; 3]], vertices: usize, dimension: usize) -> Vec<Vec<(u32, u8)>> {
     let mut out = vec![Vec::new(); vertices];
     for (f, facet) in facets.iter().enumerate() {
@@ -264,8 +264,8 @@ fn about(facets: &[[u32; 3]], vertices: usize, dimension: usize) -> Vec<Vec<(u32
     out
 }
 
-/// Distance of a place from a facet (m), of which the first D corners count, and the weights of its
-/// corners at the nearest point, clamped to the facet.
+/// Returns the distance of a position from a facet (m), of which the first D corners are used, and
+/// the weights of its corners at the nearest point, clamped to the facet.
 pub fn on_facet<S: Space>(at: &S::Vector, corners: &[S::Vector; 3]) -> (f64, [f64; 3]) {
     if S::D > 2 {
         return on_triangle(at, corners);
@@ -276,8 +276,8 @@ pub fn on_facet<S: Space>(at: &S::Vector, corners: &[S::Vector; 3]) -> (f64, [f6
     ((arm - edge * s).norm(), [1.0 - s, s, 0.0])
 }
 
-/// Distance of a place from a triangle (m), and the weights of its corners at the nearest point of
-/// its plane, clamped to the triangle.
+/// Returns the distance of a position from a triangle (m), and the weights of its corners at the
+/// nearest point of its plane, clamped to the triangle.
 fn on_triangle<V: VectorLike>(at: &V, corners: &[V; 3]) -> (f64, [f64; 3]) {
     let [a, b, c] = *corners;
     let (u, v, arm) = (b - a, c - a, *at - a);
@@ -334,7 +334,7 @@ mod tests {
         assert!((area - 1.0).abs() < 1e-14, "{area}");
     }
 
-    /// Rounding does not choose among the facets at a vertex or at an edge.
+    /// At a vertex or an edge rounding does not choose one of the facets.
     #[test]
     fn a_vertex_and_an_edge_are_none_of_one_facet() {
         let sides = [even(0.0, 1.0, 3), even(0.0, 1.0, 3), even(0.0, 1.0, 1)];

@@ -1,4 +1,4 @@
-//! The surfaces by which bodies touch.
+//! Contact surfaces of deformable bodies.
 
 use fretwork_core::geometry::any_shape::AnySurface;
 use fretwork_core::geometry::mesh::Mesh;
@@ -7,11 +7,11 @@ use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{Vector2, Vector3};
 
-/// The surface of vertices (m) and, in space, of triangles between them; in the plane with a period
-/// along x (m), of which the last vertex is the image of the first.
+/// Creates the surface of vertices (m) and, in space, of triangles between them; in the plane with
+/// a period along x (m), where the last vertex is the image of the first.
 ///
 /// # Errors
-/// Why they form no surface.
+/// Returns why they form no surface.
 pub(crate) fn open_surface<S: Space>(
     vertices: Vec<S::Vector>,
     facets: &[[u32; 3]],
@@ -30,10 +30,11 @@ pub(crate) fn open_surface<S: Space>(
     })
 }
 
-/// The surface around a solid, of vertices (m), in the plane clockwise, and triangles between them.
+/// Creates the closed surface around a solid, from vertices (m), in the plane clockwise, and
+/// triangles between them.
 ///
 /// # Errors
-/// Why they form no surface.
+/// Returns why they form no surface.
 pub(crate) fn closed_surface<S: Space>(
     vertices: Vec<S::Vector>,
     facets: &[[u32; 3]],

@@ -1,5 +1,5 @@
-//! What a body says that its solutions take is what they take. This binary holds this test alone:
-//! it counts what is allocated.
+//! The memory that a body reports for its solutions equals the allocated memory. This binary
+//! contains this test alone, since it counts allocations.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -41,7 +41,7 @@ fn body<S: Space>(mesh: Mesh<S>, strain: Strain) -> ElasticBody<S> {
     ElasticBody::new(spec).unwrap()
 }
 
-/// Bytes that something leaves allocated.
+/// Returns the bytes that a function leaves allocated.
 fn kept(work: impl FnOnce()) -> f64 {
     let before = counting::held();
     work();
@@ -58,7 +58,7 @@ fn compare<S: Space>(what: &str, mesh: Mesh<S>, strain: Strain) {
         theta: 1.0,
         gravity: S::Vector::zero(),
     };
-    // The library of factors keeps a buffer of its own from the first on.
+    // The library of factors keeps a buffer from its first use on.
     first.begin_step(&step);
     first.linearise(&step);
     let factor = kept(|| {

@@ -2,7 +2,7 @@
 
 use crate::runs::randomness::seed_matters;
 use crate::{Error, Program};
-use fretwork_scene::{Built, InputError, Loaded};
+use fretwork_scene::{Built, InputError, LoadedCase};
 use fretwork_store::results::state;
 use std::path::Path;
 
@@ -10,8 +10,8 @@ use std::path::Path;
 /// `results.h5`.
 ///
 /// # Errors
-/// At file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+/// Returns an error with file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
 }
 
@@ -19,7 +19,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
 ///
 /// # Errors
 /// The case is refused.
-pub fn build(loaded: &Loaded, program: &Program) -> Result<(Built, bool), Error> {
+pub fn build(loaded: &LoadedCase, program: &Program) -> Result<(Built, bool), Error> {
     let scene = loaded.build(&program.search)?;
     (program.check_names)(loaded, &scene)?;
     let random = seed_matters(loaded, &scene, &program.search)?;

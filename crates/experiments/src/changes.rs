@@ -1,4 +1,4 @@
-//! What an experiment changes in a case: values that all runs share, and values computed from its
+//! Changes of a case in an experiment: values that all runs share, and values computed from its
 //! factors, `key.path=${2e-5 * strength}`.
 
 use crate::expression::{Expression, number};
@@ -8,7 +8,7 @@ use crate::expression::{Expression, number};
 struct Derived {
     /// The text of the change, with its expressions.
     text: String,
-    /// Texts between the expressions, one more than there are of them.
+    /// Texts before, between and after the expressions.
     texts: Vec<String>,
     expressions: Vec<Expression>,
 }
@@ -50,7 +50,7 @@ impl Derived {
 /// Changes of a case, as `set` of a file lists them.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
-    /// Those of all runs.
+    /// Changes of all runs.
     pub fixed: Vec<String>,
     derived: Vec<Derived>,
 }
@@ -61,10 +61,10 @@ impl Changes {
         set.contains("${")
     }
 
-    /// Parses changes whose expressions are in these names.
+    /// Parses changes whose expressions use these names.
     ///
     /// # Errors
-    /// The number of the change that is wrong, and why, as a sentence.
+    /// Returns the number of the invalid change, and the reason as a sentence.
     pub fn parse(sets: &[String], names: &[&str]) -> Result<Self, (usize, String)> {
         let mut out = Self::default();
         for (k, set) in sets.iter().enumerate() {
@@ -78,16 +78,16 @@ impl Changes {
         Ok(out)
     }
 
-    /// Whether an expression needs the name of this number.
+    /// Returns whether an expression uses the name with this number.
     pub fn needs(&self, name: usize) -> bool {
         let mut expressions = self.derived.iter().flat_map(|d| &d.expressions);
         expressions.any(|e| e.needs().contains(&name))
     }
 
-    /// The changes that follow from values of the names.
+    /// Returns the changes for values of the names.
     ///
     /// # Errors
-    /// A name without a number, or a result that is not finite.
+    /// A name has no number, or a result is not finite.
     pub fn derived(&self, values: &[Option<f64>]) -> Result<Vec<String>, String> {
         self.derived.iter().map(|d| d.set(values)).collect()
     }

@@ -1,4 +1,4 @@
-//! Durations as text: read from a command line, and written for a reader.
+//! Durations as text: parsed from a command line, and formatted for a reader.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Why an experiment cannot be made.
+//! Reasons why an experiment cannot be made.
 
 use fretwork_scene::InputError;
 use fretwork_store::write_advice;
@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 /// Reason why an experiment cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A case, or the file of a study or fit, is wrong at a place of it.
+    /// A case, or the file of a study or fit, is invalid at some place.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// What was asked for does not fit the case, or a folder or program is not what is needed.
+    /// The request does not fit the case, or a folder or program is unsuitable.
     #[error("{0}")]
     Usage(String),
-    /// It ran and has no result.
+    /// The experiment ran and has no result.
     #[error("{0}")]
     Failed(String),
     /// A file or folder cannot be written.
@@ -28,7 +28,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Error for a file that cannot be written.
+    /// Creates an error for a file that cannot be written.
     pub fn write(path: &Path, reason: &dyn std::fmt::Display) -> Self {
         Self::Write {
             path: path.to_owned(),

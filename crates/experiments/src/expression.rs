@@ -1,5 +1,5 @@
-//! Expressions in names: changes of a case that follow from several values, and columns that are
-//! made of others.
+//! Expressions in names: changes of a case that follow from several values, and columns computed
+//! from others.
 
 use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, literal_matcher_from_pattern};
 
@@ -8,14 +8,14 @@ literal_matcher_from_pattern!(
     r"^(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][+-]?[0-9]+)?"
 );
 
-/// An expression of numbers as a case writes them, `2e-5` too.
+/// An expression of numbers as a case writes them, including `2e-5`.
 type Parsed = FlatEx<f64, FloatOpsFactory<f64>, ScientificNumber>;
 
 /// An expression in names.
 #[derive(Clone, Debug)]
 pub struct Expression {
     expression: Parsed,
-    /// Place of each variable in the list of names.
+    /// Index of each variable in the list of names.
     places: Vec<usize>,
 }
 
@@ -24,7 +24,7 @@ impl Expression {
     /// `ln`, `sin` and others, `PI`.
     ///
     /// # Errors
-    /// What is wrong with it, as a sentence.
+    /// Returns what is wrong with it, as a sentence.
     pub fn parse(text: &str, names: &[impl AsRef<str>]) -> Result<Self, String> {
         let expression =
             Parsed::parse(text).map_err(|e| format!("`{text}` is no expression: {e}"))?;
@@ -43,21 +43,21 @@ impl Expression {
         Ok(Self { expression, places })
     }
 
-    /// Its value where the names have these values; `None` if one that it needs has none, or if it
-    /// is not finite.
+    /// Returns its value for these values of the names; `None` if a name that it uses has none, or
+    /// if it is not finite.
     pub fn value(&self, values: &[Option<f64>]) -> Option<f64> {
         let own: Option<Vec<f64>> = self.places.iter().map(|&p| values[p]).collect();
         let value = self.expression.eval(&own?).ok()?;
         value.is_finite().then_some(value)
     }
 
-    /// Places of the names that it needs.
+    /// Returns the indices of the names that it uses.
     pub fn needs(&self) -> &[usize] {
         &self.places
     }
 }
 
-/// A number as a case reads it.
+/// Formats a number as a case reads it.
 pub fn number(value: f64) -> String {
     match value {
         v if v != 0.0 && !(1e-3..1e5).contains(&v.abs()) => format!("{v:e}"),

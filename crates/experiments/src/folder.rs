@@ -1,5 +1,5 @@
-//! Folders of experiments: one command at a time, and only in a folder that belongs to such
-//! commands.
+//! Folders of experiments: one command at a time may use a folder, and only a folder that belongs
+//! to such commands.
 
 use crate::Error;
 use fretwork_store::folder_lock::{FolderLock, LockError};
@@ -10,9 +10,9 @@ use std::path::Path;
 pub struct Owner {
     /// The command, `fretwork trade`.
     pub command: &'static str,
-    /// The file that is locked.
-    pub mark: &'static str,
-    /// Other files by which its folders are known.
+    /// Name of the file that is locked.
+    pub lock_file: &'static str,
+    /// Other files by which its folders are recognised.
     pub files: &'static [&'static str],
 }
 
@@ -20,11 +20,14 @@ impl Owner {
     /// Creates or opens a folder and locks it until the returned lock is dropped.
     ///
     /// # Errors
-    /// The command runs in it already, it holds other files, or it cannot be written.
+    /// The command already runs in the folder, the folder contains other files, or it cannot be
+    /// written.
     pub fn take(&self, out: &Path) -> Result<FolderLock, Error> {
         let fail = |e: &dyn std::fmt::Display| Error::write(out, e);
         let ours = || {
-            let mut known = [self.mark].into_iter().chain(self.files.iter().copied());
+            let mut known = [self.lock_file]
+                .into_iter()
+                .chain(self.files.iter().copied());
             known.any(|f| out.join(f).is_file())
         };
         let full = std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
@@ -36,7 +39,7 @@ impl Owner {
             )));
         }
         std::fs::create_dir_all(out).map_err(|e| fail(&e))?;
-        FolderLock::own(out, self.mark).map_err(|e| match e {
+        FolderLock::exclusive(out, self.lock_file).map_err(|e| match e {
             LockError::Held { .. } => Error::Usage(format!(
                 "another {} is running in {}; wait for its end, or give another folder with --out",
                 self.command,
@@ -56,7 +59,7 @@ mod tests {
     fn refuses_a_second_study_and_a_folder_of_something_else() {
         const OWNER: Owner = Owner {
             command: "fretwork trade",
-            mark: "trade.lock",
+            lock_file: "trade.lock",
             files: &["plan.json"],
         };
         let out = std::env::temp_dir().join(format!("fretwork-lock-{}", std::process::id()));
@@ -69,7 +72,7 @@ mod tests {
         );
         drop(first);
         drop(OWNER.take(&out).unwrap());
-        std::fs::remove_file(out.join(OWNER.mark)).unwrap();
+        std::fs::remove_file(out.join(OWNER.lock_file)).unwrap();
         std::fs::write(out.join("thesis.txt"), "mine").unwrap();
         let message = OWNER.take(&out).unwrap_err().to_string();
         assert!(message.contains("holds no study"), "{message}");

@@ -1,4 +1,4 @@
-//! Experiments: runs of a case in processes of their own, and the questions that they answer.
+//! Experiments: runs of a case in separate processes, and the questions that they answer.
 //!
 //! ```text
 //!  file of a study or a fit, options of a trade
@@ -16,9 +16,9 @@
 //!  answers: effects, errors, estimates                     study::analysis, trade::compare, fit::outcome
 //! ```
 //!
-//! [`study`] varies the values of a case, [`fit`] finds those for which it gives measured curves,
-//! [`trade`] compares accuracy with cost, [`contact_patch`] goes from a patch in closed form to the
-//! runs of a window of it. The mathematics is that of [`fretwork_math`].
+//! [`study`] varies the values of a case, [`fit`] finds those for which it reproduces measured
+//! curves, [`trade`] compares accuracy with cost, [`contact_patch`] relates a patch in closed form
+//! to the runs of a window of it. The mathematics is that of [`fretwork_math`].
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -42,15 +42,15 @@ pub mod trade;
 pub use case::{build, load};
 pub use error::Error;
 
-use fretwork_scene::{Built, InputError, Loaded};
+use fretwork_scene::{Built, InputError, LoadedCase};
 
-/// What experiments need of the program that makes their runs.
+/// Parts of the program that experiments need for its runs.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Where laws are looked for.
+    /// Search path of laws.
     pub search: fretwork_core::laws::SearchPath,
-    /// Arguments of each run that say the same of its plugins.
+    /// Arguments of each run for the same plugins.
     pub plugins: Vec<String>,
-    /// Refuses a case whose run has two columns or two files of one name.
-    pub check_names: fn(&Loaded, &Built) -> Result<(), InputError>,
+    /// Refuses a case whose run has two columns or two files of the same name.
+    pub check_names: fn(&LoadedCase, &Built) -> Result<(), InputError>,
 }

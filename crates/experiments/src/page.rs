@@ -10,7 +10,7 @@ pub(crate) fn section(title: impl Into<String>, blocks: Vec<Block>) -> Section {
     }
 }
 
-/// A table with a sentence above it.
+/// Returns a table with a sentence above it.
 pub(crate) fn table<'a>(
     note: impl Into<String>,
     heads: impl IntoIterator<Item = &'a str>,

@@ -1,6 +1,6 @@
 //! Words for a POSIX shell.
 
-/// A word, quoted where a shell would read it otherwise.
+/// Returns a word, quoted where a shell would otherwise interpret it.
 pub fn quote(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -9,7 +9,7 @@ pub fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// Words of a command.
+/// Returns the words of a command as text.
 pub fn command<'a>(words: impl IntoIterator<Item = &'a String>) -> String {
     let quoted: Vec<String> = words.into_iter().map(|w| quote(w)).collect();
     quoted.join(" ")

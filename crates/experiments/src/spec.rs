@@ -1,5 +1,5 @@
-//! What files of studies and of fits have in common: reading them, keys of a case, how numbers of a
-//! range are spread, and which runs are accepted.
+//! Common parts of the files of studies and fits: reading them, keys of a case, distribution of
+//! numbers in a range, and limits of accepted runs.
 
 use crate::runs::stored::Limits;
 use fretwork_scene::source::{InputError, Source};
@@ -7,12 +7,12 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
-/// The file of a study or a fit, with its text for the places of errors.
+/// The file of a study or a fit, with its text for the location of errors.
 #[derive(Debug)]
 pub struct SpecFile<T> {
-    /// Its contents.
+    /// Contents of the file.
     pub spec: T,
-    /// Its text.
+    /// Text of the file.
     pub source: Source,
     /// Path of the file.
     pub path: PathBuf,
@@ -20,18 +20,18 @@ pub struct SpecFile<T> {
 
 /// Checks of a file beyond its syntax.
 pub trait Spec: DeserializeOwned {
-    /// Checks what can be checked without a case.
+    /// Checks everything that can be checked without a case.
     ///
     /// # Errors
-    /// At the key that is wrong.
+    /// Returns an error at the invalid key.
     fn check(&self, source: &Source) -> Result<(), InputError>;
 }
 
 impl<T: Spec> SpecFile<T> {
-    /// Reads a file and checks what can be checked without a case.
+    /// Reads a file and checks everything that can be checked without a case.
     ///
     /// # Errors
-    /// At file, line and column.
+    /// Returns an error with file, line and column.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let source = Source::read(path)?;
         let spec: T = source.parse()?;
@@ -43,7 +43,7 @@ impl<T: Spec> SpecFile<T> {
         })
     }
 
-    /// A path in the file, which is relative to it.
+    /// Returns a path given in the file, which is relative to it.
     pub fn beside(&self, path: &Path) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
@@ -82,13 +82,13 @@ impl<'de> Deserialize<'de> for CaseKeys {
     }
 }
 
-/// How the numbers of a range are spread.
+/// Distribution of the numbers in a range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum RangeScale {
-    /// Evenly.
+    /// Evenly spaced.
     #[default]
     Linear,
-    /// Evenly in their logarithms.
+    /// Evenly spaced logarithms.
     Log,
     /// Whole numbers.
     Integer,
@@ -97,7 +97,7 @@ pub enum RangeScale {
 /// Checks the threads of a run and the limits of accepted runs.
 ///
 /// # Errors
-/// At the key that is wrong.
+/// Returns an error at the invalid key.
 pub fn check_runs(source: &Source, threads: u16, limits: Limits) -> Result<(), InputError> {
     if threads == 0 {
         return Err(source.error_at("threads", "a run has one thread or more"));
@@ -113,7 +113,7 @@ pub fn check_runs(source: &Source, threads: u16, limits: Limits) -> Result<(), I
     Ok(())
 }
 
-/// One thread, or one seed, by default.
+/// Returns the default of one thread, or one seed.
 pub fn one() -> u16 {
     1
 }

@@ -7,9 +7,9 @@
 //! - [`statistics`]: means with intervals, comparisons.
 //!
 //! The crate starts no run and reads no file, and does not know what a simulation is. A caller of
-//! the last three takes points, runs them, and hands the outputs back as tables of `Option<f64>`,
-//! where `None` is a run that failed. All random choices follow from a seed by the generator PCG,
-//! and what becomes the input of a run is computed with additions, products, square roots and the
+//! the last three modules gets points, makes the runs, and returns the outputs as tables of
+//! `Option<f64>`, where `None` is a run that failed. All random choices follow from a seed by the
+//! generator PCG, and inputs of runs are computed with additions, products, square roots and the
 //! functions of the crate `libm`, so that all machines make the same runs.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]

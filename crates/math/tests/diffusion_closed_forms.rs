@@ -33,7 +33,8 @@ fn half_space(conductivity: f64, capacity: f64, h: f64, t: f64, temperature: f64
     Node::new(temperature, Store::HalfSpace(Box::new(space)))
 }
 
-/// Surface temperature of a half-space under a constant flux, over 2 q sqrt(t/pi)/e, less 1.
+/// Returns the relative error of the surface temperature of a half-space under a constant flux,
+/// whose exact value is 2 q sqrt(t/pi)/e.
 fn flux_error(steps: u32, theta: f64) -> f64 {
     let (q, t) = (1e6, 1e-3);
     let h = t / f64::from(steps);
@@ -47,8 +48,8 @@ fn flux_error(steps: u32, theta: f64) -> f64 {
     nodes[0].temperature / exact - 1.0
 }
 
-/// Carslaw and Jaeger, 2.9 (7). The flux begins at once, so that the error of implicit Euler falls
-/// with the first power of the step.
+/// The solution is that of Carslaw and Jaeger, 2.9 (7). The flux begins at once, so that the error
+/// of implicit Euler decreases with the first power of the step.
 #[test]
 fn a_half_space_is_warmed_by_a_constant_flux() {
     let euler: Vec<f64> = [50, 100, 200].map(|n| flux_error(n, 1.0)).to_vec();
@@ -60,7 +61,7 @@ fn a_half_space_is_warmed_by_a_constant_flux() {
     assert!(middle.abs() < 0.01, "{middle}");
 }
 
-/// Both surfaces take the temperature (e1 T1 + e2 T2)/(e1 + e2) at once and keep it (Carslaw and
+/// Both surfaces reach the temperature (e1 T1 + e2 T2)/(e1 + e2) at once and keep it (Carslaw and
 /// Jaeger, 2.15).
 #[test]
 fn two_half_spaces_meet_at_their_effusivities() {
@@ -87,8 +88,8 @@ fn two_half_spaces_meet_at_their_effusivities() {
     }
 }
 
-/// Two lumps approach each other as exp(-t G (1/C1 + 1/C2)): first order for theta = 1, second for
-/// 1/2.
+/// The difference of two lumps decays as exp(-t G (1/C1 + 1/C2)): first order for theta = 1, second
+/// for 1/2.
 #[test]
 fn two_lumps_approach_each_other() {
     let (c, g, t) = ([2.0, 3.0], 1.5, 1.0);
@@ -170,12 +171,12 @@ fn a_random_network_is_solved() {
     for k in 0..n {
         assert!((found.potential[k] - exact[k]).abs() < 1e-12, "{k}");
     }
-    // What the electrodes give and what is put in adds up.
+    // The currents of the electrodes and the injected ones sum to zero.
     let sum: f64 = found.given.iter().sum::<f64>() + 0.7;
     assert!(sum.abs() < 1e-12, "{sum}");
 }
 
-/// Resistances in series add up, conductances in parallel too.
+/// Resistances in series are added, and conductances in parallel.
 #[test]
 fn series_and_parallel() {
     let between = |edges: Vec<Edge>, nodes: usize| {
@@ -191,7 +192,7 @@ fn series_and_parallel() {
     assert!((between(pair, 2) / 5050.0 - 1.0).abs() < 1e-12);
 }
 
-/// Nodes that no path joins to an electrode carry no current, and current into them is refused.
+/// Nodes without a path to an electrode carry no current, and current into them is refused.
 #[test]
 fn what_is_not_joined_carries_no_current() {
     let graph = Graph::new(5, vec![edge(0, 1, 1.0), edge(2, 3, 1.0), edge(3, 4, 0.0)]);

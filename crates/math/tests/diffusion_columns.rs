@@ -1,6 +1,6 @@
 //! Heat along surfaces: sources that cover a part of a half-space, against closed forms (H. S.
-//! Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 1959, 10.5), and what a step of any length
-//! keeps.
+//! Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 1959, 10.5), and quantities that a step of
+//! any length conserves.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -13,8 +13,8 @@ const CONDUCTIVITY: f64 = 50.0;
 const CAPACITY: f64 = 7850.0 * 450.0;
 const DIFFUSIVITY: f64 = CONDUCTIVITY / CAPACITY;
 
-/// A surface of so many pieces of a width (m) along each axis, at 0 K, for steps of `h` up to a
-/// time `t` (s).
+/// Creates a surface with a number of pieces of a width (m) along each axis, at 0 K, for steps of
+/// `h` up to a time `t` (s).
 fn surface(counts: &[u32], width: f64, periodic: bool, h: f64, t: f64) -> (Vec<Node>, Columns) {
     let first = 0.1 * (DIFFUSIVITY * h).sqrt();
     let depth = 6.0 * (DIFFUSIVITY * t).sqrt();
@@ -42,8 +42,8 @@ fn no_edges(nodes: usize) -> Graph {
     Graph::new(nodes, Vec::new())
 }
 
-/// Exponential integral E1 by its series and, above 1, its continued fraction (M. Abramowitz, I.
-/// Stegun, 5.1.11 and 5.1.22).
+/// Returns the exponential integral E1 by its series and, above 1, its continued fraction (M.
+/// Abramowitz, I. Stegun, 5.1.11 and 5.1.22).
 fn e1(x: f64) -> f64 {
     if x <= 1.0 {
         let mut term = 1.0;
@@ -62,7 +62,7 @@ fn e1(x: f64) -> f64 {
 }
 
 fn erf(x: f64) -> f64 {
-    // By its series, for the arguments below 3 that are needed here.
+    // The series is used, for the arguments below 3 that are needed here.
     let (mut term, mut sum) = (x, x);
     for k in 1..100 {
         let k = f64::from(k);
@@ -72,8 +72,8 @@ fn erf(x: f64) -> f64 {
     2.0 / PI.sqrt() * sum
 }
 
-/// Rise at the middle of a band of half-width b under a flux q since a time t, less the exact one,
-/// as a share of it; widths b/n.
+/// Returns the relative error of the rise at the middle of a band of half-width b under a flux q
+/// since a time t; the widths of the pieces are b/n.
 fn band(n: u32, h: f64, theta: f64) -> f64 {
     let (b, q, t) = (1e-4, 1e8, 2e-3);
     let width = b / f64::from(n);
@@ -105,8 +105,8 @@ fn band(n: u32, h: f64, theta: f64) -> f64 {
     nodes[middle].temperature / exact - 1.0
 }
 
-/// The rise is that of the closed form for any width of the pieces: heat that cannot flow sideways
-/// would give 2.1 times as much.
+/// The rise is that of the closed form for any width of the pieces: without tangential flow it
+/// would be 2.1 times as large.
 #[test]
 fn a_band_source_warms_the_same_for_any_width_of_pieces() {
     for n in [2, 4, 8] {
@@ -115,8 +115,8 @@ fn a_band_source_warms_the_same_for_any_width_of_pieces() {
     }
 }
 
-/// At once the flux begins, so that the first steps of theta = 1 decide; theta = 1/2 is nearer with
-/// steps of the same length.
+/// The flux begins at once, so that the first steps of theta = 1 dominate the error; theta = 1/2 is
+/// more accurate with steps of the same length.
 #[test]
 fn the_error_falls_with_the_step() {
     let euler = [4e-5, 2e-5, 1e-5].map(|h| band(8, h, 1.0));
@@ -165,9 +165,9 @@ fn a_square_source_on_a_surface_in_three_dimensions() {
     assert!(off.abs() < 0.03, "{off}");
 }
 
-/// Any step keeps the heat and, with theta = 1, the range of temperatures; a uniform temperature
-/// stays; a long step leaves one temperature at each depth. On a ring a pattern moves with its
-/// pieces.
+/// Any step conserves heat and, with theta = 1, the range of temperatures; a uniform temperature
+/// does not change; a long step leaves one temperature at each depth. On a ring a rotated pattern
+/// gives the rotated result.
 #[test]
 fn steps_of_any_length_keep_heat_and_range() {
     for (counts, periodic) in [
@@ -218,7 +218,7 @@ fn steps_of_any_length_keep_heat_and_range() {
     }
 }
 
-/// On a ring no piece is another than the next.
+/// On a ring all pieces are equivalent.
 #[test]
 fn a_ring_has_no_first_piece() {
     let run = |warm: usize| {

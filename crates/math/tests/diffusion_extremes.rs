@@ -1,13 +1,13 @@
-//! Heat is kept, and temperatures stay between those that there were, whatever the conductances and
-//! the step.
+//! Heat is conserved, and temperatures stay between the initial ones, for any conductances and any
+//! step.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use fretwork_math::diffusion::{Edge, Graph, Grid, HalfSpace, Node, Store, step};
 use rand::{RngExt, SeedableRng};
 
-/// 200 lumps with capacities over six decades and conductances over twelve, some of them isolated,
-/// two half-spaces and a fixed node.
+/// Creates 200 lumps with capacities over six decades and conductances over twelve, some of them
+/// isolated, two half-spaces and a fixed node.
 fn scene(seed: u64) -> (Vec<Node>, Graph) {
     let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
     let mut decades = |low: f64, high: f64| 10f64.powf(low + (high - low) * random.random::<f64>());
@@ -62,7 +62,7 @@ fn heat_is_kept_for_any_conductances_and_steps() {
         for _ in 0..5 {
             let isolated = nodes[7].temperature;
             let balance = step(&mut nodes, &graph, &[0.0; 203], h, 1.0).unwrap();
-            // Temperatures are rounded, and with them what flows through a conductance.
+            // Temperatures are rounded, and so are the flows through conductances.
             let rounding: f64 = graph
                 .edges
                 .iter()

@@ -10,8 +10,8 @@ const STEEL: Conductor = Conductor {
     capacity: 7850.0 * 450.0,
 };
 
-/// Temperatures of a surface point (K) after each of so many steps (s) with a flux by the time
-/// (W/m^2).
+/// Returns temperatures of a surface point (K) after each of a number of steps (s) with a flux as a
+/// function of time (W/m^2).
 fn warmed(flux: impl Fn(f64) -> f64, h: f64, steps: u32) -> Vec<f64> {
     let reach = (STEEL.diffusivity() * h).sqrt();
     let depth = 8.0 * reach * f64::from(steps).sqrt();
@@ -38,9 +38,9 @@ fn a_fast_band_warms_what_passes() {
     assert!(error.abs() < 0.02, "{error}");
 }
 
-/// Wheel on rail, half of the frictional heat into each: 150.3 K at x/a = 0.65 (M. Ertz, K. Knothe,
-/// Wear 253 (2002) 498-508, with a = 5.88 mm, b = 10.54 mm, 100 kN, 30 m/s, 1 m/s of sliding,
-/// friction 0.3).
+/// For a wheel on a rail with half of the frictional heat into each the rise is 150.3 K at x/a =
+/// 0.65 (M. Ertz, K. Knothe, Wear 253 (2002) 498-508, with a = 5.88 mm, b = 10.54 mm, 100 kN, 30
+/// m/s, 1 m/s of sliding, friction 0.3).
 #[test]
 fn a_rail_is_as_warm_as_ertz_and_knothe_say() {
     let (a, b, load, v, sliding, mu) = (5.88e-3, 10.54e-3, 100e3, 30.0, 1.0, 0.3);
@@ -61,8 +61,8 @@ fn a_rail_is_as_warm_as_ertz_and_knothe_say() {
     assert!((x - 0.65).abs() < 0.02, "at x/a = {x}");
 }
 
-/// At rest the middle of a circle of uniform flux is warmer by q a/k (Carslaw and Jaeger, 10.5); a
-/// fast circle is as warm as a band.
+/// At rest the rise in the middle of a circle of uniform flux is q a/k (Carslaw and Jaeger, 10.5);
+/// a fast circle is as warm as a band.
 #[test]
 fn a_circle_has_both_limits() {
     let (q, a) = (1e7, 1e-4);

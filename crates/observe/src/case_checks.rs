@@ -1,5 +1,5 @@
-//! What is known of a case before its run: drives that the step does not resolve, laws that are not
-//! asked, and which results the case cannot have.
+//! Checks of a case before its run: drives that the step does not resolve, laws that are not
+//! called, and results that the case cannot have.
 
 use super::heat::without_heat;
 use super::quantity::Findings;

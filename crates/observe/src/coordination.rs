@@ -12,22 +12,22 @@ const FAINT: f64 = 1e-3;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coordination {
     /// Mean number of contacts that carry force, over all grains; a contact with a wall counts
-    /// once, and a neighbour of a grain that deforms.
+    /// once, and so do all contacts with one neighbour of a deformable grain.
     pub mean: f64,
-    /// The same for the grains and contacts that remain after removing rattlers.
+    /// Mean number of contacts over the grains and contacts that remain after removing rattlers.
     pub carried: f64,
     /// Fraction of rattlers: grains with fewer than two such contacts, which cannot be in
     /// equilibrium, and those that become so when other rattlers are removed.
     pub rattlers: f64,
 }
 
-/// Counts the contacts of the last step.
+/// Returns the coordination of the contacts of the last step.
 pub fn coordination(run: &dyn RunView) -> Coordination {
     count_pairs(&run.grain_flags(), &bearing(run))
 }
 
-/// Number of contacts of each body that carry force in the last step, with the threshold of
-/// [`coordination`].
+/// Returns the number of contacts of each body that carry force in the last step, with the
+/// threshold of [`coordination`].
 pub fn degrees(run: &dyn RunView) -> Vec<u32> {
     let mut degree = vec![0; run.bodies().len()];
     for body in bearing(run).into_iter().flatten() {
@@ -36,7 +36,7 @@ pub fn degrees(run: &dyn RunView) -> Vec<u32> {
     degree
 }
 
-/// Bodies of the contacts that carry force.
+/// Returns the bodies of the contacts that carry force.
 fn bearing(run: &dyn RunView) -> Vec<[u32; 2]> {
     let mut pressed: Vec<([u32; 2], f64)> = Vec::new();
     run.visit_contacts(&mut |c| {
@@ -50,7 +50,7 @@ fn bearing(run: &dyn RunView) -> Vec<[u32; 2]> {
     let pairs = pressed.into_iter().filter(|p| p.1 > least);
     let bodies = run.bodies();
     let deforms = |b: u32| bodies.carrier(b as usize).is_some_and(|c| c.grain);
-    // Points of grains that deform touch one by one: a neighbour counts once.
+    // Points of deformable grains touch one by one; a neighbour counts once.
     let mut seen = HashSet::new();
     let once = |bodies: &[u32; 2]| {
         let [a, b] = *bodies;

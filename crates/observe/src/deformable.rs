@@ -1,11 +1,11 @@
-//! Deformable bodies: displacement and force of what holds them, and at the end of a run their mesh
-//! with displacements and stresses and the tractions along what touches.
+//! Deformable bodies: displacement and force of their holders, and at the end of a run their mesh
+//! with displacements and stresses and the tractions on the contact surface.
 
 use super::chart::{Axis, Chart, Series, Style};
 use super::figures::contact_map;
 use super::nearest_places::NearestPlaces;
 use super::output::Output;
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::quantity::unit::{FORCE, ONE, RADIAN, WORD};
 use super::quantity::{Findings, Role, Topic};
 use super::resolution::{self, Resolution};
@@ -14,7 +14,7 @@ use super::tractions::{SurfaceState, loaded, signed};
 use super::warning::Warning;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::bodies::{DeformedMesh, Holder, von_mises};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::laws::AreaRule;
 use fretwork_core::view::{RunView, SystemView};
 use fretwork_scene::case::Case;
@@ -25,36 +25,38 @@ use std::fmt::Write as _;
 /// Kinds of cells of VTK, a triangle and a tetrahedron.
 const VTK_CELLS: [u8; 2] = [5, 10];
 
-/// The columns of all holders, `BODY_PART_x` and `BODY_PART_fx`, and files of each body.
+/// Columns of all holders, `BODY_PART_x` and `BODY_PART_fx`, and files of each body.
 #[derive(Clone, Debug)]
 pub struct Deformable {
     holders: Vec<String>,
     bodies: Vec<String>,
-    /// Largest strain and rotation of each, where it takes both for small.
+    /// Largest strain and rotation of each body that assumes both to be small.
     distortions: Vec<Option<[f64; 2]>>,
     /// For each body, the largest share of a force on its border.
     borders: Vec<f64>,
-    /// Elements across the contact of each, and whether the material of each passes.
+    /// Number of elements across the contact of each body, and whether its material passes through
+    /// the surface.
     resolutions: Vec<Resolution>,
     rolls: Vec<bool>,
-    /// Contacts that act on nearest places.
+    /// Contacts that act on nearest positions.
     nearest: NearestPlaces,
-    /// Largest strain and rotation of grains that deform, and the names of their materials.
+    /// Largest strain and rotation of deformable grains, and the names of their materials.
     grains: Option<[f64; 2]>,
     materials: Vec<String>,
 }
 
-/// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about
-/// half of the strain as a share, here a per cent, and its forces act in directions that are off by
-/// the rotation, here two per cent.
+/// Strain and rotation (rad) above which a body in small strain gets a warning. The relative error
+/// of its stress is about half of the strain, here one per cent, and the error of the direction of
+/// its forces is the rotation, here two per cent.
 const LARGE: f64 = 0.02;
-/// The same of grains that deform: most of their strain is at contacts. The force of a disk between
-/// two plates is off by less than 1.5 per cent up to there
-/// (`tests/physics/elastic/soft_strain.rs`); rotations are those against their frame.
+/// Strain and rotation (rad) above which deformable grains get a warning: most of their strain is
+/// at contacts. The error of the force of a disk between two plates is less than 1.5 per cent up to
+/// this strain (`tests/physics/elastic/soft_strain.rs`); rotations are relative to the frame of the
+/// grain.
 const LARGE_IN_GRAINS: f64 = 0.1;
 
 crate::described! {
-    /// A body in small strain, and how large its strain was.
+    /// Largest strain of a body in small strain.
     #[derive(Clone, Debug, Serialize)]
     pub struct SmallStrain {
         /// Name of the body; none of grains.
@@ -67,7 +69,7 @@ crate::described! {
 }
 
 impl SmallStrain {
-    /// What is wrong where it was not small.
+    /// Returns a warning where strain or rotation was not small.
     pub fn warning(&self) -> Option<String> {
         let (limit, who, what, remedy) = match &self.body {
             Some(name) => (
@@ -99,7 +101,7 @@ impl SmallStrain {
 const BORDER: f64 = 0.01;
 
 crate::described! {
-    /// Largest force on the border of what of a half-space can be loaded.
+    /// Largest force on the border of the loadable part of a half-space.
     #[derive(Clone, Debug, PartialEq, Serialize)]
     pub struct BorderLoad {
         /// Name of the body.
@@ -110,7 +112,7 @@ crate::described! {
 }
 
 impl BorderLoad {
-    /// What is wrong where the contact reaches the border.
+    /// Returns a warning where the contact reaches the border.
     pub fn warning(&self) -> Option<String> {
         (self.share > BORDER).then(|| {
             format!(
@@ -156,33 +158,33 @@ impl Deformable {
     }
 }
 
-/// Deformable bodies that are no grains; these come last.
+/// Iterates over the deformable bodies other than grains; grains come last.
 fn first_bodies(run: &dyn RunView) -> impl Iterator<Item = Box<dyn SystemView + '_>> {
     let systems = (0..run.system_count()).filter_map(|k| run.system(k));
     systems.take_while(|system| !system.is_grain())
 }
 
-/// Grains that deform.
+/// Iterates over the deformable grains.
 fn grains(run: &dyn RunView) -> impl Iterator<Item = Box<dyn SystemView + '_>> {
     let systems = (0..run.system_count()).filter_map(|k| run.system(k));
     systems.filter(|system| system.is_grain())
 }
 
-/// Largest strain and rotation in grains that deform.
+/// Returns the largest strain and rotation in deformable grains.
 fn strain_of_grains(run: &dyn RunView) -> Option<[f64; 2]> {
     let all = grains(run).filter_map(|s| s.small_strain());
     all.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
 }
 
-/// The larger of two distortions in each part.
+/// Returns the larger of two values for strain and for rotation.
 fn larger(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let (a, b) = (a?, b?);
     Some([a[0].max(b[0]), a[1].max(b[1])])
 }
 
 impl Deformable {
-    /// Largest strains of what is computed in small strain, and loads on borders, with those of the
-    /// current state.
+    /// Returns the largest strains of bodies in small strain, and loads on borders, including those
+    /// of the current state.
     fn distortions(&self, run: &dyn RunView) -> (Vec<SmallStrain>, Vec<BorderLoad>) {
         let (mut strains, mut borders) = (Vec::new(), Vec::new());
         for (k, name) in self.bodies.iter().enumerate() {
@@ -272,11 +274,11 @@ impl Observer for Deformable {
         if run.dimension() == 2 {
             return vec![Picture {
                 name: "stress",
-                shows: Shows::Stress,
+                shows: PictureContent::Stress,
             }];
         }
         let systems = self.bodies.iter().enumerate();
-        // What sticks and slips, and the pressure.
+        // The maps show stick and slip, and the pressure.
         let maps = systems.flat_map(|(k, name)| {
             let state = SurfaceState::of(run, k);
             let maps = state.map(|state| contact_map::charts(name, &state, has_tractions(run, k)));
@@ -284,7 +286,7 @@ impl Observer for Deformable {
         });
         vec![Picture {
             name: "slip",
-            shows: Shows::Charts(maps.collect()),
+            shows: PictureContent::Charts(maps.collect()),
         }]
     }
 
@@ -314,15 +316,15 @@ impl Observer for Deformable {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         let nearest = self.nearest.state();
         let resolutions: Vec<_> = self.resolutions.iter().map(Resolution::state).collect();
         let kept = (&self.distortions, &self.borders, self.grains, nearest);
         encode(&(kept, resolutions))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        let (nearest, resolutions): (_, Vec<resolution::State>);
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        let (nearest, resolutions): (_, Vec<resolution::ResolutionState>);
         (
             (self.distortions, self.borders, self.grains, nearest),
             resolutions,
@@ -362,8 +364,8 @@ impl Observer for Deformable {
     }
 
     fn file_names(&self) -> Vec<String> {
-        // Links to the results are of the program; without these names they would outlive the
-        // bodies that they show.
+        // The program creates links to the results; without these names they would remain after the
+        // bodies.
         let of = |name: &String| {
             [
                 format!("{name}.vtk"),
@@ -385,7 +387,7 @@ impl Observer for Deformable {
 /// File of the meshes of grains.
 const GRAINS: &str = "elastic_grains.vtk";
 
-/// The meshes of all grains that deform as one.
+/// Returns the meshes of all deformable grains as one mesh.
 fn all_grains(run: &dyn RunView) -> DeformedMesh<Vector3<f64>> {
     let mut out = DeformedMesh::default();
     for mesh in grains(run).filter_map(|s| s.deformed_mesh()) {
@@ -399,13 +401,14 @@ fn all_grains(run: &dyn RunView) -> DeformedMesh<Vector3<f64>> {
     out
 }
 
-/// Name of the column of the force of a holder, from that of its displacement.
+/// Returns the name of the column of the force of a holder, from that of its displacement.
 fn force(name: &str) -> String {
     let axis = name.len() - 1;
     format!("{}f{}", &name[..axis], &name[axis..])
 }
 
-/// A mesh as an unstructured grid in VTK's legacy text format, points where they are now.
+/// Returns a mesh as an unstructured grid in VTK's legacy text format, with the current positions
+/// of points.
 ///
 /// Source: Kitware, "VTK file formats", simple legacy formats, version 3.0.
 fn vtk(name: &str, mesh: &DeformedMesh<Vector3<f64>>, dimension: usize) -> String {
@@ -457,14 +460,14 @@ fn vtk(name: &str, mesh: &DeformedMesh<Vector3<f64>>, dimension: usize) -> Strin
 /// A contact of a deformable body over the last step.
 #[derive(Clone, Copy, Debug)]
 struct Traction {
-    /// Where it is (m).
+    /// Position (m).
     place: Vector3<f64>,
     /// Force on the body (N; N/m in 2D).
     force: Vector3<f64>,
-    /// Its part along the normal, positive in compression, and along the surface: in the plane
-    /// positive along +x.
+    /// Part of the force along the normal, positive in compression, and along the surface: in the
+    /// plane positive along +x.
     parts: [f64; 2],
-    /// Length (m) or area (m^2) that a point of the surface stands for; none where it is not known.
+    /// Tributary length (m) or area (m^2) of the point of the surface; `None` where unknown.
     area: Option<f64>,
     slips: bool,
 }
@@ -493,15 +496,15 @@ fn tractions(run: &dyn RunView, system: usize) -> Vec<Traction> {
     out
 }
 
-/// Whether forces of points over the areas that they stand for are tractions. (In space the points
-/// of a block have more and fewer elements in turn.)
+/// Returns whether forces of points over their tributary areas are tractions. (In space the points
+/// of a block have alternately more and fewer elements.)
 fn has_tractions(run: &dyn RunView, system: usize) -> bool {
     let system = run.system(system);
     run.dimension() == 2 || system.is_some_and(|s| s.has_equal_points())
 }
 
-/// The contacts of a system as a table. Where a surface touches by its points also pressure and
-/// shear.
+/// Returns the contacts of a system as a table, with pressure and shear where a surface touches by
+/// its points.
 fn traction_table(run: &dyn RunView, system: usize) -> String {
     let axes = &["x", "y", "z"][..run.dimension()];
     let newton = FORCE.symbol(run.dimension());
@@ -531,7 +534,8 @@ fn traction_table(run: &dyn RunView, system: usize) -> String {
     out
 }
 
-/// Pressure and shear along what touches by its points (2D), and where it slips.
+/// Returns a chart of pressure and shear along a surface that touches by points (2D), and of its
+/// slip.
 fn traction_chart(run: &dyn RunView, system: usize, name: &str) -> Chart {
     let along = Axis::new("position x", "m");
     let mut chart = Chart::new(

@@ -22,10 +22,10 @@ crate::described! {
     }
 }
 
-/// What each first body lost: volume and depths of its scars. A friction test adds the specific
-/// wear rate.
+/// Returns the loss of each first body: volume and depths of its scars. A friction test adds the
+/// specific wear rate.
 pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
-    let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
+    let mut bodies: BTreeMap<u32, WornBody> = BTreeMap::new();
     let surfaces = run.surfaces();
     for (surface, volume) in run.worn() {
         if let Some(carried) = surfaces.get(*surface) {
@@ -46,7 +46,7 @@ pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
             worn.put += vertex.tributary * vertex.depth;
         }
     }
-    let summary = |(body, worn): (u32, Worn)| BodyWear {
+    let summary = |(body, worn): (u32, WornBody)| BodyWear {
         body: name(run, body),
         volume: worn.volume,
         depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
@@ -57,7 +57,7 @@ pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
 }
 
 #[derive(Default)]
-struct Worn {
+struct WornBody {
     volume: f64,
     /// Volume removed by its scars (m^3; m^3/m), and their area (m^2; m).
     put: f64,

@@ -9,24 +9,24 @@ use serde::{Deserialize, Serialize};
 /// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
 /// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
 /// "Quantification of fretting damage", Wear 200 (1996) 186.
-pub const TRANSITION: f64 = 0.2;
+pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 
 /// How a contact slides.
 ///
 /// # Examples
 /// ```
-/// use fretwork_observe::fretting::Regime;
+/// use fretwork_observe::fretting::SlipRegime;
 ///
 /// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
 /// let (q, delta) = (30.0, 5e-6);
 /// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(Regime::of(dissipated / (4.0 * q * delta)), Regime::Gross);
+/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
 /// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(Regime::of(0.05), Regime::Partial);
+/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Regime {
+pub enum SlipRegime {
     /// Partial slip: part of the contact sticks in every cycle.
     #[default]
     Partial,
@@ -36,17 +36,17 @@ pub enum Regime {
     Gross,
 }
 
-impl Regime {
-    /// Regime of one cycle by its energy ratio.
+impl SlipRegime {
+    /// Returns the regime of one cycle by its energy ratio.
     pub fn of(energy_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION {
+        if energy_ratio < TRANSITION_ENERGY_RATIO {
             Self::Partial
         } else {
             Self::Gross
         }
     }
 
-    /// Its name.
+    /// Returns the name of the regime.
     pub fn name(self) -> &'static str {
         match self {
             Self::Partial => "partial slip",
@@ -59,7 +59,7 @@ impl Regime {
 crate::described! {
     /// A ratio of sums over cycles with its 95 % confidence interval.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Slope {
+    pub struct CycleRatio {
         /// The ratio.
         pub value: f64 => WEAR_PER_ENERGY,
         /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
@@ -70,9 +70,9 @@ crate::described! {
 crate::described! {
     /// Result of a fretting test.
     #[derive(Clone, Debug, Serialize)]
-    pub struct Outcome {
+    pub struct FrettingOutcome {
         /// Regime over all complete cycles.
-        pub regime: Regime => WORD,
+        pub regime: SlipRegime => WORD,
         /// Energy dissipated in all complete cycles, the sum of E_d, including cycles jumped over.
         pub energy: f64 => ENERGY,
         /// Volume worn off first bodies in these cycles.
@@ -80,18 +80,20 @@ crate::described! {
         /// Slope alpha of wear volume against cumulative energy; `None` without wear. E_d is the
         /// area of the loop: if bodies also collide or move normally, the energy dissipated by
         /// friction alone is smaller.
-        pub alpha: Option<Slope> = part::<Slope>(),
+        pub alpha: Option<CycleRatio> = part::<CycleRatio>(),
     }
 }
 
-impl Outcome {
+impl FrettingOutcome {
     /// Evaluates the complete cycles; `None` if there are none.
     pub fn new(cycles: &[Cycle]) -> Option<Self> {
         let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
         let first = complete.first()?;
-        let kind = Regime::of(first.energy_ratio);
-        let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        // A cycle that represents several holds the fracture energy of all of them; its neighbours
+        let kind = SlipRegime::of(first.energy_ratio);
+        let same = complete
+            .iter()
+            .all(|c| SlipRegime::of(c.energy_ratio) == kind);
+        // A cycle that represents several has the fracture energy of all of them; its neighbours
         // give that of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
         let energy = |k: usize| {
@@ -115,7 +117,7 @@ impl Outcome {
         let energy = points.iter().map(|p| p.0).sum();
         let volume = points.iter().map(|p| p.1).sum();
         Some(Self {
-            regime: if same { kind } else { Regime::Mixed },
+            regime: if same { kind } else { SlipRegime::Mixed },
             energy,
             wear_volume: volume,
             alpha: if volume > 0.0 { slope(&points) } else { None },
@@ -123,10 +125,10 @@ impl Outcome {
     }
 }
 
-/// Sum of y over sum of x for independent pairs (x, y): the slope of cumulative y against
-/// cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron, The
-/// Jackknife, the Bootstrap and Other Resampling Plans, 1982).
-fn slope(points: &[(f64, f64)]) -> Option<Slope> {
+/// Returns the sum of y over the sum of x for independent pairs (x, y): the slope of cumulative y
+/// against cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron,
+/// The Jackknife, the Bootstrap and Other Resampling Plans, 1982).
+fn slope(points: &[(f64, f64)]) -> Option<CycleRatio> {
     let n = points.len() as f64;
     let (x, y) = points
         .iter()
@@ -140,7 +142,7 @@ fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let square: f64 = without.iter().map(|w| (w - mean).powi(2)).sum();
     let t = interval::quantile(points.len());
     let half_width = t.map(|t| t * ((n - 1.0) / n * square).sqrt());
-    Some(Slope { value, half_width })
+    Some(CycleRatio { value, half_width })
 }
 
 #[cfg(test)]
@@ -163,12 +165,12 @@ mod tests {
     fn regimes_follow_the_energy_ratio() {
         let of = |ratios: &[f64]| {
             let cycles: Vec<Cycle> = ratios.iter().map(|a| cycle(1.0, 0.0, *a)).collect();
-            Outcome::new(&cycles).unwrap().regime
+            FrettingOutcome::new(&cycles).unwrap().regime
         };
-        assert_eq!(of(&[0.05, 0.19]), Regime::Partial);
-        assert_eq!(of(&[0.05, 0.4]), Regime::Mixed);
-        assert_eq!(of(&[0.9, 0.4]), Regime::Gross);
-        assert!(Outcome::new(&[]).is_none());
+        assert_eq!(of(&[0.05, 0.19]), SlipRegime::Partial);
+        assert_eq!(of(&[0.05, 0.4]), SlipRegime::Mixed);
+        assert_eq!(of(&[0.9, 0.4]), SlipRegime::Gross);
+        assert!(FrettingOutcome::new(&[]).is_none());
     }
 
     #[test]
@@ -176,7 +178,7 @@ mod tests {
         let alpha = 2e-14;
         let works = [1.0, 0.8, 1.3, 1.1];
         let cycles: Vec<Cycle> = works.iter().map(|w| cycle(*w, alpha * w, 0.8)).collect();
-        let outcome = Outcome::new(&cycles).unwrap();
+        let outcome = FrettingOutcome::new(&cycles).unwrap();
         let slope = outcome.alpha.unwrap();
         assert!((slope.value / alpha - 1.0).abs() < 1e-12);
         assert!(slope.half_width.unwrap() < 1e-6 * alpha);
@@ -184,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_slope_covers_it_as_often_as_it_says() {
-        // Cycles with 5 % noise on the energy and 10 % on the volume, twenty each.
+        // There are twenty cycles, with 5 % noise on the energy and 10 % on the volume.
         let mut rng = Pcg64::seed_from_u64(1);
         let mut noise = |share: f64| {
             let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();

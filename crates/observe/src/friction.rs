@@ -1,7 +1,7 @@
 //! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from
 //! dissipation.
 
-use super::fretting::Regime;
+use super::fretting::SlipRegime;
 use super::layer::Balance;
 use super::loops::Loop;
 use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
@@ -65,7 +65,7 @@ crate::described! {
         /// 0 before the first reversal.
         pub plateau_ratio: f64 => ONE,
         /// Partial or gross slip, from the energy ratio.
-        pub regime: Regime => WORD,
+        pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,
         /// Number of further cycles that it represents by a jump: wear and damage are of all of
@@ -87,16 +87,17 @@ pub struct Cycles {
     position: f64,
     lowest: f64,
     highest: f64,
-    before: Option<State>,
+    before: Option<FrictionTotals>,
     shape: Loop,
     place: f64,
-    /// Without a period: integrals of Q d delta and P |d delta| over blocks of equal time.
+    /// Integrals of Q d delta and P |d delta| over blocks of equal time, for tests without a
+    /// period.
     blocks: Vec<(f64, f64)>,
 }
 
 /// Cumulative quantities of a run at the end of a step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct State {
+pub struct FrictionTotals {
     /// Energy balance.
     pub balance: Balance,
     /// Bonds broken.
@@ -106,14 +107,14 @@ pub struct State {
 }
 
 impl Cycle {
-    /// Largest |Q| over the mean P; `None` if the body was not pressed.
+    /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.
     pub fn peak_ratio(&self) -> Option<f64> {
         (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
     }
 }
 
 impl Cycles {
-    /// Time from which on friction is looked at (s).
+    /// Returns the time from which friction is measured (s).
     pub fn start(&self) -> f64 {
         match self.clock.period {
             Some(_) => self.clock.start,
@@ -122,13 +123,13 @@ impl Cycles {
         }
     }
 
-    /// Cycles of length `period` from `start` on; without a period the second half of the time from
-    /// `start` to `end` is one cycle.
+    /// Creates cycles of length `period` from `start` on; without a period the second half of the
+    /// time from `start` to `end` is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         Self::of(CycleClock::new(start, period, end), end)
     }
 
-    /// Cycles by a clock, of a run until `end` (s).
+    /// Creates cycles from a clock, for a run until `end` (s).
     pub fn of(clock: CycleClock, end: f64) -> Self {
         Self {
             clock,
@@ -147,8 +148,8 @@ impl Cycles {
         }
     }
 
-    /// Scatter of the friction coefficient over the later cycles; without a period over the
-    /// finished blocks.
+    /// Returns the scatter of the friction coefficient over the later cycles; without a period over
+    /// the finished blocks.
     pub fn scatter(&self) -> Option<Scatter> {
         if self.oscillates() {
             return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
@@ -163,7 +164,7 @@ impl Cycles {
         self.clock.number(time)
     }
 
-    /// Start and end of a cycle (s); `None` without cycles.
+    /// Returns start and end of a cycle (s); `None` without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
         self.clock.span(number)
     }
@@ -184,7 +185,14 @@ impl Cycles {
     }
 
     /// Adds a step: cumulative quantities at its start and at its end, and the damage ratio.
-    pub fn add(&mut self, sample: &Sample, h: f64, before: State, after: State, damage: f64) {
+    pub fn add(
+        &mut self,
+        sample: &Sample,
+        h: f64,
+        before: FrictionTotals,
+        after: FrictionTotals,
+        damage: f64,
+    ) {
         let number = self.number(sample.time);
         if number == 0 {
             return;
@@ -208,7 +216,7 @@ impl Cycles {
         self.pressure_path += sample.p * sample.slide.abs();
         self.pressure_time += sample.p * h;
         if self.clock.period.is_none() {
-            // The step belongs to the block that its middle lies in.
+            // The step belongs to the block that contains its middle.
             let share = (self.time + 0.5 * h) / (self.end - self.clock.start);
             let block = (share * BLOCKS as f64) as usize;
             if let Some(block) = self.blocks.get_mut(block) {
@@ -245,7 +253,7 @@ impl Cycles {
         };
         cycle.reversal_ratio = self.shape.reversal();
         cycle.plateau_ratio = self.shape.plateau().unwrap_or(0.0);
-        cycle.regime = Regime::of(cycle.energy_ratio);
+        cycle.regime = SlipRegime::of(cycle.energy_ratio);
         let clock = &self.clock;
         let end = clock
             .period
@@ -253,7 +261,7 @@ impl Cycles {
         cycle.complete = sample.time >= end - 1e-6 * h;
     }
 
-    /// The last complete cycle, or the last one if none is complete.
+    /// Returns the last complete cycle, or the last one if none is complete.
     pub fn last(&self) -> Option<&Cycle> {
         self.list
             .iter()
@@ -267,8 +275,8 @@ impl Cycles {
 mod tests {
     use super::*;
 
-    /// Two cycles of a sine at friction `mu`, with the lid rising and falling with the stroke;
-    /// `measured` is the ratio of the measured to the true force.
+    /// Returns two cycles of a sine at friction `mu`, with the lid rising and falling with the
+    /// stroke; `measured` is the ratio of the measured to the true force.
     fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
         let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
         let omega = std::f64::consts::TAU * f;
@@ -276,7 +284,8 @@ mod tests {
         let (mut balance, mut t) = (Balance::default(), 0.0);
         while t < 0.2 - 0.5 * h {
             let v = a * omega * (omega * (t + 0.5 * h)).cos();
-            // On slopes of `lift`, the tangential force gains what the normal force loses.
+            // On slopes of `lift`, the tangential force increases by what the normal force
+            // decreases.
             let q = mu * p * v.signum() + lift * p;
             let before = balance;
             balance.taken += mu * p * v.abs() * h;
@@ -289,9 +298,9 @@ mod tests {
                 slide: v * h,
                 work: measured * q * v * h,
             };
-            let [before, after] = [before, balance].map(|balance| State {
+            let [before, after] = [before, balance].map(|balance| FrictionTotals {
                 balance,
-                ..State::default()
+                ..FrictionTotals::default()
             });
             cycles.add(&sample, h, before, after, 0.0);
         }

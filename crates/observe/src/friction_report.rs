@@ -1,4 +1,4 @@
-//! What a friction test says at its end.
+//! Results of a friction test at its end.
 
 use super::fretting;
 use super::friction::{Cycle, Cycles};
@@ -37,7 +37,7 @@ crate::described! {
 
 const NO_TEST: &str = "the case has no friction test (`friction`)";
 
-/// Adds what cases without a friction test lack.
+/// Marks the results that cases without a friction test do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Friction, Role::Detail);
     add(&Friction::default(), None, found);
@@ -50,16 +50,20 @@ pub(crate) fn report_none(found: &mut Findings) {
     }
 }
 
-fn add(friction: &Friction, fretting: Option<&fretting::Outcome>, found: &mut Findings) {
+fn add(friction: &Friction, fretting: Option<&fretting::FrettingOutcome>, found: &mut Findings) {
     found.part("", friction, "");
     let doc = "cycles of the friction test";
     found.parts::<Cycle>("cycles", &friction.cycles, doc);
     let doc = "evaluation of a fretting test; null without reciprocating motion";
-    found.parts::<fretting::Outcome>("fretting", &fretting, doc);
+    found.parts::<fretting::FrettingOutcome>("fretting", &fretting, doc);
 }
 
 /// Adds friction, cycles and the evaluation of a fretting test.
-pub(super) fn report(cycles: &Cycles, fretting: Option<fretting::Outcome>, found: &mut Findings) {
+pub(super) fn report(
+    cycles: &Cycles,
+    fretting: Option<fretting::FrettingOutcome>,
+    found: &mut Findings,
+) {
     let last = cycles.last();
     let friction = Friction {
         friction_coefficient: last.map(|c| c.friction_coefficient),
@@ -85,7 +89,7 @@ pub(super) fn report(cycles: &Cycles, fretting: Option<fretting::Outcome>, found
 fn show(
     friction: &Friction,
     last: &Cycle,
-    fretting: Option<&fretting::Outcome>,
+    fretting: Option<&fretting::FrettingOutcome>,
     found: &mut Findings,
 ) {
     let over = match (fretting.is_some(), last.complete) {

@@ -1,11 +1,11 @@
-//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and what
-//! they say together.
+//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and their
+//! evaluation.
 
 use super::figures;
 use super::fretting;
-use super::friction::{Cycles, Sample, State};
+use super::friction::{Cycles, FrictionTotals, Sample};
 use super::friction_report;
-use super::layer::Layer;
+use super::layer::LayerBalance;
 use super::output::Output;
 use super::quantity::unit::{FORCE, LOAD_PATH, METRE, ONE, Unit};
 use super::quantity::{Findings, Role, Topic};
@@ -13,7 +13,7 @@ use super::run_state::damage_ratio;
 use super::statistics::Column;
 use super::wear::WearSummary;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
@@ -24,35 +24,35 @@ use serde::{Deserialize, Serialize};
 pub struct FrictionTest {
     body: SlidingBody,
     sample: Sample,
-    before: State,
-    state: Followed,
+    before: FrictionTotals,
+    state: FrictionTestState,
 }
 
-/// What the test carries from step to step.
+/// State of the test carried from step to step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Followed {
+struct FrictionTestState {
     cycles: Cycles,
-    layer: Layer,
+    layer: LayerBalance,
     /// Displacement of the body so far (m).
     slide: f64,
     /// Tangential force of the last step (N; N/m).
     force: f64,
     /// Volume worn off first bodies (m^3; m^3/m).
     worn: f64,
-    /// Normal force times sliding distance, over the run and what it jumped over (N m; N).
+    /// Normal force times sliding distance, over the run and skipped cycles (N m; N).
     load_path: f64,
 }
 
 impl FrictionTest {
-    /// A test of a body with these cycles, from the current state on.
+    /// Creates a test of a body with these cycles, from the current state on.
     pub fn new(body: SlidingBody, cycles: Cycles, run: &dyn RunView) -> Self {
         Self {
             body,
             sample: Sample::default(),
-            before: State::default(),
-            state: Followed {
+            before: FrictionTotals::default(),
+            state: FrictionTestState {
                 cycles,
-                layer: Layer::new(run),
+                layer: LayerBalance::new(run),
                 slide: 0.0,
                 force: 0.0,
                 worn: 0.0,
@@ -61,16 +61,16 @@ impl FrictionTest {
         }
     }
 
-    /// What was cumulated so far.
-    fn cumulated(&self, run: &dyn RunView) -> State {
-        State {
+    /// Returns the cumulative quantities so far.
+    fn cumulated(&self, run: &dyn RunView) -> FrictionTotals {
+        FrictionTotals {
             balance: self.state.layer.balance(run),
             broken: run.bonds_broken(),
             worn: self.state.worn,
         }
     }
 
-    /// Q, P and the slide of the last step.
+    /// Returns Q, P and the sliding distance of the last step.
     fn measure(&self, run: &dyn RunView) -> Sample {
         let (drive, normal) = run.rubbing(&self.body);
         Sample {
@@ -113,7 +113,7 @@ impl Observer for FrictionTest {
             after,
             damage_ratio(run),
         );
-        // The current cycle may stand for others, see the process of cycle jumps.
+        // The current cycle may represent several, see the process of cycle jumps.
         let number = state.cycles.number(run.time());
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
             cycle.jumped = run.cycle_multiplier() as u32 - 1;
@@ -168,7 +168,7 @@ impl Observer for FrictionTest {
 
     fn report_so_far(&self, found: &mut Findings) {
         let cycles = &self.state.cycles;
-        let fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
+        let fretting = fretting::FrettingOutcome::new(&cycles.list).filter(|_| cycles.oscillates());
         friction_report::report(cycles, fretting, found);
     }
 
@@ -177,11 +177,11 @@ impl Observer for FrictionTest {
         figures::friction_test(&self.state.cycles, known)
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

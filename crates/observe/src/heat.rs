@@ -7,54 +7,55 @@ pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
 use super::chart::{Axis, Series};
 use super::figures::history;
 use super::output::Output;
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
 use checks::{ContactShares, checks};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
-/// What the observer carries from row to row.
+/// State of the observer carried from row to row.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct State {
+struct HeatObserverState {
     /// Lowest temperature at the start (K).
     lowest: f64,
     /// Highest temperature so far (K).
     highest: f64,
     /// Residual of the account of heat over its scale.
     off: f64,
-    /// Heat that each first body had received at the last row (J; J/m in 2D), and its time (s).
+    /// Heat that each first body had received at the last row (J; J/m in 2D), and the time of that
+    /// row (s).
     received: Vec<f64>,
     time: f64,
-    /// Heat at contacts beside half-spaces.
+    /// Heat at contacts outside the range of half-spaces.
     shares: ContactShares,
-    /// The row that was given last, and its time: asked for again, it is the same.
+    /// The last row and its time: a second request for the same time gives the same row.
     row: Option<(f64, Vec<f64>)>,
 }
 
-/// Observes the heat of a run, and its electric circuit where it has one.
+/// Observes the heat of a run, and its electric circuit if there is one.
 #[derive(Debug)]
 pub struct HeatObserver {
     /// Names of the first bodies, in the order of [`Heat::first_bodies`].
     names: Vec<String>,
     circuit: bool,
-    state: State,
+    state: HeatObserverState,
 }
 
 impl HeatObserver {
-    /// From the current state on; `None` where no heat is computed.
+    /// Creates the observer from the current state; `None` where no heat is computed.
     pub fn of(run: &dyn RunView) -> Option<Self> {
         let (heat, state) = (run.heat()?, run.heat_state()?);
         let temperatures = || state.nodes.iter().map(|n| n.temperature);
         Some(Self {
             names: heat.first_bodies.iter().map(|b| b.0.clone()).collect(),
             circuit: heat.circuit.is_some(),
-            state: State {
+            state: HeatObserverState {
                 lowest: temperatures().fold(f64::INFINITY, f64::min),
                 highest: temperatures().fold(0.0, f64::max),
                 off: state.ledger.relative_residual(),
@@ -87,7 +88,7 @@ impl HeatObserver {
             let circuit = &state.circuit;
             row.extend(match run.time() > heat.start {
                 true => [1.0 / circuit.conductance, circuit.voltage, circuit.current],
-                // Nothing is joined to the bodies yet.
+                // The bodies are not connected yet.
                 false => [f64::NAN; 3],
             });
         }
@@ -96,13 +97,14 @@ impl HeatObserver {
     }
 }
 
-/// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat
-/// capacities (K).
+/// Returns the highest temperature of grains and first bodies, and the mean temperature of the
+/// grains weighted by heat capacity (K).
 fn of_grains(run: &dyn RunView, heat: &Heat, state: &HeatState) -> [f64; 2] {
     let removed = run.bodies().removed;
     let grain = run.grain_flags();
     let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
-    // Meshes are seen once, with the first bodies, not with each body that touches for them.
+    // Meshes are included once, with the first bodies, not with each body that represents a
+    // contactor.
     for (_, nodes) in &heat.first_bodies {
         let temperatures = state.nodes[nodes.clone()].iter().map(|n| n.temperature);
         highest = temperatures.fold(highest, f64::max);
@@ -205,7 +207,7 @@ impl Observer for HeatObserver {
         let pieces = run.pieces().into_iter().map(|p| above(p.body));
         vec![Picture {
             name: "temperature",
-            shows: Shows::Values {
+            shows: PictureContent::Values {
                 values: balls.chain(pieces).collect(),
                 label: "temperature above the lowest at the start (K)",
                 top: (self.state.highest - lowest).max(1e-9),
@@ -343,17 +345,17 @@ impl Observer for HeatObserver {
         surfaces.chain(["heat.png".to_owned()]).collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }
 }
 
-/// Columns of the account of heat.
+/// Returns the columns of the account of heat.
 fn ledger_columns() -> Vec<Column> {
     let entries = HeatLedger::default().entries();
     let column = |(name, doc, _): (&str, &'static str, f64)| {

@@ -67,7 +67,7 @@ impl Observer for CycleJumps {
 /// another state.
 const CHANGED: f64 = 0.2;
 
-/// What is said of a checked jump, and of the state at the end of a computed cycle.
+/// Fields of a checked jump, and of the state at the end of a computed cycle.
 const JUMP: [Field; 4] = [
     field(
         "after",
@@ -97,7 +97,7 @@ const POINT: [Field; 4] = [
     field("mean_damage", ONE, "mean damage of the bonds"),
 ];
 
-/// What is said of the jumps.
+/// Fields of the summary of the jumps.
 const FIELDS: [Field; 10] = [
     field("computed_cycles", ONE, "completed computed cycles"),
     field("represented_cycles", ONE, "cycles that they represent"),
@@ -135,14 +135,14 @@ const FIELDS: [Field; 10] = [
     },
 ];
 
-/// Adds what cases without jumps lack.
+/// Marks the results that cases without jumps do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
     let none = found.add("jump", (), WORD, "jumps over cycles; null without");
     none.lacks("the case has no jumps over cycles (`jump`)");
 }
 
-/// Sentence of the terminal.
+/// Returns the sentence for the terminal.
 fn sentence(jump: &JumpSummary) -> String {
     let longest = jump.jumps.iter().map(|j| j.cycles).max().unwrap_or(0);
     format!(
@@ -157,7 +157,7 @@ fn sentence(jump: &JumpSummary) -> String {
     )
 }
 
-/// Warnings where the error estimate of the jumps does not hold.
+/// Returns warnings where the error estimate of the jumps does not hold.
 pub fn warnings(jump: &JumpSummary) -> Vec<Warning> {
     let mut list = Vec::new();
     if !jump.not_jumped.is_empty() {

@@ -22,7 +22,7 @@ pub struct Balance {
 
 /// Observer of the balance.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Layer {
+pub struct LayerBalance {
     /// Velocities of the driven bodies at the end of the last processed step.
     velocity: Vec<(Vector3<f64>, Vector3<f64>)>,
     /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger
@@ -33,7 +33,7 @@ pub struct Layer {
     external: f64,
 }
 
-impl Layer {
+impl LayerBalance {
     /// Starts from the current state.
     pub fn new(run: &dyn RunView) -> Self {
         Self {
@@ -44,9 +44,9 @@ impl Layer {
         }
     }
 
-    /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given,
-    /// which is kept apart. Where the body of the test deforms, the work of all other drives is
-    /// that of the ledger.
+    /// Adds the last step. For a friction test its body and the work of its drive (J; J/m) are
+    /// given, which is kept separately. Where the rubbed body deforms, the work of all other drives
+    /// is that of the ledger.
     pub fn follow(&mut self, run: &dyn RunView, test: Option<(&SlidingBody, f64)>) {
         let external = run.energies().external_work;
         let deforms = test.filter(|(body, _)| matches!(body.part, SlidingPart::System { .. }));

@@ -51,5 +51,5 @@ pub mod tractions;
 pub mod warning;
 pub mod wear;
 
-pub use fretwork_core::code;
+pub use fretwork_core::encoding;
 pub use observer::{Observer, Observers, RunEnd};

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Observer of a loop, fed sample by sample.
+/// Observer of a loop, which receives sample by sample.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Loop {
     /// Displacement (m), Q (N), and the last non-zero increment of displacement (m).
@@ -16,7 +16,7 @@ pub struct Loop {
     /// Path since the last reversal, and the longest path between two reversals so far (m): before
     /// the second one, twice that to the first.
     stroke: [f64; 2],
-    /// Reversals since the first cycle.
+    /// Number of reversals since the first cycle.
     turns: u32,
     /// Integrals of |Q| and of P over the path in the second half of each stroke (J).
     plateau: [f64; 2],
@@ -71,19 +71,19 @@ impl Loop {
         }
     }
 
-    /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first
-    /// reversal. A stroke is the path between two reversals; its half is that of the longest so far
-    /// (of twice the path to the first reversal, before there are two).
+    /// Returns |Q|/P over the second half of the strokes, weighted by the path; `None` before the
+    /// first reversal. A stroke is the path between two reversals; its half is that of the longest
+    /// so far (of twice the path to the first reversal, before there are two).
     pub fn plateau(&self) -> Option<f64> {
         (self.plateau[1] > 0.0).then(|| self.plateau[0] / self.plateau[1])
     }
 
-    /// Half of the loop's width at Q = 0, the sliding amplitude (m).
+    /// Returns half of the loop's width at Q = 0, the sliding amplitude (m).
     pub fn aperture(&self) -> f64 {
         self.crossings.map_or(0.0, |[low, high]| 0.5 * (high - low))
     }
 
-    /// Mean of |Q|/P over the reversals.
+    /// Returns the mean of |Q|/P over the reversals.
     pub fn reversal(&self) -> f64 {
         self.reversals.0 / f64::from(self.reversals.1.max(1))
     }
@@ -94,8 +94,8 @@ mod tests {
     use super::*;
 
     /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading
-    /// delta = delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing's rule twice that at half the force
-    /// from a reversal.
+    /// delta = delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing's rule, after a reversal, twice that
+    /// at half the force.
     fn mindlin(share: f64, steps: u32) -> (Loop, f64, f64) {
         let (p, mu, gross) = (100.0, 0.5, 2e-6);
         let load = |q: f64| gross * (1.0 - (1.0 - q / (mu * p)).powf(2.0 / 3.0));
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_partial_slip_loop_has_mindlin_s_opening_and_energy() {
-        // A = E_d/(4 Q* delta*) of K. L. Johnson, Contact Mechanics (1985), 7.4.
+        // A = E_d/(4 Q* delta*) is from K. L. Johnson, Contact Mechanics (1985), 7.4.
         for (share, ratio) in [(0.25, 0.0160), (0.5, 0.0381), (0.75, 0.0736), (0.9, 0.1136)] {
             let (l, found, aperture) = mindlin(share, 4000);
             assert!((found - ratio).abs() < 6e-5, "{found} for {ratio}");
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn the_plateau_of_an_elastic_slider_leaves_its_elastic_travel_out() {
         let (a, n, mu, p, k) = (1e-5, 4000, 0.4, 100.0, 1e7);
-        // Elastic travel 2 mu P/k = 8 um of a stroke of 20 um.
+        // The elastic travel is 2 mu P/k = 8 um of a stroke of 20 um.
         let (mut l, mut x, mut q) = (Loop::default(), 0.0, 0.0_f64);
         let (mut work, mut path) = (0.0, 0.0);
         for step in 0..=3 * n {
@@ -168,7 +168,7 @@ mod tests {
             x = to;
             l.add(x, q, p);
             if step == n - 1 {
-                // From the first reversal on.
+                // The plateau counts from the first reversal.
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
             }
             if step == 3 * n - 1 {

@@ -1,23 +1,23 @@
 //! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line
-//! of explanation: inside a body of finite elements, and along the surface of every body that
-//! touches.
+//! of explanation: inside a body of finite elements, and on the contact surface of every deformable
+//! body.
 
-use super::tractions::{SurfaceState, Zone, signed};
+use super::tractions::{ContactZone, SurfaceState, signed};
 use fretwork_core::bodies::{DeformedMesh, von_mises};
 use fretwork_core::unit::AREA;
 use fretwork_core::view::{RunView, SystemView};
 use nalgebra::Vector3;
 
-/// Where a field has values.
+/// Location of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum At {
+pub enum FieldLocation {
     /// Points of the mesh.
     Points,
     /// Elements of the mesh.
     Cells,
 }
 
-/// A field on a mesh; `T` is what its values are taken from.
+/// A field on a mesh; `T` is the source of its values.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshField<T> {
     /// Name: a-z, 0-9 and _.
@@ -26,15 +26,15 @@ pub struct MeshField<T> {
     pub unit: &'static str,
     /// Explanation in one line.
     pub doc: &'static str,
-    /// Whether there is a value at each point or at each element.
-    pub at: At,
-    /// Numbers per value.
+    /// Location of the values: points or elements.
+    pub at: FieldLocation,
+    /// Number of components per value.
     pub width: usize,
-    /// All values, one after the other.
+    /// Function that returns all values, one after the other.
     pub values: fn(&T) -> Vec<f64>,
 }
 
-/// A body with a mesh as it is now.
+/// Current state of a body with a mesh.
 #[derive(Clone, Debug)]
 pub struct BodyState {
     mesh: DeformedMesh<Vector3<f64>>,
@@ -42,7 +42,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// Takes the mesh and the velocities of a system; `None` if it has no mesh.
+    /// Returns mesh and velocities of a system; `None` if it has no mesh.
     pub fn of(system: &dyn SystemView) -> Option<Self> {
         let mesh = system.deformed_mesh()?;
         let mut velocity = system.mesh_velocity();
@@ -106,28 +106,28 @@ impl GrainsState {
         out
     }
 
-    /// Points at the start of the run, without load (m).
+    /// Returns the points at the start of the run, without load (m).
     pub fn start(&self) -> &[Vector3<f64>] {
         &self.start
     }
 
-    /// The D + 1 points of each element, one after the other.
+    /// Returns the D + 1 points of each element, one after the other.
     pub fn elements(&self) -> &[u32] {
         &self.mesh.elements
     }
 
-    /// Identities of the bodies, by point and by element.
+    /// Returns the identities of the bodies, by point and by element.
     pub fn bodies(&self) -> &[Vec<i64>; 2] {
         &self.bodies
     }
 }
 
-/// Components of vectors, three numbers per vector.
+/// Returns the components of vectors, three numbers per vector.
 pub fn triples(vectors: &[Vector3<f64>]) -> Vec<f64> {
     vectors.iter().flatten().copied().collect()
 }
 
-/// A mesh that deforms, with the velocity of its points.
+/// A deformable mesh, with the velocities of its points.
 trait Meshed {
     fn mesh(&self) -> &DeformedMesh<Vector3<f64>>;
     fn velocity(&self) -> &[Vector3<f64>];
@@ -151,14 +151,14 @@ impl Meshed for GrainsState {
     }
 }
 
-/// Fields of bodies of finite elements as well as of deformable grains.
+/// Returns the fields that bodies of finite elements and deformable grains have in common.
 fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
     [
         MeshField {
             name: "velocity",
             unit: "m/s",
             doc: "velocity",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |b| triples(b.velocity()),
         },
@@ -166,7 +166,7 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
             name: "stress",
             unit: "Pa",
             doc: STRESS,
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 6,
             values: |b| in_vtk_order(&b.mesh().stress),
         },
@@ -174,35 +174,35 @@ fn of_meshes<T: Meshed>() -> [MeshField<T>; 3] {
             name: "von_mises",
             unit: "Pa",
             doc: "von Mises stress",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |b| b.mesh().stress.iter().map(von_mises).collect(),
         },
     ]
 }
 
-/// Fields inside a body of finite elements.
+/// Returns the fields inside a body of finite elements.
 pub fn of_bodies() -> [MeshField<BodyState>; 4] {
     let [velocity, stress, von_mises] = of_meshes();
     let displacement = MeshField {
         name: "displacement",
         unit: "m",
         doc: "displacement from the place without load",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |b: &BodyState| triples(&b.mesh.displacement),
     };
     [displacement, velocity, stress, von_mises]
 }
 
-/// Fields inside grains that deform.
+/// Returns the fields inside deformable grains.
 pub fn of_grains() -> [MeshField<GrainsState>; 5] {
     let [velocity, stress, von_mises] = of_meshes();
     let displacement = MeshField {
         name: "displacement",
         unit: "m",
         doc: "way of the point since the start of the run, with the motion of the grain",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |g: &GrainsState| triples(&g.travel),
     };
@@ -210,7 +210,7 @@ pub fn of_grains() -> [MeshField<GrainsState>; 5] {
         name: "deformation",
         unit: "m",
         doc: "displacement of the point against the frame that moves with the grain, in world axes",
-        at: At::Points,
+        at: FieldLocation::Points,
         width: 3,
         values: |g: &GrainsState| triples(&g.mesh.displacement),
     };
@@ -227,14 +227,14 @@ fn in_vtk_order(stress: &[[f64; 6]]) -> Vec<f64> {
     stress.iter().flat_map(order).collect()
 }
 
-/// Fields along a surface that touches.
+/// Returns the fields on a contact surface.
 pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
     [
         MeshField {
             name: "displacement",
             unit: "m",
             doc: "displacement from the place without load",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |s| triples(&s.displacement),
         },
@@ -242,7 +242,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "traction",
             unit: "Pa",
             doc: "force of contacts on the body over the area of the point",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 3,
             values: |s| triples(&s.traction),
         },
@@ -250,7 +250,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "pressure",
             unit: "Pa",
             doc: "part of the traction along the normals of contacts, positive in compression",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.pressure.clone(),
         },
@@ -258,7 +258,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "shear",
             unit: "Pa",
             doc: "part of the traction along the surface; in 2D positive along +x",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.shear.clone(),
         },
@@ -266,7 +266,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "area",
             unit: AREA.symbol(dimension),
             doc: "area (length in 2D) that the point stands for: pressure times area sums up to the force",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
             values: |s| s.surface.areas.clone(),
         },
@@ -274,15 +274,15 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "status",
             unit: "",
             doc: "0 no force (less than a tenth of that of one contact), 1 stick, 2 slip",
-            at: At::Points,
+            at: FieldLocation::Points,
             width: 1,
-            values: |s| s.zone.iter().copied().map(Zone::status).collect(),
+            values: |s| s.zone.iter().copied().map(ContactZone::status).collect(),
         },
         MeshField {
             name: "facet_pressure",
             unit: "Pa",
             doc: "mean of the pressure of the points of each facet",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |s| s.facets().iter().map(|f| f.pressure).collect(),
         },
@@ -290,7 +290,7 @@ pub fn of_surfaces(dimension: usize) -> [MeshField<SurfaceState>; 8] {
             name: "facet_shear",
             unit: "Pa",
             doc: "size of the mean traction along the surface of the points of each facet; in 2D positive along +x",
-            at: At::Cells,
+            at: FieldLocation::Cells,
             width: 1,
             values: |s| {
                 s.facets()

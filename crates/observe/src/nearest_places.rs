@@ -1,16 +1,16 @@
-//! Contacts between deformable bodies that act on the nearest place, where the mean one is not to
-//! be found.
+//! Contacts between deformable bodies that act on the nearest position, because the mean one does
+//! not exist.
 
 use super::quantity::unit::ONE;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
-/// Share of the load that may act on nearest places without a warning: that of a touch in passing.
+/// Share of the load that may act on nearest positions without a warning, as in a brief touch.
 const NEGLIGIBLE: f64 = 1e-3;
 
 crate::described! {
     /// Contacts of points of deformable bodies with surfaces of others that act on the nearest
-    /// place, over the rows of the statistics.
+    /// position, over the rows of the statistics.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct NearestPlaces {
         /// Loaded contacts that act on the nearest place, at the row where these carry most.
@@ -19,10 +19,10 @@ crate::described! {
         pub of: usize => ONE,
         /// Share of these contacts' forces that those on nearest places carry, over all rows.
         pub share: f64 => ONE,
-        /// Force on nearest places at that row.
+        /// Force on nearest positions at that row.
         #[serde(skip)]
         most: f64,
-        /// Sum over the rows of the forces on nearest places, and of all.
+        /// Sum over the rows of the forces on nearest positions, and of all forces.
         #[serde(skip)]
         near: f64,
         #[serde(skip)]
@@ -31,7 +31,7 @@ crate::described! {
 }
 
 impl NearestPlaces {
-    /// Of the last step of a simulation.
+    /// Returns the values of the last step of a simulation.
     pub fn of(run: &dyn RunView) -> Self {
         let mut out = Self::default();
         for (force, mean) in run.forces_on_points() {
@@ -48,7 +48,7 @@ impl NearestPlaces {
         out
     }
 
-    /// With the rows of another one.
+    /// Combines two results over their rows.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let at = if other.most > self.most { other } else { self };
@@ -61,12 +61,12 @@ impl NearestPlaces {
         }
     }
 
-    /// All of it, to go on after a pause.
+    /// Returns the state, to continue after a pause.
     pub fn state(&self) -> ([usize; 2], [f64; 3]) {
         ([self.contacts, self.of], [self.most, self.near, self.all])
     }
 
-    /// From what [`Self::state`] gave.
+    /// Restores the state that [`Self::state`] returned.
     pub fn from_state(([contacts, of], [most, near, all]): ([usize; 2], [f64; 3])) -> Self {
         let share = share(near, all);
         Self {
@@ -79,7 +79,7 @@ impl NearestPlaces {
         }
     }
 
-    /// What that means for the result.
+    /// Returns a warning on the effect on the result.
     pub fn warning(&self) -> Option<String> {
         (self.share > NEGLIGIBLE).then(|| {
             let share = match 100.0 * self.share {
@@ -96,7 +96,7 @@ impl NearestPlaces {
     }
 }
 
-/// A force over another one; none over none.
+/// Returns the ratio of two forces; zero over zero.
 fn share(near: f64, all: f64) -> f64 {
     if near > 0.0 { near / all } else { 0.0 }
 }
@@ -105,7 +105,7 @@ fn share(near: f64, all: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A row with this force on nearest places, of 100 N on 40 contacts in all.
+    /// Returns a row with this force on nearest positions, of 100 N on 40 contacts in total.
     fn row(contacts: usize, near: f64) -> NearestPlaces {
         NearestPlaces {
             contacts,
@@ -130,7 +130,8 @@ mod tests {
         );
     }
 
-    /// A first touch of one point with no other is all of a force that is nothing over the run.
+    /// At the first touch of one point all of the force is on a nearest position, but it is
+    /// negligible over the run.
     #[test]
     fn a_touch_of_negligible_force_decides_nothing() {
         let touch = NearestPlaces {

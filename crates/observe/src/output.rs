@@ -21,7 +21,7 @@ pub enum Output {
 }
 
 impl Output {
-    /// Charts on one page, in a number of columns.
+    /// Creates a figure of charts on one page, in a number of columns.
     pub fn figure(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self::Figure(Figure::new(name, charts, columns))
     }

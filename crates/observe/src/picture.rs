@@ -1,23 +1,23 @@
-//! What an observer shows in pictures of a moment, as data: who draws it is above this layer.
+//! Pictures of the scene at a time, as data; a higher layer draws them.
 
 use super::chart::Chart;
 use serde::{Deserialize, Serialize};
 
-/// Colour of what sticks (red, green, blue). It differs in lightness from that of what slips, so
-/// that the two are told apart with every deficiency of colour vision.
-pub const STICKS: (u8, u8, u8) = (0, 90, 170);
-/// Colour of what slips (red, green, blue).
-pub const SLIPS: (u8, u8, u8) = (250, 225, 40);
-/// Colour of what carries no force (red, green, blue).
-pub const OPEN: (u8, u8, u8) = (231, 232, 235);
+/// Colour of sticking (red, green, blue). It differs in lightness from that of slip, so that the
+/// two can be distinguished with any deficiency of colour vision.
+pub const STICK_COLOUR: (u8, u8, u8) = (0, 90, 170);
+/// Colour of slip (red, green, blue).
+pub const SLIP_COLOUR: (u8, u8, u8) = (250, 225, 40);
+/// Colour of points without force (red, green, blue).
+pub const OPEN_COLOUR: (u8, u8, u8) = (231, 232, 235);
 
-/// What the colour of a grain says.
+/// Meaning of the colour of a grain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Paint {
-    /// Nothing: grey, from light to dark by its shade.
+    /// None: grey, from light to dark by its shade.
     #[default]
     Grey,
-    /// The layer it belongs to: four colours in turn, as dyed sands.
+    /// The layer to which it belongs, as one of four colours in turn.
     Layer(i64),
     /// Part of a first body, by its number: warm, undamaged.
     Tied(usize),
@@ -29,40 +29,40 @@ pub enum Paint {
     Value(f64),
 }
 
-/// A picture of the scene, drawn with those of the run as `frames/NAME_STEP.png`.
+/// A picture of the scene, written as `frames/NAME_STEP.png`.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Its name.
+    /// Name of the picture.
     pub name: &'static str,
-    /// What it shows.
-    pub shows: Shows,
+    /// Content of the picture.
+    pub shows: PictureContent,
 }
 
-/// What a picture shows.
+/// Content of a picture.
 #[derive(Clone, Debug)]
-pub enum Shows {
-    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their
-    /// bonds if there are bonds; in the plane also the forces and bonds between them.
+pub enum PictureContent {
+    /// Grains coloured by layer if there are layers, otherwise by the damage of their bonds if
+    /// there are bonds, or by speed; in the plane also the forces and bonds between them.
     Scene,
     /// Intact and broken bonds.
     Bonds,
     /// Colours of the balls and then of the pieces.
     Paints(Vec<Paint>),
-    /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the
-    /// lower first. In the plane only.
+    /// The contacts that carry force, with those of force chains marked: sorted pairs of bodies,
+    /// the lower first. In the plane only.
     Chains(Vec<[u32; 2]>),
-    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces.
-    /// In the plane only.
+    /// The von Mises stress of deformable bodies, with stick and slip along their surfaces. In the
+    /// plane only.
     Stress,
-    /// Charts, on a page of their own.
+    /// Charts, on a separate page.
     Charts(Vec<Chart>),
-    /// A value of each ball.
+    /// A value for each ball.
     Values {
         /// The values.
         values: Vec<f64>,
-        /// What they are.
+        /// Name of the quantity.
         label: &'static str,
-        /// What is drawn darkest.
+        /// Value with the darkest colour.
         top: f64,
     },
 }

@@ -1,8 +1,8 @@
-//! How many elements lie across a contact of deformable bodies, and what that does to the heat of
-//! partial slip.
+//! Number of elements across a contact of deformable bodies, and its effect on the heat of partial
+//! slip.
 //!
-//! Where a part of a contact sticks, heat is made in the strip that slips alone, of w elements. Its
-//! heat is off by a share of
+//! Where a part of a contact sticks, heat is produced only in the slip strip, of w elements. The
+//! relative error of this heat is
 //!
 //! * 0.3/w at most in cycles of a tangential force, against Cattaneo and Mindlin: 24, 14, 7, 3.6
 //!   and 1.6 % at w = 1.2, 1.3, 2.3, 2.7 and 5.5;
@@ -21,25 +21,26 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Error of the heat of cycles times the elements across what slips.
+/// Relative error of the heat of cycles times the number of elements across the slip strip.
 const OF_CYCLES: f64 = 0.3;
-/// Elements that the error of the heat of rolling is short of.
+/// Number of elements that is added in the error of the heat of rolling.
 const OF_ROLLING: f64 = 0.6;
-/// Fewest contacts with one body that are a contact of surfaces.
+/// Smallest number of contacts with one body that form a contact of surfaces.
 const FEWEST: usize = 4;
-/// Share of the largest load of a contact from which one counts: some methods leave traces on those
-/// that do not touch.
+/// Share of the largest load of a contact above which a contact counts: some methods leave small
+/// forces on points that do not touch.
 const TRACE: f64 = 1e-3;
-/// Share of the load of a body that a counterpart carries where the two are a contact of surfaces.
+/// Share of the load of a body that a counterpart must carry for the two to form a contact of
+/// surfaces.
 const MOST: f64 = 0.5;
-/// Elements across a contact below which the error of cycles is a lower bound: 29 % are told of 63
-/// % with four.
+/// Number of elements across a contact below which the error of cycles is a lower bound: with four
+/// elements the estimate is 29 % for an error of 63 %.
 const FEW: f64 = 8.0;
-/// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
+/// Errors of the heat above which a note, and a serious warning, are given.
 const LIMITS: [f64; 2] = [0.05, 0.2];
 
 crate::described! {
-    /// Elements across the contact of a deformable body, over the rows of the statistics.
+    /// Number of elements across the contact of a deformable body, over the rows of the statistics.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct Resolution {
         /// Name of the body.
@@ -61,17 +62,18 @@ crate::described! {
         /// Heat of all contacts up to the last row.
         #[serde(skip)]
         before: f64,
-        /// Whether its material, or that of what touches it, passes, at the last row with a load.
+        /// Whether the material of the body, or of its counterpart, passes through the surface, at
+        /// the last row with a load.
         #[serde(skip)]
         rolls: bool,
     }
 }
 
-/// What is kept over a pause.
-pub type State = (f64, Option<f64>, Option<f64>, [f64; 2], f64, bool);
+/// State that is kept over a pause.
+pub type ResolutionState = (f64, Option<f64>, Option<f64>, [f64; 2], f64, bool);
 
 impl Resolution {
-    /// Of a system that touches.
+    /// Creates the result of a system with contacts.
     pub fn new(body: &str) -> Self {
         Self {
             body: body.to_owned(),
@@ -79,8 +81,8 @@ impl Resolution {
         }
     }
 
-    /// All of it, to go on after a pause.
-    pub fn state(&self) -> State {
+    /// Returns the state, to continue after a pause.
+    pub fn state(&self) -> ResolutionState {
         (
             self.across,
             self.stick,
@@ -91,15 +93,15 @@ impl Resolution {
         )
     }
 
-    /// Goes on after a pause.
-    pub fn restore(&mut self, (across, stick, slip, sums, before, rolls): State) {
+    /// Restores the state after a pause.
+    pub fn restore(&mut self, (across, stick, slip, sums, before, rolls): ResolutionState) {
         (self.across, self.stick, self.slip) = (across, stick, slip);
         (self.sums, self.before, self.rolls) = (sums, before, rolls);
         self.heat_error = share(sums);
     }
 
     /// Adds a row of the statistics: the state of a system after its last step, with the heat of
-    /// friction of all contacts so far (J; J/m). `rolls` says of each system whether its material
+    /// friction of all contacts so far (J; J/m). `rolls` says for each system whether its material
     /// passes.
     pub fn add(&mut self, run: &dyn RunView, system: usize, rolls: &[bool], heat: f64) {
         let made = (heat - self.before).max(0.0);
@@ -130,13 +132,13 @@ impl Resolution {
         self.heat_error = share(self.sums);
     }
 
-    /// Whether the error is a lower bound: in cycles, where few elements do not show the strips as
-    /// they are.
+    /// Returns whether the error is a lower bound: in cycles, where few elements do not resolve the
+    /// strips.
     fn is_least(&self) -> bool {
         !self.rolls && self.across < FEW && self.heat_error > 0.0 && self.heat_error < 1.0
     }
 
-    /// The counts and what they do to the heat, for the summary.
+    /// Returns a sentence on the numbers of elements and their effect on the heat, for the summary.
     pub fn line(&self) -> String {
         let error = 100.0 * self.heat_error;
         let about = if self.across < FEW {
@@ -156,7 +158,8 @@ impl Resolution {
         }
     }
 
-    /// What that means for the result, and whether it is a reason not to trust it.
+    /// Returns a warning on the effect on the result, and whether the result is not trustworthy
+    /// because of it.
     pub fn warning(&self) -> Option<(bool, String)> {
         let [note, reason] = LIMITS;
         (self.heat_error > note).then(|| {
@@ -183,8 +186,8 @@ impl Resolution {
     }
 }
 
-/// Adds the contacts of all bodies, with a sentence and a warning of the one whose elements leave
-/// most doubt of the heat. Two bodies that touch each other have one contact.
+/// Adds the contacts of all bodies, with a sentence and a warning for the one with the largest
+/// error of the heat. Two bodies that touch each other have one contact.
 pub(crate) fn report(contacts: Vec<Resolution>, found: &mut Findings) {
     let all = contacts.iter().enumerate();
     let Some((k, worst)) = all.max_by(|(_, a), (_, b)| a.heat_error.total_cmp(&b.heat_error))
@@ -207,20 +210,20 @@ fn share([all, off]: [f64; 2]) -> f64 {
     if off > 0.0 { off / all } else { 0.0 }
 }
 
-/// Elements over a contact, over what sticks, and over the width of each strip that slips.
+/// Number of elements over a contact, over its stick area, and over the width of each slip strip.
 struct Strip {
     across: f64,
     stick: f64,
     slip: f64,
-    /// The system that carries most of the load, where it is one.
+    /// The system that carries most of the load, where the counterpart is a system.
     system: Option<usize>,
 }
 
 /// A point in contact.
 #[derive(Clone, Copy, Debug)]
-struct Loaded {
+struct LoadedPoint {
     place: Vector3<f64>,
-    /// Normal of what touches it times the load, and the load (N; N/m).
+    /// Normal of the counterpart times the load, and the load (N; N/m).
     pushes: Vector3<f64>,
     load: f64,
     slips: bool,
@@ -229,14 +232,15 @@ struct Loaded {
 /// A body, or a system of bodies, on the other side.
 type Counterpart = (u32, u32);
 /// A point of a deformable body may touch several facets at their corner; points of other bodies
-/// are told apart by their contacts.
+/// are distinguished by their contacts.
 type Point = (u32, usize);
 
 impl Strip {
-    /// Of a system and the body that carries most of its load; none where it touches many bodies.
+    /// Returns the result of a system and the body that carries most of its load; `None` where it
+    /// touches many bodies.
     fn of(run: &dyn RunView, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded>> = BTreeMap::new();
+        let mut all: BTreeMap<Counterpart, BTreeMap<Point, LoadedPoint>> = BTreeMap::new();
         let mut total = 0.0;
         let bodies = run.bodies();
         for (k, acting) in loaded(run, system).into_iter().enumerate() {
@@ -250,7 +254,7 @@ impl Strip {
             let is_point = bodies.carrier(candidate as usize).is_some();
             let point = (candidate, if is_point { 0 } else { k });
             let points = all.entry(counterpart).or_default();
-            let of_point = points.entry(point).or_insert(Loaded {
+            let of_point = points.entry(point).or_insert(LoadedPoint {
                 place: Vector3::from(bodies.position.at(own as usize))
                     + Vector3::from(acting.contact.arms[acting.side]),
                 pushes: Vector3::zeros(),
@@ -266,7 +270,7 @@ impl Strip {
             let system = (kind == 0).then_some(other as usize);
             (system, points.into_values().collect::<Vec<_>>())
         });
-        let sum = |list: &[Loaded]| list.iter().map(|c| c.load).sum::<f64>();
+        let sum = |list: &[LoadedPoint]| list.iter().map(|c| c.load).sum::<f64>();
         let (other, most) = lists.max_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b)))?;
         if sum(&most) < MOST * total {
             return None;
@@ -278,8 +282,8 @@ impl Strip {
         })
     }
 
-    /// Of the points that touch one counterpart; none where these are few.
-    fn across(dimension: usize, mut most: Vec<Loaded>) -> Option<Self> {
+    /// Returns the result of the points that touch one counterpart; `None` where these are few.
+    fn across(dimension: usize, mut most: Vec<LoadedPoint>) -> Option<Self> {
         let largest = most.iter().map(|c| c.load).fold(0.0, f64::max);
         most.retain(|c| c.load >= TRACE * largest);
         if most.len() < FEWEST {
@@ -297,9 +301,9 @@ impl Strip {
                 system: None,
             });
         }
-        // In the order along the mean tangent.
+        // Points are in the order along the mean tangent.
         let normal = most.iter().fold(Vector3::zeros(), |sum, c| sum + c.pushes);
-        let along = |c: &Loaded| c.place[0] * normal[1] - c.place[1] * normal[0];
+        let along = |c: &LoadedPoint| c.place[0] * normal[1] - c.place[1] * normal[0];
         most.sort_by(|a, b| along(a).total_cmp(&along(b)));
         let begins = |k: usize| most[k].slips && (k == 0 || !most[k - 1].slips);
         let strips = (0..most.len()).filter(|k| begins(*k)).count().max(1);
@@ -344,26 +348,28 @@ mod tests {
         assert_eq!(other, kept);
     }
 
-    /// Points along a line in the plane, loaded as in Hertz' contact, of which the outer ones slip,
-    /// with traces beyond.
-    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded> {
+    /// Returns points along a line in the plane, loaded as in Hertz' contact, of which the outer
+    /// ones slip, with small forces beyond.
+    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<LoadedPoint> {
         let normal = Vector3::new(-towards[1], towards[0], 0.0);
-        let of = |k: i32, load: f64, slips: bool| Loaded {
+        let of = |k: i32, load: f64, slips: bool| LoadedPoint {
             place: Vector3::new(towards[0], towards[1], 0.0) * (1e-3 * f64::from(k)),
             pushes: normal * load,
             load,
             slips,
         };
         let load = |k: i32| (1.0 - (f64::from(k) / 20.0).powi(2)).sqrt();
-        // Sticks from -9 to 9, slips in ten elements at either side.
-        let mut points: Vec<Loaded> = (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
+        // The contact sticks from -9 to 9, and slips in ten elements at either side.
+        let mut points: Vec<LoadedPoint> =
+            (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
         points.extend((0..traces as i32).map(|k| of(20 + k, 1e-7, k % 2 == 0)));
-        // In no order.
+        // The points are in no particular order.
         points.sort_by_key(|p| ((p.place[0] + p.place[1]) * 1e6) as i64 * 7919 % 1009);
         points
     }
 
-    /// Whichever way the surface faces, and whatever a method leaves on points that do not touch.
+    /// The result is the same for any orientation of the surface, and for any small forces on
+    /// points that do not touch.
     #[test]
     fn strips_are_counted_along_the_surface() {
         let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -54,7 +54,8 @@ impl ScarSummary {
         }
     }
 
-    /// Describes its form and extent; volume and depths are reported with the wear of its body.
+    /// Describes form and extent of the scar; volume and depths are reported with the wear of its
+    /// body.
     pub fn outline(&self) -> String {
         match (self.form, self.from, self.to) {
             (ScarForm::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
@@ -78,12 +79,12 @@ impl ScarSummary {
 /// Observes the scars.
 #[derive(Clone, Debug)]
 pub struct Scars {
-    /// Their names.
+    /// Names of the scars.
     names: Vec<String>,
 }
 
 impl Scars {
-    /// Of the surfaces of a simulation that follow their wear.
+    /// Creates the observer of the surfaces of a simulation that recede by wear.
     pub fn of(run: &dyn RunView) -> Self {
         Self {
             names: run
@@ -139,7 +140,7 @@ impl Observer for Scars {
         }
     }
 
-    /// The tables of all scars, `scar_NAME.csv`.
+    /// Returns the tables of all scars, `scar_NAME.csv`.
     fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let run = end.simulation;
         let file = |(place, scar): (usize, ScarView<'_>)| Output::Text {
@@ -161,8 +162,8 @@ impl Observer for Scars {
     }
 }
 
-/// The scar as a table: positions in the body's frame, current and initial height, depth (m). A
-/// case can read it as the `file` of a `Profile`.
+/// Returns the scar as a table: positions in the body's frame, current and initial height, depth
+/// (m). A case can read it as the `file` of a `Profile`.
 pub fn table(run: &dyn RunView, scar: usize) -> String {
     let dimension = run.dimension();
     let across = if dimension == 2 {
@@ -178,7 +179,7 @@ pub fn table(run: &dyn RunView, scar: usize) -> String {
     let mut rows: Vec<([f64; 3], f64)> = vertices.map(|v| (v.at, v.depth)).collect();
     let repeated = rows.first().map(|r| r.1);
     rows.extend(run.scar_end(scar).zip(repeated));
-    // From left to right, independent of the orientation of the profile.
+    // The points go from left to right, independent of the orientation of the profile.
     if dimension == 2 && sign < 0.0 {
         rows.reverse();
     }
@@ -192,7 +193,7 @@ pub fn table(run: &dyn RunView, scar: usize) -> String {
     text
 }
 
-/// Names of files take letters, digits, `-` and `_` of the name of a body.
+/// Returns a file name with the letters, digits, `-` and `_` of the name of a body.
 pub fn file_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '-' {

@@ -5,7 +5,7 @@
 //! show a trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
 
 use super::friction::Cycle;
-use super::steady::{self, Flow};
+use super::steady::{self, MeanFlow};
 
 /// Smallest number of cycles for an interval.
 const FEWEST: usize = 3;
@@ -16,7 +16,7 @@ const CORRELATED: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
     /// Mean, half-width of its interval, trend.
-    pub flow: Flow,
+    pub flow: MeanFlow,
     /// Number of values.
     pub count: usize,
     /// Description of the values: `cycles 6 to 10`.
@@ -34,7 +34,7 @@ impl Scatter {
         })
     }
 
-    /// Half-width of the interval; `None` if the values show a trend.
+    /// Returns the half-width of the interval; `None` if the values show a trend.
     pub fn half_width(&self) -> Option<f64> {
         self.flow.steady.then_some(self.flow.half_width)
     }
@@ -63,8 +63,8 @@ impl Scatter {
     }
 }
 
-/// Scatter of a value over the later half of the complete cycles, at least three; `None` if there
-/// are fewer.
+/// Returns the scatter of a value over the later half of the complete cycles, at least three;
+/// `None` if there are fewer.
 pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
     let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
     let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
@@ -74,7 +74,7 @@ pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Sc
     Scatter::new(&values, format!("cycles {first} to {last}"))
 }
 
-/// Scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
+/// Returns the scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
 pub fn over_blocks(blocks: &[(f64, f64)]) -> Option<Scatter> {
     let ratio = |b: &(f64, f64)| (b.1 > 0.0).then(|| b.0 / b.1);
     let values: Option<Vec<f64>> = blocks.iter().map(ratio).collect();

@@ -4,16 +4,16 @@ use serde::{Deserialize, Serialize};
 
 /// Equidistant points, including the first, and the last one separately.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Series<T> {
+pub struct DecimatedSeries<T> {
     points: Vec<T>,
     /// The last point, if it is not among the points.
     last: Option<T>,
-    /// One of `each` points is stored.
+    /// Interval of stored points: one of `each` points is stored.
     each: u64,
     seen: u64,
 }
 
-impl<T> Default for Series<T> {
+impl<T> Default for DecimatedSeries<T> {
     fn default() -> Self {
         Self {
             points: Vec::new(),
@@ -24,8 +24,8 @@ impl<T> Default for Series<T> {
     }
 }
 
-impl<T> Series<T> {
-    /// Most points; half as many remain at least.
+impl<T> DecimatedSeries<T> {
+    /// Largest number of points; at least half of them remain.
     pub const MAX: usize = 2048;
 
     /// Adds a point.
@@ -44,12 +44,12 @@ impl<T> Series<T> {
             });
             self.each *= 2;
         }
-        // After thinning an even number of stored points this one is still one of every `each`.
+        // After thinning an even number of stored points, this point is still one of every `each`.
         self.points.push(point);
         self.last = None;
     }
 
-    /// The stored points and the last one.
+    /// Iterates over the stored points and the last one.
     pub fn points(&self) -> impl Iterator<Item = &T> {
         self.points.iter().chain(&self.last)
     }
@@ -67,17 +67,18 @@ mod tests {
     #[test]
     fn points_are_all_there_or_equally_far_apart_with_both_ends() {
         for count in [0, 1, 5, 2048, 2049, 4096, 4097, 4101, 100_001] {
-            let mut series = Series::default();
+            let mut series = DecimatedSeries::default();
             (0..count).for_each(|k: u64| series.add(k));
             let points: Vec<u64> = series.points().copied().collect();
             assert_eq!(series.last().copied(), count.checked_sub(1));
             assert_eq!(points.last(), series.last());
-            if count <= Series::<u64>::MAX as u64 {
+            if count <= DecimatedSeries::<u64>::MAX as u64 {
                 assert_eq!(points, (0..count).collect::<Vec<_>>());
                 continue;
             }
             assert!(
-                points.len() > Series::<u64>::MAX / 2 && points.len() <= Series::<u64>::MAX + 1
+                points.len() > DecimatedSeries::<u64>::MAX / 2
+                    && points.len() <= DecimatedSeries::<u64>::MAX + 1
             );
             let apart: Vec<u64> = points.windows(2).map(|w| w[1] - w[0]).collect();
             let (end, rest) = apart.split_last().unwrap();

@@ -1,4 +1,4 @@
-//! What a run of a case is observed by.
+//! Observers of a run of a case.
 
 use super::accuracy::{ChosenSettings, report_accuracy};
 use super::biaxial::Biaxial;
@@ -25,8 +25,8 @@ use fretwork_scene::case::{Case, InterfaceSpec};
 use fretwork_scene::processes;
 use std::time::Duration;
 
-/// The observers of a run of a case, from the current state of its simulation on, in the order of
-/// the columns of the statistics. `density` is that of the first bodies (kg/m^3).
+/// Returns the observers of a run of a case, from the current state of its simulation on, in the
+/// order of the columns of the statistics. `density` is that of the first bodies (kg/m^3).
 pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
     let test = processes::FrictionTest::of(case, run);
     let mut all = Observers::default();
@@ -76,8 +76,8 @@ pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
     all
 }
 
-/// What a run of a case will say, as far as it is known before its first step: values are those of
-/// the start, and what a case cannot have says why.
+/// Returns the results of a run of a case as far as they are known before its first step: values
+/// are those of the start, and results that a case cannot have give the reason.
 pub fn declared(case: &Case, run: &dyn RunView) -> Findings {
     let observers = observers(case, run, 0.0);
     let end = RunEnd {

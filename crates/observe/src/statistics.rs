@@ -17,8 +17,8 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column in a unit: one that depends on the dimension, or a symbol such as `m/s`, empty for
-    /// a pure number.
+    /// Creates a column with a unit: one that depends on the dimension, or a symbol such as `m/s`,
+    /// empty for a pure number.
     pub fn new(name: impl Into<String>, unit: impl Into<Unit>, doc: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -34,7 +34,7 @@ impl Column {
 pub struct Table {
     /// Columns.
     pub columns: Vec<Column>,
-    /// Dimension of the run, which decides the units.
+    /// Dimension of the run, which determines the units.
     dimension: usize,
     /// Values, row by row, after [`Self::recall`].
     pub rows: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table of a run in a dimension, with its file and header: `name [unit]`.
+    /// Creates a table of a run in a dimension, with its file and header: `name [unit]`.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -63,7 +63,7 @@ impl Table {
         }
     }
 
-    /// Unit of a column for headings and axes; empty for a pure number.
+    /// Returns the unit of a column for headings and axes; empty for a pure number.
     pub fn heading(&self, column: &Column) -> &'static str {
         column.unit.heading(self.dimension)
     }
@@ -149,7 +149,7 @@ impl Table {
         Ok(())
     }
 
-    /// Values of a recalled column; empty if there is no column of that name.
+    /// Returns the values of a recalled column; empty if there is no such column.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let width = self.columns.len();
         match self.columns.iter().position(|c| c.name == name) {
@@ -158,8 +158,8 @@ impl Table {
         }
     }
 
-    /// Number and start (s) of the last cycle that is as long as the one before it, from the
-    /// columns `cycle` and `time`; `None` if there are no two cycles.
+    /// Returns number and start (s) of the last cycle that is as long as the one before it, from
+    /// the columns `cycle` and `time`; `None` if there are not two cycles.
     pub fn last_cycle(&self) -> Option<(u32, f64)> {
         let (cycles, times) = (self.column("cycle"), self.column("time"));
         // The row before the first row of a cycle is the last one of the previous cycle.
@@ -199,8 +199,8 @@ mod tests {
         assert_eq!(bits(&table.rows), bits(rows.as_flattened()));
         assert_eq!(table.column("b").len(), 3);
         let text = std::fs::read_to_string(&path).unwrap();
-        // Cut within the last number such that it is still a number, such that it is not one, and
-        // at once.
+        // The text is cut within the last number so that it is still a number, so that it is not a
+        // number, and at its start.
         for (cut, left) in [(text.len() - 4, 2), (text.len() - 3, 2), (0, 0)] {
             std::fs::write(&path, &text[..cut]).unwrap();
             table.recall().unwrap();

@@ -15,7 +15,7 @@ pub const BLOCKS: usize = 10;
 crate::described! {
     /// A mean flow over a window.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-    pub struct Flow {
+    pub struct MeanFlow {
         /// Mean rate, in units of the table per second.
         pub mean: f64 => MASS_FLOW,
         /// Half-width of its 95 % confidence interval.
@@ -29,16 +29,16 @@ crate::described! {
     }
 }
 
-impl Flow {
+impl MeanFlow {
     /// Whether zero is within the interval.
     pub fn may_be_zero(&self) -> bool {
         self.mean.abs() <= self.half_width
     }
 }
 
-/// Mean rate of a cumulative quantity after a time. `points` are (time, cumulative value), with
-/// increasing times; `None` if a block has fewer than two points.
-pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
+/// Returns the mean rate of a cumulative quantity after a time. `points` are (time, cumulative
+/// value), with increasing times; `None` if a block has fewer than two points.
+pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<MeanFlow> {
     if start >= end || points.len() < 2 {
         return None;
     }
@@ -55,7 +55,7 @@ pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
     summary(&blocks)
 }
 
-/// Cumulative value at a time, interpolated linearly and constant just beyond the ends.
+/// Returns the cumulative value at a time, interpolated linearly and constant just beyond the ends.
 fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
     let k = points.partition_point(|p| p.0 < time);
     if k == 0 {
@@ -68,8 +68,8 @@ fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
     Some(x0 + (x1 - x0) * (time - t0) / (t1 - t0))
 }
 
-/// Mean, interval and trend of block means; `None` for fewer than two.
-pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
+/// Returns mean, interval and trend of block means; `None` for fewer than two.
+pub(super) fn of_blocks(blocks: &[f64]) -> Option<MeanFlow> {
     if blocks.len() < 2 {
         None
     } else {
@@ -77,8 +77,8 @@ pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
     }
 }
 
-/// Mean, interval and trend of blocks.
-fn summary(blocks: &[f64]) -> Option<Flow> {
+/// Returns mean, interval and trend of blocks.
+fn summary(blocks: &[f64]) -> Option<MeanFlow> {
     let n = blocks.len();
     let count = n as f64;
     let mean = blocks.iter().sum::<f64>() / count;
@@ -87,7 +87,7 @@ fn summary(blocks: &[f64]) -> Option<Flow> {
     let t = interval::quantile(n)?;
     let neighbours: f64 = deviations.windows(2).map(|w| w[0] * w[1]).sum();
     let trend = trend(blocks)?;
-    Some(Flow {
+    Some(MeanFlow {
         mean,
         half_width: t * (square / (count - 1.0) / count).sqrt(),
         correlation: if square > 0.0 {
@@ -100,7 +100,8 @@ fn summary(blocks: &[f64]) -> Option<Flow> {
     })
 }
 
-/// Two-sided p-value of the Mann-Kendall trend test, with ties and the normal approximation.
+/// Returns the two-sided p-value of the Mann-Kendall trend test, with ties and the normal
+/// approximation.
 fn trend(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mut s = 0i64;
@@ -130,7 +131,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_student_s() {
-        // Mean 5.5, standard deviation 3.02765, t(9, 0.975) = 2.262157: half width 2.16585.
+        // The mean is 5.5, the standard deviation 3.02765, t(9, 0.975) = 2.262157: half-width
+        // 2.16585.
         let values: Vec<f64> = [3, 9, 1, 7, 10, 2, 6, 8, 5, 4].map(f64::from).to_vec();
         let flow = summary(&values).unwrap();
         assert!((flow.mean - 5.5).abs() < 1e-12);
@@ -144,7 +146,7 @@ mod tests {
         let values: Vec<f64> = (0..10).map(f64::from).collect();
         assert!((trend(&values).unwrap() / 8.3e-5 - 1.0).abs() < 0.01);
         assert_eq!(trend(&[2.0; 10]), Some(1.0));
-        // Of three values 1, 2, 3: S = 3, variance 3 2 11/18.
+        // For three values 1, 2, 3: S = 3, variance 3 2 11/18.
         let z = 2.0 / (66.0f64 / 18.0).sqrt();
         let p = 2.0 * (1.0 - Normal::standard().cdf(z));
         assert!((trend(&[1.0, 2.0, 3.0]).unwrap() - p).abs() < 1e-15);

@@ -7,10 +7,10 @@
 //! shear g = (a - b)/sqrt(a b): the amount of simple shear that has the same ratio of stretches, at
 //! finite strain. Rotation and dilation do not contribute.
 
-use super::picture::{Picture, Shows};
+use super::picture::{Picture, PictureContent};
 use super::statistics::Column;
 use crate::observer::Observer;
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::geometry::grid::{Balls, pairs};
 use fretwork_core::view::RunView;
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -34,8 +34,8 @@ pub struct Strain {
 }
 
 impl Strain {
-    /// Takes the current state as reference. Neighbours of a grain are those with a gap below a
-    /// mean diameter: two shells, so that no single neighbour dominates.
+    /// Uses the current state as reference. Neighbours of a grain are those with a gap below a mean
+    /// diameter: two shells, so that no single neighbour dominates.
     pub fn new(run: &dyn RunView) -> Self {
         let balls = run.balls();
         let centres: Vec<Vector3<f64>> = balls.iter().map(|b| b.centre.into()).collect();
@@ -69,8 +69,8 @@ impl Strain {
         Self { dimension, around }
     }
 
-    /// Shear of each ball since the reference time; NaN for balls of first bodies, and if the
-    /// neighbours do not span the space.
+    /// Returns the shear of each ball since the reference time; NaN for balls of first bodies, and
+    /// if the neighbours do not span the space.
     pub fn shear(&self, run: &dyn RunView) -> Vec<f64> {
         let balls = run.balls().into_iter();
         let now: Vec<Vector3<f64>> = balls.map(|b| b.centre.into()).collect();
@@ -90,12 +90,12 @@ impl Strain {
 #[derive(Clone, Debug)]
 pub struct LocalShear {
     strain: Strain,
-    /// The shear that is drawn darkest.
+    /// Shear with the darkest colour.
     top: f64,
 }
 
 impl LocalShear {
-    /// Counts from the current state, with the shear that is drawn darkest.
+    /// Creates the observer from the current state, with the shear that has the darkest colour.
     pub fn new(run: &dyn RunView, top: f64) -> Self {
         Self {
             strain: Strain::new(run),
@@ -130,7 +130,7 @@ impl Observer for LocalShear {
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "shear",
-            shows: Shows::Values {
+            shows: PictureContent::Values {
                 values: self.strain.shear(run),
                 label: "local shear",
                 top: self.top,
@@ -138,17 +138,17 @@ impl Observer for LocalShear {
         }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.strain)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.strain = decode(from)?;
         Ok(())
     }
 }
 
-/// The shear of the gradient that carries the first of each pair of vectors into the second.
+/// Returns the shear of the gradient that maps the first of each pair of vectors to the second.
 fn shear(dimension: usize, pairs: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) -> f64 {
     let (mut moment, mut moved) = (Matrix3::zeros(), Matrix3::zeros());
     for (before, after) in pairs {

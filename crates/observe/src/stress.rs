@@ -3,8 +3,8 @@
 use fretwork_core::view::RunView;
 use nalgebra::Vector3;
 
-/// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume,
-/// positive in compression; row: axis of the force, column: axis of the branch.
+/// Returns the Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided
+/// by a volume, positive in compression; row: axis of the force, column: axis of the branch.
 ///
 /// f is the mean force of the last step; l points from a grain's centre to the contact: to the face
 /// of a wall, or to the middle of the gap to another grain. At rest the stress equals that on the
@@ -43,8 +43,9 @@ pub fn each_moment(run: &dyn RunView, mut take: impl FnMut(usize, &Vector3<f64>,
     });
 }
 
-/// Mean pressure, and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal
-/// stresses in the plane of the first two axes; the sine is zero without pressure.
+/// Returns the mean pressure, and the sine of the mobilised friction angle, (s1 - s2)/(s1 + s2),
+/// with the principal stresses in the plane of the first two axes; the sine is zero without
+/// pressure.
 pub fn plane_invariants(stress: &[[f64; 3]; 3]) -> (f64, f64) {
     let mean = 0.5 * (stress[0][0] + stress[1][1]);
     let half = 0.5 * (stress[0][0] - stress[1][1]);

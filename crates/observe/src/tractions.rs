@@ -1,26 +1,26 @@
-//! Tractions along the surface of a deformable body, and where it sticks and slips: forces of
-//! contacts shared out to the points of the surface by its shape functions, over the areas that
-//! these stand for. The sum of pressure times area is the normal force of all contacts.
+//! Tractions on the surface of a deformable body, and where it sticks and slips: forces of contacts
+//! are distributed to the points of the surface by its shape functions, and divided by their
+//! tributary areas. The sum of pressure times area is the normal force of all contacts.
 
 use fretwork_core::bodies::TouchingSurface;
 use fretwork_core::view::{ContactView, RunView};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// What a point of a surface does.
+/// Contact status of a point of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Zone {
-    /// It carries no force, or less than a tenth of what its area has of that of one contact.
+pub enum ContactZone {
+    /// The point carries no force, or less than a tenth of the share of one contact by its area.
     #[default]
     Open,
-    /// Most of its force is of contacts that stick.
+    /// Most of the force of the point is of contacts that stick.
     Stick,
-    /// At least half of its force is of contacts that slip.
+    /// At least half of the force of the point is of contacts that slip.
     Slip,
 }
 
-impl Zone {
-    /// Value of the field `status` of contacts: 0 no force, 1 stick, 2 slip.
+impl ContactZone {
+    /// Returns the value of the field `status` of contacts: 0 no force, 1 stick, 2 slip.
     pub fn status(self) -> f64 {
         match self {
             Self::Open => 0.0,
@@ -30,34 +30,35 @@ impl Zone {
     }
 }
 
-/// Share of one contact below which a point counts as open, of one that stands for less than the
-/// point that touches it in proportion: where points of two surfaces almost coincide, the next
-/// point of the one that is touched gets a trace of the force.
+/// Share of the force of one contact below which a point counts as open; for a point with a smaller
+/// tributary area than that of the touching point in proportion. Where points of two surfaces
+/// almost coincide, the adjacent point of the touched surface gets a small share of the force.
 const TRACE: f64 = 0.1;
 
-/// The surface of a deformable body that touches, with what acts on it.
+/// Contact surface of a deformable body, with its tractions.
 #[derive(Clone, Debug)]
 pub struct SurfaceState {
     /// Number of dimensions.
     pub dimension: usize,
-    /// Its points and facets.
+    /// Points and facets of the surface.
     pub surface: TouchingSurface<Vector3<f64>>,
     /// Displacement of each point (m).
     pub displacement: Vec<Vector3<f64>>,
     /// Traction on each point, force over area in world axes (Pa).
     pub traction: Vec<Vector3<f64>>,
-    /// Its part along the normals of the contacts (Pa), positive in compression.
+    /// Part of the traction along the normals of the contacts (Pa), positive in compression.
     pub pressure: Vec<f64>,
-    /// Its part along the surface (Pa): in the plane positive along +x, in space its size.
+    /// Part of the traction along the surface (Pa): in the plane positive along +x, in space its
+    /// magnitude.
     pub shear: Vec<f64>,
-    /// The vector of that part (Pa).
+    /// Vector of that part (Pa).
     pub tangential: Vec<Vector3<f64>>,
-    /// What each point does.
-    pub zone: Vec<Zone>,
+    /// Contact status of each point.
+    pub zone: Vec<ContactZone>,
 }
 
-/// Tractions on a facet: means of its points, which sum up to the same force. Where points have
-/// more and fewer facets in turn, pressures of points alternate, and those of facets do not.
+/// Tractions on a facet: means of its points, with the same total force. Where points have
+/// alternately more and fewer facets, pressures of points alternate, and those of facets do not.
 #[derive(Clone, Copy, Debug)]
 pub struct FacetTraction {
     /// Pressure (Pa).
@@ -67,8 +68,8 @@ pub struct FacetTraction {
 }
 
 impl SurfaceState {
-    /// Takes the tractions on a system of a simulation over its last step; `None` where the system
-    /// has no surface that touches.
+    /// Returns the tractions on a system of a simulation over its last step; `None` where the
+    /// system has no contact surface.
     pub fn of(run: &dyn RunView, system: usize) -> Option<Self> {
         let body = run.system(system)?;
         let surface = body.touching_surface()?;
@@ -104,9 +105,9 @@ impl SurfaceState {
         let along = tangential.iter().enumerate().map(|(k, f)| over(f, k));
         let tangential: Vec<Vector3<f64>> = along.collect();
         let zone = |([sticks, slips], share): (&[f64; 2], &f64)| match () {
-            () if *share < TRACE => Zone::Open,
-            () if slips >= sticks => Zone::Slip,
-            () => Zone::Stick,
+            () if *share < TRACE => ContactZone::Open,
+            () if slips >= sticks => ContactZone::Slip,
+            () => ContactZone::Stick,
         };
         let dimension = run.dimension();
         Some(Self {
@@ -121,7 +122,7 @@ impl SurfaceState {
         })
     }
 
-    /// Tractions on the facets, in their order.
+    /// Returns the tractions on the facets, in their order.
     pub fn facets(&self) -> Vec<FacetTraction> {
         let mean = |points: &[u32]| {
             let share = 1.0 / points.len() as f64;
@@ -139,19 +140,20 @@ impl SurfaceState {
         facets.map(mean).collect()
     }
 
-    /// Where a point is now (m).
+    /// Returns the current position of a point (m).
     pub fn place(&self, point: usize) -> Vector3<f64> {
         self.surface.points[point] + self.displacement[point]
     }
 }
 
-/// The areas that points of systems stand for, by system and node (m^2; m in the plane), of those
-/// that were asked for.
+/// Tributary areas of points of systems, by system and node (m^2; m in the plane), of those that
+/// were requested.
 #[derive(Default)]
 struct Areas(HashMap<u32, HashMap<u32, f64>>);
 
 impl Areas {
-    /// Of the point of a contact; `None` where it is none of the surface of a system.
+    /// Returns the area of the point of a contact; `None` where it is not a point of the surface of
+    /// a system.
     fn of_point(&mut self, run: &dyn RunView, contact: &ContactView) -> Option<f64> {
         let carrier = run.bodies().carrier(contact.bodies[0] as usize)?;
         let areas = self.0.entry(carrier.system).or_insert_with(|| {
@@ -165,7 +167,7 @@ impl Areas {
     }
 }
 
-/// Size of a vector along a surface: in the plane positive along +x.
+/// Returns the magnitude of a vector along a surface: in the plane positive along +x.
 pub fn signed(dimension: usize, along: &Vector3<f64>) -> f64 {
     match dimension {
         2 if along[0] < 0.0 => -along.norm(),
@@ -173,21 +175,21 @@ pub fn signed(dimension: usize, along: &Vector3<f64>) -> f64 {
     }
 }
 
-/// A contact that presses or pulls on a system, over the last step.
+/// A contact with a force on a system, over the last step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Acting {
+pub(crate) struct ActingContact {
     pub contact: ContactView,
-    /// Which of the bodies of the contact is the system's.
+    /// Index of the body of the contact that belongs to the system.
     pub side: usize,
     /// Force on the system (N; N/m in 2D).
     pub force: Vector3<f64>,
-    /// Its part along the normal, positive in compression, and its part along the surface.
+    /// Part of the force along the normal, positive in compression, and part along the surface.
     pub normal: f64,
     pub along: Vector3<f64>,
 }
 
-/// The contacts of a system that carry force.
-pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<Acting> {
+/// Returns the contacts of a system that carry force.
+pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<ActingContact> {
     let bodies = run.bodies();
     let mut out = Vec::new();
     run.visit_contacts(&mut |contact| {
@@ -206,7 +208,7 @@ pub(crate) fn loaded(run: &dyn RunView, system: usize) -> Vec<Acting> {
         };
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let (force, normal) = (Vector3::from(contact.force), Vector3::from(contact.normal));
-        out.push(Acting {
+        out.push(ActingContact {
             contact: *contact,
             side,
             force: force * sign,

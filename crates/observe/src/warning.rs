@@ -1,6 +1,6 @@
-//! Warnings about a run: what was observed, and what to change.
+//! Warnings about a run: the observation, and what to change.
 
-/// Category of events that the run ended before.
+/// Category of events that the run did not reach.
 pub const NOT_REACHED: &str = "NOT REACHED";
 
 /// A warning.
@@ -8,27 +8,27 @@ pub const NOT_REACHED: &str = "NOT REACHED";
 pub struct Warning {
     /// Category, such as `NOT CONVERGED`.
     pub of: &'static str,
-    /// What was observed, and what to change.
+    /// The observation, and what to change.
     pub text: String,
     /// Whether results are not trustworthy because of it; otherwise it is a note.
     pub serious: bool,
 }
 
 impl Warning {
-    /// A warning that makes the run untrustworthy.
+    /// Creates a warning that makes the run untrustworthy.
     pub fn serious(of: &'static str, text: impl Into<String>) -> Self {
         let text = text.into();
         let serious = true;
         Self { of, text, serious }
     }
 
-    /// The warning of energies or forces that are no numbers.
+    /// Returns the warning of energies or forces that are not finite.
     pub fn infinite() -> Self {
         let text = "energies or friction are not finite: forces, speeds or sizes of the case exceed the range of double precision";
         Self::serious("NOT FINITE", text)
     }
 
-    /// A note that does not affect trust in the run.
+    /// Creates a note that does not affect trust in the run.
     pub fn note(of: &'static str, text: impl Into<String>) -> Self {
         let text = text.into();
         let serious = false;
@@ -36,7 +36,7 @@ impl Warning {
     }
 }
 
-/// Categories in the order in which they are told; those of other observers follow.
+/// Categories in the order in which they are reported; those of other observers follow.
 const ORDER: [&str; 42] = [
     "INTERRUPTED",
     "STOPPED",
@@ -82,7 +82,7 @@ const ORDER: [&str; 42] = [
     "NOT UNIQUE",
 ];
 
-/// Puts reasons before notes, and both in the order of their categories.
+/// Sorts serious warnings before notes, and both in the order of their categories.
 pub fn sort(list: &mut [Warning]) {
     let place = |w: &Warning| ORDER.iter().position(|of| *of == w.of);
     list.sort_by_key(|w| (!w.serious, place(w).unwrap_or(ORDER.len())));

@@ -1,5 +1,5 @@
-//! Wear of first and third bodies, and mean flows of matter, from the start of the friction test
-//! on: what came before it, placing grains and pressing them together, is no flow of the contact.
+//! Wear of first and third bodies, and mean mass flows, from the start of the friction test on:
+//! earlier processes, such as deposition and compression of grains, are not flows of the contact.
 
 use super::chart::Axis;
 use super::figures::history;
@@ -9,7 +9,7 @@ use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WOR
 use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::StepReport;
 use fretwork_core::threads::{map_ranges, worth_dividing};
@@ -131,7 +131,7 @@ impl WearSummary {
 }
 
 impl WearSummary {
-    /// Puts in the specific wear rates of the bodies, by the integral of P |ds|.
+    /// Sets the specific wear rates of the bodies, by the integral of P |ds|.
     pub(crate) fn rate(&mut self, load_path: f64, found: &mut Findings) {
         let volume = VOLUME.symbol(found.dimension());
         for (k, body) in self.bodies.iter_mut().enumerate() {
@@ -180,7 +180,7 @@ pub(crate) fn show_flows(found: &mut Findings) {
     });
 }
 
-/// Volume, depths and specific wear rate.
+/// Returns volume, depths and specific wear rate as text.
 fn of_body(w: &BodyWear, volume: &str) -> String {
     let mut text = quantity(w.volume, volume);
     if let (Some(mean), Some(most)) = (w.depth_mean, w.depth_max) {
@@ -197,31 +197,31 @@ fn of_body(w: &BodyWear, volume: &str) -> String {
     text
 }
 
-/// Observes what wears.
+/// Observes wear.
 #[derive(Clone, Debug)]
 pub struct Wear {
     /// Axis of sliding.
     along: usize,
-    /// By how much the masses of bodies are too large, see `inertia_scaling` of a case.
+    /// Factor by which the masses of bodies are too large, see `inertia_scaling` of a case.
     scaling: f64,
     /// Density of the first bodies (kg/m^3).
     density: f64,
     /// Whether an interface of the case has a wear law.
     wears: bool,
-    state: Worn,
+    state: WearObserverState,
 }
 
-/// What it carries from step to step.
+/// State carried from step to step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-struct Worn {
+struct WearObserverState {
     /// Volumes worn off first bodies and between grains (m^3; m^3/m).
     volumes: (f64, f64),
     flows: Flows,
 }
 
 impl Wear {
-    /// Wear of first bodies of a density (kg/m^3), with flows along an axis from a time (s) on;
-    /// masses of the bodies are larger than they are by `scaling`; `wears` says whether an
+    /// Creates the observer of wear of first bodies of a density (kg/m^3), with flows along an axis
+    /// from a time (s) on; the masses of bodies are too large by `scaling`; `wears` says whether an
     /// interface has a wear law.
     pub fn new([start, scaling, density]: [f64; 3], along: usize, wears: bool) -> Self {
         Self {
@@ -229,7 +229,7 @@ impl Wear {
             along,
             scaling,
             density,
-            state: Worn {
+            state: WearObserverState {
                 volumes: (0.0, 0.0),
                 flows: Flows::since(start),
             },
@@ -268,7 +268,7 @@ impl Observer for Wear {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let (run, state) = (end.simulation, &self.state);
-        // Wear goes on over the cycles that were jumped over.
+        // Wear includes that of skipped cycles.
         let jumps = run.process::<Jumps>();
         let over = jumps.map_or(0.0, |j| j.jumped_at(run.time()) * j.period());
         // Nothing leaves a contact that is periodic along the sliding.
@@ -296,7 +296,7 @@ impl Observer for Wear {
             ("between grains", "worn_third"),
         ];
         let all = all.map(|(label, column)| (label, column.to_owned()));
-        // One scar alone is what is worn off first bodies.
+        // A single scar contains all wear of first bodies.
         let several = own.len() > 1;
         let series: Vec<(&str, String)> = all.into_iter().chain(own.filter(|_| several)).collect();
         let chart = history("Worn volume", Axis::of_rows("worn volume V"), &series)
@@ -304,33 +304,33 @@ impl Observer for Wear {
         vec![Output::figure("worn_volume", [chart], 1)]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }
 }
 
-/// What flowed since the start of the friction test; since the start of the run without one.
+/// Flows since the start of the friction test, or since the start of a run without one.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Flows {
-    /// When it starts (s).
+    /// Start time (s).
     start: f64,
-    /// Time since then (s).
+    /// Time since the start (s).
     time: f64,
-    /// Volume worn off first bodies before it (m^3; m^3/m).
+    /// Volume worn off first bodies before the start (m^3; m^3/m).
     before: f64,
-    /// Volume worn off them since (m^3; m^3/m).
+    /// Volume worn off first bodies since the start (m^3; m^3/m).
     worn: f64,
-    /// Mass of the third body that crossed a section since (kg; kg/m).
+    /// Mass of the third body that crossed a section since the start (kg; kg/m).
     crossed: f64,
 }
 
 impl Flows {
-    /// From a time on.
+    /// Creates flows from a time on.
     fn since(start: f64) -> Self {
         Self {
             start,
@@ -338,7 +338,7 @@ impl Flows {
         }
     }
 
-    /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off
+    /// Adds a step: the sliding axis, the inertia scaling of the case, and the volume worn off
     /// first bodies so far.
     fn add(&mut self, run: &dyn RunView, along: usize, scaling: f64, worn: f64) {
         let h = run.options().scheme.h;
@@ -351,13 +351,13 @@ impl Flows {
         self.crossed += h * internal_flow(run, along) / scaling;
     }
 
-    /// Volume worn off first bodies a second, over a longer time by so much (m^3/s; m^3/(m s));
-    /// zero before the start.
+    /// Returns the volume worn off first bodies per second, with the time extended by this amount
+    /// (m^3/s; m^3/(m s)); zero before the start.
     fn source(&self, over: f64) -> f64 {
         mean(self.worn, self.time + over)
     }
 
-    /// Mass that crosses a section a second (kg/s; kg/(m s)); zero before the start.
+    /// Returns the mass that crosses a section per second (kg/s; kg/(m s)); zero before the start.
     fn internal(&self) -> f64 {
         mean(self.crossed, self.time)
     }
@@ -367,11 +367,12 @@ fn mean(amount: f64, time: f64) -> f64 {
     if time > 0.0 { amount / time } else { 0.0 }
 }
 
-/// Bodies of a task, and about what the flow of one takes (ns).
+/// Number of bodies of a task, and approximate time to compute the flow of one (ns).
 const CHUNK: usize = 4096;
 const EACH: f64 = 4.0;
 
-/// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
+/// Returns the mass of the third body that crosses a section per second: sum m |v| / L along the
+/// sliding.
 fn internal_flow(run: &dyn RunView, along: usize) -> f64 {
     let (bodies, grain) = (run.bodies(), run.grain_flags());
     let divide = worth_dividing(run.options().solver.parallel, bodies.len(), EACH);

@@ -40,8 +40,8 @@ pub struct Deposit<V> {
     pub filling: f64,
 }
 
-/// Places grains in a box between two corners (m), in so many dimensions; see [`deposit`]. In the
-/// plane the third component counts for nothing.
+/// Places grains in a box between two corners (m) in 2 or 3 dimensions, see [`deposit`]. In 2D the
+/// third component is ignored.
 pub fn deposit_between(
     dimension: usize,
     count: usize,
@@ -75,8 +75,8 @@ fn padded<S: Space>(
     }
 }
 
-/// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it;
-/// fewer if one of them cannot be placed.
+/// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it.
+/// Returns fewer if one of them cannot be placed.
 pub fn deposit<S: Space>(
     count: usize,
     sizes: &Sizes,

@@ -53,7 +53,7 @@ impl Sizes {
         for pair in curve.windows(2) {
             let [(low, before), (high, after)] = [pair[0], pair[1]];
             if after > before {
-                // In units of the largest radius, since powers of small numbers underflow.
+                // Radii are divided by the largest one, since powers of small numbers underflow.
                 let largest = curve[curve.len() - 1].0;
                 let (a, b) = (low / largest, high / largest);
                 total += (after - before) / (high / low).ln() * integral(a, b, exponent);
@@ -147,9 +147,9 @@ mod tests {
         worst
     }
 
-    /// Each quantile interval has one grain, so the curve by number is off by 1/n at most, and the
-    /// curve by mass by the mass difference of the heaviest and lightest grain, twice, over the
-    /// total mass.
+    /// Each quantile interval has one grain, so the curve by number differs from the exact one by
+    /// at most 1/n, and the curve by mass by at most twice the mass difference of the heaviest and
+    /// the lightest grain over the total mass.
     #[test]
     fn samples_follow_their_distribution_by_number_and_by_mass() {
         let n = 4_000;
@@ -176,8 +176,8 @@ mod tests {
         }
     }
 
-    /// Against independent draws from the same generator: the Kolmogorov-Smirnov bound of
-    /// 1.95/sqrt(n) holds for 999 of 1000 samples (Smirnov 1948).
+    /// The error is compared with that of independent draws from one generator, for which the
+    /// Kolmogorov-Smirnov bound of 1.95/sqrt(n) holds for 999 of 1000 samples (Smirnov 1948).
     #[test]
     fn quantiles_invert_the_curve() {
         let curve = [(1e-3, 0.0), (2e-3, 0.2), (4e-3, 0.2), (8e-3, 1.0)];

@@ -161,7 +161,7 @@ impl Rectangle {
         p
     }
 
-    /// Position of merged corners: on each wall that one of them is on, otherwise their mean.
+    /// Position of merged corners: on every wall that one of them touches, otherwise their mean.
     fn joined(&self, members: &[V]) -> V {
         let mut at = members.iter().sum::<V>() / members.len() as f64;
         for k in usize::from(self.around.is_some())..2 {
@@ -206,7 +206,7 @@ impl Rectangle {
                 continue;
             };
             let mut around = Vec::new();
-            // Counter-clockwise.
+            // The corners are listed counter-clockwise.
             for edge in vertex.out_edges() {
                 let face = edge.face().as_inner()?;
                 around.push(face.fix().index());
@@ -272,7 +272,8 @@ mod tests {
                 for cell in &tiling.cells {
                     Polygon::new(cell.clone()).unwrap_or_else(|e| panic!("{e}: {cell:?}"));
                 }
-                // There are no holes and, since no cell is inverted, no overlaps.
+                // The areas add up to that of the box, so there are no holes and, since no cell is
+                // inverted, no overlaps.
                 assert!((area(&tiling.cells) / whole - 1.0).abs() < 1e-13);
             }
         }

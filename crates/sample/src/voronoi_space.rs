@@ -22,7 +22,8 @@ type V = Vector3<f64>;
 
 /// Displacement of a site whose cell has a short edge, as a fraction of the cell size.
 const NUDGE: f64 = 0.02;
-/// Limit on the number of such rounds; each leaves about a fifth of the short edges.
+/// Limit on the number of rounds in which sites are moved; each round leaves about a fifth of the
+/// short edges.
 const NUDGES: usize = 100;
 
 /// A cell.
@@ -51,7 +52,7 @@ pub struct SpaceTiling {
 pub enum Failure {
     /// The box is thinner than half a cell.
     Thin,
-    /// Short edges remain however the sites are moved.
+    /// Short edges remain after all rounds of moving the sites.
     Short,
 }
 
@@ -59,7 +60,8 @@ pub enum Failure {
 /// period.
 ///
 /// # Errors
-/// The sites do not fit, or their cells keep edges shorter than [`SHORTEST`] times the size.
+/// The sites do not fit into the box, or their cells keep edges shorter than [`SHORTEST`] times the
+/// size.
 pub fn tiling(
     corners: &Corners<V>,
     periodic: &Periodic,
@@ -152,8 +154,8 @@ enum Side {
 /// A site's image: the site, and its offset in periods.
 type Image = (u32, [i8; 3]);
 
-/// Sites and images sorted into cubes, from a low corner on. If most cubes would be empty,
-/// 2^`merged` of them along each axis are combined.
+/// Sites and images sorted into cubes, counted from a low corner. If most cubes would be empty,
+/// 2^`merged` cubes along each axis are combined.
 struct Cubes {
     merged: u32,
     low: [i64; 3],
@@ -300,9 +302,9 @@ impl BoxRegion {
             .collect()
     }
 
-    /// Updates the corners after some sites moved: only cells near enough to be affected. A site
-    /// farther from a cell than twice its farthest corner neither cut it before nor cuts it now.
-    /// Returns the cells.
+    /// Updates the corners after some sites moved. Only cells near enough to be affected change: a
+    /// site farther from a cell than twice its farthest corner neither cut it before nor cuts it
+    /// now. Returns the cells.
     fn cut_again(
         &self,
         sites: &[V],
@@ -369,7 +371,8 @@ impl BoxRegion {
         }
     }
 
-    /// The corners of the initial box, relative to a site; half a period away along periodic axes.
+    /// The corners of the initial box relative to a site. Along periodic axes they are half a
+    /// period away.
     fn whole(&self, i: usize, own: &V) -> Vec<Corner<Side>> {
         let side = |k: usize, high: bool| match self.around[k] {
             Some(period) => {
@@ -439,7 +442,7 @@ impl BoxRegion {
     fn place(&self, sites: &[V], i: usize, sides: &[Side; 3]) -> Option<V> {
         let mut name = [Side::Site(i as u32, [0; 3]), sides[0], sides[1], sides[2]];
         name.sort_unstable();
-        // Relative to its first site; there is always one.
+        // The position is computed relative to the first site of the name; there is always one.
         let Side::Site(first, base) = name[0] else {
             return None;
         };

@@ -50,11 +50,12 @@ fn cells_are_convex_and_fill_the_box() {
         );
         moved += tiling.moved;
         let sum: f64 = tiling.cells.iter().map(volume).sum();
-        // There are no holes and, since no cell is inverted, no overlaps.
+        // The volumes add up to that of the box, so there are no holes and, since no cell is
+        // inverted, no overlaps.
         assert!((sum / whole - 1.0).abs() < 1e-13, "{:e}", sum / whole - 1.0);
         for cell in &tiling.cells {
             let core = polyhedron(cell);
-            // Euler's formula, and three faces at every corner.
+            // Euler's formula holds, and three faces meet at every corner.
             let t = core.topology();
             assert_eq!(t.about.len() + t.faces.len(), t.edges.len() + 2);
             assert!(t.about.iter().all(|a| a.len() == 3));
@@ -77,8 +78,8 @@ fn cells_are_convex_and_fill_the_box() {
     assert!(moved > 0, "no edge was short enough to test with");
 }
 
-/// The face shared with another cell is a face of that cell too: identical corners bit by bit
-/// without periods, equal area, opposite normal.
+/// The face shared with another cell is also a face of that cell: the corners are bit-identical
+/// without periods, the areas equal, and the normals opposite.
 #[test]
 fn neighbours_share_their_faces() {
     let tiling = unit_tiling(0.06, 0, [false; 3], 7);
@@ -106,13 +107,13 @@ fn neighbours_share_their_faces() {
             shared += 1;
         }
     }
-    // About fifteen per cell, fewer at walls.
+    // A cell has about fifteen faces, fewer at walls.
     assert!(shared > 10 * tiling.cells.len());
     let box_walls = V::new(0.4 * 0.4, 0.6 * 0.4, 0.6 * 0.4) * 2.0;
     assert!((walls - box_walls).norm() < 1e-14);
 }
 
-/// Across a period the two sides of a face differ by the period only.
+/// Across a period the two sides of a face differ only by the period.
 #[test]
 fn neighbours_share_their_faces_across_periods() {
     let tiling = unit_tiling(0.06, 3, [true, true, false], 8);
@@ -131,8 +132,8 @@ fn neighbours_share_their_faces_across_periods() {
     }
 }
 
-/// The volumes of Poisson-Voronoi cells have a relative standard deviation of 0.42; sites kept
-/// apart give less, and Lloyd iterations less again.
+/// The volumes of Poisson-Voronoi cells have a relative standard deviation of 0.42. Sites that are
+/// kept apart have a smaller one, and Lloyd iterations reduce it further.
 #[test]
 fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
     let of = |rounds: usize| {
@@ -213,8 +214,8 @@ fn an_inset_keeps_its_distance() {
         let (points, faces) = inset(cell, 5e-3).unwrap();
         let inner = Polyhedron::from_faces(points, faces).unwrap();
         let outer = polyhedron(cell);
-        // Every point is at least that deep, and every remaining face has a point exactly that
-        // deep.
+        // Every point is at least `distance` deep, and every remaining face has a point exactly
+        // that deep.
         let depth = |p: &V| -outer.distance(p).0;
         assert!(
             inner

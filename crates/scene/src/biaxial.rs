@@ -8,7 +8,7 @@ use fretwork_core::bodies::Dof;
 /// Checks that the test can be measured on the walls it names.
 ///
 /// # Errors
-/// The first error, with its path in the case.
+/// Returns the first error, with its path in the case.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(test) = &case.biaxial else {
         return Ok(());
@@ -68,7 +68,7 @@ fn names(test: &BiaxialSpec) -> [(&'static str, &str); 4] {
     ]
 }
 
-/// The axis normal to a wall, and the sign of the wall's normal along it.
+/// Returns the axis normal to a wall, and the sign of the wall's normal along it.
 fn facing(case: &Case, (path, name): (&str, &str)) -> Result<(usize, f64), ValidationError> {
     let Some(body) = case.bodies.iter().find(|b| b.name == name) else {
         let all: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();

@@ -11,7 +11,7 @@ pub struct BondPair {
     pub radius: f64,
     /// Sum of the inverse masses along the normal (1/kg).
     pub normal: f64,
-    /// Sum of the inverse masses along the tangents, where the grains' rotation is included (1/kg).
+    /// Sum of the inverse masses along the tangents, including the rotation of the grains (1/kg).
     pub shear: f64,
 }
 
@@ -27,7 +27,7 @@ pub struct BondSites {
     /// depth). A bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular
     /// frequency.
     pub normal: f64,
-    /// Ratio along the tangents.
+    /// Largest ratio of contact area to effective mass along the tangents.
     pub shear: f64,
     /// Median of the ratio along the normal.
     pub normal_median: f64,
@@ -40,9 +40,9 @@ pub struct BondSites {
 }
 
 impl BondSites {
-    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
-    /// While there are fewer contacts than grains, the lightest pairs that grains may form count
-    /// for the largest ratios.
+    /// Returns the bond sites of the interface with index `law`; `None` if it governs no contact
+    /// and no grain. While there are fewer contacts than grains, the lightest pairs that grains may
+    /// form are used for the largest ratios.
     pub fn of(s: &dyn RunView, law: usize) -> Option<Self> {
         let area = |radius: f64| s.laws()[law].area.area(s.dimension(), radius);
         let pairs = of_contacts(s, law);
@@ -57,7 +57,8 @@ impl BondSites {
         Self::of_pairs(0, usual, &extreme, area)
     }
 
-    /// Of the usual pairs, and of others that count for the largest ratios only.
+    /// Computes the statistics of the usual pairs, and of others that are used for the largest
+    /// ratios only.
     fn of_pairs(
         contacts: usize,
         mut pairs: Vec<BondPair>,
@@ -85,8 +86,8 @@ impl BondSites {
         Some(Self { pairs, ..out })
     }
 
-    /// The pair below which a share of all pairs lie by inverse mass along the normal: 0.5 the
-    /// median, 1 the lightest.
+    /// Returns the pair below which a share of all pairs lie by inverse mass along the normal: 0.5
+    /// for the median, 1 for the lightest.
     pub fn pair(&self, share: f64) -> BondPair {
         if share >= 1.0 {
             return self.lightest;
@@ -123,7 +124,7 @@ fn of_contacts(s: &dyn RunView, law: usize) -> Vec<BondPair> {
 /// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and
 /// the tangents (1/kg), material.
 #[derive(Clone, Copy)]
-struct Side {
+struct BondSide {
     body: u32,
     curvature: f64,
     normal: f64,
@@ -131,7 +132,7 @@ struct Side {
     material: u16,
 }
 
-impl Side {
+impl BondSide {
     fn with(&self, other: &Self) -> BondPair {
         BondPair {
             radius: 1.0 / (self.curvature + other.curvature),
@@ -146,19 +147,19 @@ impl Side {
 struct Candidates {
     /// Pairs that are typical of most contacts.
     usual: Vec<BondPair>,
-    /// The lightest grain with every other, and with surfaces.
+    /// Pairs of the lightest grain with every other, and with surfaces.
     extreme: Vec<BondPair>,
 }
 
-/// Pairs before there are contacts: each grain with the next one in the scene, or with each surface
-/// where the interface has no pairs of grains.
+/// Returns pairs before there are contacts: each grain with the next one in the scene, or with each
+/// surface where the interface has no pairs of grains.
 fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
-    let governed = |a: &Side, b: &Side| {
+    let governed = |a: &BondSide, b: &BondSide| {
         let found = s.table().get(a.material, b.material);
         found.map(usize::from) == Some(law)
     };
-    let join = |a: &Side, b: &Side| governed(a, b).then(|| a.with(b));
-    let apart = |a: &Side, b: &Side| (a.body != b.body).then(|| join(a, b)).flatten();
+    let join = |a: &BondSide, b: &BondSide| governed(a, b).then(|| a.with(b));
+    let apart = |a: &BondSide, b: &BondSide| (a.body != b.body).then(|| join(a, b)).flatten();
     let (grains, surfaces) = (grains(s), surfaces(s));
     let mut out = Candidates::default();
     let neighbours = grains.windows(2);
@@ -167,7 +168,7 @@ fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
     let mut kinds: Vec<u16> = grains.iter().map(|g| g.material).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    let own = |g: &&Side| {
+    let own = |g: &&BondSide| {
         let with = |kind: &u16| s.table().get(g.material, *kind).map(usize::from) == Some(law);
         kinds.iter().any(with)
     };
@@ -196,8 +197,8 @@ fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
     out
 }
 
-fn grains(s: &dyn RunView) -> Vec<Side> {
-    // The size of a point of a grain that deforms is that of its tributary area.
+fn grains(s: &dyn RunView) -> Vec<BondSide> {
+    // The size of a point of a deformable grain is that of its tributary area.
     let balls = s.balls().into_iter().map(|b| {
         let size = match b.radius > 0.0 {
             true => b.radius,
@@ -215,7 +216,7 @@ fn grains(s: &dyn RunView) -> Vec<Side> {
             None => radius,
         };
         let turning = arm * arm * inverse_inertia(s, body);
-        Side {
+        BondSide {
             body,
             curvature: 1.0 / radius,
             normal: inverse,
@@ -226,14 +227,14 @@ fn grains(s: &dyn RunView) -> Vec<Side> {
     balls.chain(pieces).map(side).collect()
 }
 
-/// One surface for each material and mass.
-fn surfaces(s: &dyn RunView) -> Vec<Side> {
-    let mut out: Vec<Side> = Vec::new();
+/// Returns one surface for each material and mass.
+fn surfaces(s: &dyn RunView) -> Vec<BondSide> {
+    let mut out: Vec<BondSide> = Vec::new();
     for surface in s.surfaces() {
         let normal = inverse_mass(s, surface.body);
-        let known = |x: &Side| x.material == surface.material && x.normal == normal;
+        let known = |x: &BondSide| x.material == surface.material && x.normal == normal;
         if !out.iter().any(known) {
-            out.push(Side {
+            out.push(BondSide {
                 body: surface.body,
                 curvature: 0.0,
                 normal,
@@ -245,8 +246,8 @@ fn surfaces(s: &dyn RunView) -> Vec<Side> {
     out
 }
 
-/// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its
-/// mass; `None` for other bodies.
+/// Returns inverse mass and inverse moment of inertia of a deformable grain, treated as the rigid
+/// ball (2D: disk) of its mass; `None` for other bodies.
 fn of_deforming(s: &dyn RunView, body: u32) -> Option<[f64; 2]> {
     let (bodies, b) = (s.bodies(), body as usize);
     bodies.carrier(b).filter(|carrier| carrier.grain)?;

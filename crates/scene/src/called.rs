@@ -2,8 +2,8 @@
 
 use fretwork_core::view::RunView;
 
-/// A body by its name in the case, or a grain by where it is, which has none: of rigid bodies and
-/// of those that deform.
+/// Describes a body by its name in the case, or a grain, which has no name, by its position;
+/// applies to rigid and deformable bodies.
 pub(super) fn body(s: &dyn RunView, body: u32) -> String {
     let bodies = s.bodies();
     let carrier = bodies.carrier(body as usize);

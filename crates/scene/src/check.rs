@@ -12,13 +12,13 @@ use fretwork_core::step::Coupling;
 use fretwork_core::step::control::Until;
 use fretwork_core::view::{ContactView, RunControl};
 
-/// Most materials and most interfaces of a case.
+/// Largest number of materials, and of interfaces, of a case.
 const MOST: usize = 10_000;
 
 /// Checks the numbers of a case.
 ///
 /// # Errors
-/// The first invalid one, with its path.
+/// Returns the first invalid number, with its path.
 pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     if case.dimension != 2 && case.dimension != 3 {
         return Err(ValidationError::new(
@@ -83,7 +83,7 @@ fn at_least_one(path: &str, count: u32) -> Result<(), ValidationError> {
     }
 }
 
-/// Step, end and theta.
+/// Checks step, end and theta.
 fn time(case: &Case) -> Result<(), ValidationError> {
     let time = &case.time;
     positive("time.step", time.step)?;
@@ -115,7 +115,7 @@ fn time(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Steps or seconds between rows of the statistics and between checkpoints.
+/// Checks the intervals between rows of the statistics and between checkpoints.
 fn output_intervals(case: &Case) -> Result<(), ValidationError> {
     if case.output.every == 0 {
         let message = "must be at least 1: steps between two rows of the statistics";
@@ -194,7 +194,7 @@ fn accuracy(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Steps repeated at each place.
+/// Checks the number of steps repeated at a time.
 fn repeats(case: &Case) -> Result<(), ValidationError> {
     let steps = case.uncertainty.steps;
     steps.map_or(Ok(()), |steps| at_least_one("uncertainty.steps", steps))
@@ -266,7 +266,7 @@ fn scaled_weights(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Periods of the cell, and distances of the detection.
+/// Checks the periods of the cell, and the distances of the detection.
 fn periods_and_distances(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     for (name, period) in [
         ("x", case.periodic.x),
@@ -294,7 +294,7 @@ fn periods_and_distances(case: &Case, dimension: usize) -> Result<(), Validation
     Ok(())
 }
 
-/// Numbers of the first bodies, and that their names differ.
+/// Checks the numbers of the first bodies, and that their names differ.
 fn bodies(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     for (k, body) in case.bodies.iter().enumerate() {
         body_numbers(body, dimension).map_err(|f| f.under(&format!("bodies.{k}")))?;
@@ -308,7 +308,7 @@ fn bodies(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Pictures and profiles.
+/// Checks the settings of pictures and profiles.
 fn output_files(case: &Case) -> Result<(), ValidationError> {
     if let Some(w) = case.output.window
         && !(w.iter().all(|x| x.is_finite()) && w[0] < w[1] && w[2] < w[3])
@@ -421,7 +421,7 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
 }
 
 /// Checks for grains that overlap at the start. More than 1 % of the smallest radius is an error;
-/// less is taken for the rounding of a sample that was settled elsewhere.
+/// less counts as rounding of a sample that was prepared elsewhere.
 ///
 /// # Errors
 /// The pair with the largest overlap.

@@ -4,7 +4,7 @@
 use super::case::Case;
 use super::source::{ValidationError, nearest};
 use fretwork_core::laws::{Interface, Kind};
-use fretwork_core::process::circuit::{EjectedFate, Spec, Zone};
+use fretwork_core::process::circuit::{CircuitParameters, EjectionOutcome, Zone};
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
@@ -12,19 +12,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
-    /// Names of the first bodies that grains can belong to. A grain belongs to one while a path of
-    /// unbroken bonds connects them.
+    /// Names of the first bodies to which grains can belong. A grain belongs to a first body while
+    /// a path of unbroken bonds connects them.
     pub bases: Vec<String>,
-    /// Interfaces whose bonds tie; by default all that make bonds.
+    /// Interfaces whose bonds tie grains; by default all that make bonds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bonds: Option<Vec<String>>,
-    /// Time at which the account begins (s); the bonds that attach grains must have formed by then.
+    /// Start time of the circuit (s); the bonds that attach grains must have formed by then.
     #[serde(default)]
     pub start: f64,
-    /// Steps between updates of the account.
+    /// Number of steps between updates of the circuit.
     #[serde(default = "default_interval")]
     pub every: u64,
-    /// Where grains are outside the contact.
+    /// Zones outside the contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones: Vec<ZoneSpec>,
 }
@@ -43,11 +43,11 @@ pub struct ZoneSpec {
     pub low: Vec<f64>,
     /// High corner (m); `inf` where the zone is unbounded.
     pub high: Vec<f64>,
-    /// The body with which it moves; its corners are then relative to that body's position.
+    /// Body with which the zone moves; the corners are then relative to that body's position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_by: Option<String>,
-    /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once;
-    /// without it grains stay ejected and may come back.
+    /// Time in the zone (s) after which a grain is lost and removed from the scene, 0 for at once;
+    /// without it grains stay ejected and may return.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lost_after: Option<f64>,
 }
@@ -55,7 +55,7 @@ pub struct ZoneSpec {
 /// Checks the circuit of a case.
 ///
 /// # Errors
-/// The first error, with its path.
+/// Returns the first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(circuit) = &case.circuit else {
         return Ok(());
@@ -146,7 +146,7 @@ fn body(case: &Case, path: &str, name: &str) -> Result<(), ValidationError> {
     )
 }
 
-/// Indices of the interfaces whose bonds attach grains.
+/// Returns the indices of the interfaces whose bonds attach grains.
 fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, ValidationError> {
     let all =
         || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].law(Kind::COHESION).is_some());
@@ -217,8 +217,9 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), ValidationError> {
     }
 }
 
-/// The circuit's specification in terms of the built scene; the case must have been checked.
-pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
+/// Returns the circuit's specification in terms of the built scene; the case must have been
+/// checked.
+pub fn install(case: &Case, s: &dyn RunView) -> Option<CircuitParameters> {
     let circuit = case.circuit.as_ref()?;
     let index = |name: &String| s.bodies().driven_named(name).map(|d| d.body);
     let ties = tying(case, circuit).unwrap_or_default();
@@ -228,11 +229,11 @@ pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
         low: components(&z.low),
         high: components(&z.high),
         carrier: z.carried_by.as_ref().and_then(index),
-        fate: z
+        outcome: z
             .lost_after
-            .map_or(EjectedFate::Stays, EjectedFate::LostAfter),
+            .map_or(EjectionOutcome::Stays, EjectionOutcome::LostAfter),
     });
-    Some(Spec {
+    Some(CircuitParameters {
         bases: circuit.bases.iter().filter_map(index).collect(),
         interfaces: ties.into_iter().filter(opens).map(|i| i as u16).collect(),
         zones: zones.collect(),
@@ -240,7 +241,7 @@ pub fn install(case: &Case, s: &dyn RunView) -> Option<Spec> {
     })
 }
 
-/// A corner with three components, zero where it has none.
+/// Returns a corner with three components, zero where it has none.
 fn components(values: &[f64]) -> [f64; 3] {
     std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
 }

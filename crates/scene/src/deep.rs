@@ -1,5 +1,5 @@
-//! Check for bodies that overlap by more than the search distance of contacts: their points would
-//! never meet the surface that they are behind, or, within a grain, would be pushed out from there.
+//! Check for bodies that overlap by more than the search distance of contacts: contacts at such
+//! points would not be found, or, within a grain, would push the points out.
 
 use super::build::Origin;
 use super::called;
@@ -13,7 +13,7 @@ const SIZES: f64 = 20.0;
 /// Checks the points of deformable bodies.
 ///
 /// # Errors
-/// The first point that lies behind a surface.
+/// Returns the first point that lies behind a surface.
 pub(super) fn points(s: &dyn RunSetup, origins: &[Origin]) -> Result<(), ValidationError> {
     let Some(behind) = s.point_behind(SIZES) else {
         return Ok(());

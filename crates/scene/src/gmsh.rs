@@ -57,7 +57,7 @@ impl<'a> Lines<'a> {
         Err((self.last, why.into()))
     }
 
-    /// The numbers of the next line, at least some of them.
+    /// Returns the numbers of the next line, of which there must be a minimum.
     fn numbers<T: std::str::FromStr>(&mut self, least: usize) -> Result<Vec<T>, Fault> {
         let Some(line) = self.next() else {
             return self.fault("the file ends within a section; save it again");
@@ -81,7 +81,7 @@ fn shorter(line: &str) -> String {
 type Elements = Vec<(usize, Vec<i64>, Vec<u64>)>;
 
 #[derive(Default)]
-struct Read {
+struct MeshReader {
     version: f64,
     names: HashMap<(usize, i64), String>,
     /// Physical groups of each entity.
@@ -95,7 +95,7 @@ fn parse(text: &str, dimension: usize) -> Result<GmshMesh, Fault> {
         rest: text.lines().enumerate(),
         last: 0,
     };
-    let mut read = Read::default();
+    let mut read = MeshReader::default();
     while let Some(line) = lines.next() {
         match line {
             "$MeshFormat" => read.format(&mut lines)?,
@@ -115,7 +115,7 @@ fn parse(text: &str, dimension: usize) -> Result<GmshMesh, Fault> {
     read.mesh(dimension)
 }
 
-impl Read {
+impl MeshReader {
     fn format(&mut self, lines: &mut Lines) -> Result<(), Fault> {
         let format = lines.numbers::<f64>(2)?;
         if format[1] != 0.0 {
@@ -150,11 +150,12 @@ impl Read {
         Ok(())
     }
 
-    /// The physical groups of each curve, surface and volume.
+    /// Reads the physical groups of each curve, surface and volume.
     fn entities(&mut self, lines: &mut Lines) -> Result<(), Fault> {
         let counts = lines.numbers::<usize>(4)?;
         for (of, count) in counts.iter().enumerate().take(4) {
-            // A point has three coordinates, the others a box of six, before the number of groups.
+            // Before the number of groups a point has three coordinates, other entities a box of
+            // six.
             let before = if of == 0 { 4 } else { 7 };
             for _ in 0..*count {
                 let entity = lines.numbers::<f64>(before + 1)?;
@@ -250,7 +251,7 @@ impl Read {
         Ok(())
     }
 
-    /// Points in the order in which the elements name them.
+    /// Returns the mesh, with points in the order in which the elements name them.
     fn mesh(self, dimension: usize) -> Result<GmshMesh, Fault> {
         let mut out = GmshMesh::default();
         let mut known: HashMap<u64, u32> = HashMap::new();
@@ -288,7 +289,7 @@ impl Read {
 }
 
 impl GmshMesh {
-    /// Turns the triangles of a plane surface that was drawn clockwise throughout.
+    /// Reverses the triangles of a plane surface if all of them are clockwise.
     fn turn(&mut self) {
         let area = |t: &[u32]| {
             let [a, b, c] = [t[0], t[1], t[2]].map(|k| self.points[k as usize]);

@@ -1,26 +1,26 @@
 //! Heights over a grid: the reader of files of heights, and checks that their lines are the rows of
 //! the grid.
 //!
-//! A file has numbers with a decimal point, a line for each row of the grid along x, separated by
-//! blanks, tabs, commas or semicolons. Empty lines, and lines that begin with `#`, are no rows.
-//! Heights of a line alone may be one below the other.
+//! A file has numbers with a decimal point, one line for each row of the grid along x, separated by
+//! blanks, tabs, commas or semicolons. Empty lines, and lines that begin with `#`, are skipped. A
+//! profile of a single row may have one height per line.
 
 use super::sample::table::decimal_comma;
 use super::source::{InputError, read_text};
 use std::ops::Range;
 use std::path::Path;
 
-/// Fewest lines of three numbers that are taken for places and heights although a grid of three
-/// columns would fit.
+/// Smallest number of lines of three numbers that count as positions with heights although a grid
+/// of three columns would fit.
 const FEWEST_PLACES: usize = 6;
-/// Departure from equal distances of places, over the distance.
+/// Relative deviation of positions from equal distances.
 const UNEVEN: f64 = 1e-3;
 
 /// Reads the heights of a grid of `nx` by `ny`, row by row along x, in the unit of the file.
 ///
 /// # Errors
-/// At the line that is wrong: a value that is not a finite number, decimal commas, lines of unlike
-/// length, and rows and columns that are not those of the grid.
+/// Returns an error at the invalid line: a value that is not a finite number, decimal commas, lines
+/// of different lengths, or rows and columns that are not those of the grid.
 pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
     let (text, name) = (read_text(path)?, path.display().to_string());
     let body = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -82,8 +82,9 @@ pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
     Err(fail("write one line for each row of the grid along x"))
 }
 
-/// Why rows of numbers are not those of a grid of `nx` by `ny`, although there may be as many: they
-/// are its columns, or places with heights. `None` for other numbers of rows and columns too.
+/// Returns why rows of numbers are not those of a grid of `nx` by `ny`, although their total number
+/// may fit: they are its columns, or positions with heights. `None` for other numbers of rows and
+/// columns too.
 pub fn misfit(rows: &[Vec<f64>], [nx, ny]: [usize; 2]) -> Option<&'static str> {
     let (columns, lines) = (rows.first().map_or(0, Vec::len), rows.len());
     let fits = (columns, lines) == (nx, ny);
@@ -97,8 +98,8 @@ pub fn misfit(rows: &[Vec<f64>], [nx, ny]: [usize; 2]) -> Option<&'static str> {
     )
 }
 
-/// Whether the first two of three columns are the places of a full grid at equal distances, each
-/// once.
+/// Returns whether the first two of three columns are the positions of a full grid at equal
+/// distances, each once.
 fn places(rows: &[Vec<f64>]) -> bool {
     let along = |k: usize| {
         let mut all: Vec<f64> = rows.iter().map(|row| row[k]).collect();
@@ -196,7 +197,7 @@ mod tests {
         }
         assert_eq!(of("1\n2\n3\n4\n5\n6.5\n", [6, 1]).unwrap(), six);
         assert_eq!(of("1 2 3 4 5 6.5", [6, 1]).unwrap(), six);
-        // Places of a grid that is as wide as three, but too few to be sure.
+        // These are positions of a grid three columns wide, but too few to be sure.
         assert!(of("0 0 1\n0 1 2\n1 0 3\n1 1 4\n", [3, 4]).is_ok());
     }
 

@@ -1,4 +1,4 @@
-//! Holders of deformable bodies: their names, their own drives, and those that phases give them.
+//! Holders of deformable bodies: their names, their own drives, and the drives set by phases.
 
 use super::case::Case;
 use super::phases::Redriven;
@@ -7,8 +7,8 @@ use fretwork_core::bodies::{Dof, HeldAxis};
 use fretwork_core::view::RunView;
 use fretwork_elastic::half_space::HOLDER;
 
-/// The names of the holders in `drives`: a half-space by its name, a part of a body of finite
-/// elements as `body.part`.
+/// Returns the names of the holders in `drives`: a half-space by its name, a part of a body of
+/// finite elements as `body.part`.
 pub(crate) fn names(case: &Case) -> impl Iterator<Item = String> {
     own(case).map(|(_, name, _)| name)
 }
@@ -21,7 +21,7 @@ pub fn name(body: &str, part: &str) -> String {
 /// Checks the drives of a phase for a holder.
 ///
 /// # Errors
-/// A drive that holders do not support, with its path in the phase.
+/// Returns the first drive that holders do not support, with its path in the phase.
 pub(super) fn check(case: &Case, holder: &str, redriven: &Redriven) -> Result<(), ValidationError> {
     let path = format!("drives.{holder}");
     let fail =
@@ -49,8 +49,8 @@ pub(super) fn check(case: &Case, holder: &str, redriven: &Redriven) -> Result<()
     Ok(())
 }
 
-/// The drives that phases give a holder, in the order of the phases: index of the phase, axis,
-/// drive.
+/// Returns the drives that phases give a holder, in the order of the phases: index of the phase,
+/// axis, drive.
 pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
     let given = case.phases.iter().enumerate().filter_map(|(k, phase)| {
         let redriven = phase.drives.get(holder)?;
@@ -64,8 +64,8 @@ pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
         .collect()
 }
 
-/// Returns the holder of a deformable body with a name in `drives`; `None` if there is none of this
-/// name.
+/// Returns the holder of a deformable body with a name in `drives`; `None` if there is no such
+/// holder.
 pub(crate) fn find(case: &Case, s: &dyn RunView, holder: &str, axis: usize) -> Option<HeldAxis> {
     let half_spaces = case.half_spaces.iter();
     let mut half_spaces = half_spaces.map(|b| (&b.name, b.name.clone(), HOLDER));
@@ -84,7 +84,7 @@ pub(crate) fn find(case: &Case, s: &dyn RunView, holder: &str, axis: usize) -> O
     })
 }
 
-/// All holders with their own drives along each axis: path, name in `drives`, drives.
+/// Returns all holders with their own drives along each axis: path, name in `drives`, drives.
 pub(crate) fn own(case: &Case) -> impl Iterator<Item = (String, String, [&Option<Dof>; 3])> {
     let half_spaces = case.half_spaces.iter().enumerate().map(|(k, b)| {
         let axes = [&b.dofs.x, &b.dofs.y, &b.dofs.z];

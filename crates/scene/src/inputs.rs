@@ -1,19 +1,19 @@
 //! Table of all inputs of a case: values from the file, and defaults of the others.
 
 use crate::case::Case;
-use crate::source::{Group, Kind, Node, Shape, Source, Tree, fields_at};
+use crate::source::{Group, Node, Shape, Source, Tree, ValueKind, fields_at};
 
 mod key_units;
 
-/// Where the value of an input comes from.
+/// Origin of the value of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum From {
+pub enum InputSource {
     /// The case gives it.
     Given,
     /// The default of the schema.
     Default,
-    /// The case does not give it, and without it there is nothing of the kind, or the program
-    /// chooses.
+    /// The case does not give it; there is then nothing of the kind, or the program chooses the
+    /// value.
     NotSet,
 }
 
@@ -26,30 +26,31 @@ pub struct Input {
     pub value: String,
     /// SI unit, empty for pure numbers and texts.
     pub unit: &'static str,
-    /// Where the value comes from.
-    pub from: From,
+    /// Origin of the value.
+    pub from: InputSource,
 }
 
-/// A list with more elements than this is one input.
+/// Number of elements above which a list is one input.
 const LONG: usize = 60;
-/// Characters of a value that are kept.
+/// Number of characters of a value that are kept.
 const WIDE: usize = 160;
 
-/// The inputs of a case in the order of the schema, from its text with `--set` applied.
+/// Returns the inputs of a case in the order of the schema, from its text with `--set` applied.
 ///
 /// # Errors
 /// The text is no case; in a sentence.
 ///
 /// # Examples
 /// ```
-/// use fretwork_scene::inputs::{From, of};
+/// use fretwork_scene::inputs::{InputSource, of};
 /// let text = r#"(name: "a", dimension: 2, time: (step: 1e-3, end: 0.1), materials: {}, interfaces: [])"#;
 /// let inputs = of(text)?;
 /// let find = |path: &str| inputs.iter().find(|i| i.path == path).unwrap();
 /// let step = find("time.step");
-/// assert_eq!((step.value.as_str(), step.unit, step.from), ("0.001", "s", From::Given));
-/// assert_eq!(find("time.theta").from, From::Default);
-/// assert_eq!(find("friction").from, From::NotSet);
+/// let read = (step.value.as_str(), step.unit, step.from);
+/// assert_eq!(read, ("0.001", "s", InputSource::Given));
+/// assert_eq!(find("time.theta").from, InputSource::Default);
+/// assert_eq!(find("friction").from, InputSource::NotSet);
 /// # Ok::<(), String>(())
 /// ```
 pub fn of(text: &str) -> Result<Vec<Input>, String> {
@@ -65,21 +66,21 @@ pub fn of(text: &str) -> Result<Vec<Input>, String> {
         out: Vec::new(),
     };
     if let Some(root) = &tree.root {
-        walk.visit(root, &mut Place::default());
+        walk.visit(root, &mut WalkPosition::default());
     }
     Ok(walk.out)
 }
 
-/// Where the walk is: the components of the path, these with the names of variants between them,
-/// and the variants at its end.
+/// Current position of the walk: the components of the path, the same with the names of variants
+/// between them, and the variants at its end.
 #[derive(Default)]
-struct Place {
+struct WalkPosition {
     path: Vec<String>,
     named: Vec<String>,
     variants: Vec<String>,
 }
 
-impl Place {
+impl WalkPosition {
     fn within(&mut self, part: &str, walk: impl FnOnce(&mut Self)) {
         self.path.push(part.to_owned());
         self.named.push(part.to_owned());
@@ -102,7 +103,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn visit(&mut self, node: &Node, at: &mut Place) {
+    fn visit(&mut self, node: &Node, at: &mut WalkPosition) {
         let node = node.unwrap_some(self.text);
         let Some(group) = node.group() else {
             return self.leaf(&self.text[node.span.clone()], at);
@@ -143,8 +144,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Fields of a struct or entries of a map; then the fields that are not set.
-    fn fields(&mut self, group: &Group, at: &mut Place) {
+    /// Visits the fields of a struct or the entries of a map, then the fields that are not set.
+    fn fields(&mut self, group: &Group, at: &mut WalkPosition) {
         if !at.variants.is_empty() {
             let closing = ")".repeat(at.variants.len() - 1);
             let shown = at.variants.join("(") + &closing;
@@ -162,15 +163,19 @@ impl Walk<'_> {
         }
         for name in fields_at::<Case>(self.text, self.tree.root.as_ref(), &at.path) {
             if !present.iter().any(|p| p == name) {
-                at.within(name, |at| self.push(String::new(), at, From::NotSet));
+                at.within(name, |at| self.push(String::new(), at, InputSource::NotSet));
             }
         }
     }
 
-    fn leaf(&mut self, value: &str, at: &Place) {
+    fn leaf(&mut self, value: &str, at: &WalkPosition) {
         let (text, tree) = self.given;
         let given = tree.find(text, &at.path).is_ok();
-        let from = if given { From::Given } else { From::Default };
+        let from = if given {
+            InputSource::Given
+        } else {
+            InputSource::Default
+        };
         let mut value: String = value.split_whitespace().collect::<Vec<_>>().join(" ");
         if let Some((cut, _)) = value.char_indices().nth(WIDE) {
             value.truncate(cut);
@@ -179,7 +184,7 @@ impl Walk<'_> {
         self.push(value, at, from);
     }
 
-    fn push(&mut self, value: String, at: &Place, from: From) {
+    fn push(&mut self, value: String, at: &WalkPosition, from: InputSource) {
         let parts: Vec<String> = at.path.iter().map(|p| quoted(p)).collect();
         self.out.push(Input {
             path: parts.join("."),
@@ -193,7 +198,7 @@ impl Walk<'_> {
 /// Whether the elements of a list are inputs of their own.
 fn opens(group: &Group) -> bool {
     let entries = &group.entries;
-    let holds = |kind: &Kind| matches!(kind, Kind::Group(g) if g.shape == Shape::Struct || g.name.is_some());
+    let holds = |kind: &ValueKind| matches!(kind, ValueKind::Group(g) if g.shape == Shape::Struct || g.name.is_some());
     !entries.is_empty() && entries.len() <= LONG && entries.iter().any(|e| holds(&e.value.kind))
 }
 
@@ -249,30 +254,50 @@ mod tests {
     fn every_key_has_a_value_a_unit_and_an_origin() {
         let inputs = of(CASE).unwrap();
         for (path, value, unit, from) in [
-            ("time.step", "0.001", "s", From::Given),
-            ("time.theta", "0.5", "", From::Default),
-            ("solver.max_iterations", "10000", "", From::Default),
-            ("solver.tolerance", "", "", From::NotSet),
-            ("bodies.slider.mass", "2.0", "kg/m", From::Given),
-            ("bodies.slider.inertia", "", "kg m", From::NotSet),
+            ("time.step", "0.001", "s", InputSource::Given),
+            ("time.theta", "0.5", "", InputSource::Default),
+            ("solver.max_iterations", "10000", "", InputSource::Default),
+            ("solver.tolerance", "", "", InputSource::NotSet),
+            ("bodies.slider.mass", "2.0", "kg/m", InputSource::Given),
+            ("bodies.slider.inertia", "", "kg m", InputSource::NotSet),
             (
                 "bodies.slider.dofs.x",
                 "Displacement(Sine)",
                 "",
-                From::Given,
+                InputSource::Given,
             ),
-            ("bodies.slider.dofs.x.amplitude", "1e-5", "m", From::Given),
-            ("bodies.slider.dofs.x.frequency", "20.0", "Hz", From::Given),
-            ("bodies.slider.dofs.x.offset", "0.0", "m", From::Default),
-            ("interfaces.dry.contact", "\"coulomb\"", "", From::Given),
+            (
+                "bodies.slider.dofs.x.amplitude",
+                "1e-5",
+                "m",
+                InputSource::Given,
+            ),
+            (
+                "bodies.slider.dofs.x.frequency",
+                "20.0",
+                "Hz",
+                InputSource::Given,
+            ),
+            (
+                "bodies.slider.dofs.x.offset",
+                "0.0",
+                "m",
+                InputSource::Default,
+            ),
+            (
+                "interfaces.dry.contact",
+                "\"coulomb\"",
+                "",
+                InputSource::Given,
+            ),
             (
                 "interfaces.dry.parameters.contact.mu",
                 "0.3",
                 "",
-                From::Given,
+                InputSource::Given,
             ),
-            ("periodic", "", "", From::NotSet),
-            ("output.views", "20", "", From::Default),
+            ("periodic", "", "", InputSource::NotSet),
+            ("output.views", "20", "", InputSource::Default),
         ] {
             let input = find(&inputs, path);
             assert_eq!(

@@ -11,7 +11,7 @@ use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::laws::{
-    AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
+    AreaRule, BondRule, Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath,
 };
 use fretwork_core::view::RunView;
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,8 +31,8 @@ pub struct Laws {
 /// Builds the interfaces.
 ///
 /// # Errors
-/// Unknown names, values out of range and laws that do not fit their slot, each at its place in the
-/// case.
+/// Fails for unknown names, values out of range and laws that do not fit their slot, each at its
+/// place in the case.
 pub fn build(
     case: &Case,
     source: &Source,
@@ -49,7 +49,7 @@ pub fn build(
     };
     check_pins(case).map_err(|f| source.locate(f))?;
     let wanted = case.interfaces.iter().flat_map(laws_of);
-    path.try_out(wanted.map(|(kind, name)| {
+    path.test_loading(wanted.map(|(kind, name)| {
         let pin = case.pins.get(&format!("{kind}/{name}"));
         (kind, name, pin.map(String::as_str))
     }));
@@ -105,7 +105,7 @@ pub fn build(
     Ok(out)
 }
 
-/// Indices of the two materials of an interface.
+/// Returns the indices of the two materials of an interface.
 fn material_pair(spec: &InterfaceSpec, materials: &[&String]) -> Result<[u16; 2], ValidationError> {
     let mut pair = [0u16; 2];
     for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
@@ -123,15 +123,16 @@ fn material_pair(spec: &InterfaceSpec, materials: &[&String]) -> Result<[u16; 2]
     Ok(pair)
 }
 
-/// Kind and name of the laws of an interface.
+/// Iterates over kind and name of the laws of an interface.
 fn laws_of(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
     spec.laws.iter().map(|(kind, name)| (kind, name.as_str()))
 }
 
-/// Pairs of materials without an interface that are listed one by one.
+/// Number of pairs of materials without an interface up to which they are listed one by one.
 const LISTED: usize = 50;
 
-/// Pairs of materials in the scene without an interface: their bodies pass through each other.
+/// Returns the pairs of materials in the scene without an interface: their bodies pass through each
+/// other.
 pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     let materials: Vec<&String> = case.materials.keys().collect();
     let mut bodies = vec![BTreeSet::new(); materials.len()];
@@ -140,7 +141,7 @@ pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     let surfaces = s.surfaces().into_iter().map(|f| (f.material, f.body));
     for (material, body) in balls.chain(pieces).chain(surfaces) {
         let of = &mut bodies[usize::from(material)];
-        // Contact within a material needs two bodies of it.
+        // A contact within a material needs two bodies of it.
         if of.len() < 2 {
             of.insert(body);
         }
@@ -173,7 +174,7 @@ pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     out
 }
 
-/// Rejects pins that are malformed, or of laws that the case does not use.
+/// Rejects pins that are malformed, or for laws that the case does not use.
 fn check_pins(case: &Case) -> Result<(), ValidationError> {
     let wanted = case.interfaces.iter().flat_map(laws_of);
     let used: Vec<String> = wanted
@@ -200,7 +201,7 @@ fn check_pins(case: &Case) -> Result<(), ValidationError> {
 #[derive(Default)]
 struct FromFile {
     parameters: InterfaceParameters,
-    /// The file, and the path of the parameters in it.
+    /// File, and path of the parameters in it.
     place: Option<(Source, &'static str)>,
 }
 
@@ -224,7 +225,7 @@ impl FromFile {
             Err(error) => source.named_at(&path, error),
             Ok(missing) => at(ValidationError::new(
                 "parameters_from",
-                format!("there is no file `{from}.ron` in {}", missing.looked),
+                format!("there is no file `{from}.ron` in {}", missing.searched),
             )
             .expected(format!("one of {}", missing.available))
             .nearest(missing.nearest.as_deref())),
@@ -268,7 +269,7 @@ impl FromFile {
         })
     }
 
-    /// The place of an error in these parameters.
+    /// Returns the location of an error in these parameters.
     fn locate(&self, fault: ValidationError) -> Option<InputError> {
         let (file, place) = self.place.as_ref()?;
         Some(match *place {
@@ -309,7 +310,7 @@ fn build_interface(
         }
     }
     let none = BTreeMap::new();
-    let mut laws: Vec<Loaded> = Vec::new();
+    let mut laws: Vec<LoadedLaw> = Vec::new();
     for (kind, name) in laws_of(spec) {
         let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
         let own = spec.parameters.get(kind).unwrap_or(&none);
@@ -336,13 +337,13 @@ fn build_interface(
         .map_err(unfit)
 }
 
-/// Resolves the parameters of a law and has it check them.
+/// Resolves the parameters of a law, and checks them by the law.
 fn load_law(
     case: &Case,
     plugin: Plugin,
     (numbers, coefficient): (&BTreeMap<&str, GivenNumber<'_>>, Option<&WearCoefficient>),
     (sides, spec): (&Sides<'_>, &InterfaceSpec),
-) -> Result<Loaded, InterfaceError> {
+) -> Result<LoadedLaw, InterfaceError> {
     let (kind, name) = (plugin.kind, plugin.name.as_str());
     let slot = kind.word();
     for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
@@ -376,7 +377,7 @@ fn load_law(
     plugin
         .validate(&parameters)
         .map_err(|e| ValidationError::new(slot, e.to_string()))?;
-    Ok(Loaded::new(plugin, parameters))
+    Ok(LoadedLaw::new(plugin, parameters))
 }
 
 fn find_law(
@@ -392,15 +393,15 @@ fn find_law(
         LawError::Unknown {
             available,
             nearest,
-            looked,
+            searched,
             ..
         } => ValidationError::new(
             slot,
-            format!("there is no {kind} law named `{name}` in {looked}"),
+            format!("there is no {kind} law named `{name}` in {searched}"),
         )
         .expected(format!("one of {available}"))
         .nearest(nearest.as_deref()),
-        LawError::Pinned { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
+        LawError::HashMismatch { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
         other => ValidationError::new(slot, other.to_string()),
     })
 }

@@ -14,7 +14,7 @@ const MAX_CYCLES: u32 = 100_000;
 /// Checks the jumps of a case.
 ///
 /// # Errors
-/// The first error, with its path.
+/// Returns the first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(jump) = &case.jump else {
         return Ok(());
@@ -126,7 +126,7 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
     }
     for (k, body) in case.half_spaces.iter().enumerate() {
         if let Some(rolling) = &body.rolling {
-            // Rolling at one speed is the same in each cycle.
+            // Rolling at constant speed is the same in each cycle.
             let path = format!("half_spaces.{k}.rolling");
             check(path, &Dof::Velocity(rolling.clone()), false)?;
         }
@@ -134,7 +134,7 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// The reason why a drive does not repeat with every cycle after a time; `None` if it does.
+/// Returns why a drive does not repeat with every cycle after a time; `None` if it does.
 fn reason_not_periodic(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
     if let Dof::Stages(_) = dof {
         return Some("its drives follow one another in time".into());
@@ -163,7 +163,7 @@ fn reason_not_periodic(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> 
     }
 }
 
-/// Length of a cycle of the friction test (s).
+/// Returns the length of a cycle of the friction test (s).
 fn period(case: &Case) -> Option<f64> {
     let test = case.friction.as_ref()?;
     let rigid = case.bodies.iter().find(|b| b.name == test.body);

@@ -2,11 +2,11 @@
 //! interface.
 
 use super::case::InterfaceSpec;
-use super::material::{self, Given, Sourced};
+use super::material::{self, NumberSpec, Sourced};
 use super::source::{ValidationError, nearest};
 use super::units;
 use super::wear_coefficient::{self, WearCoefficient};
-use fretwork_core::laws::{Kind, Loaded, Plugin};
+use fretwork_core::laws::{Kind, LoadedLaw, Plugin};
 use std::collections::BTreeMap;
 
 /// An error in the case or in its parameter file.
@@ -27,8 +27,9 @@ impl From<ValidationError> for InterfaceError {
 /// Properties of the two materials of an interface, in its order.
 pub(super) type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
 
-/// Parameters that are properties of materials, where neither the case nor the parameter file gives
-/// them: `young_1` is `young` of the first material of the interface, `young_2` that of the second.
+/// Returns parameters that are properties of materials, where neither the case nor the parameter
+/// file gives them: `young_1` is `young` of the first material of the interface, `young_2` that of
+/// the second.
 pub(super) fn properties_of_sides<'a>(
     plugin: &'a Plugin,
     given: &BTreeMap<&str, f64>,
@@ -77,8 +78,8 @@ pub(super) fn properties_of_sides<'a>(
     Ok(out)
 }
 
-/// `mu` of the contact law, if it has one.
-pub(super) fn friction_of(laws: &[Loaded]) -> Option<f64> {
+/// Returns `mu` of the contact law, if it has one.
+pub(super) fn friction_of(laws: &[LoadedLaw]) -> Option<f64> {
     let contact = laws.iter().find(|l| l.plugin.kind == Kind::CONTACT)?;
     let place = contact
         .plugin
@@ -88,9 +89,9 @@ pub(super) fn friction_of(laws: &[Loaded]) -> Option<f64> {
     contact.parameters.get(place).copied()
 }
 
-/// The coefficient of a wear law that is given `K`, which is taken out of `numbers`. Of `K` and the
-/// coefficient itself, that in the case wins over that in the file; both in one place contradict
-/// each other.
+/// Returns the coefficient of a wear law with a given `K`, which is removed from `numbers`. If one
+/// of `K` and the coefficient is in the case and the other in the file, the case takes precedence;
+/// both in one place contradict each other.
 pub(super) fn wear_from_hardness(
     plugin: &Plugin,
     numbers: &mut BTreeMap<&str, GivenNumber<'_>>,
@@ -131,7 +132,7 @@ pub(super) fn wear_from_hardness(
         (spec.between.0.as_str(), hardness(0)),
         (spec.between.1.as_str(), hardness(1)),
     ];
-    let place = wear_coefficient::Place {
+    let place = wear_coefficient::CoefficientParameter {
         interface: &spec.name,
         law,
         parameter,
@@ -141,22 +142,22 @@ pub(super) fn wear_from_hardness(
         .map_err(|message| ValidationError::new("wear", message).into())
 }
 
-/// A number that a case or its parameter file gives a parameter of a law.
+/// A number for a parameter of a law, from a case or its parameter file.
 pub(super) struct GivenNumber<'a> {
     pub value: f64,
     pub unit: &'a str,
     /// Path in the case or in the file.
     pub at: String,
-    /// Whether it is written in the case itself.
+    /// Whether the number is in the case itself.
     pub in_case: bool,
 }
 
-/// Numbers by parameter; those of the case win over those of the file.
+/// Returns numbers by parameter; those of the case take precedence over those of the file.
 pub(super) fn given_numbers<'a>(
     slot: &str,
     law: &str,
     file: Option<&'a BTreeMap<String, Sourced>>,
-    own: &'a BTreeMap<String, Given>,
+    own: &'a BTreeMap<String, NumberSpec>,
 ) -> BTreeMap<&'a str, GivenNumber<'a>> {
     let of_file = file.into_iter().flatten().map(|(name, number)| {
         let given = GivenNumber {

@@ -1,7 +1,7 @@
 //! Cases and materials: reads and checks them, and builds simulations from them.
 //!
-//! [`load`] reads a case file and [`Loaded::build`] builds from it a simulation of the layer below,
-//! `fretwork-core`. This layer does not depend on results, pictures or the command line.
+//! [`load`] reads a case file and [`LoadedCase::build`] builds from it a simulation of the layer
+//! below, `fretwork-core`. This layer does not depend on results, pictures or the command line.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -43,7 +43,7 @@ pub mod standard;
 pub mod units;
 pub mod wear_coefficient;
 
-pub use build::{Built, Loaded, load, load_reader, load_text};
+pub use build::{Built, LoadedCase, load, load_reader, load_text};
 pub use builder::CaseBuilder;
 pub use case::Case;
 pub use fretwork_core::geometry::space::{Dim2, Dim3};

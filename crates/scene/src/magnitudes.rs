@@ -1,5 +1,5 @@
-//! Checks for numbers that are valid each but exceed double precision together: masses that
-//! underflow, energies that overflow, and displacements per step lost to rounding.
+//! Checks for numbers that are valid individually but exceed double precision in combination:
+//! masses that underflow, energies that overflow, and displacements per step lost to rounding.
 
 use super::build::Origin;
 use super::source::ValidationError;
@@ -12,7 +12,7 @@ const LOST: f64 = 2e-5;
 /// Checks the masses, energies and velocities of all bodies.
 ///
 /// # Errors
-/// The first one that double precision cannot represent, at its place in the case.
+/// Returns the first one that double precision cannot represent, at its place in the case.
 pub(super) fn check(s: &dyn RunView, origins: &[Origin], end: f64) -> Result<(), ValidationError> {
     let (bodies, dimension, scheme) = (s.bodies(), s.dimension(), s.options().scheme);
     let h = scheme.h;
@@ -73,7 +73,7 @@ pub(super) fn check(s: &dyn RunView, origins: &[Origin], end: f64) -> Result<(),
     Ok(())
 }
 
-/// Distance to the next larger number in magnitude.
+/// Returns the distance to the next larger number in magnitude.
 fn spacing(x: f64) -> f64 {
     let x = x.abs();
     x.next_up() - x

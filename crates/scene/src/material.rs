@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A number and where it comes from.
+/// A number and its source.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
@@ -36,21 +36,21 @@ impl Sourced {
 
 /// A number of a case: a plain number in the unit of the schema, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
+pub struct NumberSpec {
     /// Value.
     pub value: f64,
     /// Unit, if given.
     pub unit: Option<String>,
 }
 
-impl From<f64> for Given {
+impl From<f64> for NumberSpec {
     /// A number in the unit of the schema.
     fn from(value: f64) -> Self {
         Self { value, unit: None }
     }
 }
 
-impl Serialize for Given {
+impl Serialize for NumberSpec {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Some(unit) = &self.unit else {
             return serializer.serialize_f64(self.value);
@@ -62,35 +62,35 @@ impl Serialize for Given {
     }
 }
 
-impl<'de> Deserialize<'de> for Given {
+impl<'de> Deserialize<'de> for NumberSpec {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields)]
         struct WithUnit {
             value: f64,
             unit: String,
-            /// Accepted for the reader of the file; not used.
+            /// Accepted for human readers; not used.
             #[serde(default, rename = "source")]
             _source: Option<String>,
         }
         struct NumberOrGroup;
         impl<'de> Visitor<'de> for NumberOrGroup {
-            type Value = Given;
+            type Value = NumberSpec;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str("a number, or `(value: number, unit: \"...\")`")
             }
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Given, E> {
-                Ok(Given { value, unit: None })
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<NumberSpec, E> {
+                Ok(NumberSpec { value, unit: None })
             }
-            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Given, E> {
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<NumberSpec, E> {
                 self.visit_f64(value as f64)
             }
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Given, E> {
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<NumberSpec, E> {
                 self.visit_f64(value as f64)
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Given, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<NumberSpec, A::Error> {
                 let found = WithUnit::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(Given {
+                Ok(NumberSpec {
                     value: found.value,
                     unit: Some(found.unit),
                 })
@@ -108,12 +108,12 @@ pub struct Material {
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
-    /// Further properties: laws with parameters of their names followed by `_1` or `_2` take them,
-    /// the others are for the record.
+    /// Further properties: laws use those that equal the names of their parameters without `_1` or
+    /// `_2`; the others are documentation.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
-    /// Parameters of laws between its grains, and between them and other bodies: an interface takes
-    /// them by `parameters_from: "NAME"`, with the name that the case gives the material.
+    /// Parameters of laws between its grains, and between them and other bodies: an interface uses
+    /// them by `parameters_from: "NAME"`, with the name of the material in the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub laws: Option<InterfaceParameters>,
 }
@@ -132,7 +132,7 @@ const PROPERTIES: [(&str, &str); 10] = [
     ("resistivity", "ohm m"),
 ];
 
-/// Whether a name is that of a property with a known unit.
+/// Returns whether a name is that of a property with a known unit.
 pub fn is_property(name: &str) -> bool {
     PROPERTIES.iter().any(|p| p.0 == name)
 }
@@ -141,7 +141,8 @@ impl Material {
     /// The density (kg/m^3); also checks the units of all properties.
     ///
     /// # Errors
-    /// The density is not positive, or a unit is unknown or of another dimension: with its path.
+    /// The density is not positive, or a unit is unknown or of another dimension; the error gives
+    /// the path.
     pub fn density(&self) -> Result<f64, ValidationError> {
         let density = self
             .density
@@ -170,7 +171,7 @@ impl Material {
 }
 
 /// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a
-/// field with the word of its kind.
+/// field with the keyword of its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InterfaceParameters {
     /// Description.
@@ -181,8 +182,8 @@ pub struct InterfaceParameters {
 
 impl<'de> Deserialize<'de> for InterfaceParameters {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Fields(&'static [&'static str]);
-        impl<'de> Visitor<'de> for Fields {
+        struct ParametersVisitor(&'static [&'static str]);
+        impl<'de> Visitor<'de> for ParametersVisitor {
             type Value = InterfaceParameters;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str("struct InterfaceParameters")
@@ -209,7 +210,7 @@ impl<'de> Deserialize<'de> for InterfaceParameters {
             }
         }
         let fields = with_kinds(&["doc"], 1).map_err(D::Error::custom)?;
-        deserializer.deserialize_struct("InterfaceParameters", fields, Fields(fields))
+        deserializer.deserialize_struct("InterfaceParameters", fields, ParametersVisitor(fields))
     }
 }
 
@@ -228,10 +229,10 @@ impl Serialize for InterfaceParameters {
 }
 
 impl InterfaceParameters {
-    /// Checks all units, also those of laws that the case does not use.
+    /// Checks all units, including those of laws that the case does not use.
     ///
     /// # Errors
-    /// The first invalid unit, with its path.
+    /// Returns the first invalid unit, with its path.
     pub fn units(&self) -> Result<(), ValidationError> {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
@@ -250,7 +251,7 @@ impl InterfaceParameters {
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
-    /// Texts that the program gives itself, before all files.
+    /// Texts that the program supplies, which precede all files.
     own: BTreeMap<String, String>,
 }
 
@@ -278,11 +279,11 @@ impl MaterialLibrary {
         self
     }
 
-    /// Reads `NAME.ron`.
+    /// Reads the file `NAME.ron`.
     ///
     /// # Errors
-    /// `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
-    pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
+    /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
+    pub fn read(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
                 format!("{name}.ron (built in Rust)"),
@@ -311,7 +312,7 @@ impl MaterialLibrary {
         }
     }
 
-    fn missing(&self, name: &str) -> Missing {
+    fn missing(&self, name: &str) -> MissingMaterial {
         let mut names: Vec<String> = self
             .folders
             .iter()
@@ -334,21 +335,21 @@ impl MaterialLibrary {
         }
         let folders = self.folders.iter().map(|f| f.display().to_string());
         let built_in = std::iter::once("the program itself".to_owned());
-        Missing {
+        MissingMaterial {
             nearest: nearest(name, names.iter().map(String::as_str)).map(str::to_owned),
             available: names.join(", "),
-            looked: folders.chain(built_in).collect::<Vec<_>>().join(", "),
+            searched: folders.chain(built_in).collect::<Vec<_>>().join(", "),
         }
     }
 }
 
-/// A name for which there is no file.
+/// A name without a file.
 #[derive(Clone, Debug)]
-pub struct Missing {
+pub struct MissingMaterial {
     /// The nearest name.
     pub nearest: Option<String>,
-    /// All names.
+    /// All available names.
     pub available: String,
     /// The folders that were searched.
-    pub looked: String,
+    pub searched: String,
 }

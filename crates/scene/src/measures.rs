@@ -4,7 +4,7 @@ use super::case::Case;
 use super::source::{ValidationError, nearest};
 use serde::{Deserialize, Serialize};
 
-/// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
+/// A quantity, or several that belong together. "Up" is the last axis: y in 2D, z in 3D.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeasureSpec {
@@ -101,7 +101,8 @@ pub struct ThirdBodySpec {
     /// Number of time slices with separate profiles.
     #[serde(default = "default_slices")]
     pub slices: usize,
-    /// Rows of the statistics between evaluations; the rows between repeat the last values.
+    /// Number of rows of the statistics between evaluations; the rows between repeat the last
+    /// values.
     #[serde(default = "every_row")]
     pub every: usize,
     /// Definition of the layer's boundaries.
@@ -112,7 +113,7 @@ pub struct ThirdBodySpec {
     pub start: f64,
 }
 
-/// Where a third body ends.
+/// Boundaries of a third body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Extent {
     /// The mean heights of the faces of the first bodies.
@@ -135,7 +136,7 @@ fn default_slices() -> usize {
 }
 
 impl MeasureSpec {
-    /// Name of the measure.
+    /// Returns the name of the measure.
     pub fn name(&self) -> &str {
         match self {
             Self::Mass { name, .. }
@@ -147,7 +148,7 @@ impl MeasureSpec {
         }
     }
 
-    /// Kind of the measure, as written in a case.
+    /// Returns the kind of the measure, as written in a case.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Mass { .. } => "Mass",
@@ -159,7 +160,7 @@ impl MeasureSpec {
         }
     }
 
-    /// Start of averaging (s); for a band the start of the run.
+    /// Returns the start of averaging (s); for a band the start of the run.
     pub fn start(&self) -> f64 {
         match self {
             Self::Mass { start, .. }
@@ -175,7 +176,7 @@ impl MeasureSpec {
 /// Checks the measures of a case.
 ///
 /// # Errors
-/// The first error, with its path.
+/// Returns the first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     for (k, spec) in case.measures.iter().enumerate() {
         let twice = case.measures[..k].iter().any(|m| m.name() == spec.name());

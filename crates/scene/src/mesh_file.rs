@@ -14,7 +14,8 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Reads the distinct points, in the unit of the file, and the triangles between them.
 ///
 /// # Errors
-/// The file cannot be read, has neither format, or does not hold the triangles that it announces.
+/// The file cannot be read, has neither format, or does not contain the number of triangles in its
+/// header.
 pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let shown = path.display();

@@ -1,17 +1,17 @@
-//! How many steps a run can have.
+//! Largest number of steps of a run.
 
 use super::case::Case;
 use super::phases::groups;
 use fretwork_core::step::control::Until;
 
-/// Largest number of steps of a run: to the end of its phases where all of them have one, at most
-/// to `time.end`.
+/// Returns the largest number of steps of a run: to the end of its phases where all of them have
+/// one, at most to `time.end`.
 pub fn most_steps(case: &Case) -> u64 {
     let whole = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
     steps_of_phases(case).map_or(whole, |steps| steps.min(whole))
 }
 
-/// Whether a run may end before, since a phase ends when the grains are at rest.
+/// Returns whether a run may end earlier, since a phase ends when the grains are at rest.
 pub fn may_end_earlier(case: &Case) -> bool {
     let at_rest = |until: &Until| matches!(until, Until::AtRest { .. });
     case.phases
@@ -19,8 +19,8 @@ pub fn may_end_earlier(case: &Case) -> bool {
         .any(|p| p.until.as_ref().is_some_and(at_rest))
 }
 
-/// Steps to the latest end of the last phase; `None` if a phase may last to the end of the run. A
-/// phase has whole steps, at least one.
+/// Returns the number of steps to the latest end of the last phase; `None` if a phase may last to
+/// the end of the run. A phase has a whole number of steps, at least one.
 fn steps_of_phases(case: &Case) -> Option<u64> {
     if case.phases.is_empty() {
         return None;
@@ -73,7 +73,7 @@ mod tests {
             steps(r#"(name: "a", until: Time(2.0)), (name: "b", until: After(90.0))"#),
             100
         );
-        // A phase has at least one step, also when its time is past.
+        // A phase has at least one step, even if its end time has passed.
         assert_eq!(
             steps(r#"(name: "a", until: After(0.03), repeat: (times: 20))"#),
             20

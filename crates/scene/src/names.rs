@@ -1,4 +1,4 @@
-//! Names that a case gives and that columns, files and groups of the results take.
+//! Names in a case that are also names of columns, files and groups of the results.
 
 use super::case::Case;
 use super::source::ValidationError;
@@ -10,10 +10,10 @@ const LONGEST: usize = 100;
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
 /// Checks names that are used in columns and files: of bodies, materials, interfaces and phases.
-/// Those of measures and of deformable bodies are [words](word_fault).
+/// Names of measures and of deformable bodies must be [words](word_fault).
 ///
 /// # Errors
-/// The first name that cannot be one, with its path.
+/// Returns the first invalid name, with its path.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let bodies = case.bodies.iter().enumerate();
     let bodies = bodies.map(|(k, b)| (format!("bodies.{k}.name"), b.name.as_str()));
@@ -36,8 +36,8 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Why a text cannot be a name that is shown: it has characters that are not seen, or that turn or
-/// end lines.
+/// Returns why a text cannot be a displayed name: it has characters that are invisible, or that
+/// reverse or end lines.
 pub fn invisible_characters(name: &str) -> Option<String> {
     let unseen = name.chars().find(|c| is_unseen(*c))?;
     let code = u32::from(unseen);
@@ -46,8 +46,8 @@ pub fn invisible_characters(name: &str) -> Option<String> {
     ))
 }
 
-/// Whether a character is a control character, a separator other than the space, or a format
-/// character (the categories Cc, Z and Cf of Unicode).
+/// Returns whether a character is a control character, a separator other than the space, or a
+/// format character (the categories Cc, Z and Cf of Unicode).
 fn is_unseen(c: char) -> bool {
     let separates = c.is_whitespace() && c != ' ';
     let formats = matches!(c,
@@ -58,7 +58,8 @@ fn is_unseen(c: char) -> bool {
     c.is_control() || separates || formats
 }
 
-/// Why a text cannot be the name of a body or a material: a part of the names of columns and files.
+/// Returns why a text cannot be the name of a body or a material, which is part of the names of
+/// columns and files.
 fn fault(name: &str) -> Option<String> {
     if let Some(fault) = invisible_characters(name) {
         return Some(fault);
@@ -79,7 +80,7 @@ fn fault(name: &str) -> Option<String> {
     too_long(name).or_else(|| device(name))
 }
 
-/// Why a text cannot be a word by which columns and files are named.
+/// Returns why a text cannot be a word that names columns and files.
 pub(super) fn word_fault(name: &str) -> Option<String> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || name.starts_with('-') || !name.chars().all(plain) {

@@ -6,47 +6,48 @@ use super::case::{BodySpec, Case};
 use super::holders;
 use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
-use fretwork_core::bodies::pressure::Pushed;
+use fretwork_core::bodies::pressure::ServoTarget;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
 use fretwork_core::view::{RunSetup, RunView};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A phase. What it does not name stays as it is.
+/// A phase. Quantities that it does not name keep their values.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
     /// Name.
     pub name: String,
-    /// When it ends; only the last may have none, and lasts to the end of the run.
+    /// End condition; only the last phase may have none, and lasts to the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
-    /// Drives of bodies, by their names, and of what holds deformable ones: half-spaces by their
-    /// names, parts of bodies of finite elements as `body.part`. Functions run on the time since
-    /// the phase began.
+    /// Drives of bodies, by their names, and of holders of deformable bodies: half-spaces by their
+    /// names, parts of bodies of finite elements as `body.part`. Functions use the time since the
+    /// phase began.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub drives: BTreeMap<String, Redriven>,
-    /// Gravity (m/s^2), one number an axis; ends any drive of gravity before.
+    /// Gravity (m/s^2), one number per axis; ends any earlier drive of gravity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Vec<f64>>,
-    /// How gravity changes, on the time since the phase began.
+    /// Time dependence of gravity, as a function of the time since the phase began.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_drive: Option<GravityDrive>,
     /// Friction coefficients: the parameter `mu` of the contact laws of interfaces, by their names.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub friction: BTreeMap<String, f64>,
-    /// Bodies that are taken away.
+    /// Bodies that are removed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub open: Vec<String>,
     /// Tolerance of the solver.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// When it ends the run goes back, until this was done so many times.
+    /// Repetition: at the end of this phase the run goes back, until the group has run the given
+    /// number of times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeat: Option<Repeat>,
 }
 
-/// A group of phases that is done several times, one after another: taps, cycles.
+/// A group of phases that runs several times in succession: taps, cycles.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Repeat {
@@ -57,7 +58,7 @@ pub struct Repeat {
     pub times: u32,
 }
 
-/// The degrees of freedom of a body that get another drive.
+/// The degrees of freedom of a body with a new drive.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Redriven {
@@ -82,7 +83,7 @@ pub struct Redriven {
 }
 
 impl Redriven {
-    /// The given drives, with their names and their indices in the order of the dimension.
+    /// Returns the given drives, with their names and their indices in the order of the dimension.
     pub(super) fn given(
         &self,
         dimension: usize,
@@ -103,8 +104,8 @@ impl Redriven {
     }
 }
 
-/// All drives that the holder of a deformable body has during the run, along an axis: its own, then
-/// those of the phases.
+/// Returns all drives of the holder of a deformable body along an axis during the run: its own,
+/// then those of the phases.
 pub fn drives_of_holder<'a>(
     case: &'a Case,
     holder: &'a str,
@@ -118,7 +119,7 @@ pub fn drives_of_holder<'a>(
     own.iter().chain(phases)
 }
 
-/// All drives that a body has during the run: its own, then those of the phases.
+/// Iterates over all drives of a body during the run: its own, then those of the phases.
 pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
     let dimension = case.dimension as usize;
     let own = body.ordered(dimension).into_iter().enumerate();
@@ -133,7 +134,7 @@ pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
 /// Checks the phases of a case.
 ///
 /// # Errors
-/// The first error, with its path.
+/// Returns the first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     for (k, phase) in case.phases.iter().enumerate() {
         let last = k + 1 == case.phases.len();
@@ -158,7 +159,7 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Limit on the phases of a run, repetitions included.
+/// Limit on the number of phases of a run, including repetitions.
 const MAX_PHASES: u64 = 1_000_000;
 
 /// Checks the repetition at phase `k`.
@@ -188,14 +189,14 @@ fn repeat(case: &Case, k: usize) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Index of the first phase of the group that ends with phase `k`.
+/// Returns the index of the first phase of the group that ends with phase `k`.
 fn first(case: &Case, k: usize) -> usize {
     let from = case.phases[k].repeat.as_ref().and_then(|r| r.from.as_ref());
     let place = |name: &String| case.phases[..=k].iter().rposition(|p| p.name == *name);
     from.and_then(place).unwrap_or(k)
 }
 
-/// The groups of phases in order, and how often each is run.
+/// Iterates over the groups of phases in order, with the number of times that each runs.
 pub(super) fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
     let mut groups: Vec<(std::ops::Range<usize>, u32)> = Vec::new();
     for (k, phase) in case.phases.iter().enumerate() {
@@ -280,7 +281,7 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), ValidationError
 /// Checks a drive of gravity.
 ///
 /// # Errors
-/// The first error, with its path below `gravity_drive`.
+/// Returns the first error, with its path below `gravity_drive`.
 pub(super) fn gravity_drive(
     drive: Option<&GravityDrive>,
     dimension: usize,
@@ -294,7 +295,7 @@ pub(super) fn gravity_drive(
     }
 }
 
-/// Whether there is gravity at any time.
+/// Returns whether there is gravity at any time.
 fn weighs(case: &Case) -> bool {
     let some = |g: &[f64]| g.iter().any(|x| *x != 0.0);
     let phases = || case.phases.iter();
@@ -360,10 +361,10 @@ fn known<'a>(
     )
 }
 
-/// Installs gravity, servo drives, gates and phases of a checked case in its simulation.
+/// Adds gravity, servo drives, gates and phases of a checked case to its simulation.
 ///
 /// # Errors
-/// A pressure without an area, or a friction coefficient that the law does not have: with its path.
+/// A pressure has no area, or the law has no friction coefficient; the error gives the path.
 pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), ValidationError> {
     let dimension = s.dimension();
     s.set_gravity(s.gravity(), case.gravity_drive.clone());
@@ -373,8 +374,8 @@ pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), Validatio
         };
         for (dof, drive) in body.ordered(dimension).iter().enumerate() {
             let name = BodySpec::names(dimension)[dof];
-            let pushed = Pushed::Body(place, dof);
-            s.add_pressures(&pushed, drive)
+            let target = ServoTarget::Body(place, dof);
+            s.add_pressures(&target, drive)
                 .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
         }
         if let Some(time) = body.vanishes {
@@ -386,8 +387,8 @@ pub(super) fn install(case: &Case, s: &mut dyn RunSetup) -> Result<(), Validatio
             let (Some(drive), Some(held)) = (drive, holders::find(case, s, &holder, axis)) else {
                 continue;
             };
-            let pushed = Pushed::Holder(held);
-            s.add_pressures(&pushed, drive).map_err(|m| {
+            let target = ServoTarget::Holder(held);
+            s.add_pressures(&target, drive).map_err(|m| {
                 ValidationError::new(format!("{path}.{}", ["x", "y", "z"][axis]), m)
             })?;
         }
@@ -421,18 +422,18 @@ fn changes(case: &Case, spec: &PhaseSpec, s: &dyn RunSetup) -> Result<Changes, V
     for (name, redriven) in &spec.drives {
         for (dof, k, drive) in redriven.given(s.dimension()) {
             let Some(k) = k else { continue };
-            let pushed = match (place(s, name), holders::find(case, s, name, k)) {
+            let target = match (place(s, name), holders::find(case, s, name, k)) {
                 (Some(place), _) => {
                     drives.push((place, k, drive.clone()));
-                    Pushed::Body(place, k)
+                    ServoTarget::Body(place, k)
                 }
                 (None, Some(holder)) => {
                     held.push((holder.clone(), drive.clone()));
-                    Pushed::Holder(holder)
+                    ServoTarget::Holder(holder)
                 }
                 (None, None) => continue,
             };
-            s.check_pressures(&pushed, drive)
+            s.check_pressures(&target, drive)
                 .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
         }
     }
@@ -470,7 +471,7 @@ fn changes(case: &Case, spec: &PhaseSpec, s: &dyn RunSetup) -> Result<Changes, V
     })
 }
 
-/// A vector of the case with three components, zero where it has none.
+/// Returns a vector of the case with three components, zero where it has none.
 fn components(values: &[f64]) -> [f64; 3] {
     std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
 }

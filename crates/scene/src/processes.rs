@@ -12,7 +12,7 @@ use fretwork_core::view::{RunSetup, RunView};
 /// The friction test of a case, in its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionTest {
-    /// The body that is rubbed.
+    /// The rubbed body.
     pub body: SlidingBody,
     /// Cycles.
     pub clock: CycleClock,
@@ -45,7 +45,7 @@ impl FrictionTest {
     }
 }
 
-/// The body of the test of a case in its scene, and the drive that rubs it.
+/// Returns the rubbed body of the test of a case in its scene, and its drive.
 fn rubbed<'a>(case: &'a Case, s: &'a dyn RunView) -> Option<(SlidingPart, &'a Dof)> {
     let test = case.friction.as_ref()?;
     let driven = s.bodies().driven;
@@ -61,8 +61,8 @@ fn rubbed<'a>(case: &'a Case, s: &'a dyn RunView) -> Option<(SlidingPart, &'a Do
     Some((SlidingPart::System { system, holder }, dof))
 }
 
-/// The part of a deformable body that is held along an axis, and its drive: the first that moves or
-/// is pushed, or else the first.
+/// Returns the part of a deformable body that is held along an axis, and its drive: the first that
+/// moves or has a force, or otherwise the first.
 pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a str, &'a Dof)> {
     if let Some(half_space) = case.half_spaces.iter().find(|b| b.name == body) {
         let dofs = &half_space.dofs;
@@ -83,7 +83,7 @@ pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a 
     driven.or(held.first()).copied()
 }
 
-/// Adds the processes of a case to its simulation, which has not made a step: cycle jumps and the
+/// Adds the processes of a case to its simulation before the first step: cycle jumps and the
 /// tribological circuit. Recession by wear was added with the surfaces that wear.
 pub fn install(case: &Case, s: &mut dyn RunSetup) {
     add_jumps(case, s);
@@ -96,7 +96,7 @@ pub fn install(case: &Case, s: &mut dyn RunSetup) {
     }
 }
 
-/// Adds jumps over cycles, where the case jumps and its friction test has cycles.
+/// Adds jumps over cycles, if the case has them and its friction test has cycles.
 fn add_jumps(case: &Case, s: &mut dyn RunSetup) {
     let (Some(spec), Some(test)) = (case.jump.clone(), FrictionTest::of(case, s)) else {
         return;

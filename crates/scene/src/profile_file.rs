@@ -1,5 +1,4 @@
-//! Reader of profile tables with the columns `x` and `z`, also those that a run writes with such
-//! columns.
+//! Reader of profile tables with the columns `x` and `z`, including those that a run writes.
 
 use super::sample::table::Table;
 use super::source::InputError;
@@ -8,7 +7,7 @@ use std::path::Path;
 /// Reads the points of a profile (m).
 ///
 /// # Errors
-/// An error at the line that is wrong.
+/// Returns an error at the invalid line.
 pub fn read(path: &Path) -> Result<Vec<(f64, f64)>, InputError> {
     let table = Table::read_lengths(path, &["x", "z"], &["z_first", "depth"])?;
     let (x, z) = (table.column("x"), table.column("z"));

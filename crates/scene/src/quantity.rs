@@ -1,12 +1,12 @@
-//! Numbers with units as one writes them on a command line, and hardnesses as pressures.
+//! Numbers with units as written on a command line, and hardnesses as pressures.
 
 use super::units::{UnitError, convert, hardness};
 
-/// 1 kgf/mm² in Pa.
+/// The unit kgf/mm² in Pa.
 const KGF_PER_SQUARE_MILLIMETRE: f64 = 9.806_65e6;
 
-/// A hardness as a pressure (Pa): the scales that are a force in kgf over an area in mm² (HBW, HB,
-/// HV, HK), or a stress; `None` for other scales and units.
+/// Returns a hardness as a pressure (Pa): for the scales that are a force in kgf over an area in
+/// mm² (HBW, HB, HV, HK), or a stress; `None` for other scales and units.
 pub fn hardness_in_pascal(value: f64, unit: &str) -> Option<f64> {
     match hardness(unit) {
         Some("HBW" | "HB" | "HV" | "HK") => Some(value * KGF_PER_SQUARE_MILLIMETRE),
@@ -15,8 +15,8 @@ pub fn hardness_in_pascal(value: f64, unit: &str) -> Option<f64> {
     }
 }
 
-/// A number with a unit as one writes it, `75 kN` or `0.46m`, in the unit `wanted`; without a unit
-/// it is in `wanted`.
+/// Parses a number with a unit, such as `75 kN` or `0.46m`, and converts it to the unit `wanted`; a
+/// number without a unit is in `wanted`.
 ///
 /// # Errors
 /// There is no finite number before the unit, or the unit is unknown or of another dimension.

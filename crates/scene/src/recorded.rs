@@ -1,5 +1,5 @@
 //! Grains of a recorded state of another run. The reader of the record belongs to a higher layer
-//! and is passed in, see [`crate::Loaded::reading_records`].
+//! and is passed in, see [`crate::LoadedCase::reading_records`].
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub struct ShapedBody {
     pub inertia: [f64; 9],
 }
 
-/// A ball of such a grain.
+/// A ball of a grain with several parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedBall {
     /// Identity of the grain.
@@ -34,7 +34,7 @@ pub struct ShapedBall {
     pub offset: [f64; 3],
 }
 
-/// A convex part of such a grain.
+/// A convex part of a grain with several parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedPiece {
     /// Identity of the grain.
@@ -43,9 +43,9 @@ pub struct ShapedPiece {
     pub rounding: f64,
     /// Radius of the ball (2D: disk) of the same volume (m).
     pub size: f64,
-    /// Position of its centre in the grain's frame (m).
+    /// Position of the part's centre in the grain's frame (m).
     pub offset: [f64; 3],
-    /// Corners relative to its centre (m).
+    /// Corners relative to the part's centre (m).
     pub corners: Vec<[f64; 3]>,
     /// Faces as lists of corner indices.
     pub faces: Vec<Vec<u32>>,
@@ -87,16 +87,16 @@ pub struct ShapedGrain {
     pub pieces: Vec<ShapedPiece>,
     /// Position and velocity.
     pub motion: Motion,
-    /// How it is deformed, if it deforms.
+    /// Deformation, if the grain is deformable.
     pub deformed: Option<Deformed>,
 }
 
-/// How a grain that deforms is deformed: of each point of its mesh, in world axes.
+/// Deformation of a grain: values for each point of its mesh, in world axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deformed {
-    /// Where it is (m), beside the place of the grain where there is a period.
+    /// Position (m), relative to the position of the grain where there is a period.
     pub places: Vec<[f64; 3]>,
-    /// Displacement against the frame that moves with the grain (m).
+    /// Displacement relative to the frame that moves with the grain (m).
     pub deformation: Vec<[f64; 3]>,
     /// Velocity (m/s).
     pub velocity: Vec<[f64; 3]>,

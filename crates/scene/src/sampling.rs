@@ -1,7 +1,7 @@
 //! Check for functions of time that change faster than the time step resolves.
 //!
-//! Imposed motion is on its path at the end of every step, but between two ends it is linear, and
-//! forces are evaluated once per step.
+//! Imposed motion is on its path at the end of every step, but linear in between, and forces are
+//! evaluated once per step.
 
 use super::case::{BodySpec, Case};
 use super::phases::{drives_of, drives_of_holder, holder_name};
@@ -22,8 +22,8 @@ pub struct UnresolvedDrive {
     pub aliased: bool,
 }
 
-/// The functions that the time step does not resolve: bodies, rigid and deformable, then phases,
-/// then gravity.
+/// Returns the functions that the time step does not resolve: of rigid and deformable bodies, then
+/// of phases, then of gravity.
 pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
@@ -107,8 +107,8 @@ fn aliased(function: &TimeFunction, h: f64) -> bool {
     }
 }
 
-/// Returns the fault of a function sampled with step `h` (s), if it has one; `moves` if it is a
-/// displacement.
+/// Returns the fault of a function sampled with step `h` (s), if it has one; `moves` if the
+/// function is a displacement.
 fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
     match function {
         TimeFunction::Constant(_) => None,
@@ -220,7 +220,8 @@ mod tests {
         };
         assert_eq!(fault(&ramp(1.005), 1e-3, true), None);
         assert!(fault(&ramp(1.004), 1e-3, true).is_some());
-        // A jump of a force or a velocity, a jump of a displacement, and a pulse within a step.
+        // These are a jump of a force or a velocity, a jump of a displacement, and a pulse within a
+        // step.
         let jump = TimeFunction::Table(vec![(0.0, 0.0), (0.5, 0.0), (0.500_01, 1.0)]);
         assert_eq!(fault(&jump, 1e-3, false), None);
         assert!(fault(&jump, 1e-3, true).is_some());

@@ -13,15 +13,15 @@ pub struct Wall {
 }
 
 /// A ball: centre and radius (m).
-pub type Place = (Vec<f64>, f64);
+pub type PlacedBall = (Vec<f64>, f64);
 
 /// Contents of a scene file.
 #[derive(Clone, Debug, Default)]
 pub struct SceneFile {
     /// Free balls.
-    pub balls: Vec<Place>,
+    pub balls: Vec<PlacedBall>,
     /// Rigid clusters: name and balls.
-    pub clusters: Vec<(String, Vec<Place>)>,
+    pub clusters: Vec<(String, Vec<PlacedBall>)>,
     /// Fixed walls.
     pub walls: Vec<Wall>,
 }
@@ -32,7 +32,7 @@ type Rectangle = Vec<f64>;
 /// Reads a scene file of the given dimension.
 ///
 /// # Errors
-/// An error at the line that is wrong.
+/// Returns an error at the invalid line.
 pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
     let source = Source::read(path)?;
     let text = source.text();
@@ -105,7 +105,7 @@ impl Record<'_> {
         Ok(())
     }
 
-    fn ball(&self, words: &[&str]) -> Result<Place, String> {
+    fn ball(&self, words: &[&str]) -> Result<PlacedBall, String> {
         let v = numbers(words, self.dimension + 1)?;
         let radius = v[self.dimension];
         if radius <= 0.0 {

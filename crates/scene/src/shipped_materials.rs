@@ -64,7 +64,7 @@ pub const FILES: [(&str, &str); 17] = [
     ),
 ];
 
-/// The text of a shipped file by its name.
+/// Returns the text of a shipped file by its name.
 pub fn text(name: &str) -> Option<&'static str> {
     FILES.iter().find(|f| f.0 == name).map(|f| f.1)
 }

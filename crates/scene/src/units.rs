@@ -1,7 +1,7 @@
 //! Units of numbers: parses them, checks them against the unit of the schema, and converts values.
 //!
 //! Names, prefixes and products are those of the crate `runits`. This module adds angles (which
-//! `runits` takes for pure numbers, so that a friction coefficient in degrees would pass) and
+//! `runits` treats as pure numbers, so that a friction coefficient in degrees would pass) and
 //! hardness scales.
 
 use super::source::{ValidationError, nearest};
@@ -45,7 +45,7 @@ struct Unit {
     /// Value in SI units.
     factor: f64,
     dimension: Dimension,
-    /// Whether it contains an angle.
+    /// Whether the unit contains an angle.
     angle: bool,
 }
 
@@ -107,7 +107,7 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
 /// Checks that a text is a unit or a hardness scale.
 ///
 /// # Errors
-/// The unit that is unknown.
+/// Returns an error that names the unknown unit.
 pub fn known(text: &str) -> Result<(), UnitError> {
     if text.trim().is_empty() || hardness(text).is_some() {
         return Ok(());
@@ -115,7 +115,8 @@ pub fn known(text: &str) -> Result<(), UnitError> {
     read(text).map(|_| ())
 }
 
-/// The hardness scale named by a text, with or without its load: `HBW`, `HV 10`, `HBW 10/3000`.
+/// Returns the hardness scale named by a text, with or without its load: `HBW`, `HV 10`, `HBW
+/// 10/3000`.
 pub fn hardness(text: &str) -> Option<&'static str> {
     let letters = text.trim();
     let end = letters
@@ -176,7 +177,7 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
         ParseError::DivideByZero => refused("it divides by zero".into()),
         ParseError::UnexpectedEnd => refused("it ends too early".into()),
-        // The crate's own messages are about its tokens.
+        // The crate's own messages refer to its tokens.
         _ => refused(
             "write names of units with powers such as `m^2`, joined by spaces, `*` and `/`".into(),
         ),
@@ -216,8 +217,8 @@ fn powers(text: &str) -> String {
     out
 }
 
-/// A metre with a prefix of mega or above: `Mm` is a common typing error for `mm`, and 1e9 times
-/// larger.
+/// Returns whether a unit is a metre with a prefix of mega or above: `Mm` is a common typing error
+/// for `mm`, and 1e9 times larger.
 fn far(text: &str) -> Option<&str> {
     let mut words = text.split(|c: char| !c.is_alphabetic() && c != '_');
     words.find(|word| {
@@ -228,7 +229,7 @@ fn far(text: &str) -> Option<&str> {
     })
 }
 
-/// Factor from the crate's base units, which include the gram, to SI.
+/// Returns the factor from the crate's base units, which include the gram, to SI.
 fn si(dimension: Dimension) -> f64 {
     1e3f64.powi(-i32::from(dimension.mass))
 }
@@ -245,7 +246,7 @@ fn turns(text: &str) -> bool {
     })
 }
 
-/// The nearest number with few digits, if it differs by rounding only.
+/// Returns the nearest number with few digits, if it differs by rounding only.
 fn decimal(x: f64) -> f64 {
     let rounded: f64 = format!("{x:.12e}").parse().unwrap_or(x);
     if (rounded - x).abs() <= 8.0 * f64::EPSILON * x.abs() {
@@ -263,7 +264,7 @@ fn named(unit: &str) -> String {
     }
 }
 
-/// Common units of the same dimension.
+/// Returns common units of the same dimension.
 fn fitting(wanted: &str) -> Option<String> {
     let schema = read(wanted).ok()?;
     let fits = |name: &&&str| {
@@ -276,7 +277,7 @@ fn fitting(wanted: &str) -> Option<String> {
     Some(all.join(", "))
 }
 
-/// The base units of a dimension, such as `kg/s^2`.
+/// Returns the base units of a dimension, such as `kg/s^2`.
 fn base(unit: &Unit) -> String {
     let d = &unit.dimension;
     let parts = [

@@ -1,19 +1,19 @@
-//! Wear coefficients from Archard's K and the hardness of the materials, so that another steel
-//! wears differently.
+//! Wear coefficients from Archard's K and the hardness of the materials, so that the coefficient
+//! follows the material.
 //!
-//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K` in
-//! its place. V = K F s/H (J. F. Archard 1953), H the hardness of the softer material, so k = K/H;
-//! in sliding with friction E_d = mu F s, so alpha = K/(mu H) (S. Fouvry, P. Kapsa, L. Vincent
-//! 1996: alpha = k/mu).
+//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K`
+//! instead. V = K F s/H (J. F. Archard 1953) with the hardness H of the softer material, hence k =
+//! K/H; in sliding with friction E_d = mu F s, hence alpha = K/(mu H) (S. Fouvry, P. Kapsa, L.
+//! Vincent 1996: alpha = k/mu).
 
 use super::material::Sourced;
 use super::quantity;
 use super::units;
 
-/// Name under which a pure number is given.
+/// Name of the pure number.
 pub const NAME: &str = "K";
 
-/// Parameters of wear laws that follow from it, with their units.
+/// Parameters of wear laws that are derived from K, with their units.
 const DERIVED: [(&str, &str); 2] = [("k", "1/Pa"), ("alpha", "m^3/J")];
 
 /// A coefficient that was derived.
@@ -27,7 +27,7 @@ pub struct WearCoefficient {
     pub parameter: String,
     /// Value in `unit`.
     pub value: f64,
-    /// `1/Pa` or `m^3/J`.
+    /// Unit, `1/Pa` or `m^3/J`.
     pub unit: String,
     /// Archard's coefficient, a pure number.
     pub dimensionless: f64,
@@ -35,14 +35,14 @@ pub struct WearCoefficient {
     pub hardness: f64,
     /// The softer material, by its name in the case.
     pub softer: String,
-    /// The friction coefficient of the contact law, where it was used.
+    /// Friction coefficient of the contact law, where it was used.
     pub friction: Option<f64>,
-    /// All of this as a sentence.
+    /// Derivation as a sentence.
     pub derivation: String,
 }
 
-/// The parameter that follows from `K`, if the law with these parameters (name, unit) has one and
-/// none that is named `K` itself.
+/// Returns the parameter that follows from `K`, if the law with these parameters (name, unit) has
+/// one, and no parameter named `K`.
 pub fn parameter<'a>(
     mut fields: impl Iterator<Item = (&'a str, &'a str)> + Clone,
 ) -> Option<(&'static str, &'static str)> {
@@ -53,16 +53,16 @@ pub fn parameter<'a>(
 }
 
 /// A material of an interface: its name in the case, and its hardness if its file gives one.
-pub type Side<'a> = (&'a str, Option<&'a Sourced>);
+pub type MaterialHardness<'a> = (&'a str, Option<&'a Sourced>);
 
 /// Law and parameter to which the coefficient belongs.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct CoefficientParameter<'a> {
     /// Interface.
     pub interface: &'a str,
     /// Wear law.
     pub law: &'a str,
-    /// The parameter and its unit, of [`parameter`].
+    /// The parameter and its unit, as [`parameter`] returns them.
     pub parameter: (&'a str, &'a str),
 }
 
@@ -70,15 +70,15 @@ pub struct Place<'a> {
 /// contact law.
 ///
 /// # Errors
-/// A sentence: no material has a hardness, its scale is no pressure, or there is no friction
-/// coefficient where it is needed.
+/// Returns a sentence: no material has a hardness, its scale is no pressure, or a required friction
+/// coefficient is missing.
 pub fn derive(
-    place: Place<'_>,
+    place: CoefficientParameter<'_>,
     dimensionless: f64,
-    sides: &[Side<'_>; 2],
+    sides: &[MaterialHardness<'_>; 2],
     friction: Option<f64>,
 ) -> Result<WearCoefficient, String> {
-    let Place {
+    let CoefficientParameter {
         interface,
         law,
         parameter: (parameter, unit),
@@ -161,12 +161,12 @@ mod tests {
         }
     }
 
-    const ARCHARD: Place<'_> = Place {
+    const ARCHARD: CoefficientParameter<'_> = CoefficientParameter {
         interface: "a",
         law: "archard",
         parameter: ("k", "1/Pa"),
     };
-    const ENERGY: Place<'_> = Place {
+    const ENERGY: CoefficientParameter<'_> = CoefficientParameter {
         parameter: ("alpha", "m^3/J"),
         law: "dissipated-energy",
         ..ARCHARD
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(got.softer, "rail");
         assert!((got.hardness - 260.0 * 9.80665e6).abs() < 1.0);
         assert!((got.value / (3e-4 / 2.549_729e9) - 1.0).abs() < 1e-9);
-        // Twice the hardness, half the wear.
+        // Twice the hardness gives half the wear.
         let hard = hardness(520.0, "HV 10");
         let sides = [("rail", Some(&hard)), ("oxide", Some(&oxide))];
         let half = derive(ARCHARD, 3e-4, &sides, None).unwrap().value;
@@ -200,8 +200,9 @@ mod tests {
         let hard = hardness(50.0, "HRC");
         let soft = hardness(260.0, "HBW");
         let none = [("rail", None), ("oxide", None)];
-        let message =
-            |place, k, sides: &[Side<'_>; 2], mu| derive(place, k, sides, mu).unwrap_err();
+        let message = |place, k, sides: &[MaterialHardness<'_>; 2], mu| {
+            derive(place, k, sides, mu).unwrap_err()
+        };
         assert!(message(ARCHARD, 3e-4, &none, None).contains("neither `rail` nor `oxide`"));
         let sides = [("rail", Some(&hard)), ("oxide", Some(&soft))];
         assert!(message(ARCHARD, 3e-4, &sides, None).contains("50 HRC, is no pressure"));

@@ -1,5 +1,5 @@
-//! The same contact has the same name over a restart, without another grain, and in another listing
-//! of the grains.
+//! A contact keeps its name over a restart, without another grain, and with the grains listed in
+//! another order.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -52,7 +52,7 @@ fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
     }
 }
 
-/// Gaps by the names of the contacts; all have one of their own.
+/// Returns gaps by the names of the contacts, which are unique.
 fn named<S: Space>(s: &Simulation<S>) -> BTreeMap<ContactId, f64> {
     let names = ContactNames::of(&s.shapes, &s.state.bodies);
     let places = names.places(&s.state.network);
@@ -65,7 +65,7 @@ fn named<S: Space>(s: &Simulation<S>) -> BTreeMap<ContactId, f64> {
     places.into_iter().map(|(id, k)| (id, gap(k))).collect()
 }
 
-/// Four blocks of a stack, each a little aside and turned, so that corners and sides have no twin.
+/// A stack of four blocks, each slightly displaced and rotated, so that corners and sides differ.
 fn blocks() -> Vec<String> {
     let block = |k: usize| {
         let (x, y) = (0.011 * k as f64 * k as f64, 0.05 + 0.1005 * k as f64);
@@ -75,7 +75,7 @@ fn blocks() -> Vec<String> {
     (0..4).map(block).collect()
 }
 
-/// Three boxes on each other, turned about the vertical, so that edges cross.
+/// Three stacked boxes, rotated about the vertical, so that edges cross.
 fn boxes() -> Vec<String> {
     let one = |k: usize| {
         let z = 0.05 + 0.1005 * k as f64;
@@ -92,7 +92,7 @@ fn boxes() -> Vec<String> {
     (0..3).map(one).collect()
 }
 
-/// The scene with its grains listed backwards, under the identities they had.
+/// Returns the scene with its grains in reverse order, under the same identities.
 fn backwards<S: Space>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
     let ids: Vec<u64> = s.state.bodies.id.clone();
     let grain: Vec<usize> = (0..s.state.bodies.len())
@@ -137,8 +137,8 @@ fn without_another_grain() {
     let mut whole = plane(scene("whole", 2, "Polygons", &all));
     steps(&mut whole, 1);
     let (a, ids) = (named(&whole), whole.state.bodies.id.clone());
-    // Of a stack without its top, or without its lowest block, the others keep their identities,
-    // and so does the ground.
+    // In a stack without its top or its lowest block, the others and the ground keep their
+    // identities.
     for (name, gone) in [("top", 3), ("lowest", 0)] {
         let mut left = all.clone();
         left.remove(gone);
@@ -151,7 +151,7 @@ fn without_another_grain() {
         let kept: Vec<&ContactId> = a.keys().filter(stays).collect();
         assert!(kept.len() >= 4 && kept.len() < a.len(), "{name}");
         assert!(kept.iter().all(|id| b.contains_key(id)), "{name}: {b:?}");
-        // Keys count contactors as they are listed: they do not tell.
+        // Keys number contactors as they are listed, so that they differ.
         let names = |s: &Simulation<Dim2>| ContactNames::of(&s.shapes, &s.state.bodies);
         let matched =
             names(&whole).matched(&whole.state.network, &names(&short), &short.state.network);

@@ -1,6 +1,6 @@
-//! A further kind of interface law, made here: one entry of the registry, and no other place knows
-//! of it. It watches contacts and keeps the work of friction; scenes that have it give the bits of
-//! those that do not.
+//! A further kind of interface law, defined here as one entry of the registry; no other code names
+//! it. It observes contacts and records the work of friction; scenes with it give the same bits as
+//! without it.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -11,13 +11,13 @@ use fretwork_core::in_dimension;
 use fretwork_core::laws::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};
-use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, Loaded, SearchPath};
+use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, LoadedLaw, SearchPath};
 use fretwork_core::step::Simulation;
 use fretwork_scene::load;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Batches and contacts that laws of the kind were given.
+/// Number of batches and contacts that laws of the kind received.
 static BATCHES: AtomicUsize = AtomicUsize::new(0);
 static CONTACTS: AtomicUsize = AtomicUsize::new(0);
 
@@ -46,7 +46,7 @@ fn counted<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
 
 /// Adds the friction work of the step to the only variable.
 unsafe extern "C" fn add_work(batch: *const abi::FwBatch, _: *mut abi::FwMessage) -> i32 {
-    // SAFETY: the host gives whole batches; columns have `n` values.
+    // SAFETY: the host passes complete batches; columns have `n` values.
     unsafe {
         let batch = &*batch;
         let (state, next) = (*batch.state, *batch.state_next);
@@ -62,7 +62,7 @@ unsafe extern "C" fn add_work(batch: *const abi::FwBatch, _: *mut abi::FwMessage
     abi::STATUS_OK
 }
 
-/// A law of the kind, with one variable.
+/// Returns a law of the kind, with one variable.
 fn law() -> &'static abi::LinkedLaw {
     let text = |t: &'static std::ffi::CStr| t.as_ptr();
     let work: &'static abi::FwField = Box::leak(Box::new(abi::FwField {
@@ -98,7 +98,7 @@ fn law() -> &'static abi::LinkedLaw {
         energy: None,
         fracture_energy: None,
     };
-    // SAFETY: what the table points to is static or leaked, and its function follows the interface.
+    // SAFETY: the table points to static or leaked data, and its function follows the interface.
     Box::leak(Box::new(unsafe { abi::LinkedLaw::new(table) }))
 }
 
@@ -109,8 +109,8 @@ fn path() -> SearchPath {
     SearchPath::new(&[]).with_built_in(BuiltInLaws::new(tables))
 }
 
-/// All bits of the state after so many steps, and the largest difference between the record and the
-/// host's own account, as a share of the largest work.
+/// Returns all bits of the state after a number of steps, and the largest difference between the
+/// record and the host's own account, relative to the largest work.
 fn run<S: Space>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
     for _ in 0..steps {
         s.step().unwrap();
@@ -125,7 +125,7 @@ fn run<S: Space>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
         .iter()
         .for_each(|c| push(&c.impulse));
     for memory in &s.state.network.memory {
-        // A slot of a contact with variables and no bond is one of the record.
+        // A slot of a contact with variables and without a bond belongs to the record.
         let intact = memory.bonds.iter().filter(|b| b.intact());
         bits.extend(intact.map(|b| b.damage.to_bits()));
     }
@@ -138,7 +138,7 @@ fn run<S: Space>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
         let (Some(record), Some(slot)) = (law.law(kind), contact.memory()) else {
             continue;
         };
-        // Work against rotation is no work of slip.
+        // Work against rotation is not work of slip.
         if contact.moment != S::Spin::zero() {
             continue;
         }
@@ -190,7 +190,7 @@ fn its_laws_are_found_validated_and_certified_as_any_other() {
     let certificate = certify(&plugin, &[], None, &path).unwrap();
     assert!(certificate.certified(), "{:#?}", certificate.lines);
 
-    // The text of a case knows the slot, and refuses what is in it as elsewhere.
+    // The text of a case has the slot, and errors in it are reported as elsewhere.
     let sets = ["interfaces.0.record=work-sun".to_owned()];
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../cases");
     let loaded = load(&folder.join("collapse.ron"), &sets).unwrap();
@@ -205,8 +205,8 @@ fn its_laws_are_found_validated_and_certified_as_any_other() {
         error.to_string().contains("did you mean `record`"),
         "{error}"
     );
-    // An interface takes one law of each kind.
-    let law = |kind, name| Loaded::with_defaults(path.find(kind, name).unwrap());
+    // An interface has at most one law of each kind.
+    let law = |kind, name| LoadedLaw::with_defaults(path.find(kind, name).unwrap());
     let one = || law(Kind::CONTACT, "coulomb");
     let two = fretwork_core::laws::Interface::new("two", [one(), one()]);
     assert!(two.unwrap_err().to_string().contains("two contact laws"));

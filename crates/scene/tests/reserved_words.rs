@@ -1,5 +1,6 @@
-//! A kind of law whose word is a field of an interface is refused where a case is read or written.
-//! This binary holds this test alone: a registered kind stays for the life of the program.
+//! A kind of law whose keyword is a field of an interface is refused where a case is read or
+//! written. This binary contains this test alone, since a registered kind stays for the lifetime of
+//! the program.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 

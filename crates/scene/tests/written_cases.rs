@@ -6,7 +6,7 @@
     reason = "a test fails by a panic"
 )]
 
-use fretwork_scene::{Loaded, load, load_reader, load_text};
+use fretwork_scene::{LoadedCase, load, load_reader, load_text};
 use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {
@@ -26,8 +26,8 @@ fn shipped() -> Vec<PathBuf> {
     cases
 }
 
-/// Text and value say the same: read again, and written again.
-fn written(loaded: &Loaded) {
+/// Checks that text and value agree: the text is read again, and written again.
+fn written(loaded: &LoadedCase) {
     let path = loaded.path.display();
     let text = loaded
         .case
@@ -38,7 +38,7 @@ fn written(loaded: &Loaded) {
     let again = again.unwrap_or_else(|e| panic!("{path}: {e}\n{text}"));
     assert!(again.case == loaded.case, "{path}:\n{text}");
     assert_eq!(again.case.to_ron().unwrap(), text, "{path}");
-    // Debug texts differ where signs of zero do, which `==` does not see.
+    // Debug texts differ where signs of zero differ, which `==` does not detect.
     assert_eq!(
         format!("{:?}", again.case),
         format!("{:?}", loaded.case),
@@ -52,7 +52,7 @@ fn shipped_cases_are_the_same_when_written_and_read_again() {
     assert!(cases.len() > 80, "{} cases", cases.len());
     let mut read = 0;
     for path in &cases {
-        // Scene files of the benchmarks are no cases.
+        // Scene files of the benchmarks are not cases.
         let Ok(loaded) = load(path, &[]) else {
             let text = std::fs::read_to_string(path).unwrap();
             assert!(
@@ -107,7 +107,8 @@ fn cases_changed_by_sets_are_the_same_when_written_and_read_again() {
     }
 }
 
-/// A reader gives what its file gives, and its errors have the same place and sentence.
+/// A reader gives the same result as a file with the same text, and errors have the same location
+/// and sentence.
 #[test]
 fn readers_give_the_case_and_the_errors_of_the_file() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/newton_cradle.ron");

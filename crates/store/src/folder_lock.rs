@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The file by which a run owns the folder of its results.
+/// Name of the file by which a run owns the folder of its results.
 pub const RUN_LOCK: &str = "results.lock";
 
-/// Why a folder cannot be owned or read.
+/// Reason why a folder cannot be owned or read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LockError {
-    /// Somebody else owns it.
+    /// Another process owns the folder.
     #[error("another run is writing in {}; wait for its end, or name another folder", folder.display())]
     Held {
         /// The folder.
@@ -20,15 +20,15 @@ pub enum LockError {
     },
     /// The folder is no longer the one that was owned.
     #[error(
-        "the folder {}, or {mark} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
+        "the folder {}, or {lock_file} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
          or resume it where the folder is now, and leave the folder of a run in its place until its end",
         folder.display()
     )]
     Lost {
         /// The folder.
         folder: PathBuf,
-        /// The file in it by which it was owned.
-        mark: String,
+        /// Name of the file by which the folder was owned.
+        lock_file: String,
     },
     /// The lock file cannot be created.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
@@ -40,66 +40,68 @@ pub enum LockError {
     },
 }
 
-/// A lock on a folder, until it and its clones are dropped; the system releases it when the process
-/// ends, however it ends.
+/// A lock on a folder. It is held until it and its clones are dropped; the system releases it when
+/// the process ends, even by a crash.
 #[derive(Clone, Debug)]
 pub struct FolderLock {
     /// The locked file, kept open; `None` for a reader that found no file to lock.
     _file: Option<Arc<File>>,
-    /// The file by which the folder is owned, and its number when it was locked; `None` for a
+    /// The file by which the folder is owned, and its number when it was locked. `None` for a
     /// reader, and on systems without file numbers.
-    owned: Option<(PathBuf, Place)>,
+    owned: Option<(PathBuf, FileId)>,
 }
 
 /// Device and number of a file, which stay the same when the file is renamed.
-type Place = (u64, u64);
+type FileId = (u64, u64);
 
 #[cfg(unix)]
-fn place(data: &std::fs::Metadata) -> Option<Place> {
+fn file_id(data: &std::fs::Metadata) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;
     Some((data.dev(), data.ino()))
 }
 
 #[cfg(not(unix))]
-fn place(_: &std::fs::Metadata) -> Option<Place> {
+fn file_id(_: &std::fs::Metadata) -> Option<FileId> {
     None
 }
 
 impl FolderLock {
-    /// Owns an existing folder by a lock on the file `mark` in it, which is created if necessary
+    /// Owns an existing folder by an exclusive lock on a file in it, which is created if necessary
     /// and left there.
     ///
     /// # Errors
-    /// Somebody owns it or reads it, or the file cannot be made.
-    pub fn own(folder: &Path, mark: &str) -> Result<Self, LockError> {
-        let path = folder.join(mark);
+    /// Another process owns or reads the folder, or the file cannot be created.
+    pub fn exclusive(folder: &Path, lock_file: &str) -> Result<Self, LockError> {
+        let path = folder.join(lock_file);
         let file = File::options().create(true).append(true).open(&path);
         let file = file.map_err(|e| LockError::Write {
             path: path.clone(),
             reason: e.to_string(),
         })?;
-        held(folder, patiently(|| file.try_lock()))?;
-        let by_handle = file.metadata().ok().and_then(|data| place(&data));
-        let by_name = std::fs::metadata(&path).ok().and_then(|data| place(&data));
-        // Some systems give a file a new number whenever it is asked for.
+        refuse_if_locked(folder, retry(|| file.try_lock()))?;
+        let by_handle = file.metadata().ok().and_then(|data| file_id(&data));
+        let by_name = std::fs::metadata(&path)
+            .ok()
+            .and_then(|data| file_id(&data));
+        // On some systems the number of a file differs between two queries.
         let owned = by_handle.filter(|_| by_handle == by_name);
         Ok(Self {
             _file: Some(Arc::new(file)),
-            owned: owned.map(|place| (path, place)),
+            owned: owned.map(|id| (path, id)),
         })
     }
 
-    /// Checks that the folder is still the one that was owned, before something is written there by
-    /// its name.
+    /// Checks that the folder is still the one that was owned, before a file is written in it by
+    /// name.
     ///
     /// # Errors
     /// The folder, or the file by which it is owned, was removed, moved or replaced.
-    pub fn kept(&self) -> Result<(), LockError> {
+    pub fn check_still_owned(&self) -> Result<(), LockError> {
         let Some((path, at)) = &self.owned else {
             return Ok(());
         };
         let now = match std::fs::metadata(path) {
-            Ok(data) => place(&data),
+            Ok(data) => file_id(&data),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
             // A folder that cannot be read is reported when it is written to.
             Err(_) => return Ok(()),
@@ -107,23 +109,23 @@ impl FolderLock {
         if now == Some(*at) {
             return Ok(());
         }
-        let mark = path.file_name().unwrap_or_default();
+        let lock_file = path.file_name().unwrap_or_default();
         Err(LockError::Lost {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            mark: mark.to_string_lossy().into_owned(),
+            lock_file: lock_file.to_string_lossy().into_owned(),
         })
     }
 
-    /// Locks a folder for reading, along with other readers, so that nobody can own it meanwhile.
+    /// Locks a folder for reading. Other readers may lock it too, but nobody can own it meanwhile.
     ///
     /// # Errors
-    /// Somebody owns it.
-    pub fn read(folder: &Path, mark: &str) -> Result<Self, LockError> {
-        // Without the file no run has written there; a file that this user must not read cannot be
-        // locked, and the folder is read without protection.
-        let file = File::open(folder.join(mark)).ok();
+    /// Another process owns the folder.
+    pub fn shared(folder: &Path, lock_file: &str) -> Result<Self, LockError> {
+        // Without the file no run has written in the folder. A file that this user must not read
+        // cannot be locked, and the folder is then read without protection.
+        let file = File::open(folder.join(lock_file)).ok();
         if let Some(file) = &file {
-            held(folder, patiently(|| file.try_lock_shared()))?;
+            refuse_if_locked(folder, retry(|| file.try_lock_shared()))?;
         }
         Ok(Self {
             _file: file.map(Arc::new),
@@ -132,9 +134,9 @@ impl FolderLock {
     }
 }
 
-/// Tries a lock again for a tenth of a second: a process that this program just starts holds copies
-/// of its files, and so a lock that was released, until it runs its own program.
-fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
+/// Tries a lock repeatedly for a tenth of a second. A process that this program has just started
+/// holds copies of its open files, and thereby a released lock, until it executes its own program.
+fn retry(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
     for _ in 0..10 {
         match lock() {
             Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
@@ -144,9 +146,9 @@ fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockE
     lock()
 }
 
-/// Returns an error if somebody else holds the lock. Other errors come from file systems without
+/// Returns an error if another process holds the lock. Other errors come from file systems without
 /// locks, where there is no protection, and are ignored.
-fn held(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
+fn refuse_if_locked(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
     match locked {
         Err(TryLockError::WouldBlock) => Err(LockError::Held {
             folder: folder.to_owned(),
@@ -163,9 +165,9 @@ mod tests {
     fn one_owner_or_many_readers() {
         let folder = std::env::temp_dir().join(format!("fretwork-owner-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
-        let read = || FolderLock::read(&folder, "a.lock");
-        let own = || FolderLock::own(&folder, "a.lock");
-        // No run ever wrote into the folder.
+        let read = || FolderLock::shared(&folder, "a.lock");
+        let own = || FolderLock::exclusive(&folder, "a.lock");
+        // No run ever wrote in the folder.
         drop(read().unwrap());
         let owner = own().unwrap();
         for refused in [own(), read()] {
@@ -187,24 +189,24 @@ mod tests {
         let other = folder.with_extension("moved");
         let own = || {
             std::fs::create_dir_all(&folder).unwrap();
-            FolderLock::own(&folder, "a.lock").unwrap()
+            FolderLock::exclusive(&folder, "a.lock").unwrap()
         };
         let lost = |owner: &FolderLock| {
-            let said = owner.kept().unwrap_err().to_string();
+            let said = owner.check_still_owned().unwrap_err().to_string();
             assert!(said.contains("removed or replaced"), "{said}");
         };
         let owner = own();
-        owner.kept().unwrap();
+        owner.check_still_owned().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
         lost(&owner);
         // Another folder takes its name.
         let second = own();
         lost(&owner);
-        second.kept().unwrap();
+        second.check_still_owned().unwrap();
         std::fs::rename(&folder, &other).unwrap();
         lost(&second);
         std::fs::rename(&other, &folder).unwrap();
-        second.kept().unwrap();
+        second.check_still_owned().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -1,11 +1,11 @@
-//! Converts deformable bodies to the views of `results.h5`: the mesh of each body of finite
-//! elements, the surface of each body that touches, and the grains of each material that deform as
-//! one mesh. Bodies are those that the case lists as `elastic` and `half_spaces`.
+//! Converts deformable bodies to the views of `results.h5`: the mesh of each finite element body,
+//! the surface of each body with contacts, and one mesh per material for its deformable grains. The
+//! bodies are those that the case lists as `elastic` and `half_spaces`.
 
 use super::results::{Field, Mesh};
 use fretwork_core::view::{RunView, SystemView};
 use fretwork_observe::mesh_fields::{
-    At, BodyState, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
+    BodyState, FieldLocation, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
 };
 use fretwork_observe::tractions::SurfaceState;
 use fretwork_scene::case::Case;
@@ -25,7 +25,7 @@ fn systems<'a>(
     all.filter(move |(_, system)| listed(system.name()))
 }
 
-/// The grains that deform, by the name of their material: the indices of their systems.
+/// The deformable grains by the name of their material, as indices of their systems.
 fn grains<'a>(case: &'a Case, run: &dyn RunView) -> Vec<(&'a str, Vec<usize>)> {
     let mut of_material: BTreeMap<u16, Vec<usize>> = BTreeMap::new();
     for k in 0..run.system_count() {
@@ -41,7 +41,7 @@ fn grains<'a>(case: &'a Case, run: &dyn RunView) -> Vec<(&'a str, Vec<usize>)> {
     named.collect()
 }
 
-/// The meshes and surfaces of the bodies of a case, and its grains that deform.
+/// The meshes and surfaces of the bodies of a case, and its deformable grains.
 pub fn of(case: &Case, run: &dyn RunView) -> Vec<Mesh> {
     let mut out = Vec::new();
     for (k, system) in systems(case, run) {
@@ -86,7 +86,7 @@ fn fields<T>(registered: &[MeshField<T>]) -> Vec<Field> {
         unit: f.unit,
         doc: f.doc,
         width: f.width,
-        of_cells: f.at == At::Cells,
+        of_cells: f.at == FieldLocation::Cells,
     };
     registered.iter().map(field).collect()
 }
@@ -111,7 +111,7 @@ pub fn values(case: &Case, run: &dyn RunView) -> Vec<Vec<Vec<f64>>> {
     out
 }
 
-/// Bytes of a recorded state of all bodies.
+/// Size in bytes of a recorded state of all bodies.
 pub fn bytes(case: &Case, run: &dyn RunView) -> usize {
     let values = values(case, run).into_iter().flatten();
     values.map(|column| 8 * column.len()).sum()

@@ -4,8 +4,8 @@ use super::results::shapes::{Shaped, ShapedBall, ShapedBody, ShapedPiece};
 use fretwork_core::view::RunView;
 use fretwork_scene::recorded::ShapedGrain;
 
-/// The grains other than single balls, with the densities of the materials (kg/m^3), and those that
-/// deform as they are without load, in the order of their systems.
+/// Returns the grains other than single balls, with the densities of the materials (kg/m^3), and
+/// the deformable grains without load, in the order of their systems.
 pub fn of(run: &dyn RunView, densities: &[f64], deforming: &[ShapedGrain]) -> Shaped {
     let (grains, bodies) = (shaped(run), run.bodies());
     let mut out = Shaped::default();
@@ -55,19 +55,20 @@ pub fn of(run: &dyn RunView, densities: &[f64], deforming: &[ShapedGrain]) -> Sh
     out
 }
 
-/// Identities of the grains that deform, in the order of their systems.
+/// Returns the identities of the deformable grains, in the order of their systems.
 fn ids_of_grains(run: &dyn RunView) -> impl Iterator<Item = u64> {
     let grains =
         (0..run.system_count()).filter(move |k| run.system(*k).is_some_and(|g| g.is_grain()));
     grains.filter_map(move |k| Some(run.bodies().id[*run.bodies_of_system(k).first()? as usize]))
 }
 
-/// Whether there are grains other than single balls, or that deform; states then have orientations.
+/// Whether there are grains that are deformable or other than single balls. States then have
+/// orientations.
 pub fn needed(run: &dyn RunView) -> bool {
     shaped(run).contains(&true) || ids_of_grains(run).next().is_some()
 }
 
-/// Which bodies are grains other than single balls.
+/// Returns for each body whether it is a grain other than a single ball.
 fn shaped(run: &dyn RunView) -> Vec<bool> {
     let bodies = run.bodies();
     let mut parts = vec![0u32; bodies.len()];

@@ -6,24 +6,29 @@ use super::{meshes, shapes};
 use fretwork_core::view::{FieldInfo, FieldKind, FieldValues, GrainFields, RunView};
 use fretwork_observe::Observers;
 use fretwork_observe::statistics::Column;
-use fretwork_scene::build::Loaded;
+use fretwork_scene::build::LoadedCase;
 use fretwork_scene::recorded::ShapedGrain;
 
 /// References to the built scene.
 #[derive(Debug)]
-pub struct Made<'a> {
+pub struct BuiltScene<'a> {
     /// The simulation.
     pub simulation: &'a dyn RunView,
     /// Material files: name and text.
     pub materials: &'a [(String, String)],
     /// Densities of the materials (kg/m^3).
     pub densities: &'a [f64],
-    /// The grains that deform, without load, in the order of their systems.
+    /// The deformable grains without load, in the order of their systems.
     pub deforming: &'a [ShapedGrain],
 }
 
-/// What the file says before the first step, with the columns and tables of the observers.
-pub fn header(loaded: &Loaded, built: &Made<'_>, run: &RunFacts, observers: &Observers) -> Header {
+/// Content of the file before the first step, with the columns and tables of the observers.
+pub fn header(
+    loaded: &LoadedCase,
+    built: &BuiltScene<'_>,
+    run: &RunFacts,
+    observers: &Observers,
+) -> Header {
     let simulation = built.simulation;
     let dimension = simulation.dimension();
     let grains = simulation.grain_fields(with(simulation, loaded.case.circuit.is_some()));
@@ -53,8 +58,8 @@ pub fn header(loaded: &Loaded, built: &Made<'_>, run: &RunFacts, observers: &Obs
     }
 }
 
-/// The fields of grains beside those that a simulation registers: orientations where there are
-/// grains that are no lone balls, and whether grains were taken out where a circuit does so.
+/// Returns the fields of grains besides those that a simulation registers: orientations if there
+/// are grains other than single balls, and whether a grain was removed if a circuit removes grains.
 fn with(run: &dyn RunView, circuit: bool) -> GrainFields {
     GrainFields {
         orientation: shapes::needed(run),
@@ -62,13 +67,13 @@ fn with(run: &dyn RunView, circuit: bool) -> GrainFields {
     }
 }
 
-/// Columns of the fields of a kind.
+/// Returns the columns of the fields of a kind.
 fn columns(fields: &[FieldInfo], kind: FieldKind) -> Vec<Column> {
     let listed = fields.iter().filter(|f| f.kind == kind);
     listed.map(|f| Column::new(f.name, f.unit, f.doc)).collect()
 }
 
-/// A part with the values of fields, one column each.
+/// Returns a part with the values of fields, one column each.
 fn part(values: Vec<FieldValues>) -> Part {
     let mut part = Part::default();
     for column in values {
@@ -81,7 +86,8 @@ fn part(values: Vec<FieldValues>) -> Part {
     part
 }
 
-/// Bytes per grain and per contact of a recorded state: points, cells and fields, 8 bytes a number.
+/// Returns the size in bytes of a recorded state per grain and per contact: points, cells and
+/// fields of 8 bytes per number.
 pub fn bytes(run: &dyn RunView, circuit: bool) -> [usize; 2] {
     let width = |fields: Vec<FieldInfo>| fields.iter().map(FieldInfo::width).sum::<usize>();
     let grain = width(run.grain_fields(with(run, circuit)));
@@ -97,7 +103,7 @@ pub fn bytes(run: &dyn RunView, circuit: bool) -> [usize; 2] {
 pub fn append(
     results: &mut Results,
     run: &dyn RunView,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
     let mut grains = grains(run, loaded.case.circuit.is_some());

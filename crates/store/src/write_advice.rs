@@ -1,11 +1,11 @@
-//! What to do about a file that cannot be written.
+//! Advice about a file that cannot be written.
 
 use std::io::{Error, ErrorKind};
 
-/// The end of a sentence with an error of the system in it: what to do about its cause; nothing
-/// where that is not known.
+/// Returns the end of a sentence that reports an error of the system: what to do about its cause.
+/// It is empty if the cause is not known.
 pub fn write_advice(reason: &str) -> &'static str {
-    // Layers between put the system's error into text of their own; its number remains.
+    // Intermediate layers put the system's error into their own text, in which its number remains.
     let number = reason.rsplit_once("(os error ").map(|(_, rest)| rest);
     let number = number.and_then(|rest| rest.split_once(')'));
     let Some(Ok(number)) = number.map(|(n, _)| n.parse()) else {

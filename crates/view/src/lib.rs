@@ -1,4 +1,4 @@
-//! What a run shows, as PNG files and as HTML pages. A chart is described once
+//! Visual output of a run as PNG files and HTML pages. A chart is described once
 //! ([`fretwork_observe::chart`]) and drawn by both: [`draw_panels`] makes a PNG file, [`report`]
 //! and [`compare`] make pages of runs, and a [`Sheet`] is a page of sections with tables and
 //! charts, for studies and fits. [`picture`] draws the scene of a simulation.

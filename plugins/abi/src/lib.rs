@@ -1,7 +1,7 @@
 //! The C binary interface between Fretwork and its law plugins, version 1.
 //!
-//! The C header `include/fretwork.h` declares the same for C and Fortran authors; a test compares
-//! the two, offset by offset. Rust authors use the safe wrapper crate `fretwork-law` instead.
+//! The C header `include/fretwork.h` declares the same items for C and Fortran authors; a test
+//! compares both, offset by offset. Rust authors use the safe wrapper crate `fretwork-law` instead.
 //!
 //! Rules of the interface:
 //! * the host owns all memory; nothing is allocated on one side and freed on the other;
@@ -36,9 +36,10 @@ pub const KIND_TRANSPORT: i32 = 5;
 pub const STATUS_OK: i32 = 0;
 /// Status: the call failed, the message gives the reason; the run stops with exit code 1.
 pub const STATUS_ERROR: i32 = 1;
-/// Status of `validate`: a parameter is out of the range that the law accepts; exit code 2.
+/// Status of `validate`: a parameter is out of the range that the law accepts; the run stops with
+/// exit code 2.
 pub const STATUS_BAD_PARAMETER: i32 = 2;
-/// Status: the law could not follow so large a step; the message proposes a smaller one.
+/// Status: the law cannot follow a step of this size; the message proposes a smaller one.
 pub const STATUS_REDUCE_STEP: i32 = 3;
 /// Status: the plugin panicked; set by the Rust wrapper.
 pub const STATUS_PANIC: i32 = 4;
@@ -49,8 +50,8 @@ pub const FLAG_2D_ONLY: u64 = 1;
 pub const FLAG_3D_ONLY: u64 = 1 << 1;
 /// Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression.
 /// Below zero opening the law continues linearly (a negative traction), from which the host finds
-/// the zero; the host drops the compression. Such a bond fills the gap at which it formed. One
-/// without the flag also acts in compression until the gap closes.
+/// the zero; the host drops the compression. Such a bond fills the gap at which it formed. A bond
+/// without this flag also acts in compression until the gap closes.
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
 /// Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage
 /// law.
@@ -60,7 +61,7 @@ pub const FLAG_OPENING: u64 = 1 << 3;
 pub const FLAG_MOMENT: u64 = 1 << 5;
 /// Flag (cohesion): `commit` writes `out_damage`, so the law breaks without a damage law.
 pub const FLAG_BREAKS: u64 = 1 << 6;
-/// Flag (cohesion): bonds may form in contact during a run, again after they broke.
+/// Flag (cohesion): bonds may form in contact during a run, also after they broke.
 pub const FLAG_FORMS: u64 = 1 << 7;
 /// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
 /// contact and use the result for all.
@@ -68,8 +69,8 @@ pub const FLAG_CONSTANT: u64 = 1 << 4;
 /// Flag (contact): the contact is a unilateral spring; `prepare` fills the `out_contact_*` columns.
 /// Since version 1.1.
 pub const FLAG_COMPLIANT: u64 = 1 << 8;
-/// Flag: the law reads temperatures, so the case must compute heat; the columns are then not null.
-/// Transport laws have them without the flag. Since version 1.1.
+/// Flag: the law reads temperatures, so the case must compute heat; the columns of temperature are
+/// then not null. Transport laws receive them without this flag. Since version 1.1.
 pub const FLAG_TEMPERATURE: u64 = 1 << 9;
 
 /// All flags of this version.
@@ -110,9 +111,9 @@ pub struct FwField {
 pub struct FwMessage {
     /// Size of this struct in bytes, set by the host.
     pub size: usize,
-    /// Where the plugin writes NUL-terminated UTF-8.
+    /// Buffer to which the plugin writes NUL-terminated UTF-8.
     pub text: *mut c_char,
-    /// Bytes at `text`, the NUL included.
+    /// Size of the buffer `text` in bytes, including the NUL.
     pub capacity: usize,
     /// Index in the batch of the contact that caused the error, or -1; set by the plugin.
     pub contact: i64,
@@ -133,7 +134,7 @@ pub struct FwBatch {
     pub n: usize,
     /// 2 or 3.
     pub dimension: u32,
-    /// Zero.
+    /// Reserved; zero.
     pub reserved: u32,
     /// Time at the start of the step (s).
     pub time: f64,
@@ -191,14 +192,15 @@ pub struct FwBatch {
     pub friction_work: *const f64,
     /// Time for which the contact has carried a compressive impulse without interruption (s).
     pub pressed: *const f64,
-    /// Rotation of the bond about n, twist (rad); null without [`FLAG_MOMENT`]. In two dimensions
-    /// null.
+    /// Twist of the bond, its rotation about n (rad). Null in two dimensions and without
+    /// [`FLAG_MOMENT`].
     pub rotation_n: *const f64,
-    /// Rotation about t1, bending (rad). In two dimensions that about the axis out of the plane.
+    /// Bending of the bond, its rotation about t1 (rad). In two dimensions the rotation about the
+    /// axis out of the plane.
     pub rotation_t1: *const f64,
-    /// Rotation about t2, bending (rad). In two dimensions null.
+    /// Bending of the bond, its rotation about t2 (rad). Null in two dimensions.
     pub rotation_t2: *const f64,
-    /// Moment of the undamaged bond over its area, as the rotations (N m/m^2) (damage).
+    /// Twisting moment of the undamaged bond over its area, about n (N m/m^2) (damage).
     pub intact_moment_n: *const f64,
     /// Bending moment about t1 over the area (N m/m^2) (damage).
     pub intact_moment_t1: *const f64,
@@ -233,8 +235,8 @@ pub struct FwBatch {
     /// Cohesion: tangential damping (Pa s/m).
     pub out_damping_t: *mut f64,
     /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2). Contact: energy
-    /// that the tangential spring holds (J), where it is not T^2/2 over the stiffness on unloading;
-    /// 0 otherwise.
+    /// stored in the tangential spring (J), if it differs from T^2/2 over the stiffness on
+    /// unloading; 0 otherwise.
     pub out_energy: *mut f64,
     /// Damage, and cohesion with [`FLAG_BREAKS`]: D at the end of the step.
     pub out_damage: *mut f64,
@@ -243,17 +245,21 @@ pub struct FwBatch {
     /// Cohesion with [`FLAG_MOMENT`]: twisting moment over the area, against `rotation_n` (N
     /// m/m^2).
     pub out_moment_n: *mut f64,
-    /// Bending moment over the area, against `rotation_t1` (N m/m^2).
+    /// Cohesion with [`FLAG_MOMENT`]: bending moment over the area, against `rotation_t1` (N
+    /// m/m^2).
     pub out_moment_t1: *mut f64,
-    /// Bending moment over the area, against `rotation_t2` (N m/m^2).
+    /// Cohesion with [`FLAG_MOMENT`]: bending moment over the area, against `rotation_t2` (N
+    /// m/m^2).
     pub out_moment_t2: *mut f64,
-    /// Twisting stiffness over the area (N m/m^2 per rad).
+    /// Cohesion with [`FLAG_MOMENT`]: twisting stiffness over the area (N m/m^2 per rad).
     pub out_stiffness_twist: *mut f64,
-    /// Bending stiffness over the area (N m/m^2 per rad).
+    /// Cohesion with [`FLAG_MOMENT`]: bending stiffness over the area (N m/m^2 per rad).
     pub out_stiffness_bend: *mut f64,
-    // Since version 1.1; null for a contact law without [`FLAG_COMPLIANT`].
-    /// Overlap of the bodies (m), not negative: in `prepare` an estimate of that at the end of the
-    /// step, at which the law gives force and stiffness; in `commit` that at the end of the step.
+    // The fields below exist since version 1.1; they are null for a contact law without
+    // [`FLAG_COMPLIANT`].
+    /// Overlap of the bodies (m), not negative. In `prepare` it is an estimate of the overlap at
+    /// the end of the step, at which the law gives force and stiffness; in `commit` the overlap at
+    /// the end of the step.
     pub overlap: *const f64,
     /// Effective mass of the contact along its normal, 1/W_nn (kg; kg/m in 2D); 0 if neither body
     /// can move.
@@ -279,24 +285,24 @@ pub struct FwBatch {
     /// Contact: slope of the tangential force (N/m); 0 for a rigid tangential contact.
     pub out_contact_stiffness_t: *mut f64,
     /// Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored
-    /// energy; 0 where that is `out_contact_stiffness_t`.
+    /// energy; 0 if it equals `out_contact_stiffness_t`.
     pub out_contact_unloading_t: *mut f64,
     /// Contact: normal damping (N s/m).
     pub out_contact_damping_n: *mut f64,
     /// Contact: tangential damping (N s/m).
     pub out_contact_damping_t: *mut f64,
-    // Since version 1.1; null where the case computes no heat.
-    /// Temperature of the contact (K) at the start of the step: that at which two half-spaces of
-    /// the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e, plus the
-    /// flash temperature where the case asks for it.
+    // The fields below exist since version 1.1; they are null if the case computes no heat.
+    /// Temperature of the contact (K) at the start of the step: the temperature at which two
+    /// half-spaces of the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the
+    /// effusivities e, plus the flash temperature if the case requests it.
     pub temperature: *const f64,
-    /// Temperature of the candidate there (K).
+    /// Temperature of the candidate at the contact (K).
     pub temperature_candidate: *const f64,
-    /// Temperature of the antagonist there (K).
+    /// Temperature of the antagonist at the contact (K).
     pub temperature_antagonist: *const f64,
     /// Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)).
     pub conductivity: *const f64,
-    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); null where no current flows.
+    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); null without current.
     pub resistivity: *const f64,
     /// Transport: thermal conductance (W/K; W/(m K) in 2D), not negative.
     pub out_conductance: *mut f64,
@@ -315,7 +321,7 @@ pub type FwCall =
 /// at a fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if the law declares none.
 pub type FwFracture = Option<unsafe extern "C" fn(parameters: *const f64, angle: f64) -> f64>;
 
-/// The table of a plugin: returned by its entry function, static for the life of the program.
+/// The table of a plugin, returned by its entry function. It is static for the life of the program.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FwPlugin {
@@ -325,9 +331,9 @@ pub struct FwPlugin {
     pub abi_major: u32,
     /// Minor version the plugin was built for.
     pub abi_minor: u32,
-    /// One of the `KIND_*`.
+    /// Kind of the law, one of `KIND_*`.
     pub kind: i32,
-    /// Zero.
+    /// Reserved; zero.
     pub reserved: u32,
     /// Union of `FLAG_*`.
     pub flags: u64,
@@ -341,25 +347,25 @@ pub struct FwPlugin {
     pub reference: *const c_char,
     /// Number of parameters.
     pub n_parameters: usize,
-    /// Their schema.
+    /// Schema of the parameters.
     pub parameters: *const FwField,
     /// Number of internal variables.
     pub n_variables: usize,
-    /// Their schema.
+    /// Schema of the internal variables.
     pub variables: *const FwField,
-    /// Cohesion: m of psi = (1 - D)^m psi_0, 0 if damage does not enter.
+    /// Cohesion: exponent m of psi = (1 - D)^m psi_0; 0 if damage has no effect.
     pub degradation: f64,
     /// Checks the parameters. May be null.
     pub validate: FwValidate,
-    /// Fills `state_next` of new contacts. Null: the schema's initial values.
+    /// Fills `state_next` of new contacts. If null, the initial values of the schema are used.
     pub initialise: FwCall,
     /// Contact and cohesion: fills the local form at the start of the step.
     pub prepare: FwCall,
     /// Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local
     /// form.
     pub solve_local: FwCall,
-    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`;
-    /// transport: `out_conductance`, `out_electric_conductance`.
+    /// Computes at the end of the step the new internal variables; damage: `out_damage`; wear:
+    /// `out_volume`; transport: `out_conductance`, `out_electric_conductance`.
     pub commit: FwCall,
     /// Cohesion: `out_energy` at the given opening and damage.
     pub energy: FwCall,
@@ -371,16 +377,16 @@ pub struct FwPlugin {
 /// The entry function's type.
 pub type FwEntry = unsafe extern "C" fn() -> *const FwPlugin;
 
-/// The table of a law that is linked into a program, as a static: the macro `plugin_table!` of the
-/// crate `fretwork-law` makes it.
+/// The table of a law that is linked into a program, as a static made by the macro `plugin_table!`
+/// of the crate `fretwork-law`.
 #[derive(Debug)]
 pub struct LinkedLaw(FwPlugin);
 
-// SAFETY: the table is never written; its pointers are to static text and functions.
+// SAFETY: the table is never written; its pointers refer to static text and functions.
 unsafe impl Sync for LinkedLaw {}
 
 impl LinkedLaw {
-    /// A law by its table.
+    /// Returns the law of a table.
     ///
     /// # Safety
     /// All pointers of the table must be valid as long as the program runs, and its functions must
@@ -389,7 +395,7 @@ impl LinkedLaw {
         Self(table)
     }
 
-    /// Its table.
+    /// Returns the table.
     pub const fn table(&self) -> &FwPlugin {
         &self.0
     }

@@ -1,6 +1,6 @@
-//! The laws of contact that come with Fretwork, by kind. Each is written with the crate
-//! `fretwork_law`, as the law of any author is, and reaches the program through the same table of
-//! functions.
+//! The contact laws that come with Fretwork, by kind. Each is written with the crate
+//! `fretwork_law`, like the laws of other authors, and reaches the program through the same table
+//! of functions.
 
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! Bonds that open along straight lines between mode I and mode II: their largest traction lies on
-//! the envelope of their reference, and what it takes to separate them is the energy of the
+//! Tests of bonds that open along straight lines between mode I and mode II. Their largest traction
+//! lies on the envelope of the law's reference, and the work of separation is the energy of the
 //! reference for that mode.
 
 use crate::cohesion::{
@@ -17,7 +17,7 @@ use std::f64::consts::{E, SQRT_2};
 const ANGLES: [f64; 5] = [0.0, 20.0, 45.0, 70.0, 90.0];
 const STEPS: u32 = 100_000;
 
-/// Largest normal and shear traction at the same moment, by their length (Pa), and the work
+/// Returns the largest normal and shear traction at one time, by their norm (Pa), and the work
 /// (J/m^2).
 #[derive(Default)]
 struct Pulled {
@@ -25,8 +25,8 @@ struct Pulled {
     work: f64,
 }
 
-/// Opens a bond along a line at an angle; `at` gives the traction, normal and shear, at an opening
-/// in these directions.
+/// Opens a bond along a line at an angle; `at` returns the traction, normal and shear, at an
+/// opening in these directions.
 fn pull(angle: f64, reach: f64, mut at: impl FnMut([f64; 2]) -> [f64; 2]) -> Pulled {
     let (s, c) = angle.to_radians().sin_cos();
     let (mut out, mut last) = (Pulled::default(), [0.0; 2]);
@@ -42,7 +42,7 @@ fn pull(angle: f64, reach: f64, mut at: impl FnMut([f64; 2]) -> [f64; 2]) -> Pul
     out
 }
 
-/// A cohesion law that breaks by itself.
+/// Opens a bond under a cohesion law that breaks without a damage law.
 fn of_cohesion<L: CohesionLaw + Parameters>(values: &[f64], angle: f64, reach: f64) -> Pulled {
     let law = L::read(values);
     let mut site = Site::default();
@@ -81,7 +81,7 @@ fn of_damage<L: DamageLaw + Parameters>(
     })
 }
 
-/// Compares at one angle (degrees).
+/// Returns a function that compares values at one angle (degrees).
 fn near(angle: f64) -> impl Fn(&str, f64, f64, f64) {
     move |what, found, expected, tolerance| {
         let near = (found / expected - 1.0).abs() < tolerance;
@@ -118,7 +118,7 @@ fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
         near("tvergaard-hutchinson, envelope", n.hypot(t), 1e6, 1e-3);
         near("tvergaard-hutchinson", plateau.work, 5.0, 1e-3);
     }
-    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma
+    // The strengths of Xu and Needleman in pure modes are sigma at delta_n, and sqrt(2 e) sigma
     // delta_n/delta_t at delta_t/sqrt(2).
     let pure = |angle| of_cohesion::<XuNeedleman>(&XU, angle, 2e-5).peak;
     near(0.0)("xu-needleman, strength", pure(0.0)[0], 2e6, 1e-6);
@@ -126,8 +126,8 @@ fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
     near(90.0)("xu-needleman, strength", pure(90.0)[1], shear, 1e-6);
 }
 
-/// Shear stiffness of half and of three times the normal one: the traction reaches the strength,
-/// and the area is the energy.
+/// The shear stiffness is half of the normal one and three times it: the traction reaches the
+/// strength, and the area is the energy.
 #[test]
 fn mixed_mode_of_damage_laws_is_that_of_their_references() {
     const STRENGTH: f64 = 3e5;
@@ -151,7 +151,7 @@ fn mixed_mode_of_damage_laws_is_that_of_their_references() {
                 of_damage::<Trapezoidal>(&values, m, k, angle, 1e-5),
             );
         }
-        // psi = w/2 at the onset with m = 2; what is stored where it is cut is released too.
+        // At the onset psi = w/2 for m = 2; the energy stored at the cut is released too.
         let (w, cut) = (0.1, 1e-3);
         let mac = of_damage::<MacDamage>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
         near("mac", mac.work, w * (1.0 - 0.5 * cut), 2e-3);

@@ -49,8 +49,8 @@ impl Intact {
         }
     }
 
-    /// The damage at which the bond carries `traction`: (1 - D)^m |t_0| = traction; 0 if the
-    /// undamaged bond carries less.
+    /// Returns the damage at which the bond carries `traction`: (1 - D)^m |t_0| = traction; 0 if
+    /// the undamaged bond carries less.
     #[inline]
     pub fn damage_for(&self, traction: f64) -> f64 {
         let t = self.traction_length();
@@ -65,8 +65,8 @@ impl Intact {
         }
     }
 
-    /// Damage of a bond that softens: it stays `damage` while the undamaged bond would carry no
-    /// more than `strength` (Pa), and never falls below it. Beyond, the bond carries
+    /// Returns the damage of a bond that softens. It remains `damage` while the undamaged bond
+    /// carries no more than `strength` (Pa), and never decreases. Beyond, the bond carries
     /// `traction(u, u_0)` (Pa) at the opening u, where u_0 = strength/K is the opening at the
     /// strength, and breaks where that is `None`.
     pub fn soften(
@@ -85,9 +85,9 @@ impl Intact {
         }
     }
 
-    /// [`Self::soften`] with a traction that falls linearly from `strength` (Pa) to zero at 2
-    /// energy/strength, so that `energy` (J/m^2) is the area below it; a bond that stores more than
-    /// that at its strength breaks there.
+    /// Calls [`Self::soften`] with a traction that decreases linearly from `strength` (Pa) to zero
+    /// at 2 energy/strength, so that `energy` (J/m^2) is the area below it. A bond that stores more
+    /// than that at its strength breaks there.
     pub fn soften_linearly(&self, damage: f64, strength: f64, energy: f64) -> f64 {
         self.soften(damage, strength, |u, first| {
             let last = 2.0 * energy / strength;

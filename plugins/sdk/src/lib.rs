@@ -1,6 +1,6 @@
 #![doc = include_str!("../README.md")]
 
-pub mod border;
+pub mod ffi;
 mod intact;
 mod output;
 mod site;

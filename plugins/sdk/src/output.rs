@@ -1,13 +1,13 @@
-//! What a law answers for a contact.
+//! Outputs of a law for a contact.
 
 use crate::Site;
 
 /// Output of a transport law (per metre of depth in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conductance {
-    /// Thermal (W/K).
+    /// Thermal conductance (W/K).
     pub thermal: f64,
-    /// Electrical (S).
+    /// Electrical conductance (S).
     pub electric: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Coulomb friction with this coefficient, and nothing else.
+    /// Returns Coulomb friction with this coefficient, without other effects.
     pub fn coulomb(mu: f64) -> Self {
         Self {
             mu,
@@ -66,7 +66,7 @@ pub struct Traction {
 }
 
 impl Traction {
-    /// An attractive force of the contact (N; N/m in 2D), as a stress over its area.
+    /// Returns an attractive force of the contact (N; N/m in 2D) as a stress over its area.
     pub fn attraction(force: f64, site: &Site) -> Self {
         Self {
             // A very small area overflows.
@@ -75,8 +75,8 @@ impl Traction {
         }
     }
 
-    /// That of a bond with one stiffness k (Pa/m) which damage reduces, (1 - D) k u; nothing once
-    /// it is broken.
+    /// Returns the response of a bond with one stiffness k (Pa/m) that damage reduces, (1 - D) k u;
+    /// zero once it is broken.
     pub fn damaged(site: &Site, k: f64) -> Self {
         if site.damage >= 1.0 {
             return Self::default();
@@ -85,7 +85,7 @@ impl Traction {
         Self::linear(site, k, k)
     }
 
-    /// Energy that the bond of [`Self::damaged`] stores (J/m^2).
+    /// Returns the energy that the bond of [`Self::damaged`] stores (J/m^2).
     pub fn damaged_energy(site: &Site, k: f64) -> f64 {
         if site.damage >= 1.0 {
             return 0.0;
@@ -94,7 +94,8 @@ impl Traction {
         bounded(0.5 * (1.0 - site.damage) * k * u * u)
     }
 
-    /// Linear in the opening, with stiffnesses (Pa/m) along the normal and the tangents.
+    /// Returns a response linear in the opening, with stiffnesses (Pa/m) along the normal and the
+    /// tangents.
     pub fn linear(site: &Site, stiffness_n: f64, stiffness_t: f64) -> Self {
         let [n, t1, t2] = site.opening;
         Self {

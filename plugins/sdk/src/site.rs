@@ -1,4 +1,4 @@
-//! What a law knows of a contact.
+//! Inputs of a law for a contact.
 
 use crate::Conductance;
 
@@ -13,12 +13,13 @@ pub struct Site {
     pub radius: f64,
     /// Time since the contact formed (s).
     pub age: f64,
-    /// Time for which it has carried a compressive impulse without interruption (s).
-    pub pressed: f64,
+    /// Time for which the contact has carried a compressive impulse without interruption (s).
+    pub compression_time: f64,
     /// Bond elongation (m).
     pub opening: [f64; 3],
-    /// Rotation of the bond (rad): twist about n, bending about t1 and t2; in two dimensions the
-    /// second is that about the axis out of the plane. Zero without `FLAG_MOMENT`.
+    /// Rotation of the bond (rad): twist about n, bending about t1 and t2. In two dimensions the
+    /// second component is the rotation about the axis out of the plane. Zero without
+    /// `FLAG_MOMENT`.
     pub rotation: [f64; 3],
     /// Relative velocity (m/s).
     pub velocity: [f64; 3],
@@ -26,8 +27,9 @@ pub struct Site {
     pub impulse: [f64; 3],
     /// Damage D; 1 without a bond.
     pub damage: f64,
-    /// Overlap (m), with `FLAG_COMPLIANT`: at the start of a step an estimate of that at its end,
-    /// for which the law gives force and stiffness; at the end of a step that which is there.
+    /// Overlap (m), with `FLAG_COMPLIANT`. At the start of a step it is an estimate of the overlap
+    /// at its end, for which the law gives force and stiffness; at the end of a step it is the
+    /// actual overlap.
     pub overlap: f64,
     /// Effective mass along the normal (kg; kg/m in 2D), with `FLAG_COMPLIANT` at the start of a
     /// step; 0 if neither body can move.
@@ -37,14 +39,14 @@ pub struct Site {
     pub spring_t: [f64; 2],
     /// `spring_t` at the start of the step, in commit (N; N/m in 2D).
     pub spring_before_t: [f64; 2],
-    /// Temperature of the contact (K) at the start of the step, where the case computes heat; 0
-    /// elsewhere.
+    /// Temperature of the contact (K) at the start of the step; 0 unless the case computes heat.
     pub temperature: f64,
-    /// Temperatures of candidate and antagonist there (K).
+    /// Temperatures of candidate and antagonist at the contact (K).
     pub temperatures: [f64; 2],
-    /// Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)); as `temperature`.
+    /// Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)); 0 unless the case computes
+    /// heat.
     pub conductivity: f64,
-    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); 0 where no current flows.
+    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); 0 without current.
     pub resistivity: f64,
     /// Slip over the step (m), for wear and transport.
     pub slip: f64,
@@ -56,7 +58,7 @@ pub struct Site {
     pub theta: f64,
     /// Time at the start of the step (s).
     pub time: f64,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: u32,
 }
 
@@ -101,8 +103,8 @@ impl Site {
         }
     }
 
-    /// Half-width (m) of the spot on which the compressive force is carried where surfaces of this
-    /// hardness (Pa) yield: of a circle, in 2D of a strip.
+    /// Half-width (m) of the spot that carries the compressive force where surfaces of this
+    /// hardness (Pa) yield: the radius of a circle, or the half-width of a strip in 2D.
     pub fn plastic_spot(&self, hardness: f64) -> f64 {
         let area = self.force() / hardness;
         match self.dimension {
@@ -111,7 +113,7 @@ impl Site {
         }
     }
 
-    /// Conductance of a spot of this half-width (m) between bodies of conductivity `k`: 2 k a of a
+    /// Conductance of a spot of this half-width (m) between bodies of conductivity `k`: 2 k a for a
     /// circle. In 2D that of a strip, counted to the distance 2 R on either side, R the reduced
     /// radius: pi k/(2 asinh(2 R/a)) per metre of depth. 0 without a spot.
     pub fn constriction(&self, k: f64, half_width: f64) -> f64 {
@@ -120,7 +122,8 @@ impl Site {
         }
         match self.dimension {
             2 => {
-                // asinh x in fewer operations than that of the library: x is well above 1e-3.
+                // This form of asinh takes fewer operations than that of the library; x is well
+                // above 1e-3.
                 let x = 2.0 * self.radius / half_width;
                 0.5 * std::f64::consts::PI * k / (x + (x * x + 1.0).sqrt()).ln()
             }
@@ -128,8 +131,8 @@ impl Site {
         }
     }
 
-    /// Electric conductance of a spot of this half-width (m), by the resistivity of the pair; 0
-    /// where no current flows.
+    /// Electric conductance of a spot of this half-width (m), from the resistivity of the pair; 0
+    /// without current.
     pub fn electric_constriction(&self, half_width: f64) -> f64 {
         match self.resistivity > 0.0 {
             true => self.constriction(1.0 / self.resistivity, half_width),
@@ -137,7 +140,7 @@ impl Site {
         }
     }
 
-    /// Heat and current through a spot of this half-width (m).
+    /// Conductances for heat and current of a spot of this half-width (m).
     pub fn through_spot(&self, half_width: f64) -> Conductance {
         Conductance {
             thermal: self.constriction(self.conductivity, half_width),

@@ -1,4 +1,4 @@
-//! The spring of a compliant contact, and the damping with which impacts rebound as asked.
+//! The spring of a compliant contact, and the damping for a given restitution of impacts.
 
 use crate::Site;
 
@@ -6,28 +6,29 @@ use crate::Site;
 /// in 2D).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spring {
-    /// Compressive force.
+    /// Compressive force (N; N/m in 2D).
     pub force_n: f64,
-    /// Its slope with the overlap.
+    /// Slope of the normal force with the overlap (N/m).
     pub stiffness_n: f64,
     /// Normal damping (N s/m).
     pub damping_n: f64,
     /// Tangential force at the start of the step: the site's `spring_t`, unless the law changes it.
     pub force_t: [f64; 2],
-    /// Its slope; 0 for a rigid tangential contact.
+    /// Slope of the tangential force (N/m); 0 for a rigid tangential contact.
     pub stiffness_t: f64,
-    /// Its slope when it unloads, where that is another; 0 otherwise. Displacement beyond that of
-    /// this slope is slip.
+    /// Slope of the tangential force on unloading (N/m), if it differs; 0 otherwise. Displacement
+    /// beyond that of this slope is slip.
     pub unloading_t: f64,
-    /// Energy that it holds (J), where that is not T^2/2 over the slope on unloading; 0 otherwise.
+    /// Energy stored in the tangential spring (J), if it differs from T^2/2 over the slope on
+    /// unloading; 0 otherwise.
     pub energy_t: f64,
     /// Tangential damping (N s/m).
     pub damping_t: f64,
 }
 
 impl Spring {
-    /// A linear spring of stiffness k along the normal and `ratio` times k along the tangents, with
-    /// a damping ratio ([`damping_ratio`]).
+    /// Returns a linear spring of stiffness k along the normal and `ratio` times k along the
+    /// tangents, with a damping ratio ([`damping_ratio`]).
     pub fn linear(site: &Site, stiffness: f64, ratio: f64, damping: f64) -> Self {
         let k_t = (ratio * stiffness).min(f64::MAX);
         Self {
@@ -43,15 +44,16 @@ impl Spring {
     }
 }
 
-/// Damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound with this
-/// share of the approach velocity when the contact ends as soon as its force is zero, not when the
-/// overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to 22). The same
-/// ratio holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k the slope.
+/// Returns the damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound
+/// with this fraction of the approach velocity. The contact ends as soon as its force is zero,
+/// before its overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to 22).
+/// The ratio also holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k
+/// the slope.
 ///
-/// The ratio of restitution 0 is infinite; that of 1e-6 is given instead.
+/// For a restitution of 0 the ratio is infinite; the value for 1e-6 is returned instead.
 pub fn damping_ratio(restitution: f64) -> f64 {
     thread_local! {
-        // A law asks for the same one in each batch.
+        // A law requests the same ratio in each batch, so the last one is stored.
         static LAST: std::cell::Cell<(f64, f64)> = const { std::cell::Cell::new((1.0, 0.0)) };
     }
     let (asked, ratio) = LAST.get();
@@ -70,7 +72,7 @@ fn find_damping_ratio(restitution: f64) -> f64 {
     }
     let (mut low, mut high) = (0.0, 1e4);
     for _ in 0..60 {
-        // Of 1e4 in the end 1e-14.
+        // The interval shrinks from 1e4 to 1e-14.
         let middle = 0.5 * (low + high);
         if rebound(middle) > wanted {
             low = middle;

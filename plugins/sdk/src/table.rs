@@ -94,33 +94,33 @@ macro_rules! export {
     };
 }
 
-/// The table of a law, a static named `TABLE`, without the exported entry function: for programs
-/// with built-in laws.
+/// Makes the table of a law, a static named `TABLE`, without the exported entry function: for
+/// programs with built-in laws.
 #[macro_export]
 macro_rules! plugin_table {
     (contact $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_CONTACT, 0.0,
-            prepare: Some($crate::border::contact_prepare::<$law>),
-            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::contact_commit::<$law>) },
+            prepare: Some($crate::ffi::contact_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::ffi::contact_commit::<$law>) },
             energy: None);
     };
     (cohesion $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_COHESION, <$law as $crate::CohesionLaw>::DEGRADATION,
-            prepare: Some($crate::border::cohesion_prepare::<$law>),
-            commit: if <$law as $crate::Law>::VARIABLES.is_empty() && <$law as $crate::Law>::FLAGS & $crate::abi::FLAG_BREAKS == 0 { None } else { Some($crate::border::cohesion_commit::<$law>) },
-            energy: Some($crate::border::cohesion_energy::<$law>));
+            prepare: Some($crate::ffi::cohesion_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() && <$law as $crate::Law>::FLAGS & $crate::abi::FLAG_BREAKS == 0 { None } else { Some($crate::ffi::cohesion_commit::<$law>) },
+            energy: Some($crate::ffi::cohesion_energy::<$law>));
     };
     (damage $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_DAMAGE, 0.0,
-            prepare: None, commit: Some($crate::border::damage_commit::<$law>), energy: None);
+            prepare: None, commit: Some($crate::ffi::damage_commit::<$law>), energy: None);
     };
     (wear $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_WEAR, 0.0,
-            prepare: None, commit: Some($crate::border::wear_commit::<$law>), energy: None);
+            prepare: None, commit: Some($crate::ffi::wear_commit::<$law>), energy: None);
     };
     (transport $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_TRANSPORT, 0.0,
-            prepare: None, commit: Some($crate::border::transport_commit::<$law>), energy: None);
+            prepare: None, commit: Some($crate::ffi::transport_commit::<$law>), energy: None);
     };
     (@table $law:ty, $kind:ident, $degradation:expr, prepare: $prepare:expr, commit: $commit:expr, energy: $energy:expr) => {
         use $crate::{Law as _, Parameters as _};
@@ -149,13 +149,13 @@ macro_rules! plugin_table {
             n_variables: VARIABLES,
             variables: SCHEMA.0.as_ptr(),
             degradation: $degradation,
-            validate: Some($crate::border::validate::<$law>),
+            validate: Some($crate::ffi::validate::<$law>),
             initialise: None,
             prepare: $prepare,
             solve_local: None,
             commit: $commit,
             energy: $energy,
-            fracture_energy: Some($crate::border::fracture_energy::<$law>),
+            fracture_energy: Some($crate::ffi::fracture_energy::<$law>),
         }) };
     };
 }
@@ -163,5 +163,5 @@ macro_rules! plugin_table {
 /// A schema that can be stored in a static.
 pub struct Fields<const N: usize>(pub [fretwork_abi::FwField; N]);
 
-// SAFETY: never written; its pointers are to static text.
+// SAFETY: the schema is never written; its pointers refer to static text.
 unsafe impl<const N: usize> Sync for Fields<N> {}

@@ -1,13 +1,13 @@
 //! Checks common to laws of one kind, for the tests of a law.
 //!
-//! They panic with the values that violate a requirement. `fretwork law certify` tests more, from
-//! outside.
+//! They panic with the values that violate a requirement. `fretwork law certify` makes more tests
+//! on the compiled library.
 
 use crate::abi::{FLAG_MOMENT, FLAG_TENSION_ONLY};
 use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Parameters, Site, WearLaw};
 use std::fmt::Debug;
 
-/// The law with the default of every parameter, with the minimum, and with the maximum.
+/// Returns the law with the default of every parameter, with the minimum, and with the maximum.
 fn extremes<L: Parameters>() -> [L; 3] {
     [0, 1, 2].map(|end| {
         let values = L::FIELDS
@@ -17,17 +17,17 @@ fn extremes<L: Parameters>() -> [L; 3] {
     })
 }
 
-/// A bond under a damage law, led from one opening to the next.
+/// A bond under a damage law, whose opening the test prescribes step by step.
 #[derive(Clone, Debug)]
 pub struct Bond<'a, L> {
     law: &'a L,
     state: Vec<f64>,
-    /// What the law sees of the contact; its damage is that of the bond.
+    /// Input of the law; its damage is that of the bond.
     pub site: Site,
 }
 
 impl<'a, L: DamageLaw> Bond<'a, L> {
-    /// A new bond with this damage, in steps of 1 ms.
+    /// Returns a new bond with this damage, in steps of 1 ms.
     pub fn new(law: &'a L, damage: f64) -> Self {
         let site = Site {
             damage,
@@ -38,7 +38,7 @@ impl<'a, L: DamageLaw> Bond<'a, L> {
         Self { law, state, site }
     }
 
-    /// Leads the bond to an opening and returns its damage there.
+    /// Opens the bond to a given state and returns its damage there.
     pub fn lead(&mut self, intact: &Intact) -> f64 {
         self.site.damage = self.law.grow(&self.site, intact, &mut self.state);
         self.site.damage
@@ -50,8 +50,8 @@ impl<'a, L: DamageLaw> Bond<'a, L> {
     }
 }
 
-/// The undamaged bond of a stiffness (Pa/m), opened by `u` (m) along its normal, whose energy falls
-/// with (1 - D)^m.
+/// Returns the undamaged bond of a stiffness (Pa/m), opened by `u` (m) along its normal, whose
+/// energy decreases with (1 - D)^m.
 pub fn opened(stiffness: f64, u: f64, m: f64) -> Intact {
     Intact {
         energy: 0.5 * stiffness * u * u,
@@ -61,11 +61,11 @@ pub fn opened(stiffness: f64, u: f64, m: f64) -> Intact {
     }
 }
 
-/// For any finite bond and the minimum, default and maximum of every parameter: D in \[D_i, 1\],
-/// variables finite.
+/// Checks for any finite bond and the minimum, default and maximum of every parameter that D is in
+/// \[D_i, 1\] and variables are finite.
 ///
 /// # Panics
-/// If the law leaves that range.
+/// Panics if the law leaves that range.
 pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
     let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
@@ -91,11 +91,11 @@ pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     }
 }
 
-/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for bonds of 1e12
-/// and 1e14 Pa/m.
+/// Checks that damage does not decrease on a random walk of the opening by 0.2 um per step, for
+/// bonds of 1e12 and 1e14 Pa/m.
 ///
 /// # Panics
-/// If it decreases, leaves \[0, 1\], or the path causes no damage.
+/// Panics if damage decreases or leaves \[0, 1\], or if the path causes no damage.
 pub fn damage_never_falls<L: DamageLaw + Default + Debug>() {
     let law = L::default();
     for (k, m) in [1e12, 1e14]
@@ -129,22 +129,23 @@ pub struct Pull {
     pub area: f64,
     /// Largest traction (Pa).
     pub peak: f64,
-    /// D at the end.
+    /// Damage at the end.
     pub damage: f64,
 }
 
 impl Pull {
-    /// The bond is broken, and its area is this energy (J/m^2) within 1e-4 of it.
+    /// Checks that the bond is broken, and that its area is this energy (J/m^2) within a relative
+    /// error of 1e-4.
     ///
     /// # Panics
-    /// If this does not hold.
+    /// Panics if this does not hold.
     pub fn took(&self, energy: f64) {
         assert!((self.area / energy - 1.0).abs() < 1e-4, "{self:?}");
         assert_eq!(self.damage, 1.0);
     }
 }
 
-/// A bond of stiffness `k` (Pa/m) and exponent `m`, opened to `reach` (m) by `steps` equal steps
+/// Opens a bond of stiffness `k` (Pa/m) and exponent `m` to `reach` (m) by `steps` equal steps
 /// along \[0.6, 0, 0.8\].
 pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pull {
     let mut bond = Bond::new(law, 0.0);
@@ -158,7 +159,8 @@ pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pu
     })
 }
 
-/// A [`pull`] test of a cohesion that breaks by itself, along a unit vector (n, t1, t2).
+/// Makes a [`pull`] test of a cohesion law that breaks without a damage law, along a unit vector
+/// (n, t1, t2).
 pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, steps: u32) -> Pull {
     open(reach, steps, |u, d| {
         let site = Site {
@@ -172,7 +174,7 @@ pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, s
     })
 }
 
-/// `at` returns damage and traction from the opening and the previous damage.
+/// Opens a bond; `at` returns damage and traction from the opening and the previous damage.
 fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> Pull {
     let du = reach / f64::from(steps);
     let (mut out, mut last) = (Pull::default(), 0.0);
@@ -186,11 +188,11 @@ fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> P
     out
 }
 
-/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy. An
-/// attraction over an area that overflows its stress is finite.
+/// Checks that openings that overflow give finite numbers, and that a broken bond has zero traction
+/// and energy. An attraction over an area that overflows its stress must be finite.
 ///
 /// # Panics
-/// If this does not hold, or the force is not attractive.
+/// Panics if this does not hold, or if the force is not attractive.
 pub fn cohesion_stays_finite<L: CohesionLaw + Default + Debug>() {
     for damage in [0.0, 0.3, 1.0] {
         let (law, state) = (L::default(), vec![1.0; L::VARIABLES.len()]);
@@ -224,11 +226,11 @@ pub fn cohesion_stays_finite<L: CohesionLaw + Default + Debug>() {
     }
 }
 
-/// Traction and moment of a bond are the slopes of its energy along opening and rotation; one that
-/// acts in tension only stores nothing in compression.
+/// Checks that traction and moment of a bond are the slopes of its energy along opening and
+/// rotation. A bond that acts in tension only must store nothing in compression.
 ///
 /// # Panics
-/// If this does not hold.
+/// Panics if this does not hold.
 pub fn traction_is_the_slope_of_the_energy<L: CohesionLaw + Debug>(law: &L) {
     let at = |moved: [f64; 6], damage: f64| Site {
         opening: [moved[0], moved[1], moved[2]],
@@ -270,7 +272,8 @@ pub fn traction_is_the_slope_of_the_energy<L: CohesionLaw + Debug>(law: &L) {
     }
 }
 
-/// The friction coefficient of a law without internal variables at a velocity (n, t1, t2) (m/s).
+/// Returns the friction coefficient of a law without internal variables at a velocity (n, t1, t2)
+/// (m/s).
 pub fn friction_at<L: ContactLaw>(law: &L, velocity: [f64; 3]) -> f64 {
     let site = Site {
         velocity,
@@ -279,8 +282,8 @@ pub fn friction_at<L: ContactLaw>(law: &L, velocity: [f64; 3]) -> f64 {
     law.friction(&site, &[]).mu
 }
 
-/// A contact in space under a compressive force (N), over 1 m^2 and a step of 1 s.
-pub fn pressed(force: f64) -> Site {
+/// Returns a contact in 3D under a compressive force (N), over 1 m^2 and a step of 1 s.
+pub fn compressed(force: f64) -> Site {
     Site {
         impulse: [force, 0.0, 0.0],
         area: 1.0,
@@ -290,10 +293,10 @@ pub fn pressed(force: f64) -> Site {
     }
 }
 
-/// Friction at any velocity and radius is finite and not negative.
+/// Checks that friction at any velocity and radius is finite and not negative.
 ///
 /// # Panics
-/// If it is not.
+/// Panics if it is not.
 pub fn friction_stays_finite<L: ContactLaw + Default + Debug>() {
     let (law, state) = (L::default(), vec![0.0; L::VARIABLES.len()]);
     for v in [0.0, 1e-320, -1e-320, -1e300, f64::MAX, f64::MIN] {
@@ -317,10 +320,10 @@ pub fn friction_stays_finite<L: ContactLaw + Default + Debug>() {
     }
 }
 
-/// The volume at any area, time step, slip and work is finite and not negative.
+/// Checks that the volume at any area, time step, slip and work is finite and not negative.
 ///
 /// # Panics
-/// If it is not.
+/// Panics if it is not.
 pub fn wear_stays_finite<L: WearLaw + Default + Debug>() {
     let law = L::default();
     let values = [0.0, 1e-320, -1.0, 1e300, f64::MAX];

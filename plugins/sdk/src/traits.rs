@@ -8,9 +8,9 @@ use fretwork_abi::FwField;
 pub trait Parameters: Sized {
     /// The schema.
     const FIELDS: &'static [FwField];
-    /// Version of the package that declares it.
+    /// Version of the package that declares the parameters.
     const PACKAGE_VERSION: &'static str;
-    /// From values in the order of the schema.
+    /// Reads the parameters from values in the order of the schema.
     fn read(values: &[f64]) -> Self;
 }
 
@@ -25,12 +25,12 @@ pub struct Variable {
     pub doc: &'static CStr,
     /// Value on a new contact.
     pub initial: f64,
-    /// Write it to the results.
+    /// Whether the variable is written to the results.
     pub output: bool,
 }
 
 impl Variable {
-    /// A variable that is 0 on a new contact and is not written to the results.
+    /// Returns a variable that is 0 on a new contact and is not written to the results.
     pub const fn new(name: &'static CStr, unit: &'static CStr, doc: &'static CStr) -> Self {
         Self {
             name,
@@ -67,14 +67,14 @@ pub trait Law: Parameters {
     const REFERENCE: &'static str;
     /// The law's own version; that of its package by default.
     const VERSION: &'static str = Self::PACKAGE_VERSION;
-    /// `FLAG_*` of the ABI.
+    /// Flags of the law, `FLAG_*` of the ABI.
     const FLAGS: u64 = 0;
-    /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
+    /// Internal variables, at most [`crate::ffi::MAX_VARIABLES`].
     const VARIABLES: &'static [Variable] = &[];
 
     /// The fracture energy (J/m^2) that a bond dissipates under slow monotonic loading at this
-    /// angle from the normal (rad; 0 is mode I, pi/2 mode II), if the law declares one: checked by
-    /// `fretwork law certify`.
+    /// angle from the normal (rad; 0 is mode I, pi/2 mode II), if the law declares one. `fretwork
+    /// law certify` checks it.
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
         None
     }
@@ -88,7 +88,7 @@ pub trait Law: Parameters {
     }
 }
 
-/// A value that goes linearly from `low` to `high` while x goes from `from` to `to`, and stays so
+/// Interpolates linearly from `low` at x = `from` to `high` at x = `to`, with constant values
 /// outside.
 pub fn ramp(x: f64, [from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
     let share = ((x - from) / (to - from)).clamp(0.0, 1.0);
@@ -106,17 +106,17 @@ pub fn require(holds: bool, message: &str) -> Result<(), String> {
     }
 }
 
-/// Friction, restitution, rolling.
+/// Laws of friction, restitution and rolling.
 pub trait ContactLaw: Law {
-    /// At the start of a step.
+    /// Computes the friction at the start of a step.
     fn friction(&self, site: &Site, state: &[f64]) -> Friction;
     /// The spring of a compliant contact at the start of a step, with `FLAG_COMPLIANT`; `damping`
     /// is [`Self::damping`].
     fn spring(&self, _site: &Site, _state: &[f64], _damping: f64) -> Spring {
         Spring::default()
     }
-    /// A number of its parameters alone that [`Self::spring`] is given, and that is computed once a
-    /// batch: the damping ratio.
+    /// A value that depends only on the parameters and is computed once per batch for
+    /// [`Self::spring`]: the damping ratio.
     fn damping(&self) -> f64 {
         0.0
     }
@@ -124,11 +124,11 @@ pub trait ContactLaw: Law {
     fn commit(&self, _site: &Site, _state: &mut [f64]) {}
 }
 
-/// Traction against opening.
+/// Laws of traction against opening.
 pub trait CohesionLaw: Law {
-    /// m of psi = (1 - D)^m psi_0; 0 if damage does not enter.
+    /// Exponent m of psi = (1 - D)^m psi_0; 0 if damage has no effect.
     const DEGRADATION: f64 = 0.0;
-    /// Traction and stiffness at the site's opening and damage.
+    /// Computes traction and stiffness at the site's opening and damage.
     fn traction(&self, site: &Site, state: &[f64]) -> Traction;
     /// Energy stored at the site's opening and damage (J/m^2): 0 for an attraction without opening.
     fn energy(&self, _site: &Site, _state: &[f64]) -> f64 {
@@ -141,23 +141,24 @@ pub trait CohesionLaw: Law {
     }
 }
 
-/// Growth of damage.
+/// Laws of the growth of damage.
 pub trait DamageLaw: Law {
-    /// Damage at the end of the step, from the opening there; updates the internal variables. The
-    /// host keeps the damage from decreasing.
+    /// Computes the damage at the end of the step from the opening there, and updates the internal
+    /// variables. The host keeps the damage from decreasing.
     fn grow(&self, site: &Site, intact: &Intact, state: &mut [f64]) -> f64;
 }
 
-/// Wear: removed volume.
+/// Laws of wear.
 pub trait WearLaw: Law {
-    /// Volume removed over the step (m^3), mostly from [`Site::slip`] and [`Site::friction_work`];
-    /// updates the internal variables.
+    /// Computes the volume removed over the step (m^3), mostly from [`Site::slip`] and
+    /// [`Site::friction_work`], and updates the internal variables.
     fn volume(&self, site: &Site, state: &mut [f64]) -> f64;
 }
 
-/// Transport of heat and charge through a contact.
+/// Laws of the transport of heat and charge through a contact.
 pub trait TransportLaw: Law {
-    /// Conductances over the step, from the state at its end; updates the internal variables. They
-    /// are not negative, and the same where candidate and antagonist are exchanged.
+    /// Computes the conductances over the step from the state at its end, and updates the internal
+    /// variables. They must not be negative, and must not change if candidate and antagonist are
+    /// exchanged.
     fn conductance(&self, site: &Site, state: &mut [f64]) -> Conductance;
 }

@@ -16,8 +16,8 @@ const STRENGTH: [f64; 2] = [0.01, 100.0];
 /// that takes all of the slide has an error of about 3 %; beyond the second the bond breaks in
 /// fewer than ten steps.
 const SLIDE: [f64; 2] = [0.01, 0.1];
-/// The first value where damage is coupled at the midpoint: its error falls with the square of the
-/// step.
+/// Replaces the first value of [`SLIDE`] where damage is coupled at the midpoint: the error then
+/// decreases with the square of the step.
 const RESOLVED_AT_MIDPOINT: f64 = 0.07;
 
 /// Time step times angular frequency. Up to the first value a period has at least twenty steps, and
@@ -114,8 +114,8 @@ fn slide(scale: &BondScale, load: &Load, h: f64, coupling: Coupling) -> Option<S
     let ratio = speed * h / critical;
     // A bond that breaks at its peak has no softening branch that a step could skip.
     let brittle = critical <= BRITTLE * peak;
-    // Error of the energy of a MAC bond in steps of this ratio, in per cent; the ratio at which it
-    // is 3 %.
+    // Errors of the energy of a MAC bond (%) for steps of this ratio, and the ratio at which the
+    // error is 3 %.
     let (error, resolved) = match coupling {
         Coupling::Midpoint => (540.0 * ratio * ratio, RESOLVED_AT_MIDPOINT),
         Coupling::Explicit | Coupling::Implicit { .. } => (300.0 * ratio, SLIDE[0]),

@@ -1,4 +1,4 @@
-//! Deformable bodies: their size, what their solutions take in memory, and what these cost in a
+//! Deformable bodies: their size, the memory of their solutions, and the cost of a solution per
 //! step.
 
 use crate::RunView;
@@ -6,9 +6,9 @@ use crate::bodies::SystemSize;
 use cpu_time::ThreadTime;
 use fretwork_core::view::SystemView;
 
-/// Operations of a factorisation above which it is not timed: it would take more than some tenths
-/// of a second.
-const MOST_TIMED: f64 = 5e8;
+/// Number of operations of a factorisation above which it is not timed, since it would take more
+/// than a few tenths of a second.
+const MAX_TIMED: f64 = 5e8;
 
 /// The lines of all deformable bodies: label and text.
 pub(super) fn lines(s: &dyn RunView, timed: bool) -> Vec<(&'static str, String)> {
@@ -32,7 +32,7 @@ pub(super) fn lines(s: &dyn RunView, timed: bool) -> Vec<(&'static str, String)>
         out.push(shape(&*system));
         let Some(size) = system.size() else { continue };
         out.push(("", memory(s.dimension(), &*system, &size)));
-        let times = (timed && size.operations[0] < MOST_TIMED).then(|| clock(&*system));
+        let times = (timed && size.operations[0] < MAX_TIMED).then(|| clock(&*system));
         out.push(("", cost(&size, times)));
     }
     out
@@ -60,8 +60,8 @@ fn bytes(count: usize) -> String {
     scaled(count as f64, [" B", " kB", " MB", " GB"])
 }
 
-/// A number with two digits or more, and the first of these units, each a thousand times the last,
-/// in which it is below a thousand.
+/// Formats a number with at least two digits and the first of these units in which it is below a
+/// thousand; each unit is a thousand times the previous one.
 fn scaled(mut value: f64, units: [&str; 4]) -> String {
     let mut units = units.into_iter();
     let mut unit = units.next().unwrap_or_default();
@@ -106,7 +106,7 @@ fn memory(dimension: usize, system: &dyn SystemView, size: &SystemSize) -> Strin
     )
 }
 
-/// Processor times of a factorisation and of a solution (s).
+/// Measures the processor times of a factorisation and of a solution (s).
 fn clock(system: &dyn SystemView) -> [f64; 2] {
     let mut trial = system.trial();
     let begun = ThreadTime::now();

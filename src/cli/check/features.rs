@@ -2,10 +2,10 @@
 
 use crate::bodies::Dof;
 use crate::laws::Interface;
-use crate::laws::demand::{LawRequirements, Requirement};
+use crate::laws::requirements::{LawRequirements, Requirement};
 use crate::record::{meshes, views};
 use crate::scene::case::{BodySpec, Case};
-use crate::scene::methods::Demands;
+use crate::scene::methods::SolverRequirements;
 use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
 use crate::step::Coupling;
 use crate::{AnySimulation, RunView};
@@ -44,7 +44,7 @@ impl Features {
         self.say("dimensions", Some(text));
         let turning = s.bodies().inverse_inertia.iter().filter(|i| **i > 0.0);
         let turning = turning.count();
-        // Only a contact whose force does not pass through the centre exerts a moment.
+        // A contact exerts a moment only if its force does not pass through the centre.
         let levers = has_levers(s);
         let turned = levers || asks(s, |d| d.friction) || s.laws().iter().any(Interface::opens);
         let text = format!("{turning} bodies turn freely");
@@ -62,7 +62,7 @@ impl Features {
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
     }
 
-    /// Changes during the run, and external loads.
+    /// Adds changes during the run, and external loads.
     fn programme(&mut self, case: &Case, s: &dyn RunView) {
         let phases = case.phases.iter().map(|p| match &p.repeat {
             None => p.name.clone(),
@@ -108,8 +108,8 @@ impl Features {
         self.list("imposed force", drives(|d| matches!(d, Dof::Force(_))));
         let servo = |d: &Dof| matches!(d, Dof::Pressure { .. });
         self.list("servo pressure", drives(servo));
-        let (gates, driven) = (s.gates().iter(), s.bodies().driven);
-        let timed = gates.map(|(place, time)| format!("{} at {time:e} s", driven[*place].name));
+        let (removals, driven) = (s.removals().iter(), s.bodies().driven);
+        let timed = removals.map(|(place, time)| format!("{} at {time:e} s", driven[*place].name));
         let opened = case.phases.iter().flat_map(|p| {
             let open = p.open.iter();
             open.map(|body| format!("{body} with phase {}", p.name))
@@ -129,12 +129,12 @@ impl Features {
     }
 
     fn laws(&mut self, s: &dyn RunView) {
-        let demands = Demands::of(s);
+        let requirements = SolverRequirements::of(s);
         let names = |which: fn(&LawRequirements) -> Requirement| {
-            let each = demands.each().filter_map(|(name, demand)| {
-                match demand.map_or(Requirement::Unseen, which) {
+            let each = requirements.each().filter_map(|(name, requirements)| {
+                match requirements.map_or(Requirement::NotObserved, which) {
                     Requirement::Never => None,
-                    Requirement::Unseen => Some(format!("{name}?")),
+                    Requirement::NotObserved => Some(format!("{name}?")),
                     _ => Some(name.to_owned()),
                 }
             });
@@ -285,8 +285,8 @@ impl Features {
 }
 
 fn asks(s: &dyn RunView, which: fn(&LawRequirements) -> Requirement) -> bool {
-    let demands = Demands::of(s);
-    let mut each = demands.each();
+    let requirements = SolverRequirements::of(s);
+    let mut each = requirements.each();
     each.any(|(_, d)| d.is_none_or(|d| which(d) != Requirement::Never))
 }
 
@@ -297,7 +297,7 @@ fn has_levers(s: &dyn RunView) -> bool {
     levers
 }
 
-/// Bytes per grain and per contact, from the types that store them.
+/// Returns the bytes per grain and per contact, from the types that store them.
 pub fn memory(s: &dyn RunView) -> [String; 2] {
     let memory = s.memory_use();
     let (kept, line) = (memory.grain, memory.solver_body);

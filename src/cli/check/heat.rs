@@ -1,9 +1,9 @@
-//! What `fretwork check` says of heat: its clock, and whether a grain has one temperature.
+//! Report of `fretwork check` on heat: its clock, and whether a grain has one temperature.
 
 use super::CheckLine;
 use super::load::Load;
 use crate::heat::{Heat, Node, Store};
-use crate::laws::bench::{Bench, Motion};
+use crate::laws::bench::{Bench, BenchMotion};
 use crate::laws::{Interface, Kind};
 use crate::scene::case::Case;
 use crate::{AnySimulation, RunView};
@@ -13,8 +13,8 @@ use fretwork_observe::heat::without_heat;
 /// P. DeWitt, Fundamentals of Heat and Mass Transfer, chapter 5).
 const UNIFORM: f64 = 0.1;
 
-/// D h/w^2 from which on the steps along the depth and along the surface, one after another, are
-/// not those of all at once: a band source is then off by more than 1 %
+/// Ratio D h/w² above which separate steps along the depth and along the surface differ from a
+/// simultaneous step: the error of a band source then exceeds 1 %
 /// (crates/math/tests/diffusion_columns.rs).
 const SPLIT: f64 = 0.5;
 
@@ -50,7 +50,7 @@ pub fn lines(case: &Case, simulation: &AnySimulation, load: &Load) -> Vec<CheckL
     out
 }
 
-/// What is done with heat, in words.
+/// Describes where heat is stored.
 pub fn stores(s: &dyn RunView) -> Option<String> {
     let (heat, state) = (s.heat()?, s.heat_state()?);
     let of = |(name, range): &(String, std::ops::Range<usize>)| {
@@ -82,7 +82,7 @@ pub fn stores(s: &dyn RunView) -> Option<String> {
     Some(grains + &bodies.join(", "))
 }
 
-/// Which bodies expand with their temperature, and which first bodies do not.
+/// Describes which bodies expand with their temperature, and which first bodies do not.
 fn expanding(s: &dyn RunView, heat: &Heat) -> Option<CheckLine> {
     let (coefficient, systems) = s.expanding()?;
     let expands = |body: usize| coefficient[body] != 0.0;
@@ -110,7 +110,7 @@ fn expanding(s: &dyn RunView, heat: &Heat) -> Option<CheckLine> {
     Some(("expansion".to_owned(), text))
 }
 
-/// What a step does between the pieces of a surface.
+/// Describes the conduction between the pieces of a surface in a step.
 fn sideways(case: &Case, heat: &Heat) -> Option<CheckLine> {
     let step = case.time.step * heat.clock * heat.every as f64;
     let numbers = heat.columns.iter().map(|c| c.number(step));
@@ -148,13 +148,14 @@ fn clock(case: &Case, heat: &Heat) -> String {
     text
 }
 
-/// Laws that count time or sliding speed by themselves, and how: shipped ones.
+/// Shipped laws that integrate over time or sliding speed by themselves, and how.
 const COUNTING: [(Kind, &str, &str); 2] = [
     (Kind::WEAR, "oxidation", "the sliding speed"),
     (Kind::TRANSPORT, "oxide-film", "time"),
 ];
 
-/// Laws that count time or speed of the mechanics where heat has a clock of its own.
+/// Names the laws that integrate over the time or speed of the mechanics where heat has its own
+/// clock.
 fn mechanical_time(s: &dyn RunView, heat: &Heat) -> Vec<CheckLine> {
     let mut out: Vec<CheckLine> = Vec::new();
     if heat.clock == 1.0 {
@@ -179,8 +180,8 @@ fn mechanical_time(s: &dyn RunView, heat: &Heat) -> Vec<CheckLine> {
     out
 }
 
-/// Conductance of the median contact of an interface under the load, its Biot number, and the time
-/// in which a grain takes the temperature of its neighbours.
+/// Describes the conductance of the median contact of an interface under the load, its Biot number,
+/// and the time in which a grain takes the temperature of its neighbours.
 fn conduction(
     case: &Case,
     s: &dyn RunView,
@@ -201,7 +202,8 @@ fn conduction(
         return Vec::new();
     };
     let diameter = 2.0 * radius;
-    // Of equal grains; of one on a surface its radius.
+    // Two equal grains have half their radius as the reduced radius; a grain on a surface has its
+    // own radius.
     let grains = |name: &String| {
         let pieces = s.pieces().into_iter().map(|p| (p.body, p.material));
         let balls = s.balls().into_iter().map(|b| (b.body, b.material));
@@ -216,9 +218,9 @@ fn conduction(
     let mut bench = Bench::new(law.clone(), s.dimension() as u32, reduced)
         .of_material([conductivity, a.pair_resistivity(b)]);
     let force = pressure * diameter.powi(s.dimension() as i32 - 1);
-    let motion = Motion {
+    let motion = BenchMotion {
         pressure: force / bench.area(),
-        ..Motion::default()
+        ..BenchMotion::default()
     };
     let mut state = [bench.fresh()];
     let Ok(answers) = bench.step(&mut state, &[motion], case.time.step) else {

@@ -1,4 +1,4 @@
-//! External loads on a scene, as far as the case gives them: sliding speed and pressure.
+//! External loads on a scene that follow from the case: sliding speed and pressure.
 
 use crate::bodies::{Dof, TimeFunction};
 use crate::record::biaxial::Biaxial;
@@ -33,13 +33,14 @@ impl Load {
     }
 }
 
-/// Largest magnitude of a drive's function over the run.
+/// Returns the largest magnitude of a drive's function over the run.
 fn largest(end: f64, f: impl Fn(f64) -> f64) -> f64 {
     let times = (0..=SAMPLES).map(|k| end * f64::from(k) / f64::from(SAMPLES));
     times.map(|t| f(t).abs()).fold(0.0, f64::max)
 }
 
-/// Largest speed that a drive imposes; for a sine from its amplitude, which samples may miss.
+/// Returns the largest speed that a drive imposes; for a sine from its amplitude, which samples may
+/// miss.
 fn peak_speed(dof: &Dof, end: f64) -> f64 {
     let each = dof.drives().map(|drive| {
         let sampled = largest(end, |t| drive.imposed_velocity(t).unwrap_or(0.0));
@@ -65,7 +66,7 @@ fn speed(case: &Case) -> Option<(f64, String)> {
     slide.or_else(|| fastest(case, |_, k| k < case.dimension as usize))
 }
 
-/// Largest speed of the drives accepted by `counts`, by body and axis.
+/// Returns the largest speed of the drives accepted by `counts`, by body and axis.
 fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, String)> {
     let mut fastest: Option<(f64, String)> = None;
     for body in &case.bodies {
@@ -81,7 +82,7 @@ fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, St
     fastest
 }
 
-/// Imposed force over the contact area of the test.
+/// Returns the imposed force over the contact area of the test.
 pub fn friction_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
     let test = case.friction.as_ref()?;
     let driven = s.bodies().driven_named(&test.body)?;
@@ -90,7 +91,8 @@ pub fn friction_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
     (pressure > 0.0).then_some(pressure)
 }
 
-/// Contact area of a friction test that is periodic along the sliding (m^2; m in 2D).
+/// Returns the contact area of a friction test that is periodic along the sliding direction (m^2; m
+/// in 2D).
 pub fn friction_area(case: &Case, s: &AnySimulation) -> Option<f64> {
     let test = case.friction.as_ref()?;
     let periods = s.periodic().period;
@@ -102,7 +104,7 @@ pub fn friction_area(case: &Case, s: &AnySimulation) -> Option<f64> {
     })
 }
 
-/// Lateral force on a square sample of compacity 0.82.
+/// Returns the pressure from the lateral force on a square sample of solid fraction 0.82.
 fn biaxial_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
     let spec = case.biaxial.as_ref()?;
     let test = Biaxial::new(spec, s.view())?;
@@ -133,7 +135,7 @@ pub fn gravity(s: &dyn RunView) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// Weight of all grains over the base area below them.
+/// Returns the weight of all grains over the base area below them.
 fn weight(s: &AnySimulation) -> Option<f64> {
     let g = gravity(s.view());
     let along = s.gravity();

@@ -10,10 +10,10 @@ use crate::scene::bond_sites::BondSites;
 use crate::scene::case::Case;
 use fretwork_core::unit::STIFFNESS;
 
-/// Overlap over the radius of a grain from which grains are too soft: contacts no longer act one by
-/// one.
+/// Ratio of overlap to radius above which grains are too soft: contacts of a grain then affect each
+/// other.
 const SOFT: f64 = 0.05;
-/// Overlap over the radius at which stiffnesses are given where no pressure is known.
+/// Ratio of overlap to radius at which stiffnesses are reported if no pressure is known.
 const SHOWN: f64 = 0.01;
 
 /// Shares of the pairs of bodies, by mass, on which the stiffness is compared with the step: the
@@ -39,16 +39,17 @@ pub fn lines(case: &Case, s: &dyn RunView, load: &Load) -> Vec<(&'static str, St
 
 /// A contact on the bench under the load.
 struct Pressed {
-    /// Radius of the two like grains that have its reduced radius (m).
+    /// Radius of two equal grains whose contact has this reduced radius (m).
     radius: f64,
-    /// Its overlap under the pressure, or the one shown without (m).
+    /// Overlap under the pressure, or the overlap at which values are reported if there is none
+    /// (m).
     overlap: f64,
-    /// Stiffnesses there (N/m; N/m per m of depth in 2D).
+    /// Stiffnesses at this overlap (N/m; N/m per m of depth in 2D).
     spring: SpringAnswer,
 }
 
 impl Pressed {
-    /// A contact of a reduced radius (m); `None` where the law cannot carry the load.
+    /// Returns the contact of a reduced radius (m); `None` if the law cannot carry the load.
     fn find(
         dimension: usize,
         law: &Interface,
@@ -93,7 +94,8 @@ fn text(
     else {
         return Ok(String::new());
     };
-    // Each pair with the stiffness of its own contact: light pairs are small, and may be softer.
+    // Each pair is evaluated with the stiffness of its own contact: light pairs are small, and may
+    // be softer.
     let mut kappas = Vec::new();
     for quantile in QUANTILES {
         let pair = sites.pair(quantile);

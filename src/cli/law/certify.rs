@@ -43,7 +43,7 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
         Some(law) => named(&path, law)?,
         None => {
             let laws = path.laws();
-            path.try_out(
+            path.test_loading(
                 laws.iter()
                     .map(|(kind, name, _)| (*kind, name.as_str(), None)),
             );

@@ -8,7 +8,7 @@ mod table;
 use super::super::number::positive;
 use super::super::output::{answer, answer_json, inform};
 use super::super::{Failure, PluginArgs};
-use crate::laws::bench::ROOM;
+use crate::laws::bench::ROOM_TEMPERATURE;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -74,7 +74,7 @@ pub struct DriveArgs {
     #[arg(long)]
     pressure: Option<f64>,
     /// Temperature of both bodies (K); with heat the lowest
-    #[arg(long, default_value_t = ROOM, value_parser = positive)]
+    #[arg(long, default_value_t = ROOM_TEMPERATURE, value_parser = positive)]
     temperature: f64,
     /// A path from a CSV file with the header time,n,t1,t2 (s, m)
     #[arg(long)]

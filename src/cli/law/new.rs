@@ -44,10 +44,10 @@ macro_rules! sources {
     };
 }
 
-/// Sources of the SDK and the ABI, so that a law builds without the repository.
+/// Sources of the SDK and the ABI, with which a law builds without the repository.
 const CRATES: &[(&str, &str)] = sources! {
     "fretwork-abi", "abi": "src/lib.rs";
-    "fretwork-law", "sdk": "README.md" "src/lib.rs" "src/border.rs" "src/intact.rs" "src/output.rs" "src/site.rs"
+    "fretwork-law", "sdk": "README.md" "src/lib.rs" "src/ffi.rs" "src/intact.rs" "src/output.rs" "src/site.rs"
         "src/spring.rs" "src/table.rs" "src/testing.rs" "src/traits.rs";
 };
 
@@ -86,9 +86,9 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The name of the law as cases write it; refused if it is not valid or taken.
+/// Returns the name of the law in the form used in cases. Invalid and existing names are rejected.
 fn law_name(args: &NewArgs, kind: Kind) -> Result<String, Failure> {
-    // Cases write a dash where a name has an underscore.
+    // Cases use a dash for each underscore of a name.
     let name = args.name.replace('_', "-");
     let plain = name_is_valid(&name) && name.starts_with(|c: char| c.is_ascii_lowercase());
     if !plain || name.len() > 60 {
@@ -105,7 +105,7 @@ fn law_name(args: &NewArgs, kind: Kind) -> Result<String, Failure> {
     Ok(name)
 }
 
-/// A law to be made, and its folder.
+/// Name, kind and folder of a new law.
 struct NewLaw {
     kind: Kind,
     name: String,
@@ -127,8 +127,8 @@ impl NewLaw {
             .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
     }
 
-    /// Writes its files; returns the command that builds it, and the folder in which the library is
-    /// then.
+    /// Writes the files of the law. Returns the command that builds it, and the folder of the built
+    /// library.
     fn write(&self, language: Language, template: &str) -> Result<(String, PathBuf), Failure> {
         let (folder, here) = (&self.folder, self.folder.display());
         let (source, library) = (self.fill(template), self.library());
@@ -159,7 +159,7 @@ impl NewLaw {
         }
     }
 
-    /// Writes the law as a crate, beside those of the SDK and the ABI.
+    /// Writes the law as a crate, beside the crates of the SDK and the ABI.
     fn write_crates(&self, source: &str) -> Result<(), Failure> {
         let folder = &self.folder;
         for (file, text) in CRATES {

@@ -70,7 +70,7 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
     out.trim_end().to_owned()
 }
 
-/// Both errors, with what they mean.
+/// Returns both errors with their definitions.
 fn errors(best: &Outcome, args: &SolveArgs, line: &mut impl FnMut(&str, String)) {
     let verdict = if best.converged {
         "solved"
@@ -107,7 +107,7 @@ fn errors(best: &Outcome, args: &SolveArgs, line: &mut impl FnMut(&str, String))
     }
 }
 
-/// Warning if the FCLIB error passes and the scale-free one does not.
+/// Returns a warning if the FCLIB error is below its limit and the scale-free error is not.
 fn warning(o: &Outcome, args: &SolveArgs) -> Option<String> {
     let limit = args.scale_free_limit();
     let passes = o.error <= args.tolerance && o.beside <= args.tolerance;

@@ -2,8 +2,8 @@
 
 use super::clear;
 use super::{Recorder, RunError, unwritable};
-use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
-use crate::record::code::{CodeError, decode, encode};
+use crate::record::checkpoint::{FrameKind, ResumeError, ResumePoint, SUMMARY_FILE};
+use crate::record::encoding::{EncodingError, decode, encode};
 use crate::step::ProcessState;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
@@ -16,9 +16,9 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// State of the run loop, beyond what follows from the case and the state of the simulation, behind
-/// which it stands. Rows are in the results file; the number of rows that belong to this state is
-/// stored here.
+/// State of the run loop that does not follow from the case and the state of the simulation; in a
+/// checkpoint it is stored after the latter. Rows are in the results file; the number of rows that
+/// belong to this state is stored here.
 #[derive(Serialize, Deserialize)]
 struct RunLoopState<'a> {
     /// Number of steps over which states and pictures are distributed.
@@ -32,7 +32,7 @@ struct RunLoopState<'a> {
     unconverged: u64,
     estimate: Cow<'a, ErrorEstimate>,
     accuracy: Cow<'a, Option<AccuracyControl>>,
-    /// Steps of the case that are done.
+    /// Number of steps of the case that are done.
     done: u64,
     wall: Duration,
     processor: Duration,
@@ -43,11 +43,12 @@ impl Recorder<'_> {
     /// Writes a checkpoint of the current state to the results.
     pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();
-        // A resumed run does not draw again what comes before the checkpoint.
+        // A resumed run does not draw the pictures before the checkpoint again.
         self.drawing.wait()?;
         let state = self.state()?;
-        self.write_frame(Kind::State, state)?;
-        // The other files can be regenerated from the results; this one is for the user to read.
+        self.write_frame(FrameKind::State, state)?;
+        // The other files can be regenerated from the results; this one is written for the user to
+        // read.
         self.table
             .flush()
             .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
@@ -56,18 +57,18 @@ impl Recorder<'_> {
     }
 
     /// Writes a checkpoint frame into the results.
-    pub(super) fn write_frame(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+    pub(super) fn write_frame(&mut self, kind: FrameKind, state: Vec<u8>) -> Result<(), RunError> {
         let (number, bytes) = self.checkpoint_writer.frame(kind, state);
         Ok(self.results.checkpoint(number, &bytes)?)
     }
 
     /// Moves the results file to its final name, with a first checkpoint in it, and opens the
     /// table.
-    pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+    pub(super) fn publish(&mut self, kind: FrameKind, state: Vec<u8>) -> Result<(), RunError> {
         self.write_frame(kind, state)?;
-        // Remove the marker of a finished earlier run, and its page: from now on this folder holds
-        // an unfinished one.
-        for path in [LAST, REPORT].map(|name| self.out.join(name)) {
+        // The marker of an earlier finished run and its page are removed: from now on this folder
+        // contains an unfinished run.
+        for path in [SUMMARY_FILE, REPORT].map(|name| self.out.join(name)) {
             match std::fs::remove_file(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
                     return Err(unwritable(&path, &e));
@@ -76,7 +77,7 @@ impl Recorder<'_> {
             }
         }
         let results = self.out.join("results.h5");
-        let replaces = kind == Kind::Begun && results.exists();
+        let replaces = kind == FrameKind::Begun && results.exists();
         self.results.publish(&results)?;
         if replaces {
             clear::clear(&self.out, &self.observers)?;
@@ -107,16 +108,16 @@ impl Recorder<'_> {
         Ok(bytes)
     }
 
-    /// Restores the state of a stopped run, and its rows up to there, in a new file that then
-    /// replaces the old one.
+    /// Restores the state of a stopped run, and copies its rows up to that state to a new file,
+    /// which then replaces the old one.
     pub(super) fn restore(&mut self, stop: ResumePoint) -> Result<(), RunError> {
         let path = stop.results.path().to_owned();
-        let refused = |source: CodeError| ResumeError::State {
+        let refused = |source: EncodingError| ResumeError::State {
             path: path.clone(),
             source,
         };
         let restored = self.simulation.restore(&stop.state).map_err(refused)?;
-        let other = || refused(CodeError::other("bodies or laws"));
+        let other = || refused(EncodingError::other("bodies or laws"));
         let state: RunLoopState<'_> = decode(restored.ok_or_else(other)?).map_err(refused)?;
         let processes = self.simulation.restore_processes(&state.processes);
         processes.map_err(refused)?;
@@ -137,14 +138,14 @@ impl Recorder<'_> {
         // The columns of the statistics are declared first.
         let rows = state.rows.first().map_or(0, |r| r.0 as usize);
         let columns = stop.results.statistics(&names, rows)?;
-        self.publish(Kind::State, stop.state)?;
+        self.publish(FrameKind::State, stop.state)?;
         let written = self.table.extend(&columns);
         written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
         Ok(())
     }
 
-    /// Goes on with the spacing of states and pictures that the run was begun with, also beyond its
-    /// end.
+    /// Keeps the spacing of states and pictures with which the run was started, also beyond its
+    /// original end.
     fn set_end(&mut self, spread: u64, path: &Path) -> Result<(), ResumeError> {
         self.spread = spread;
         let end = self.loaded.case.time.end;

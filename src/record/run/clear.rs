@@ -11,7 +11,7 @@ use std::path::Path;
 /// Name prefixes of pictures: `frames/NAME_STEP.png`.
 const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
-/// Names of the figures at the end of a run that no observer names, and its report.
+/// Names of the report, and of the figures at the end of a run that no observer names.
 pub(super) const FIGURES: [&str; 11] = [
     REPORT,
     "damage_ratio.png",
@@ -26,8 +26,8 @@ pub(super) const FIGURES: [&str; 11] = [
     "biaxial.png",
 ];
 
-/// Files of the program in the folder of a run: they are in place when older files are removed, and
-/// no observer's.
+/// Files of the program in the folder of a run that exist when older files are removed; they do not
+/// belong to an observer.
 pub(super) const OWN: [&str; 7] = [
     "results.h5",
     "grains.vtkhdf",
@@ -39,7 +39,7 @@ pub(super) const OWN: [&str; 7] = [
 ];
 
 /// Removes pictures, problems and figures of an older run from its folder, and the pictures and
-/// files that the observers of the new run name as theirs.
+/// files whose names observers of the new run declare as their own.
 pub(super) fn clear(folder: &Path, observers: &Observers) -> Result<(), RunError> {
     let (mut pictures, files) = (observers.picture_names(), observers.file_names());
     pictures.extend(PICTURES);

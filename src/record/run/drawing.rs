@@ -1,5 +1,5 @@
-//! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go
-//! on.
+//! Drawing in parallel with the steps: a separate thread draws the pictures of one time while the
+//! following steps are computed.
 
 use super::RunError;
 pub(super) use crate::view::noted;
@@ -12,19 +12,19 @@ use std::thread::{Builder, JoinHandle};
 /// A picture to be drawn.
 #[derive(Debug)]
 pub(super) struct Picture {
-    pub shows: Shows,
+    pub shows: DrawnContent,
     pub path: PathBuf,
-    /// Text of the band above it.
+    /// Text of the band above the picture.
     pub notice: Option<String>,
 }
 
 #[derive(Debug)]
-pub(super) enum Shows {
+pub(super) enum DrawnContent {
     Scene(Box<Frame>),
     Charts(Vec<Chart>),
 }
 
-/// Draws a figure whose rows are known.
+/// Draws a figure from the rows of the statistics.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -35,23 +35,23 @@ pub(super) fn draw_figure(figure: &Figure, path: &Path) -> Result<(), RunError> 
 impl Picture {
     fn draw(&self) -> Result<(), DrawError> {
         noted(self.notice.clone(), || match &self.shows {
-            Shows::Scene(frame) => frame.draw(&self.path),
-            Shows::Charts(charts) => draw_panels(charts, 2, &self.path),
+            DrawnContent::Scene(frame) => frame.draw(&self.path),
+            DrawnContent::Charts(charts) => draw_panels(charts, 2, &self.path),
         })
     }
 }
 
-/// The thread that draws, if there is one at the moment.
+/// The drawing thread, if one is running.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {
     thread: Option<JoinHandle<Result<(), DrawError>>>,
 }
 
 impl Drawing {
-    /// Begins to draw pictures, once those before are drawn.
+    /// Starts to draw pictures after the previous ones are finished.
     ///
     /// # Errors
-    /// One of those could not be written.
+    /// A previous picture could not be written.
     pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), RunError> {
         self.wait()?;
         let pictures = Arc::new(pictures);
@@ -68,7 +68,7 @@ impl Drawing {
     /// Waits until all pictures are on disk.
     ///
     /// # Errors
-    /// One could not be written.
+    /// A picture could not be written.
     pub fn wait(&mut self) -> Result<(), RunError> {
         match self.thread.take().map(JoinHandle::join) {
             None => Ok(()),

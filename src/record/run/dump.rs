@@ -7,14 +7,14 @@ use crate::step::StepReport;
 impl Recorder<'_> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let problem = self.simulation.local_problem();
         let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
             self.problems.1 += 1;
             return Ok(());
         };
-        // The FCLIB error adds impulses to velocities; scaled to similar size neither hides the
-        // other.
+        // The FCLIB error adds impulses to velocities. They are scaled to similar size, so that
+        // neither hides the other.
         let scale = problem.normalise();
         let folder = self.out.join("fclib");
         let path = folder.join(format!("step-{step:08}.hdf5"));

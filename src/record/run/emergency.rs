@@ -1,13 +1,13 @@
-//! What is left for the watch over plugins to write when a law does not come back from a step.
+//! Output that the watch over plugins writes if a law does not return during a step.
 //!
-//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The
-//! files and observers of the run it does not use during a step. So before a step they are laid
-//! where the watch finds them, with what was known then, and taken back after it. What happens then
-//! to the program is decided by whoever started the watch.
+//! The thread that hangs owns the simulation in the middle of a step, so nobody else may read it.
+//! The files and observers of the run are not used during a step. Before a step they are therefore
+//! stored where the watch finds them, with what is known at that time, and they are taken back
+//! after the step. Whoever started the watch decides how the program ends.
 
-use super::end::{self, LAST};
+use super::end::{self, SUMMARY_FILE};
 use super::{Recorder, RunError};
-use crate::laws::watch::{self, Ready};
+use crate::laws::watch::{self, RescueGuard};
 use crate::record::results::Results;
 use crate::record::statistics::Table;
 use crate::record::summary::{Summary, Uncertainty};
@@ -20,24 +20,24 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// All that can be written without the simulation.
+/// All outputs that can be written without the simulation.
 struct UnsavedOutputs {
     table: Table,
     results: Results,
     observers: Observers,
     summary: Summary,
-    /// What parts of the run before this one took, by the clock and of processors.
+    /// Wall and processor time of the parts of the run before it was resumed.
     spent: (Duration, Duration),
 }
 
-/// The place where it lies during a step.
+/// The shared slot that holds the outputs during a step.
 pub(super) struct EmergencySave {
     outputs: Arc<Mutex<Option<UnsavedOutputs>>>,
-    _ready: Ready,
+    _ready: RescueGuard,
 }
 
 impl EmergencySave {
-    /// An empty place that the watch knows.
+    /// Creates an empty slot and registers it with the watch.
     pub fn new(out: PathBuf, lock: FolderLock) -> Self {
         let outputs: Arc<Mutex<Option<UnsavedOutputs>>> = Arc::new(Mutex::new(None));
         let place = Arc::clone(&outputs);
@@ -48,7 +48,7 @@ impl EmergencySave {
                 let spent = outputs.spent;
                 outputs.summary.run.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
                 outputs.summary.run.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
-                lock.kept().is_ok() && outputs.write(who, &out)
+                lock.check_still_owned().is_ok() && outputs.write(who, &out)
             })
         });
         Self {
@@ -59,7 +59,7 @@ impl EmergencySave {
 }
 
 impl UnsavedOutputs {
-    /// Writes it; whether all of it is on disk.
+    /// Writes the outputs; returns whether all of them are on disk.
     fn write(&mut self, who: &str, out: &Path) -> bool {
         let summary = &mut self.summary;
         summary.run.stopped = Some(who.to_owned());
@@ -70,12 +70,12 @@ impl UnsavedOutputs {
         let text = serde_json::to_string_pretty(summary).unwrap_or_default();
         let table = self.table.flush().is_ok();
         let results = self.results.finish(out).is_ok();
-        end::write_atomic(&out.join(LAST), &(text + "\n")).is_ok() && table && results
+        end::write_atomic(&out.join(SUMMARY_FILE), &(text + "\n")).is_ok() && table && results
     }
 }
 
 impl Recorder<'_> {
-    /// A step, during which the watch can save what was recorded.
+    /// Makes a step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
         let begun = Instant::now();
         self.observers.before_step(self.simulation.view());
@@ -89,11 +89,11 @@ impl Recorder<'_> {
         let place = Arc::clone(&self.emergency.outputs);
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
-        // A law may not come back from a repeated step either.
+        // A law may also hang in a repeated step.
         let repeated = self.estimate.before_step(&mut *self.simulation, self.done);
         let repeated = repeated.map_err(RunError::from);
         let report = repeated.and_then(|()| self.part());
-        // The watch took it just before the law came back: it is written.
+        // If the slot is empty, the watch took and wrote the outputs just before the law returned.
         let outputs = place().take().ok_or(RunError::TakenOver)?;
         self.table = outputs.table;
         self.results = outputs.results;
@@ -104,7 +104,7 @@ impl Recorder<'_> {
         Ok(report)
     }
 
-    /// A step, or a part of one where the run chooses how many parts it has.
+    /// Makes a step, or a part of one if the run chooses the number of parts.
     fn part(&mut self) -> Result<StepReport, RunError> {
         let most = self.until_record();
         let Some(control) = &mut self.accuracy else {

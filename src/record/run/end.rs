@@ -4,8 +4,8 @@ use super::drawing::{draw_figure, noted};
 use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
-use crate::record::checkpoint::Kind;
-pub(super) use crate::record::checkpoint::LAST;
+use crate::record::checkpoint::FrameKind;
+pub(super) use crate::record::checkpoint::SUMMARY_FILE;
 use crate::record::output::Output;
 use crate::record::quantity::unit::ONE;
 use crate::record::quantity::{Findings, Role, Topic};
@@ -21,7 +21,7 @@ use std::time::Duration;
 impl Recorder<'_> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let statistics_read = self.timed(|t| &mut t.files, Self::read_statistics);
         let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
         let run = &mut self.summary.run;
@@ -45,9 +45,9 @@ impl Recorder<'_> {
             self.summary.run.stopped = Some(e.to_string());
             self.summary.check();
         }
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
-        write_atomic(&self.out.join(LAST), &(text + "\n"))?;
+        write_atomic(&self.out.join(SUMMARY_FILE), &(text + "\n"))?;
         files
     }
 
@@ -93,8 +93,8 @@ impl Recorder<'_> {
         self.table.recall().map_err(|e| unreadable(&path, &e))
     }
 
-    /// Writes the statistics, the results, the files of observers and the figures. All are tried;
-    /// the first error is returned.
+    /// Writes the statistics, the results, the files of observers and the figures. All are
+    /// attempted; the first error is returned.
     fn files(&mut self, wall: Duration) -> Result<(), RunError> {
         let written = self.timed(
             |t| &mut t.files,
@@ -117,22 +117,22 @@ impl Recorder<'_> {
         written.and(drawn)
     }
 
-    /// Whether figures are drawn: the case asks for them, and the run is not stopped in a hurry.
+    /// Whether figures are drawn: the case requests them, and the run is not stopped in a hurry.
     fn has_figures(&self) -> bool {
         let hurried = self.hurry.is_some_and(|flag| flag.load(Ordering::SeqCst));
         self.loaded.case.output.figures && !hurried
     }
 
-    /// Closes the results file, and marks it complete if the run reached its end.
+    /// Closes the results file, and marks it as complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.run.stopped.is_none() {
-            let (number, bytes) = self.checkpoint_writer.frame(Kind::Ended, Vec::new());
+            let (number, bytes) = self.checkpoint_writer.frame(FrameKind::Ended, Vec::new());
             self.results.set_final_checkpoint(number, &bytes);
         }
         Ok(self.results.finish(&self.out)?)
     }
 
-    /// Writes the figures known so far as data, for the report and for other programs.
+    /// Writes the data of the figures known so far, for the report and for other programs.
     pub(super) fn describe_figures(&self, wall: Duration) -> Result<(), RunError> {
         let outputs = self.observers.figures(&self.end(wall)).into_iter();
         let figure = |output| match output {
@@ -144,7 +144,7 @@ impl Recorder<'_> {
         write_atomic(&self.out.join(Figure::FILE), &text)
     }
 
-    /// Draws the figures, unless they are left out.
+    /// Draws the figures, unless they are disabled.
     fn draw(&self, wall: Duration) -> Result<(), RunError> {
         if !self.has_figures() {
             return Ok(());

@@ -1,7 +1,7 @@
 //! Errors of a run.
 
 use crate::record::checkpoint::ResumeError;
-use crate::record::code::CodeError;
+use crate::record::encoding::EncodingError;
 use crate::record::results::ResultsError;
 use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
@@ -42,23 +42,23 @@ pub enum RunError {
     /// The case is wrong.
     #[error(transparent)]
     Input(Box<InputError>),
-    /// Two columns of the statistics or two files have one name, which no line of the case gives.
+    /// Two columns of the statistics or two files have one name, but no line of the case gives this
+    /// name.
     #[error(
         "two {} are named `{name}`; give a measure or an observer another name",
         plural(what)
     )]
     NameTwice {
-        /// Of what kind.
+        /// Kind of the named items.
         what: &'static str,
         /// The name.
         name: String,
     },
-    /// An observer gave another number of values than it has columns.
+    /// An observer returned another number of values than it has columns.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// A law did not come back in time from a call, and the watch over laws has written what there
-    /// was. The handler that was given to [`crate::laws::watch::watch`] decides what becomes of the
-    /// program.
+    /// A law did not return from a call in time, and the watch over laws has written what was
+    /// recorded. The handler given to [`crate::laws::watch::watch`] decides how the program ends.
     #[error("a law did not come back in time; what was recorded until then is on disk")]
     TakenOver,
     /// The results file.
@@ -73,12 +73,12 @@ pub enum RunError {
     Resume(#[from] ResumeError),
     /// A checkpoint failed.
     #[error("cannot make a checkpoint: {0}")]
-    Checkpoint(#[from] CodeError),
+    Checkpoint(#[from] EncodingError),
 }
 
 impl RunError {
-    /// Whether nothing more is written after it: somebody else did, or the folder is not the run's
-    /// any more.
+    /// Whether nothing more may be written after this error: the watch wrote the results, or the
+    /// folder no longer belongs to the run.
     pub(super) fn is_last(&self) -> bool {
         let lost = |e: &LockError| matches!(e, LockError::Lost { .. });
         match self {
@@ -88,7 +88,7 @@ impl RunError {
         }
     }
 
-    /// Whether what the user gave is wrong, and nothing was run.
+    /// Whether the user's input is invalid, so that nothing was run.
     pub fn is_input(&self) -> bool {
         match self {
             Self::Resume(e) => e.is_input(),
@@ -121,7 +121,7 @@ impl From<PartError> for RunError {
     }
 }
 
-/// Several of what is named in one: `files in the folder`.
+/// Returns the plural of a kind of item: `files in the folder`.
 fn plural(what: &str) -> String {
     match what.split_once(' ') {
         Some((first, rest)) => format!("{first}s {rest}"),

@@ -5,7 +5,7 @@ use super::notice::band;
 use super::{Recorder, RunError};
 use crate::record::summary::Summary;
 use fretwork_observe::chart::quantity;
-use fretwork_observe::picture::Shows;
+use fretwork_observe::picture::PictureContent;
 use fretwork_observe::run_state::damage_ratio;
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ impl Recorder<'_> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
-        self.lock.kept()?;
+        self.lock.check_still_owned()?;
         let mut caption = vec![format!("t = {}", quantity(self.simulation.time(), "s", 4))];
         if let Some(phase) = self.simulation.begun().last() {
             caption.push(phase.name.clone());
@@ -28,25 +28,25 @@ impl Recorder<'_> {
             ));
         }
         self.camera.follow(self.simulation.view());
-        let mut pictures = vec![("frame", Shows::Scene)];
+        let mut pictures = vec![("frame", PictureContent::Scene)];
         if self.loaded.case.output.layers.is_some() && self.simulation.bonds_made() > 0 {
-            pictures.push(("bonds", Shows::Bonds));
+            pictures.push(("bonds", PictureContent::Bonds));
         }
         let own = self.observers.pictures(self.simulation.view());
         pictures.extend(own.into_iter().map(|p| (p.name, p.shows)));
         let (notice, title) = (self.notice(), &self.loaded.case.name);
         let simulation = self.simulation.view();
         let shown = pictures.into_iter().filter_map(|(name, shows)| {
-            let Shows::Charts(mut charts) = shows else {
+            let PictureContent::Charts(mut charts) = shows else {
                 let frame = self
                     .camera
                     .frame(simulation, &shows, title, caption.clone())?;
-                return Some((name, drawing::Shows::Scene(Box::new(frame))));
+                return Some((name, drawing::DrawnContent::Scene(Box::new(frame))));
             };
             let heading = [std::slice::from_ref(title), &caption].concat();
             let heading = heading.join("   ·   ");
             charts.iter_mut().for_each(|c| c.head(&heading));
-            Some((name, drawing::Shows::Charts(charts)))
+            Some((name, drawing::DrawnContent::Charts(charts)))
         });
         let pictures = shown.map(|(name, shows)| Picture {
             shows,
@@ -62,7 +62,7 @@ impl Recorder<'_> {
         frames.join(format!("{name}_{step:08}.png"))
     }
 
-    /// Text of the band over a picture during the run, as far as known.
+    /// Returns the text of the band over a picture during the run, from what is known so far.
     fn notice(&mut self) -> Option<String> {
         self.observers.before_step(self.simulation.view());
         let mut now = Summary {

@@ -28,7 +28,7 @@ use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
 use self::stamps::{density_of, stamps};
-use super::checkpoint::{CheckpointWriter, FolderState, Identity, Kind, ResumePoint, find};
+use super::checkpoint::{CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find};
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
@@ -36,7 +36,7 @@ use super::summary::{RunFacts, Summary, Uncertainty};
 use super::views;
 use crate::scene::case::Case;
 use crate::scene::processes;
-use crate::scene::{Built, Loaded};
+use crate::scene::{Built, LoadedCase};
 use crate::step::StepReport;
 use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
@@ -68,7 +68,7 @@ pub struct Progress {
     pub error: f64,
     /// Number of steps that missed the tolerance.
     pub unconverged: u64,
-    /// Broken bonds over bonds made.
+    /// Ratio of broken bonds to bonds made.
     pub damage_ratio: f64,
 }
 
@@ -81,12 +81,12 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
-/// Called with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the
-/// step, with a checkpoint from which it may be resumed and all files written.
+/// Callback with the progress of a run. [`ControlFlow::Break`] with a reason stops the run after
+/// the step; all files are written, with a checkpoint from which the run may be resumed.
 pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 
-/// A run of a case that is about to begin, with what a user of the library adds to it. Processes
-/// are added to the simulation in its dimension before
+/// A run of a case before its first step, with the observers that a user of the library adds.
+/// Processes are added to the simulation in its dimension before
 /// ([`Simulation::add_process`](crate::step::Simulation::add_process)).
 ///
 /// ```no_run
@@ -114,7 +114,7 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 /// ```
 #[derive(Debug)]
 pub struct Run<'a> {
-    loaded: &'a Loaded,
+    loaded: &'a LoadedCase,
     built: Built,
     options: &'a RunOptions,
     stop: Option<ResumePoint>,
@@ -123,8 +123,8 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// A run of a case from its start.
-    pub fn new(loaded: &'a Loaded, built: Built, options: &'a RunOptions) -> Self {
+    /// Returns a run of a case from its start.
+    pub fn new(loaded: &'a LoadedCase, built: Built, options: &'a RunOptions) -> Self {
         Self {
             loaded,
             built,
@@ -135,34 +135,34 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Leaves out the figures if the flag is set when the run ends, so that a stopped run ends
-    /// sooner. They are drawn when the run is resumed and ends.
+    /// Omits the figures if the flag is set when the run ends, so that a stopped run ends sooner.
+    /// They are drawn when the run is resumed and ends.
     #[must_use]
     pub fn hurry(mut self, flag: &'a AtomicBool) -> Self {
         self.hurry = Some(flag);
         self
     }
 
-    /// Adds an observer, whose columns stand after all others.
+    /// Adds an observer, whose columns follow all others.
     #[must_use]
     pub fn observe(mut self, observer: impl Observer + 'static) -> Self {
         self.observers.push(Box::new(observer));
         self
     }
 
-    /// Resumes a run of the case, with equal observers and processes, from where it was
-    /// [`stopped`]; the results have the bits of an uninterrupted run.
+    /// Resumes a run of the case, with equal observers and processes, from the state at which it
+    /// [`stopped`]. The results are bit-identical to those of an uninterrupted run.
     #[must_use]
     pub fn resume(mut self, stop: ResumePoint) -> Self {
         self.stop = Some(stop);
         self
     }
 
-    /// Runs to the end, or until `progress`, which is called after every step, asks for one.
+    /// Runs to the end, or until `progress`, which is called after every step, requests a stop.
     ///
     /// # Errors
-    /// A failed step, an unwritable file, or a state that does not fit the case; the summary
-    /// is written even then, unless nothing had begun.
+    /// A step failed, a file cannot be written, or a state does not fit the case. The summary is
+    /// written even then, unless the run had not begun.
     pub fn execute(self, progress: &mut OnProgress<'_>) -> Result<Summary, RunError> {
         let mut recorder = Recorder::new(self)?;
         let outcome = recorder.run_steps(progress).map(|stopped| {
@@ -177,7 +177,7 @@ impl<'a> Run<'a> {
             other => other,
         };
         match recorder.finish() {
-            // Why whatever failed before it did.
+            // This error is the reason why others occurred.
             Err(e) if e.is_last() => return Err(e),
             finished => outcome.and(finished)?,
         }
@@ -188,9 +188,9 @@ impl<'a> Run<'a> {
 /// Runs to the end. `progress` is called after every step.
 ///
 /// # Errors
-/// As [`Run::execute`].
+/// The errors are those of [`Run::execute`].
 pub fn run(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: Built,
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
@@ -206,28 +206,28 @@ pub fn run(
 /// # Errors
 /// The state cannot be read, is damaged, or belongs to another version or case.
 pub fn stopped(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: &Built,
     options: &RunOptions,
 ) -> Result<FolderState, RunError> {
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
-/// The observers that a run of a case has, for who steps without one. Its processes are
-/// [installed](processes::install) before.
-pub fn run_observers(loaded: &Loaded, s: &dyn RunView) -> Observers {
+/// Returns the observers that a run of a case has, for a program that steps without a run. Its
+/// processes must be [installed](processes::install) before.
+pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))
 }
 
-/// The columns of the statistics that a run of a case has.
+/// Returns the columns of the statistics that a run of a case has.
 pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
 }
 
 /// A run in progress.
 struct Recorder<'a> {
-    loaded: &'a Loaded,
+    loaded: &'a LoadedCase,
     out: PathBuf,
     simulation: AnySimulation,
     observers: Observers,
@@ -235,19 +235,21 @@ struct Recorder<'a> {
     results: Results,
     camera: Camera,
     drawing: Drawing,
-    /// Steps written as FCLIB problems, and those that hold what that form does not.
+    /// Number of steps written as FCLIB problems, and number of those with features that the format
+    /// cannot express.
     problems: (u64, u64),
     /// Steps that missed the tolerance.
     unconverged: u64,
     /// The estimate of the error of the run.
     estimate: ErrorEstimate,
-    /// Choice of step and tolerance, where the case asks for an accuracy; and the parts of a step
-    /// that are made.
+    /// Choice of step and tolerance if the case requires an accuracy, and the parts of a step made
+    /// so far.
     accuracy: Option<AccuracyControl>,
     parts: Option<StepParts>,
-    /// Steps of the case that are done; each may have several parts, which the simulation counts.
+    /// Number of steps of the case that are done. Each may have several parts, which the simulation
+    /// counts.
     done: u64,
-    /// Steps that were done when the run was resumed.
+    /// Number of steps that were done when the run was resumed.
     resumed_at: u64,
     /// Total steps of the run, and the steps over which states and pictures are distributed, as set
     /// when it was started.
@@ -256,24 +258,24 @@ struct Recorder<'a> {
     checkpoint_writer: CheckpointWriter,
     /// Wall and processor time of the run before it was resumed; and the start of this part.
     elapsed_before_resume: (Duration, Duration),
-    /// Where the watch over plugins finds the files during a step.
+    /// Slot in which the watch over plugins finds the files during a step.
     emergency: EmergencySave,
     clock: Instant,
     processor: ProcessTime,
     summary: Summary,
-    /// How well the main results are known, at the end.
+    /// Uncertainty of the main results, at the end.
     uncertainty: Uncertainty,
     /// Flag by which figures are left out at the end ([`Run::hurry`]).
     hurry: Option<&'a AtomicBool>,
-    /// Why rows of `statistics.csv` are missing, which is made of the results again when the run
-    /// goes on.
+    /// Error because of which rows of `statistics.csv` are missing. The file is regenerated from
+    /// the results when the run is resumed.
     unwritten: Option<RunError>,
-    /// The folder is this run's alone until it is over.
+    /// Lock by which the run owns the folder until it ends.
     lock: FolderLock,
 }
 
 impl<'a> Recorder<'a> {
-    /// From the start, or from where a run was stopped.
+    /// Prepares a run from the start, or from the state at which it was stopped.
     fn new(run: Run<'a>) -> Result<Self, RunError> {
         let (loaded, mut built, options) = (run.loaded, run.built, run.options);
         let case = &loaded.case;
@@ -291,7 +293,7 @@ impl<'a> Recorder<'a> {
             None => {
                 let made = std::fs::create_dir_all(&options.out);
                 made.map_err(|e| unwritable(&options.out, &e))?;
-                FolderLock::own(&options.out, RUN_LOCK)?
+                FolderLock::exclusive(&options.out, RUN_LOCK)?
             }
         };
         let frames = options.out.join("frames");
@@ -308,7 +310,7 @@ impl<'a> Recorder<'a> {
             ..RunFacts::default()
         };
         let columns = observers.columns();
-        // The file of results comes first: it alone says what the folder holds.
+        // The results file is opened first, since only it tells what the folder contains.
         let part = options.out.join("results.h5.part");
         let mut results = create_results(&part, loaded, &built, &facts, &observers)?;
         results.owned_by(lock.clone());
@@ -349,12 +351,12 @@ impl<'a> Recorder<'a> {
         recorder.observers.begin(&mut *recorder.simulation);
         let begun = match run.stop {
             Some(stop) => recorder.restore(stop),
-            None => recorder.publish(Kind::Begun, Vec::new()),
+            None => recorder.publish(FrameKind::Begun, Vec::new()),
         };
         match begun {
             Ok(()) => Ok(recorder),
             Err(e) => {
-                // The previous contents of the folder are still there.
+                // The previous contents of the folder are still in place.
                 let _ = std::fs::remove_file(&part);
                 Err(e)
             }
@@ -384,7 +386,7 @@ impl<'a> Recorder<'a> {
             let turned = phase > 0 && self.simulation.phase() > phase && !recurs;
             self.record(&report, last, finished, turned)?;
             if let Some(e) = self.unwritten.take() {
-                // The results are whole: the run can go on where there is room.
+                // The results are complete, so the run can be resumed when there is space.
                 let _ = self.timed(|t| &mut t.files, Self::write_checkpoint);
                 return Err(e);
             }
@@ -405,7 +407,7 @@ impl<'a> Recorder<'a> {
         Ok(None)
     }
 
-    /// A step of the case, in all its parts; returns the report of the last one.
+    /// Makes a step of the case, in all its parts; returns the report of the last part.
     fn whole_step(&mut self) -> Result<StepReport, RunError> {
         loop {
             let report = self.step()?;
@@ -415,7 +417,7 @@ impl<'a> Recorder<'a> {
                 |t| &mut t.observers,
                 |run| run.observers.after_step(run.simulation.view(), &report),
             );
-            // What the run loop does after a step of the case stands for its last part.
+            // After a step of the case, the run loop needs the state of its last part only.
             if self.parts.is_none() {
                 return Ok(report);
             }
@@ -430,9 +432,9 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Records a step: its events, and its problem, row, state and pictures where they are due.
-    /// `last` is the last step of the run, `finished` the one that ended it, `turned` one after
-    /// which another phase begins.
+    /// Records a step: its events, and its problem, row, state and pictures if they are due. `last`
+    /// is the last step of the run, `finished` the one that ended it, `turned` one after which
+    /// another phase begins.
     fn record(
         &mut self,
         report: &StepReport,
@@ -504,15 +506,15 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Begins the file of results, under a name that it has until there is something in it.
+/// Creates the results file under a temporary name, which it keeps until it has content.
 fn create_results(
     part: &Path,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     built: &Built,
     facts: &RunFacts,
     observers: &Observers,
 ) -> Result<Results, RunError> {
-    let made = views::Made {
+    let made = views::BuiltScene {
         simulation: built.simulation.view(),
         materials: &built.materials,
         densities: &built.densities,

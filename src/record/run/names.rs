@@ -5,12 +5,12 @@ use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
-use crate::scene::{Built, Loaded};
+use crate::scene::{Built, LoadedCase};
 use fretwork_observe::Observers;
 use fretwork_store::folder_lock::RUN_LOCK;
 use std::collections::BTreeSet;
 
-/// Files and folders that a run has beside those that it [removes](super::clear) of an older one.
+/// Files and folders of a run besides those of an older run that it [removes](super::clear).
 const OTHERS: [&str; 5] = [
     "results.h5.part",
     "summary.part",
@@ -19,14 +19,14 @@ const OTHERS: [&str; 5] = [
     RUN_LOCK,
 ];
 
-/// What two things of one name are, and their name.
+/// Kind of two items with the same name, and the name.
 type Twice = (&'static str, String);
 
-/// Refuses two columns or two files of one name, of the case and of who observes the run.
+/// Rejects equal names of two columns or of two files of the case and its observers.
 ///
 /// # Errors
-/// The name, at the line of the case that gives it.
-pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunError> {
+/// The error reports the name, at the line of the case that gives it.
+pub(super) fn check(loaded: &LoadedCase, observers: &Observers) -> Result<(), RunError> {
     let Some((what, name)) = twice(observers) else {
         return Ok(());
     };
@@ -39,15 +39,15 @@ pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunErr
 /// Checks that no two columns or files of a run of a case have the same name.
 ///
 /// # Errors
-/// The name, at the line of the case that gives it.
-pub fn check_names(loaded: &Loaded, built: &Built) -> Result<(), InputError> {
+/// The error reports the name, at the line of the case that gives it.
+pub fn check_names(loaded: &LoadedCase, built: &Built) -> Result<(), InputError> {
     let twice = twice(&run_observers(loaded, built.simulation.view()));
     let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
     error.map_or(Ok(()), Err)
 }
 
-/// Two columns or two files of one name. Names of files that differ in capitals are the same file
-/// on some systems.
+/// Finds two columns or two files of the same name. Names of files that differ only in case are the
+/// same file on some systems.
 fn twice(observers: &Observers) -> Option<Twice> {
     let mut columns = BTreeSet::new();
     for column in observers.columns() {
@@ -65,16 +65,16 @@ fn twice(observers: &Observers) -> Option<Twice> {
     None
 }
 
-/// The error at the line of the case that makes a name; `None` if it is of an observer of the
-/// library's user.
-fn at_line(loaded: &Loaded, what: &str, name: &str) -> Option<InputError> {
+/// Returns the error at the line of the case that gives a name; `None` if the name belongs to an
+/// observer of the library's user.
+fn at_line(loaded: &LoadedCase, what: &str, name: &str) -> Option<InputError> {
     let message = format!("another {what} is named `{name}`; take another name here");
     let path = path(&loaded.case, name)?;
     Some(loaded.source.locate(ValidationError::new(path, message)))
 }
 
-/// The path of the name in a case from which the name of a column or a file is made: the longest
-/// that is in it, of a measure before that of a body.
+/// Returns the path in the case of the name from which that of a column or a file is made: the
+/// longest one that is contained in it, with measures before bodies.
 fn path(case: &Case, made: &str) -> Option<String> {
     let measures = case.measures.iter().map(|m| m.name());
     let elastic = case.elastic.iter().map(|b| b.name.as_str());

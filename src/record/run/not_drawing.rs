@@ -1,5 +1,5 @@
-//! In place of drawing where the feature `view` is off: a run makes no pictures. Its figures stand
-//! as data in `figures.json` all the same.
+//! Replacement for drawing without the feature `view`: a run makes no pictures. The data of its
+//! figures are still written to `figures.json`.
 
 use super::{Recorder, RunError};
 use crate::RunView;
@@ -8,7 +8,7 @@ use fretwork_observe::chart::Figure;
 use fretwork_observe::picture::Paint;
 use std::path::Path;
 
-/// The colours of layers that a resumed run has from its checkpoint.
+/// Colours of layers, which a resumed run reads from its checkpoint.
 #[derive(Debug, Default)]
 pub(super) struct Camera(Vec<Paint>);
 
@@ -28,7 +28,7 @@ impl Camera {
     }
 }
 
-/// Nothing is drawn.
+/// Replacement for the drawing thread, which draws nothing.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {}
 

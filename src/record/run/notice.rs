@@ -1,4 +1,4 @@
-//! Warnings of a run over its pictures.
+//! Warnings of a run that are shown over its pictures.
 
 use crate::record::warning::Warning;
 

@@ -4,10 +4,10 @@ use super::Recorder;
 use crate::scene::case::Checkpoint;
 
 impl Recorder<'_> {
-    /// Steps of the case until the next record, the most that one step of the simulation may span.
-    /// With `every: 1`, the default, rows do not limit the span: a row then follows each step of
-    /// the simulation, however many of the case it spans, unless measures and tests average over
-    /// rows.
+    /// Returns the number of steps of the case until the next record, which is the most that one
+    /// step of the simulation may span. With `every: 1`, the default, rows do not limit the span: a
+    /// row then follows each step of the simulation, however many steps of the case it spans,
+    /// unless measures and tests average over rows.
     pub(super) fn until_record(&self) -> u64 {
         let case = &self.loaded.case;
         let output = &case.output;

@@ -1,15 +1,15 @@
 //! Metadata of a run: the certification of its laws, and the density of its first bodies.
 
 use crate::certify::{Certificate, certify_in_child, certify_parameters};
-use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
+use crate::laws::{Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
-use crate::scene::build::Loaded;
+use crate::scene::build::LoadedCase;
 
-/// The laws of a run, each listed once, and whether each passes certification with its parameters.
-/// A damage law is tested with the cohesion law beside it if that passes itself, other laws with
+/// Returns the laws of a run, each listed once, and whether each passes certification with its
+/// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
 /// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    let mut known = Known {
+    let mut known = CertificateCache {
         path: partners(),
         found: Vec::new(),
     };
@@ -42,7 +42,7 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     stamps
 }
 
-/// Where partners for tests of laws are found.
+/// Returns the search path with the partners for tests of laws.
 #[cfg(feature = "laws")]
 fn partners() -> SearchPath {
     crate::shipped::search_path()
@@ -53,7 +53,7 @@ fn partners() -> SearchPath {
     SearchPath::new(&[])
 }
 
-/// The libraries that a law links to, each with its SHA-256.
+/// Returns the libraries to which a law is linked, each with its SHA-256.
 fn links(p: &Plugin) -> Vec<String> {
     let links = p.links.iter();
     links
@@ -78,7 +78,7 @@ struct Key {
 }
 
 impl Key {
-    fn of(law: &Law) -> Self {
+    fn of(law: &LoadedLaw) -> Self {
         Self {
             kind: law.plugin.kind,
             name: law.plugin.name.clone(),
@@ -89,22 +89,23 @@ impl Key {
 }
 
 /// Certification results of laws and their partners.
-struct Known {
+struct CertificateCache {
     path: SearchPath,
     found: Vec<((Key, Option<Key>), bool)>,
 }
 
-impl Known {
-    fn certified(&mut self, law: &Law, partner: Option<&Law>) -> bool {
+impl CertificateCache {
+    fn certified(&mut self, law: &LoadedLaw, partner: Option<&LoadedLaw>) -> bool {
         let key = (Key::of(law), partner.map(Key::of));
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
         }
-        // A foreign law may end the process in which it is tested, or corrupt its memory. The
-        // shipped laws are certified by the project's tests.
-        let own = |p: &Plugin| self.path.is_own(p);
+        // A foreign law may end the process in which it is tested, or corrupt its memory, so it is
+        // tested in a separate process. The shipped laws are certified by the project's tests.
+        let own = |p: &Plugin| self.path.belongs_to_program(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
-        type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
+        type Test =
+            fn(&Plugin, &[f64], Option<&LoadedLaw>, &SearchPath) -> Result<Certificate, LawError>;
         let test: Test = if trusted {
             certify_parameters
         } else {
@@ -117,8 +118,8 @@ impl Known {
     }
 }
 
-/// Density of the first bodies, for wear expressed as mass.
-pub(super) fn density_of(loaded: &Loaded, any: bool) -> f64 {
+/// Returns the density of the first bodies, for wear expressed as mass.
+pub(super) fn density_of(loaded: &LoadedCase, any: bool) -> f64 {
     let material = loaded.case.bodies.first().map(|b| b.material.as_str());
     match (any, material) {
         (true, Some(name)) => loaded.density(name).unwrap_or(0.0),

@@ -1,4 +1,4 @@
-//! Measures what the wall time of a run is spent on.
+//! Measurement of how the wall time of a run is spent.
 
 use super::Recorder;
 use crate::step::StepReport;
@@ -6,7 +6,7 @@ use fretwork_observe::summary::TimeSpent;
 use std::time::Instant;
 
 impl Recorder<'_> {
-    /// Calls `action`, and adds its duration to a part of the time spent.
+    /// Calls `action`, and adds its duration to one part of the time spent.
     pub(super) fn timed<T>(
         &mut self,
         part: fn(&mut TimeSpent) -> &mut f64,

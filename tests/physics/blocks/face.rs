@@ -1,12 +1,11 @@
-//! A bonded face that is pulled open, against its law's closed form: the same in the plane and in
-//! space.
+//! A bonded face that is pulled open, compared with its law's closed form, in 2D and 3D.
 
 use super::{close, driven, scene, step};
 use fretwork::geometry::space::Space;
 
-/// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage,
-/// end and work of a law with strength 0.3 MPa and 0.5 J/m^2 over the whole face (m^2; m in 2D),
-/// whose bonds add up to it within a part.
+/// Pulls the face of a case open until all its bonds, of which the number is given, are broken.
+/// Checks peak, start of the damage, end and work of a law with strength 0.3 MPa and 0.5 J/m^2 over
+/// the whole face (m^2; m in 2D), to which the areas of its bonds add up within a tolerance.
 pub fn opens_by_its_law<S: Space>(case: &str, bonds: u64, face: f64, part: f64) {
     let (strength, energy, stiffness) = (3e5, 0.5, 1e12);
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
@@ -18,7 +17,7 @@ pub fn opens_by_its_law<S: Space>(case: &str, bonds: u64, face: f64, part: f64) 
         assert!(open < 2.0 * last);
         let pull = -s.state.received[grip].0[S::D - 1] / s.options.scheme.h;
         let before = open;
-        // From rest, over the first step the grip moves half.
+        // From rest the grip moves by half of the displacement in the first step.
         open += 0.01 * s.options.scheme.h * if s.state.steps == 1 { 0.5 } else { 1.0 };
         work += pull * (open - before);
         peak = peak.max(pull);
@@ -26,7 +25,7 @@ pub fn opens_by_its_law<S: Space>(case: &str, bonds: u64, face: f64, part: f64) 
         if begun.is_none() && list.iter().any(|b| b.damage > 0.0) {
             begun = Some((pull, open));
         }
-        // All points alike: the face does not turn.
+        // All points are equal: the face does not rotate.
         for b in list {
             assert!((b.opening_n - list[0].opening_n).abs() < 1e-9 * last);
         }

@@ -1,5 +1,5 @@
-//! Blocks that fit each other, and bonds over the faces between them, in the plane and in space:
-//! sizes and areas of samples, the law's closed form over a face, the ledger of a plate that tears.
+//! Blocks that fit each other, and bonds over the faces between them, in 2D and 3D: sizes and areas
+//! of samples, the law's closed form over a face, the ledger of a plate that tears.
 
 mod face;
 mod plane;
@@ -15,7 +15,7 @@ fn scene<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     scene::case::<S>(case, sets)
 }
 
-/// One step, which must converge.
+/// Makes one step, which must converge.
 fn step<S: Space>(s: &mut Simulation<S>) {
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(
@@ -25,7 +25,7 @@ fn step<S: Space>(s: &mut Simulation<S>) {
     );
 }
 
-/// The place of a driven body among them.
+/// Index of a driven body among the driven bodies.
 fn driven<S: Space>(s: &Simulation<S>, name: &str) -> usize {
     let mut all = s.state.bodies.driven.iter();
     all.position(|d| d.name == name).unwrap()

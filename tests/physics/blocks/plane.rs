@@ -9,7 +9,7 @@ use fretwork::step::Simulation;
 use nalgebra::Vector2;
 use std::collections::HashMap;
 
-/// Corners of a piece where it stands (m).
+/// Corners of a piece at its position (m).
 fn corners(s: &Simulation<Dim2>, piece: usize) -> Vec<Vector2<f64>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
@@ -90,7 +90,7 @@ fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
             }
         }
         assert!(held.is_empty() && sides > 400, "{held:?} {sides}");
-        // Sides shorter than the slack of detection have no bond.
+        // Sides shorter than the tolerance of detection have no bond.
         assert!(missing < 1e-5, "{missing:e}");
     }
 }

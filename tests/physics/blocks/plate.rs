@@ -1,4 +1,4 @@
-//! A bonded Voronoi plate that tears pays for its crack.
+//! A bonded Voronoi plate tears, and the released energy is that of its crack.
 
 use super::{scene, step};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
@@ -20,16 +20,16 @@ fn a_plate_in_space_pays_within_its_step() {
     assert!(far < 0.06, "{far}");
 }
 
-/// Damage is coupled explicitly: what is missing goes with the step. More than `cracked` points
-/// break until `end` (s).
+/// Damage is coupled explicitly, so the error depends on the step. More than `cracked` points break
+/// until `end` (s).
 fn pays<S: Space>(case: &str, end: f64, cracked: u64) {
     let far = [2.0, 1.0].map(|part| (paid::<S>(case, end, cracked, part) - 1.0).abs());
     println!("{far:?}");
     assert!(far[1] < 0.03 && far[1] < 0.7 * far[0], "{far:?}");
 }
 
-/// The fracture energy of the ledger over that of the law at the damages reached, with steps `part`
-/// times as long.
+/// Ratio of the fracture energy of the ledger to that of the law at the damages reached, with steps
+/// `part` times as long.
 fn paid<S: Space>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
     let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
     let mut s = scene::<S>(case, &[]);
@@ -38,8 +38,8 @@ fn paid<S: Space>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
         step(&mut s);
     }
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    // (1 - D) K u = t = strength (uf - u)/(uf - u0); what is lost is all under the curve but the
-    // triangle that unloads.
+    // (1 - D) K u = t = strength (uf - u)/(uf - u0); the released energy is the area under the
+    // curve less the triangle of unloading.
     let slope = strength / (last - first);
     let lost = |damage: f64| {
         let u = slope * last / ((1.0 - damage) * stiffness + slope);

@@ -19,7 +19,7 @@ use std::time::Duration;
 
 type V = Vector3<f64>;
 
-/// Faces of a piece where it stands (m).
+/// Faces of a piece at its position (m).
 fn faces(s: &Simulation<Dim3>, piece: usize) -> Vec<Vec<V>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
@@ -80,8 +80,8 @@ fn a_wall_in_running_bond() {
     }
 }
 
-/// A wall on a table tilted by 20 degrees stays where friction holds it, and slides as one where it
-/// does not.
+/// A wall on a table tilted by 20 degrees stays if friction holds it, and otherwise slides as one
+/// body.
 #[test]
 fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
     for (mu, slides) in [(0.4, false), (0.3, true)] {
@@ -108,9 +108,9 @@ fn a_face_opens_by_its_law_over_its_whole_area() {
     opens_by_its_law::<Dim3>("verification/bonded_face_3d", 4, 0.2, 1e-13);
 }
 
-/// Pulled by u, bent by two small angles and twisted: at the four corners (±a, ±b) of the face
-/// stand springs of a quarter of its area, so N = K_n A u, M = K_n A (b² about x, a² about y) and
-/// K_t A (a² + b²) about z.
+/// A face is pulled by u, bent by two small angles and twisted. Its four corners (±a, ±b) have
+/// springs of a quarter of its area, so N = K_n A u, M = K_n A (b² about x, a² about y) and K_t A
+/// (a² + b²) about z.
 #[test]
 fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     let (k_n, k_t, face, a, b) = (1e12, 5e11, 0.2, 0.25, 0.2);
@@ -121,7 +121,7 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
         |to: f64| format!("Displacement(Ramp(from: 0.0, to: {to:e}, start: 2e-6, end: 4e-6))");
     let (u, rx, ry, rz) = asked;
     let (z, x, y, t) = (ramp(u), later(rx), later(ry), later(rz));
-    // The grip turns about its centre, half a metre above the face: the face follows sideways, and
+    // The grip rotates about its centre, half a metre above the face: the face moves sideways, and
     // is held there.
     let (dx, dy) = (later(0.5 * ry), later(-0.5 * rx));
     let set = format!("bodies.grip.dofs=(x: {dx}, y: {dy}, z: {z}, rx: {x}, ry: {y}, rz: {t})");
@@ -137,8 +137,8 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     }
     let (force, moment) = s.state.received[grip];
     let (force, moment) = (-force / s.options.scheme.h, -moment / s.options.scheme.h);
-    // Where it stands: turns about several axes at once are those of the step's velocities, closer
-    // than the square of the angles.
+    // The actual rotation is used: rotations about several axes at once are those of the step's
+    // velocities, more exactly than the square of the angles.
     let b_grip = s.state.bodies.driven[grip].body as usize;
     let u = s.state.bodies.position[b_grip].z - 1.0;
     let turned = s.state.bodies.rotation[b_grip].scaled_axis();
@@ -205,7 +205,7 @@ fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
     }
 }
 
-/// Blocks count where grains are measured: their mass above a level, the tops of stairs, the wall
+/// Blocks count in measures of grains: their mass above a level, the tops of stairs, the wall
 /// without holes.
 #[test]
 fn blocks_are_measured() {
@@ -220,9 +220,9 @@ fn blocks_are_measured() {
     let mut scaled = measures(std::slice::from_ref(&mass), 1e3, &s);
     let mut mass = measures(&[mass], 1.0, &s);
     let whole: f64 = s.state.bodies.mass[..22].iter().sum();
-    // Centres of three of the five courses are above.
+    // The centres of three of the five courses are above the level.
     assert!(close(mass.sample(&s).unwrap()[0], 0.6 * whole, 1e-14));
-    // Of a case whose bodies are a thousand times too heavy: the mass as it is.
+    // In a case whose bodies are a thousand times too heavy, the measured mass is the unscaled one.
     assert!(close(scaled.sample(&s).unwrap()[0], 0.6e-3 * whole, 1e-14));
 
     let folder = std::env::temp_dir().join(format!("fretwork-blocks-{}", std::process::id()));
@@ -277,7 +277,7 @@ fn blocks_are_measured() {
         to: 0.8,
         start: 0.0,
     };
-    // In three columns the highest of three, two and three blocks.
+    // In three columns the heights are three, two and three blocks.
     let known = f64::atan((0.17 - 0.12) / (0.8 * 2.0 / 3.0));
     let found = measures(&[slope], 1.0, &s).sample(&s).unwrap()[0];
     assert!((found - known).abs() < 1e-6, "{found} {known}");

@@ -1,10 +1,10 @@
-//! What a ball is to a grain that deforms: its area counts once, however many points it touches,
+//! A ball in contact with a deformable grain: its area counts once, however many points it touches,
 //! and its mass is that of the case.
 
 use super::*;
 use crate::scene;
 
-/// A rigid disk of 5 mm that is pulled off a square of 20 mm, which is rigid with no elements.
+/// A rigid disk of 5 mm is pulled off a square of 20 mm, which is rigid if it has no elements.
 fn pulled(elements: usize) -> Simulation<Dim2> {
     let deforms = match elements {
         0 => String::new(),
@@ -41,7 +41,7 @@ fn attraction_acts_on_the_area_of_a_ball_once() {
     }
 }
 
-/// Of the same density, whatever the mesh.
+/// The density is equal for any mesh.
 #[test]
 fn a_ball_that_deforms_has_its_mass() {
     for elements in [1, 4] {

@@ -1,6 +1,6 @@
-//! An elastic bar hits a rigid wall (the field's impact benchmark: E 210 GPa, rho 7800 kg/m^3, 1 m
+//! An elastic bar hits a rigid wall (the usual impact benchmark: E 210 GPa, rho 7800 kg/m^3, 1 m
 //! long, 0.1 m/s): the wave that runs to its end and back carries a constant force, v sqrt(E rho)
-//! per area, for 2 L/c, and leaves it with its speed reversed.
+//! per area, for 2 L/c, and leaves the bar with its speed reversed.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -9,7 +9,7 @@ const LENGTH: f64 = 1.0;
 const WIDTH: f64 = 0.02;
 const SPEED: f64 = 0.1;
 
-/// The bar before its impact, without lateral strain: with nu = 0 it is the bar of one dimension.
+/// The bar before its impact, without lateral strain: with nu = 0 it is one-dimensional.
 fn falling(step: f64, theta: f64, cells: usize) -> Simulation<Dim2> {
     let mut s = scene::<Dim2>(&Sketch {
         bodies: floor::<Dim2>(),
@@ -71,14 +71,15 @@ fn a_bar_that_hits_a_wall_is_thrown_back_by_its_wave() {
     );
     let after = impulses.iter().sum::<f64>() / mass - SPEED;
     near(SPEED, after, 0.02);
-    // What the impact of the points at its end takes vanishes with the mesh.
+    // The energy that the impact of the points at its end dissipates vanishes with refinement of
+    // the mesh.
     let energy = &s.state.energy;
     let taken = 1.0 - (energy.kinetic + energy.elastic) / (0.5 * mass * SPEED * SPEED);
     assert!((0.0..0.01).contains(&taken), "{taken:e}");
 }
 
-/// Steps far above the time in which a wave crosses an element, and far below: no blow-up at theta
-/// from 1/2 to 1.
+/// With steps far above and far below the time in which a wave crosses an element, the solution
+/// does not grow at theta from 1/2 to 1.
 #[test]
 fn any_step_is_stable() {
     for (step, theta) in [(1e-3, 0.5), (1e-3, 1.0), (1e-5, 0.5), (1e-8, 0.5)] {

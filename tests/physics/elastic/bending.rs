@@ -49,8 +49,8 @@ fn mesh_of_tip(s: &Simulation<Dim2>, length: f64) -> f64 {
 #[test]
 fn a_cantilever_bends_by_its_closed_form() {
     let ratios = [4, 8, 16].map(deflection);
-    // The error of elements of constant strain falls with about the square of their size: the
-    // corners of the clamped end have singular stresses.
+    // The error of elements of constant strain decreases with about the square of their size, since
+    // the corners of the clamped end have singular stresses.
     let order = ((ratios[1] - ratios[0]) / (ratios[2] - ratios[1])).log2();
     assert!((1.6..2.3).contains(&order), "{ratios:?}: {order}");
     let extrapolated = ratios[2] + (ratios[2] - ratios[1]) / 3.0;

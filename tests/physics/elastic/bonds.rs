@@ -1,10 +1,13 @@
-//! Cohesion and damage between deformable bodies: glued by their points, they are pulled off with
-//! the strength and the energy of the law, which does not know of what it acts on.
+//! Cohesion and damage between deformable bodies: bodies bonded at their points are pulled off with
+//! the strength and the energy of the law, which does not depend on the kind of body.
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
-/// Stiff against the bonds, and without contraction across the pull, so that all bonds open alike.
+/// Material that is stiff compared with the bonds and has no lateral contraction, so that all bonds
+/// open equally.
 const STIFF: Elasticity = Elasticity {
     young: 210e9,
     poisson: 0.0,
@@ -18,7 +21,7 @@ const STRENGTH: f64 = 3e5;
 const ENERGY: f64 = 0.5;
 const LAST: f64 = 2.0 * ENERGY / STRENGTH;
 
-/// Width of what is glued (m).
+/// Width of the bonded area (m).
 const WIDTH: f64 = 0.02;
 
 const STEP: f64 = 1e-4;
@@ -54,7 +57,7 @@ fn pull<S: Space>(axis: usize) -> Vec<Dof> {
     axes
 }
 
-/// A block that touches by the points of its lower side and is pulled at its upper one.
+/// A block that touches by the points of its lower side and is pulled at its upper side.
 fn put_block<S: Space>(s: &mut Simulation<S>) -> usize {
     let axes: Vec<Option<Dof>> = pull::<S>(S::D - 1).into_iter().map(Some).collect();
     let held = [support("top", &axes)];
@@ -71,9 +74,9 @@ fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'
     HalfSpaceSpec {
         name: "half-space",
         material: STIFF,
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         position: [0.0; 3],
-        grid: Grid {
+        grid: CellGrid {
             from: [0.0; 2],
             size: [WIDTH / n as f64; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],
@@ -100,8 +103,9 @@ fn bonds<S: Space>(s: &Simulation<S>) -> Vec<(f64, bool)> {
     bonds.map(|b| (b.area, b.intact())).collect()
 }
 
-/// Pulls a part along an axis until long after bonds are to break: the peak of its force is the
-/// strength times the area, what was released the energy times the area, and no bond is left.
+/// Pulls a part along an axis until all bonds should have broken: the peak of its force is the
+/// strength times the area, the released energy is the fracture energy times the area, and no bond
+/// is left.
 fn pulled<S: Space>(
     what: &str,
     mut s: Simulation<S>,
@@ -132,9 +136,9 @@ fn pulled<S: Space>(
     closes(&s, 1e-9);
 }
 
-/// By a coupling, within what the peak of the force and the energy are those of the law: where
-/// damage lags the strength is exceeded by what a bond opens in a step over strength/K, 0.028 here,
-/// and the energy is off by the same order of the step.
+/// Tolerances of the peak force and the energy for a coupling. If damage lags, the strength is
+/// exceeded by the ratio of the opening per step to strength/K, 0.028 here, and the error of the
+/// energy is of that order too.
 const COUPLINGS: [(&str, [f64; 2]); 3] = [
     ("Midpoint", [0.015, 1e-4]),
     ("Explicit", [0.028, 0.01]),
@@ -167,8 +171,8 @@ fn a_block_is_pulled_off_a_plane_in_space() {
     a_block::<Dim3>();
 }
 
-/// A half-space that repeats opens uniformly, normal to its surface and along it; of one that does
-/// not the rim is pulled more.
+/// A periodic half-space opens uniformly, normal to its surface and along it; the rim of one that
+/// is not periodic carries more.
 fn off_a_plane<S: Space>(infinite: f64) {
     let up = S::D - 1;
     let (coupling, tolerances) = COUPLINGS[0];
@@ -195,7 +199,7 @@ fn a_half_space_is_pulled_off_a_plane_in_space() {
     off_a_plane::<Dim3>(f64::INFINITY);
 }
 
-/// Two deformable bodies: both, and the bonds between them, are strained.
+/// Both deformable bodies and the bonds between them are strained.
 #[test]
 fn a_block_is_pulled_off_a_half_space() {
     let (coupling, tolerances) = COUPLINGS[0];
@@ -206,9 +210,9 @@ fn a_block_is_pulled_off_a_half_space() {
         &mut s,
         HalfSpaceSpec {
             name: "below",
-            fills: Fills::Below,
+            fills: FilledSide::Below,
             touching: Cells::Surface,
-            grid: Grid {
+            grid: CellGrid {
                 from: [-0.5 * WIDTH, 0.0],
                 size: [0.125 * WIDTH, 1.0],
                 cells: [16, 1],
@@ -220,15 +224,15 @@ fn a_block_is_pulled_off_a_half_space() {
     pulled("block off a half-space", s, (system, "top", 1), tolerances);
 }
 
-/// Places along a side of a block whose cells grow from one end to the other.
+/// Coordinates along a side of a block whose cells grow from one end to the other.
 fn growing(n: u32) -> Vec<f64> {
     let place = |k: u32| WIDTH * (f64::from(k) / f64::from(n)).powf(1.7);
     (0..=n).map(place).collect()
 }
 
-/// A bond at a point of a mesh stands for its share of the surface, half of each cell beside it in
-/// the plane, so that the areas add up to the surface: graded meshes tear at the strength times the
-/// area, on a plane and on the mesh of another body.
+/// A bond at a point of a mesh represents its share of the surface, in 2D half of each cell beside
+/// it, so that the areas add up to the surface. Graded meshes tear at the strength times the area,
+/// on a plane and on the mesh of another body.
 fn graded_blocks<S: Space>(n: u32) {
     let (coupling, tolerances) = COUPLINGS[0];
     let up = S::D - 1;
@@ -246,7 +250,7 @@ fn graded_blocks<S: Space>(n: u32) {
     let system = upper(&mut s);
     go(&mut s, 1);
     if S::D == 2 {
-        // In the order of their size, as they grow along the side but for the last.
+        // The areas are sorted by size, since they grow along the side except for the last.
         let x = growing(n);
         let share = |k: usize| {
             let [left, right] = [k.saturating_sub(1), (k + 1).min(x.len() - 1)];
@@ -289,13 +293,13 @@ fn a_graded_mesh_has_the_area_of_its_surface_in_space() {
     graded_blocks::<Dim3>(4);
 }
 
-/// Half of a double cantilever beam: a beam of height h on a plane, to which it is glued beyond a
-/// crack, lifted at its end. Once the crack runs, the force P at a deflection d fulfils G = P^2
-/// a^2/(2 E I) and d = P a^3/(3 E I), where a is the length of the crack with what the root turns
-/// (J. G. Williams, Int. J. Fract. 36 (1988) 101), so that G = P^2/(2 E I) (3 E I d/P)^(2/3)
-/// whatever the root does. A beam of triangles is stiffer than E I by some per cent, which counts
-/// by a third, and what the scheme takes of bonds that open in some tens of steps adds three per
-/// cent to G: 1.068 here, 1.035 in the limit of small steps.
+/// Half of a double cantilever beam: a beam of height h on a plane, to which it is bonded beyond a
+/// crack, is lifted at its end. Once the crack runs, the force P at a deflection d fulfils G = P^2
+/// a^2/(2 E I) and d = P a^3/(3 E I), where a is the length of the crack including the compliance
+/// of the root (J. G. Williams, Int. J. Fract. 36 (1988) 101), so that G = P^2/(2 E I) (3 E I
+/// d/P)^(2/3) for any root. A beam of triangles is stiffer than E I by some per cent, which has a
+/// third of its effect, and the loss of the scheme in bonds that open in some tens of steps adds
+/// three per cent to G: 1.068 here, 1.035 in the limit of small steps.
 #[test]
 fn a_cantilever_peels_off_at_the_energy_of_its_bonds() {
     let (energy, strength, height, crack, lift) = (500.0, 2e7, 2e-3, 2e-2, 2e-5);

@@ -1,4 +1,4 @@
-//! Cases of `cases/verification/elastic/` against the closed forms that they name.
+//! Cases of `cases/verification/elastic/` compared with the closed forms that they name.
 
 use super::*;
 use crate::scene;
@@ -43,10 +43,10 @@ fn a_wall_carries_the_wave_of_a_bar() {
         .collect();
     let pushed = impulses.iter().filter(|p| **p > 0.5 * force * h).count();
     near(2.0 / (UNIAXIAL / DENSITY).sqrt(), pushed as f64 * h, 0.02);
-    // Between the arrival and the departure of the front, which a mesh spreads.
+    // These steps lie between the arrival and the departure of the front, which the mesh smears.
     let middle = &impulses[60..300];
     near(force, middle.iter().sum::<f64>() / (240.0 * h), 0.02);
-    // Thrown back with the speed that it came with.
+    // The bar rebounds with its initial speed.
     near(2.0 * 0.1 * DENSITY * 0.02, impulses.iter().sum(), 0.02);
     closes(&s, 1e-6);
 }

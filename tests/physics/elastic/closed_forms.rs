@@ -14,14 +14,14 @@ fn hyperelastic<S: Space>(mesh: Mesh<S>, supports: &[Support]) -> BodySpec<'_, M
     spec
 }
 
-/// P along an axis that is stretched, at a volume ratio.
+/// Stress P along a stretched axis at a volume ratio.
 fn nominal(stretch: f64, volume: f64) -> f64 {
     let (l, g) = (RUBBER.lambda(), RUBBER.shear());
     g * (stretch - 1.0 / stretch) + l * volume.ln() / stretch
 }
 
-/// The stretch across at which P vanishes there: of one direction (the other is held), or of two
-/// alike.
+/// Lateral stretch at which the lateral stress P vanishes, for one direction (the other is held) or
+/// for two equal ones.
 fn across(stretch: f64, directions: i32) -> f64 {
     let (mut low, mut high) = (0.2f64, 5.0f64);
     for _ in 0..100 {
@@ -48,7 +48,7 @@ fn cube<S: Space>(cells: usize) -> Mesh<S> {
     block::<S>(&lines[..S::D]).unwrap()
 }
 
-/// The force of the upper holder (N; N/m) at rest where it has been moved by a share of the height,
+/// Force of the upper holder (N; N/m) at rest after a displacement by a fraction of the height,
 /// with sides that are held or free.
 fn squeezed<S: Space>(share: f64, confined: bool) -> f64 {
     let mut s = scene::<S>(&Sketch {
@@ -110,8 +110,8 @@ fn compression_and_extension() {
     follows_the_closed_form::<Dim3>();
 }
 
-/// Simple shear by gamma: P_xy = mu gamma, sigma_xy = mu gamma, sigma_xx = mu gamma^2, and no force
-/// along y.
+/// Simple shear by gamma has P_xy = mu gamma, sigma_xy = mu gamma, sigma_xx = mu gamma^2, and no
+/// force along y.
 #[test]
 fn simple_shear() {
     let gamma = 0.5;
@@ -123,7 +123,7 @@ fn simple_shear() {
         support("bottom", &[Some(Dof::Fixed), Some(Dof::Fixed)]),
         support("top", &[ramp(gamma * SIDE, 10.0), Some(Dof::Fixed)]),
     ];
-    // With one cell no side is free to bulge.
+    // With one cell no side can bulge.
     add(&mut s, hyperelastic(cube::<Dim2>(1), &supports));
     go(&mut s, 14);
     closes(&s, 1e-9);
@@ -137,8 +137,8 @@ fn simple_shear() {
     }
 }
 
-/// A smooth rigid lid presses a block with free sides by a fifth: the sum of its contacts is that
-/// of uniaxial strain.
+/// A smooth rigid lid presses a block with free sides by a fifth: the sum of its contact forces is
+/// that of uniaxial strain.
 #[test]
 fn a_block_under_a_lid() {
     under_a_lid::<Dim2>();
@@ -193,11 +193,11 @@ fn under_a_lid<S: Space>() {
         near(expected, holder(&s, 0, "bottom", up).force, 1e-6);
         force.to_bits()
     });
-    // Bits repeat, also with two threads.
+    // Results are bit-identical, also with two threads.
     assert!(forces.iter().all(|f| *f == forces[0]));
 }
 
-/// All measures of strain agree as the load vanishes: the difference falls with the load, for the
+/// All measures of strain agree as the load vanishes: the difference decreases with the load, for a
 /// stubby cantilever in shear and compression.
 #[test]
 fn small_loads_are_linear() {

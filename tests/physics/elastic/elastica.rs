@@ -7,11 +7,11 @@ use crate::extremes::bench::floor;
 const LENGTH: f64 = 1.0;
 const HEIGHT: f64 = 0.0625;
 
-/// Deflection across the beam and shortening along it, over its length, under P L^2/(E I): with the
+/// Deflection across the beam and shortening along it, over its length, for P L^2/(E I). With the
 /// slope a at the end, sqrt(2 P L^2/(E I)) = int_0^a dt/sqrt(sin a - sin t), w = int sin t ds, L -
 /// u = int cos t ds.
 fn elastica(load: f64) -> [f64; 2] {
-    // t = a (1 - s^2) takes the root of the integrand away.
+    // The substitution t = a (1 - s^2) removes the root from the integrand.
     let integrals = |a: f64| {
         let n = 2000;
         (0..n).fold([0.0; 3], |sum, k| {
@@ -36,7 +36,7 @@ fn elastica(load: f64) -> [f64; 2] {
 
 #[test]
 fn the_elastica_has_its_table() {
-    // P L^2/(E I), w/L, u/L.
+    // The columns are P L^2/(E I), w/L, u/L.
     let table = [
         (1.0, 0.302, 0.056),
         (2.0, 0.493, 0.161),
@@ -51,8 +51,8 @@ fn the_elastica_has_its_table() {
     }
 }
 
-/// With the middle facet of its end as the part `tip`: a holder of the whole end would keep it from
-/// turning.
+/// Mesh with the middle facet of its end as the part `tip`: a holder of the whole end would keep it
+/// from rotating.
 fn with_tip(mesh: &Mesh<Dim2>) -> Mesh<Dim2> {
     let points = |name: &str| -> Vec<u32> {
         let facets = mesh.part(name).unwrap().iter();
@@ -128,8 +128,7 @@ fn a_cantilever_bends_as_the_elastica() {
     let expected = elastica(load);
     let found = [4, 8, 16].map(|cells| bent(Strain::Corotational, load, cells));
     for k in 0..2 {
-        // Triangles are too stiff in bending: what they lack is the square of their size as a share
-        // of the stiffness.
+        // Triangles are too stiff in bending: their relative error is the square of their size.
         let excess = found.map(|f| (expected[k] / f[k]) - 1.0);
         let orders = [excess[0] / excess[1], excess[1] / excess[2]].map(f64::log2);
         let [b, c] = [1.0 / found[1][k], 1.0 / found[2][k]];

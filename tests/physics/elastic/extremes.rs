@@ -1,5 +1,5 @@
-//! Bodies in large strain at their limits: nearly incompressible, elements of very different sizes,
-//! bodies on each other, and one that tumbles on a floor.
+//! Limits of bodies in large strain: nearly incompressible, elements of very different sizes,
+//! bodies on each other, and a body that tumbles on a floor.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -9,8 +9,8 @@ fn below<S: Space>() -> String {
     floor::<S>().replace("shapes:", "position: [0.0, -1.0], shapes:")
 }
 
-/// Deflection of a cantilever, 10 : 1, as a share of that of Euler and Bernoulli with Timoshenko's
-/// shear: linear elements lock as Poisson's ratio comes near 1/2.
+/// Deflection of a cantilever, 10 : 1, relative to that of Euler and Bernoulli with Timoshenko's
+/// shear: linear elements lock as Poisson's ratio approaches 1/2.
 fn deflection(poisson: f64, cells: usize) -> f64 {
     let (length, height, force) = (0.1, 0.01, 1e-3);
     let material = Elasticity { poisson, ..RUBBER };
@@ -46,7 +46,7 @@ fn nearly_incompressible_elements_lock() {
     }
 }
 
-/// Elements from 1 um to 1 cm in one block, bent back and forth.
+/// A block with elements from 1 um to 1 cm is bent back and forth.
 #[test]
 fn elements_of_all_sizes_in_one_mesh() {
     for strain in LARGE {
@@ -71,8 +71,8 @@ fn elements_of_all_sizes_in_one_mesh() {
     }
 }
 
-/// A soft block is pressed into a wider one by a third of its height: the holders and the contacts
-/// carry the same force.
+/// A soft block is pressed into a wider one by a third of its height: holders and contacts carry
+/// equal forces.
 #[test]
 fn a_block_is_pressed_into_another() {
     let side = 0.01;
@@ -92,7 +92,7 @@ fn a_block_is_pressed_into_another() {
     let mut spec = body(block::<Dim2>(&wide).unwrap(), RUBBER, &low);
     (spec.strain, spec.touching) = (Strain::NeoHookean, Touching::Surface("top"));
     add(&mut s, spec);
-    // Its points lie on vertices of the surface below, to rounding.
+    // The points lie on vertices of the surface below, up to round-off.
     let narrow = [even(0.0, side, 4), even(side, 2.0 * side, 4)];
     let mut spec = body(block::<Dim2>(&narrow).unwrap(), RUBBER, &high);
     (spec.strain, spec.touching) = (Strain::NeoHookean, Touching::Points("bottom"));
@@ -112,7 +112,7 @@ fn a_block_is_pressed_into_another() {
     println!("pressed: {force} N/m, up to {most:?} iterations");
     near(force, carried, 1e-6);
     near(force, holder(&s, 0, "bottom", 1).force, 1e-6);
-    // Between the stiffness of the upper block alone and a tenth of it.
+    // The stiffness is between that of the upper block alone and a tenth of it.
     let alone = 0.33 * RUBBER.plane_strain() * side;
     assert!((0.1 * alone..alone).contains(&force), "{force} of {alone}");
 }
@@ -129,8 +129,8 @@ fn with_skin(mesh: &Mesh<Dim2>) -> Mesh<Dim2> {
     Mesh::new(mesh.points().to_vec(), elements, &parts).unwrap()
 }
 
-/// A soft block falls on a rough floor while it spins, and bounces: energy does not grow, and the
-/// ledger closes. Two runs, the second on two threads, give the same bits.
+/// A spinning soft block falls on a rough floor and bounces: energy does not grow, and the ledger
+/// closes. Two runs, the second on two threads, are bit-identical.
 #[test]
 fn a_block_tumbles_on_a_rough_floor() {
     for strain in LARGE {

@@ -1,5 +1,5 @@
-//! A ball on the middle of a facet: its force goes to the corners of the facet, in small and in
-//! large strain, from below as from above.
+//! A ball on the middle of a facet: its force is distributed to the corners of the facet, in small
+//! and in large strain, from below and from above.
 
 use super::*;
 

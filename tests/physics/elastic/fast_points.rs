@@ -1,10 +1,10 @@
-//! Points of a mesh that come closer to a surface in a step than contacts are known.
+//! Points of a mesh that approach a surface in one step by more than the alert distance.
 
 use super::*;
 use crate::scene;
 
-/// A block of points that is lowered by 1 um a step on one that touches with its flat or wavy
-/// surface, to an overlap of 5 um of both without load: the force of its holder (N/m).
+/// A block is lowered by 1 um per step with its points on a flat or wavy surface of another, to an
+/// unloaded overlap of 5 um. Returns the force of its holder (N/m).
 fn pressed(profile: &str, theta: f64, alert: f64) -> f64 {
     let text = format!(
         r#"(name: "blocks", dimension: 2, time: (step: 1e-3, end: 0.03, theta: {theta:?}),
@@ -38,7 +38,7 @@ fn pressed(profile: &str, theta: f64, alert: f64) -> f64 {
         .map_or(0.0, |h| h.force)
 }
 
-/// Nothing passes however short the alert distance is, and the force is the same.
+/// No point passes for any alert distance, and the force is unchanged.
 #[test]
 fn points_do_not_pass_a_surface_in_a_step() {
     for profile in [

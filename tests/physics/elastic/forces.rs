@@ -1,4 +1,4 @@
-//! What holders feel and do, damping, uniform pressure, and surfaces that bend into something.
+//! Forces and work of holders, damping, uniform pressure, and surfaces that bend.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -35,14 +35,14 @@ fn a_holder_carries_weight_and_load() {
     let weight = 10.0 * STEEL.density * WIDTH * HEIGHT;
     near(1e4 + weight, holder(&s, 0, "bottom", 1).force, 1e-6);
     assert_eq!(holder(&s, 0, "top", 1).force, -1e4);
-    // sigma/E' with the sides free: between plane strain and full confinement.
+    // With free sides the strain sigma/E' is between plane strain and full confinement.
     let sunk = -holder(&s, 0, "top", 1).displacement;
     let free = 1e4 / WIDTH / STEEL.plane_strain() * HEIGHT;
     assert!(sunk < free && sunk > 0.8 * free, "{sunk:e} of {free:e}");
 }
 
-/// Damping by mass slows a translation by (1 - alpha h/2)/(1 + alpha h/2) a step at theta = 1/2; a
-/// holder that starts at once does the work of its jump.
+/// Damping by mass slows a translation by (1 - alpha h/2)/(1 + alpha h/2) per step at theta = 1/2;
+/// a holder that starts at once does the work of its jump.
 #[test]
 fn damping_and_jumps_are_booked() {
     let (alpha, h, speed) = (50.0, 1e-4, 0.2);
@@ -84,7 +84,7 @@ fn damping_and_jumps_are_booked() {
     );
 }
 
-/// Two equal blocks between smooth walls: all points carry the same pressure, those at the ends
+/// Two equal blocks between smooth walls: all points carry an equal pressure, those at the ends
 /// over half the length.
 #[test]
 fn a_uniform_pressure_is_uniform() {
@@ -134,8 +134,8 @@ fn a_uniform_pressure_is_uniform() {
     }
 }
 
-/// The force of a pin that a beam bends into does not depend on how far the neighbour list looks,
-/// although the middle of the beam, which carries the frame of its surface, stays where it is.
+/// A beam bends into a pin. The force of the pin does not depend on the skin of the neighbour list,
+/// although the middle of the beam, which carries the frame of its surface, does not move.
 #[test]
 fn a_beam_meets_what_its_end_bends_into() {
     let pressed = |skin: f64| {
@@ -176,8 +176,8 @@ fn a_beam_meets_what_its_end_bends_into() {
     }
 }
 
-/// A block dragged to and fro over a floor: what its holder does over a cycle is what friction
-/// takes, at any theta.
+/// A block is moved to and fro on a floor: the work of its holder over a cycle is the energy that
+/// friction dissipates, at any theta.
 #[test]
 fn the_area_of_the_loop_is_the_heat_of_friction() {
     for theta in [0.5, 1.0] {
@@ -219,7 +219,7 @@ fn the_area_of_the_loop_is_the_heat_of_friction() {
         }
         let heat = s.state.energy.friction - friction;
         println!("theta {theta}: heat {heat}, area {area}");
-        // At theta = 1/2 the block keeps chattering a little, which friction feels.
+        // At theta = 1/2 the block continues to chatter a little, which affects friction.
         near(
             0.3 * 1e4 * 4e-4,
             heat,

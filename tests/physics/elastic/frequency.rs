@@ -1,5 +1,5 @@
-//! Eigenfrequencies of a bar: w = pi c/(2 L) clamped at one end and w = pi c/L free at both, c =
-//! sqrt(E/rho) (nu = 0).
+//! Eigenfrequencies of a bar: w = pi c/(2 L) if it is clamped at one end, w = pi c/L if both ends
+//! are free, with c = sqrt(E/rho) (nu = 0).
 
 use super::*;
 use std::f64::consts::PI;
@@ -44,7 +44,7 @@ fn lowest(cells: usize, clamped: bool) -> f64 {
     system.begin_step(&step(h));
     let mut x: Vec<f64> = (0..n).map(|c| (c as f64 + 0.3).sin()).collect();
     let mut growth = 0.0;
-    // Translation along x.
+    // The first mode is the translation along x.
     let along: Vec<f64> = (0..n)
         .map(|c| {
             let mut unit = vec![0.0; n];

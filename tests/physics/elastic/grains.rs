@@ -1,26 +1,28 @@
 //! Grains on an elastic half-space, whose displacements have no inertia of their own.
 //!
-//! A mass m that stays in contact with a half-space of compliance F sees, with a = F m/h^2 and x
-//! the displacement less that at rest,
+//! For a mass m that remains in contact with a half-space of compliance F let a = F m/h^2, and x
+//! the displacement less that at rest:
 //!
 //! ```text
 //! x+ = x + h ((1 - theta) v + theta v+)        x+ = -F m (v+ - v)/h
 //! ```
 //!
-//! so that (x/h, v) is multiplied in a step by a matrix of trace (2 a - 1 + theta)/(a + theta) and
-//! determinant a/(a + theta). Where the half-space is stiff, a << 1, one factor is -(1 -
-//! theta)/theta: at theta = 1/2 velocity and force ring from step to step, with a factor of nearly
-//! -1.
+//! (x/h, v) is multiplied in each step by a matrix of trace (2 a - 1 + theta)/(a + theta) and
+//! determinant a/(a + theta). If the half-space is stiff, a << 1, one eigenvalue is -(1 -
+//! theta)/theta: at theta = 1/2 velocity and force oscillate from step to step, with a factor of
+//! nearly -1.
 
 use super::*;
 use crate::extremes::bench::{ball, grains, place, up};
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
 const STEP: f64 = 1e-4;
 const RADIUS: f64 = 0.01;
 
-/// A half-space of a modulus (Pa), with cells of 2 mm in the plane and of 5 mm in space, under
-/// grains and bodies.
+/// A half-space of a modulus (Pa), with cells of 2 mm in 2D and of 5 mm in 3D, under grains and
+/// bodies.
 fn ground<S: Space>(young: f64, theta: f64, all: &[String], bodies: &str) -> Simulation<S> {
     let far = format!(
         "(name: \"far\", material: \"m0\", shapes: [HalfSpace(normal: {})], position: {}),",
@@ -44,9 +46,9 @@ fn ground<S: Space>(young: f64, theta: f64, all: &[String], bodies: &str) -> Sim
             poisson: 0.3,
             density: 1000.0,
         },
-        fills: Fills::Below,
+        fills: FilledSide::Below,
         position: [0.0; 3],
-        grid: Grid {
+        grid: CellGrid {
             from: [-0.06; 2],
             size: [size; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],
@@ -71,8 +73,8 @@ fn force(s: &Simulation<Dim2>, weight: f64) -> f64 {
     sum / (STEP * weight)
 }
 
-/// A disk that is put down from 1 um above the surface. What the force is off its weight is
-/// multiplied by the factors of the scheme, of which the one nearer to -1 remains.
+/// A disk is released 1 um above the surface. The deviation of the force from its weight is
+/// multiplied by the eigenvalues of the scheme, of which the one nearer to -1 dominates.
 #[test]
 fn a_disk_at_rest_rings_by_the_factor_of_the_scheme() {
     let g = 9.81;
@@ -104,14 +106,14 @@ fn a_disk_at_rest_rings_by_the_factor_of_the_scheme() {
     }
 }
 
-/// What was put in less what there is: it grows from step to step, by what is dissipated.
+/// Supplied energy less the present energy: it grows from step to step by the dissipation.
 fn lost<S: Space>(s: &Simulation<S>) -> f64 {
     let e = &s.state.energy;
     e.initial_kinetic + e.external_work - (e.kinetic + e.potential + e.elastic)
 }
 
-/// Steps to the end, where the ledger closes: the bits of the state, and the most that a step won
-/// over the scale of the ledger.
+/// Steps to the end, where the ledger closes; returns the bits of the state, and the largest gain
+/// of a step relative to the scale of the ledger.
 fn settle<S: Space>(s: &mut Simulation<S>, steps: usize) -> (Vec<u64>, f64) {
     let (mut before, mut most) = (lost(s), 0.0f64);
     for _ in 0..steps {
@@ -127,7 +129,7 @@ fn settle<S: Space>(s: &mut Simulation<S>, steps: usize) -> (Vec<u64>, f64) {
     (numbers.collect(), most)
 }
 
-/// Two rows of grains that are dropped, and a lid that presses and shears them.
+/// Two rows of grains are dropped, and a lid presses and shears them.
 fn sheared<S: Space>(young: f64, theta: f64) -> (Vec<u64>, f64) {
     let mut all = Vec::new();
     for (row, n) in [(0, 5), (1, 4)] {
@@ -154,9 +156,9 @@ fn sheared<S: Space>(young: f64, theta: f64) -> (Vec<u64>, f64) {
     settled
 }
 
-/// At theta = 1/2 a step can win some per cent of all energy, which the ledger has as negative
-/// losses by impacts: there only the ledger and the bits are tested. From 0.55 on no step of these
-/// scenes wins any.
+/// At theta = 1/2 a step can gain some per cent of the total energy, which the ledger has as
+/// negative losses by impacts: there only the ledger and the bits are tested. From 0.55 on no step
+/// of these scenes gains energy.
 fn wins_nothing<S: Space>(moduli: &[f64]) {
     for young in moduli {
         for theta in [0.5, 0.55, 0.75, 1.0] {

@@ -1,5 +1,5 @@
-//! Elastic half-spaces against the closed forms of contact mechanics: Hertz, Westergaard, Cattaneo
-//! and Mindlin, Carter, and the creep curve of an elliptic contact.
+//! Elastic half-spaces compared with closed forms of contact mechanics: Hertz, Westergaard,
+//! Cattaneo and Mindlin, Carter, and the creep curve of an elliptic contact.
 
 mod defaults;
 mod punch;
@@ -7,7 +7,9 @@ mod resolution;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 use fretwork::process::cycle::{SlidingBody, SlidingPart};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -22,12 +24,12 @@ const RAIL: Elasticity = Elasticity {
 
 const STEP: f64 = 1e-3;
 
-/// At rest, undriven, flat, filling what is below.
-fn half_space(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_> {
+/// Returns a half-space at rest, undriven, flat, solid below its surface.
+fn half_space(material: Elasticity, grid: CellGrid, axes: &[Dof]) -> HalfSpaceSpec<'_> {
     HalfSpaceSpec {
         name: "lower",
         material,
-        fills: Fills::Below,
+        fills: FilledSide::Below,
         position: [0.0; 3],
         grid,
         repeats: false,
@@ -42,9 +44,9 @@ fn half_space(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'
 }
 
 /// Cells of a size within a half-extent on both sides of the origin (m).
-fn grid(size: [f64; 2], half: [f64; 2]) -> Grid {
+fn grid(size: [f64; 2], half: [f64; 2]) -> CellGrid {
     let cells = [0, 1].map(|k| (2.0 * half[k] / size[k]).round() as usize);
-    Grid {
+    CellGrid {
         from: [0, 1].map(|k| -0.5 * cells[k] as f64 * size[k]),
         size,
         cells,
@@ -78,21 +80,21 @@ fn ramp(to: f64, from: usize, steps: usize) -> TimeFunction {
     }
 }
 
-/// A loaded contact: place (m) and traction on the lower body along each axis (Pa), pressure
+/// A loaded contact: position (m) and traction on the lower body along each axis (Pa), pressure
 /// positive.
 struct Traction<V> {
     at: V,
     on: V,
 }
 
-/// Those of the points that carry a load. A point above a corner of the surface's facets may touch
-/// several of them.
+/// Contacts of the points that carry a load. A point above a corner of the surface's facets may
+/// have several.
 fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
     let contacts = s.state.network.contacts.iter();
     let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
     let mut points = std::collections::BTreeMap::new();
     for c in loaded {
-        // The impulse is that on the body of the points, above.
+        // The impulse acts on the upper body, that of the points.
         let on = c.impulse * (-1.0 / (area * s.options.scheme.h));
         let sum = points.entry(c.bodies[0]).or_insert(S::Vector::zero());
         *sum += on;
@@ -113,15 +115,16 @@ fn sticks<V: VectorLike>(t: &Traction<V>, mu: f64) -> bool {
     along < -mu * normal * (1.0 - 1e-6)
 }
 
-/// Sum of a part of the tractions times a weight of the place, over the pressure's sum.
+/// Sum of a component of the tractions times a weight of the position, over the sum of the
+/// pressure.
 fn mean<V: VectorLike>(found: &[Traction<V>], axis: usize, weight: impl Fn(&V) -> f64) -> f64 {
     let sum: f64 = found.iter().map(|t| t.on[axis] * weight(&t.at)).sum();
     let total: f64 = found.iter().map(|t| -t.on[V::N - 1]).sum();
     sum / total
 }
 
-/// Two like bodies in line contact, `n` cells over a, under 178.9 N/mm and a share of friction's
-/// limit.
+/// Two equal bodies in line contact, with `n` cells over a, under 178.9 N/mm and a fraction of the
+/// friction bound.
 fn line(n: usize, mu: f64, share: f64) -> Simulation<Dim2> {
     let (a, load) = (1e-3, 178.9e3);
     let size = a / n as f64;
@@ -134,7 +137,7 @@ fn line(n: usize, mu: f64, share: f64) -> Simulation<Dim2> {
     ];
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         mass: 10.0,
         touching: Cells::Points,
@@ -193,7 +196,7 @@ fn westergaards_wave() {
         let axes = [Dof::Fixed, Dof::Force(ramp(-share * whole * length, 0, 4))];
         let wave = HalfSpaceSpec {
             name: "upper",
-            fills: Fills::Above,
+            fills: FilledSide::Above,
             position: [0.0, -1.0 + amplitude, 0.0],
             profile: Profile::Wave(amplitude, [length, f64::INFINITY]),
             reach: Reach::Periodic(length),
@@ -218,15 +221,15 @@ fn westergaards_wave() {
     }
 }
 
-/// The material of the tangential loop: R 50 mm, G 200 MPa, nu 0.42.
+/// Material of the tangential loop: R 50 mm, G 200 MPa, nu 0.42.
 const SOFT: Elasticity = Elasticity {
     young: 2.0 * 200e6 * 1.42,
     poisson: 0.42,
     density: 1000.0,
 };
 
-/// Two like bodies whose surfaces have a relative radius, `n` cells over a, pressed to a depth and
-/// moved by `along` (m).
+/// Two equal bodies whose surfaces have a relative radius, with `n` cells over a, pressed to a
+/// depth and moved by `along` (m).
 fn spheres(
     n: usize,
     mu: f64,
@@ -247,7 +250,7 @@ fn spheres(
     ];
     let sphere = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.05; 2]),
         touching: Cells::Points,
         ..half_space(SOFT, cells, &axes)
@@ -256,9 +259,9 @@ fn spheres(
     s
 }
 
-/// Hertz, Cattaneo and Mindlin, and the tangential loop of Mindlin and Deresiewicz: P of the depth
-/// a^2/R, Q/(mu P) = 7/8 and c/a = 1/2 of the shift, 0.01102 N mm a loop (Johnson, sections 4.2 and
-/// 7.2 to 7.4).
+/// Hertz, Cattaneo and Mindlin, and the tangential loop of Mindlin and Deresiewicz: P at the depth
+/// a^2/R, Q/(mu P) = 7/8 and c/a = 1/2 at the displacement, 0.01102 N mm per loop (Johnson,
+/// sections 4.2 and 7.2 to 7.4).
 #[test]
 fn sphere() {
     let (n, a, mu, depth, shift, load) = (6, 1e-3, 0.4, 2e-5, 8.172e-6, 9.1954);
@@ -270,8 +273,7 @@ fn sphere() {
         (52.0, 1.0),
     ];
     let table = turns.map(|(k, x): (f64, f64)| (k * STEP, x * shift));
-    // Pressed by twice the alert distance in a step, or in two steps: what the loop takes is the
-    // same.
+    // Pressed by twice the alert distance in one step or in two steps, the loop has an equal area.
     let [mut s, mut slower] = [1, 2].map(|steps| {
         let along = TimeFunction::Table(table.to_vec());
         spheres(n, mu, (depth, steps), along)
@@ -301,8 +303,8 @@ fn sphere() {
     closes(&s, 1e-9);
 }
 
-/// A cylinder pressed on a flat in 10 steps, moved in the next 22 and then to and fro in 80, with
-/// friction 0.3.
+/// A cylinder is pressed on a flat in 10 steps, moved in the next 22 and then to and fro in 80,
+/// with friction 0.3.
 fn fretted(theta: f64) -> Simulation<Dim2> {
     let turns = [
         (0.0, 0.0),
@@ -325,7 +327,7 @@ fn fretted(theta: f64) -> Simulation<Dim2> {
     put(&mut empty, HalfSpaceSpec { reach, ..flat });
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         reach,
         mass: 10.0,
@@ -336,7 +338,7 @@ fn fretted(theta: f64) -> Simulation<Dim2> {
     empty
 }
 
-/// The area of a loop depends on theta by the order of the step alone, and is the heat of friction.
+/// The area of a loop depends on theta only to the order of the step, and is the heat of friction.
 #[test]
 fn the_area_of_a_loop_does_not_depend_on_theta() {
     let areas = [0.6, 0.8, 1.0].map(|theta| {
@@ -368,10 +370,10 @@ fn the_area_of_a_loop_does_not_depend_on_theta() {
     near(areas[2], areas[1], 0.02);
 }
 
-/// The work of the contacts less what is stored is (f+ - f) F (f+ - f)/2 in each step, at any
-/// theta: a half-space never gives energy back. Friction opposes the velocity of the end of a step
-/// and works on the mean one; below theta = 1 velocities without inertia ring, so that it may give
-/// some back in single steps.
+/// The work of the contacts less the stored energy is (f+ - f) F (f+ - f)/2 in each step, at any
+/// theta: a half-space never supplies energy. Friction opposes the velocity at the end of a step,
+/// but its work is that of the mean velocity. Below theta = 1 velocities without inertia oscillate,
+/// so that friction may supply energy in single steps.
 #[test]
 fn energy_comes_back_from_friction_alone_and_below_theta_1() {
     for theta in [0.5, 0.6, 1.0] {
@@ -396,7 +398,7 @@ fn energy_comes_back_from_friction_alone_and_below_theta_1() {
 }
 
 /// S. Fouvry, Ph. Kapsa, L. Vincent, Wear 185 (1995) 35: partial slip ends where Q = mu P and
-/// E_d/(4 Q delta) = 0.2, at the displacement 3 mu P (2 - nu)/(8 G a) of Mindlin.
+/// E_d/(4 Q delta) = 0.2, at Mindlin's displacement 3 mu P (2 - nu)/(8 G a).
 #[test]
 fn partial_slip_ends_at_an_energy_ratio_of_a_fifth() {
     let (mu, load) = (0.4, 9.1954);

@@ -11,10 +11,10 @@
 
 use super::*;
 use cpu_time::ThreadTime;
-use fretwork::solve::Options;
+use fretwork::solve::SolverOptions;
 use nalgebra::Vector2;
 
-/// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under
+/// The usual benchmark of a rail and a wheel: G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under
 /// 178.9 N/mm.
 const STEEL: Elasticity = Elasticity {
     young: 2.0 * 82e9 * 1.28,
@@ -24,15 +24,15 @@ const STEEL: Elasticity = Elasticity {
 
 const RADIUS: f64 = 0.5;
 const A: f64 = 1e-3;
-/// A thousandth of a second: waves cross the bodies in a hundredth of that, and the velocity that
-/// the load would give the cylinder without contacts, against which the error of the solver is
+/// Step of a thousandth of a second: waves cross the bodies in a hundredth of it, and the velocity
+/// that the load would give the cylinder without contacts, against which the error of the solver is
 /// measured, is still small.
 const STEP: f64 = 1e-3;
 /// Extent of the bodies (m).
 const FAR: f64 = 40.0 * A;
 const MU: f64 = 0.3;
 
-/// E* of two bodies of steel, or of one and a rigid one (Pa).
+/// E* of two bodies of steel, or of a steel body and a rigid one (Pa).
 fn modulus(counter: Counter) -> f64 {
     match counter {
         Counter::Rigid => STEEL.plane_strain(),
@@ -40,13 +40,13 @@ fn modulus(counter: Counter) -> f64 {
     }
 }
 
-/// What is pressed on the block.
+/// The body pressed on the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Counter {
-    /// A rigid disk without friction: with friction shear tractions of a load without shift raise
-    /// the pressure.
+    /// A rigid disk without friction: with friction, shear tractions due to the load alone would
+    /// raise the pressure.
     Rigid,
-    /// A cylinder of the same steel, of which the block is a mirror.
+    /// A cylinder of equal steel; the block is its mirror image.
     Steel,
 }
 
@@ -55,7 +55,7 @@ fn load(counter: Counter) -> f64 {
     std::f64::consts::PI * modulus(counter) * A * A / (4.0 * RADIUS)
 }
 
-/// Coordinates along the contact, even where it is, and away from it, with `n` elements over the
+/// Coordinates along the contact, even within it, and away from it, with `n` elements over the
 /// half-width.
 fn coordinates(n: usize) -> [Vec<f64>; 2] {
     let size = A / n as f64;
@@ -67,33 +67,33 @@ fn coordinates(n: usize) -> [Vec<f64>; 2] {
     [x, graded(0.0, FAR, size, 1.15)]
 }
 
-/// The cylinder at rest under its load, and a tangential force along x, a share of mu P, with `n`
-/// elements over the half-width, and of `finer` quarters of that number on a cylinder of steel. The
-/// solution is static: steps are long against all waves.
+/// The cylinder at rest under its load and a tangential force along x, given as a fraction of mu P.
+/// The block has `n` elements over the half-width, a cylinder of steel `finer` quarters of that
+/// number. The solution is static: steps are long against all waves.
 fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<Dim2> {
     pressed_as(counter, n, finer, share, |lines, _| {
-        Grid::new(lines).unwrap()
+        BlockGrid::new(lines).unwrap()
     })
 }
 
 /// Columns that reach through all rows.
-fn whole(lines: &[Vec<f64>], _: &str) -> Grid {
-    Grid::new(lines).unwrap()
+fn whole(lines: &[Vec<f64>], _: &str) -> BlockGrid {
+    BlockGrid::new(lines).unwrap()
 }
 
 /// Columns that join with the distance from a side.
-fn joined(lines: &[Vec<f64>], from: &str) -> Grid {
-    Grid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
+fn joined(lines: &[Vec<f64>], from: &str) -> BlockGrid {
+    BlockGrid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
 }
 
-/// [`pressed`] with cells between coordinates that the last argument makes, counted from the side
-/// of that name.
+/// Does as [`pressed`] with cells that the last argument makes from coordinates, counted from the
+/// side of that name.
 fn pressed_as(
     counter: Counter,
     n: usize,
     finer: usize,
     share: f64,
-    cells: fn(&[Vec<f64>], &str) -> Grid,
+    cells: fn(&[Vec<f64>], &str) -> BlockGrid,
 ) -> Simulation<Dim2> {
     let normal = load(counter);
     let ramp = |from: f64, to: f64| TimeFunction::Ramp {
@@ -114,7 +114,7 @@ fn pressed_as(
     let mut s = scene::<Dim2>(&Sketch {
         bodies: if rigid { disk } else { floor.to_owned() },
         mu: if rigid { 0.0 } else { MU },
-        // Sweeps need the square of the number of points.
+        // The number of sweeps grows with the square of the number of points.
         solver: "tolerance: 1e-12, norm: Velocity, method: Newton,".to_owned(),
         ..sketch(STEP, 1.0)
     });
@@ -149,7 +149,7 @@ fn pressed_as(
     s
 }
 
-/// Place along x (m), pressure and shear traction (Pa) on the lower body at each touching point.
+/// Position along x (m), pressure and shear traction (Pa) on the lower body at each touching point.
 fn tractions(s: &Simulation<Dim2>, n: usize) -> Vec<[f64; 3]> {
     let length = A / n as f64 * s.options.scheme.h;
     let contacts = s.state.network.contacts.iter();
@@ -202,8 +202,8 @@ fn hertz(counter: Counter) {
         errors.push(off(&found, 1, |x| p0 * ellipse(x, A)) / p0);
     }
     println!("{counter:?}: a {widths:?} p {errors:?}");
-    // The pressure is of first order at least: its edge lies between two points. The bodies are 40
-    // a high, not half-spaces.
+    // The pressure converges at least with first order, since its edge lies between two points. The
+    // bodies are 40 a high, not half-spaces.
     assert!(errors[3] < 0.01, "{errors:?}");
     assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
     assert!(widths[3].abs() < 0.005, "{widths:?}");
@@ -219,15 +219,15 @@ fn hertz_between_two_bodies() {
     hertz(Counter::Steel);
 }
 
-/// The default solver, whose error is measured against velocities that the load would give the
-/// cylinder, leaves no point with another pressure than a tight tolerance.
+/// With the default solver, whose error is measured against velocities that the load would give the
+/// cylinder, no point has another pressure than with a tight tolerance.
 #[test]
 fn defaults_have_the_pressure_of_each_point() {
     let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
     let [tight, default] = [false, true].map(|default| {
         let mut s = pressed(Counter::Steel, 8, 4, 0.0);
         if default {
-            s.options.solver = Options::default();
+            s.options.solver = SolverOptions::default();
         }
         go(&mut s, 12);
         tractions(&s, 8)
@@ -239,9 +239,8 @@ fn defaults_have_the_pressure_of_each_point() {
     assert!(most < 0.005, "{most}");
 }
 
-/// Where points lie anywhere on the segments of the other body, pressures of single points are
-/// those of Hertz too: contacts act on the place that a point faces on average over the segments at
-/// it.
+/// If points lie anywhere on the segments of the other body, pressures of single points are still
+/// those of Hertz: a contact acts on the mean place that a point faces over the segments at it.
 #[test]
 fn meshes_that_do_not_match_have_the_pressure() {
     let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
@@ -289,7 +288,7 @@ fn cattaneo_and_mindlin() {
     }
 }
 
-/// Columns of cells that join with the depth leave the answer as it is, for fewer unknowns.
+/// Columns of cells that join with the depth give an equal result with fewer unknowns.
 #[test]
 fn hertz_on_cells_that_double_with_the_depth() {
     let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);

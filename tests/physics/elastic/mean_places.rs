@@ -1,22 +1,22 @@
-//! Contacts on mean places beside the patch test: wear of unlike meshes, what sticks and slips,
-//! many facets below one point, and the end of a surface.
+//! Contacts on mean places besides the patch test: wear of meshes that do not match, stick and
+//! slip, many facets below one point, and the end of a surface.
 
 use super::wear::{agree, case};
 use super::*;
 use fretwork_observe::nearest_places::NearestPlaces;
-use fretwork_observe::tractions::{SurfaceState, Zone};
+use fretwork_observe::tractions::{ContactZone, SurfaceState};
 
-/// Blocks of steel with other cells, in place of the bodies of a case: the lower one with `low`,
-/// the upper one with `high` lines along each axis across.
+/// Blocks of steel with other cells in place of the bodies of a case: `low` and `high` are the
+/// lines along each horizontal axis of the lower and the upper block.
 struct Blocks {
     half_width: [f64; 2],
     size: [f64; 2],
     below: &'static str,
     above: &'static str,
     lower: &'static str,
-    /// What shape its upper side has.
+    /// Profile of its upper side.
     profile: &'static str,
-    /// Whether the upper one is of the material `soft`.
+    /// Whether the upper block has the material `soft`.
     soft: bool,
     sets: Vec<String>,
 }
@@ -66,7 +66,7 @@ impl Blocks {
     }
 }
 
-/// An interface of steel that wears, with this friction.
+/// An interface of steel with wear and this friction.
 fn worn(mu: f64) -> String {
     format!(
         "interfaces=[(name: \"contact\", between: (\"steel\", \"steel\"), contact: \"coulomb\", wear: \"archard\", \
@@ -121,7 +121,7 @@ fn coarse_points_wear_a_fine_surface_evenly() {
     }
 }
 
-/// In space too, coarse points remove material evenly from a fine surface.
+/// In 3D, too, coarse points remove material evenly from a fine surface.
 #[test]
 fn coarse_points_wear_a_fine_surface_evenly_in_space() {
     let run = |size: f64| {
@@ -156,8 +156,8 @@ fn coarse_points_wear_a_fine_surface_evenly_in_space() {
     }
 }
 
-/// Two blocks of one width between smooth walls in space, pressed with 50 MPa: the lower one with
-/// cells of a size, the upper one with four.
+/// Two blocks of equal width between smooth walls in 3D, pressed with 50 MPa: the lower one with
+/// cells of a given size, the upper one with four cells.
 fn pressed(size: f64) -> Simulation<Dim3> {
     const HELD: &str = "(part: \"left\", x: Fixed), (part: \"right\", x: Fixed), (part: \"front\", y: Fixed), (part: \"back\", y: Fixed), ";
     let below = format!("{HELD} (part: \"bottom\", z: Fixed)");
@@ -179,7 +179,7 @@ fn pressed(size: f64) -> Simulation<Dim3> {
     s
 }
 
-/// All of a surface that carries an even pressure is closed, however much finer it is than the
+/// A surface that carries an even pressure is closed everywhere, however much finer it is than the
 /// points that touch it.
 #[test]
 fn a_fine_surface_under_full_pressure_is_not_open() {
@@ -188,12 +188,13 @@ fn a_fine_surface_under_full_pressure_is_not_open() {
         let state = SurfaceState::of(&s, system).unwrap();
         for (pressure, zone) in state.pressure.iter().zip(&state.zone) {
             near(50e6, *pressure, 1e-5);
-            assert_ne!(*zone, Zone::Open);
+            assert_ne!(*zone, ContactZone::Open);
         }
     }
 }
 
-/// Thousands of facets below one point: 3,200 below the middle one, 40 by 40 cells under 2 by 2.
+/// Thousands of facets lie below one point: 3,200 below the middle one, 40 by 40 cells under 2
+/// by 2.
 #[test]
 fn a_point_faces_as_many_facets_as_there_are() {
     let s = pressed(2.5e-4);
@@ -204,9 +205,9 @@ fn a_point_faces_as_many_facets_as_there_are() {
     }
 }
 
-/// A soft block on a stiff one of the same width, both free at one side, pressed by 0.35 % of its
-/// modulus: it grows by a per mille or two more than the stiff one, and the points at that edge
-/// leave the surface. Their facets stay on it, and carry what they did.
+/// A soft block on a stiff one of equal width, both free at one side, is pressed by 0.35 % of its
+/// modulus. It widens by one or two per mille more than the stiff one, so that the points at that
+/// edge leave the surface. Their facets remain on it, and carry the load as before.
 fn beyond_the_end<S: Space>() {
     let up = S::D - 1;
     let (half, size, pressure): (f64, f64, f64) = (4e-3, 8e-4, 3.5e3);
@@ -259,8 +260,8 @@ fn points_beyond_the_end_of_a_surface_are_held_by_their_facets() {
     beyond_the_end::<Dim3>();
 }
 
-/// The points of one half-space on the surface of another: on equal cells the nearest place is the
-/// mean one, wherever the points stand.
+/// The points of one half-space touch the surface of another: on equal cells the nearest place is
+/// the mean place, wherever the points are.
 #[test]
 fn nearest_places_are_told_where_cells_differ() {
     let found = |size: &str| {
@@ -279,8 +280,8 @@ fn nearest_places_are_told_where_cells_differ() {
     assert!(text.contains("100 % of the load"), "{text}");
 }
 
-/// Points above the valleys of a saw touch two sides of it: their tension is that of their area
-/// once, so that the whole is the strength times the width.
+/// Points above the valleys of a saw touch two of its sides: their area carries tension once, so
+/// that the total is the strength times the width.
 #[test]
 fn tension_acts_once_at_a_crease() {
     let (half, strength) = (4e-3, 1e6);

@@ -1,5 +1,5 @@
-//! Bodies of finite elements against closed forms: impact of a bar, bending, Hertz, Cattaneo and
-//! Mindlin.
+//! Bodies of finite elements compared with closed forms: impact of a bar, bending, Hertz, Cattaneo
+//! and Mindlin.
 
 mod ball_area;
 mod bar;
@@ -33,7 +33,7 @@ use crate::extremes::bench::Sketch;
 use crate::stepping::{closes, go, near};
 use fretwork::bodies::{DeformedMesh, Dof, DynamicalSystem, Holder, TimeFunction};
 use fretwork::elastic::generate::{
-    Coarsening, Grid, block, even, graded, mapped_block, mapped_grid,
+    BlockGrid, Coarsening, block, even, graded, mapped_block, mapped_grid,
 };
 use fretwork::elastic::{
     BodySpec, ElasticBody, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
@@ -41,21 +41,21 @@ use fretwork::elastic::{
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 
-/// Steel of the field's benchmarks.
+/// Steel of the usual benchmarks.
 const STEEL: Elasticity = Elasticity {
     young: 210e9,
     poisson: 0.3,
     density: 7800.0,
 };
 
-/// Rubber, of which a few per cent of strain are little.
+/// Rubber, for which a few per cent of strain are small.
 const RUBBER: Elasticity = Elasticity {
     young: 1e6,
     poisson: 0.3,
     density: 1000.0,
 };
 
-/// What follows rotations.
+/// Measures of strain that follow rotations.
 const LARGE: [Strain; 2] = [Strain::Corotational, Strain::NeoHookean];
 
 /// A support of a part, with a drive along some axes.
@@ -67,7 +67,7 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
     }
 }
 
-/// Undamped, without a surface that touches, at rest.
+/// Returns an undamped body at rest, without a surface that touches.
 fn body<S: Space>(
     mesh: Mesh<S>,
     material: Elasticity,

@@ -1,5 +1,5 @@
-//! Newton's method of a step: its iterations converge quadratically, and steps that find no balance
-//! end with a sentence.
+//! Newton's method of a step: its iterations converge quadratically, and steps without a balance
+//! end with a message.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -48,7 +48,8 @@ fn iterations_converge_quadratically() {
     for strain in LARGE {
         let changes = distorted(strain, 1.0);
         assert!(changes.len() < 15);
-        // Once they are small, each is that before squared, times a number of the problem.
+        // Once the changes are small, each is the square of the previous one times a constant of
+        // the problem.
         let small: Vec<f64> = changes
             .into_iter()
             .filter(|c| (1e-11..0.1).contains(c))

@@ -1,5 +1,5 @@
-//! Patch test of the contact: a uniform pressure goes through the contact of two meshes, whatever
-//! their points.
+//! Patch test of the contact: a uniform pressure is transmitted through the contact of two meshes
+//! with any points.
 //!
 //! Source: R. L. Taylor and P. Papadopoulos, "On a patch test for contact problems in two
 //! dimensions", Computational methods in nonlinear mechanics (1991).
@@ -11,7 +11,7 @@ const HEIGHT: f64 = 0.005;
 /// Approach of the far sides (m).
 const SUNK: f64 = 1e-5;
 
-/// Cells over the width: even, or with sizes that grow along it.
+/// Coordinates of cells over the width: even, or with sizes that grow along it.
 fn across(cells: usize, growth: f64) -> Vec<f64> {
     let place = |k: usize| match growth {
         1.0 => k as f64 / cells as f64,
@@ -20,9 +20,9 @@ fn across(cells: usize, growth: f64) -> Vec<f64> {
     (0..=cells).map(|k| WIDTH * (place(k) - 0.5)).collect()
 }
 
-/// Two blocks between smooth walls, the upper one pressed on the lower: most difference of the
-/// stress across of an element, and of the pressure on a point, over the mean pressure. Cells over
-/// the width along each axis.
+/// Two blocks between smooth walls, the upper one pressed on the lower. Returns the largest
+/// difference of the stress across an element, and of the pressure on a point, relative to the mean
+/// pressure. The arguments give the cells over the width along each axis.
 fn pressed<S: Space>(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64; 2] {
     pressed_on::<S>(low, high, strain, mu, |x, _| {
         let mut sides = vec![x.to_vec(); S::D - 1];
@@ -31,8 +31,8 @@ fn pressed<S: Space>(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64
     })
 }
 
-/// [`pressed`] with meshes of the given width, from zero to `HEIGHT`, that touch with the side of
-/// that name.
+/// Does as [`pressed`] with meshes of the given width, from zero to `HEIGHT`, that touch with the
+/// side of that name.
 fn pressed_on<S: Space>(
     low: &[f64],
     high: &[f64],
@@ -101,7 +101,7 @@ fn mesh_stress<S: Space>(s: &Simulation<S>, system: usize) -> Vec<f64> {
     mesh(s, system).stress.iter().map(|s| s[S::D - 1]).collect()
 }
 
-/// The two blocks with each of these pairs of meshes, with and without friction.
+/// Tests two blocks with each of these pairs of meshes, with and without friction.
 fn goes_through<S: Space>(meshes: &[(Vec<f64>, Vec<f64>)], strain: Strain) {
     for (low, high) in meshes {
         for mu in [0.0, 0.3] {
@@ -117,7 +117,7 @@ fn goes_through<S: Space>(meshes: &[(Vec<f64>, Vec<f64>)], strain: Strain) {
     }
 }
 
-/// Whatever the meshes, the coarser one touching by its points or its surface.
+/// The coarser mesh touches by its points or by its surface.
 #[test]
 fn a_uniform_pressure_goes_through_meshes_that_do_not_match() {
     let meshes = [
@@ -131,7 +131,7 @@ fn a_uniform_pressure_goes_through_meshes_that_do_not_match() {
     goes_through::<Dim2>(&meshes, Strain::Small);
 }
 
-/// In space the triangles of the two surfaces cross in any way.
+/// In 3D the triangles of the two surfaces intersect in any way.
 #[test]
 fn a_uniform_pressure_goes_through_in_space() {
     let meshes = [
@@ -145,7 +145,7 @@ fn a_uniform_pressure_goes_through_in_space() {
     goes_through::<Dim3>(&meshes, Strain::Small);
 }
 
-/// On cells that double with the distance from the contact, of even and odd numbers.
+/// The cells double with the distance from the contact; their numbers are even and odd.
 #[test]
 fn a_uniform_pressure_goes_through_cells_that_double() {
     let mesh = |x: &[f64], side: &str| {
@@ -157,7 +157,7 @@ fn a_uniform_pressure_goes_through_cells_that_double() {
             from: side,
             ratio: 1.0,
         };
-        let grid = Grid::coarsened(&[x.to_vec(), y], &coarsening, 100_000).unwrap();
+        let grid = BlockGrid::coarsened(&[x.to_vec(), y], &coarsening, 100_000).unwrap();
         mapped_grid::<Dim2>(&grid, |p| *p).unwrap()
     };
     for (low, high) in [(40, 40), (37, 28), (28, 37)] {
@@ -172,7 +172,7 @@ fn a_uniform_pressure_goes_through_cells_that_double() {
     }
 }
 
-/// In large strain too: the stress is that of Cauchy, on the area that is held by the walls.
+/// In large strain the stress is that of Cauchy, on the area held by the walls.
 #[test]
 fn strain_follows_rotation_in_the_patch_too() {
     for strain in LARGE {

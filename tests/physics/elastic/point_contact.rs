@@ -9,15 +9,15 @@ const RADIUS: f64 = 0.05;
 const A: f64 = 1e-3;
 const STEP: f64 = 1e-3;
 
-/// At the approach a^2/R the load as a share of Hertz's, and the half-width from the second moment
-/// of the pressure, 2 P a^2/5, as a share of that of the load.
+/// Load at the approach a^2/R relative to Hertz's, and half-width from the second moment of the
+/// pressure, 2 P a^2/5, relative to that of the load.
 fn pressed(n: usize) -> (f64, f64) {
-    let (load, half_width, _) = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+    let (load, half_width, _) = pressed_on(n, &|lines| BlockGrid::new(lines).unwrap());
     (load, half_width)
 }
 
-/// Load, half-width and number of unknowns, on cells that the last argument makes.
-fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize) {
+/// Load, half-width and number of unknowns with cells that the last argument makes.
+fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> BlockGrid) -> (f64, f64, usize) {
     let (far, size) = (16.0 * A, A / n as f64);
     let mut s = scene::<Dim3>(&Sketch {
         bodies: format!(
@@ -63,8 +63,8 @@ fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize
 }
 
 /// Tetrahedra of constant strain are too stiff, by some per cent with four elements over the
-/// half-width (six: 1.5 %), and the bottom of the block, held at a depth of 16 a, would sink by
-/// some 5 % of the approach in a half-space.
+/// half-width (six: 1.5 %). The bottom of the block, held at a depth of 16 a, would sink by some 5
+/// % of the approach in a half-space.
 #[test]
 fn hertz_under_a_sphere() {
     let [coarse, fine] = [2, 4].map(pressed);
@@ -78,7 +78,7 @@ fn hertz_under_a_sphere() {
     );
 }
 
-/// On cells that double with the depth load and half-width are those on whole columns.
+/// With cells that double with the depth, load and half-width are those with whole columns.
 #[test]
 fn hertz_under_a_sphere_on_cells_that_double() {
     let joined = |lines: &[Vec<f64>]| {
@@ -86,10 +86,10 @@ fn hertz_under_a_sphere_on_cells_that_double() {
             from: "top",
             ratio: 1.0,
         };
-        Grid::coarsened(lines, &from_top, 1_000_000).unwrap()
+        BlockGrid::coarsened(lines, &from_top, 1_000_000).unwrap()
     };
     for n in [2, 3] {
-        let whole = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+        let whole = pressed_on(n, &|lines| BlockGrid::new(lines).unwrap());
         let found = pressed_on(n, &joined);
         println!(
             "{n} over a: load, half-width, unknowns {whole:?}, of cells that double {found:?}"

@@ -4,8 +4,8 @@ use super::*;
 use crate::scene;
 use std::f64::consts::PI;
 
-/// Westergaard's wave, of which contact covers 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and
-/// the pressure on the crest is 2 p/sin(pi a/L) (K. L. Johnson, "Contact Mechanics", 1985, section
+/// Westergaard's wave: contact covers 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and the
+/// pressure on the crest is 2 p/sin(pi a/L) (K. L. Johnson, "Contact Mechanics", 1985, section
 /// 13.2).
 #[test]
 fn a_wavy_block_is_pressed_as_westergaard_says() {
@@ -27,7 +27,7 @@ fn a_wavy_block_is_pressed_as_westergaard_says() {
         (at.x, c.impulse.norm() / (s.options.scheme.h * size))
     });
     let places: Vec<(f64, f64)> = places.collect();
-    // A point stands for half of an edge to either side.
+    // A point represents half of an edge on either side.
     let half = 0.5 * size * places.len() as f64;
     println!("half-width {half:e}, expected {expected:e}");
     assert!((half - expected).abs() < size, "{half:e}, {expected:e}");

@@ -1,5 +1,5 @@
-//! Blocks that spin freely: a rotation leaves no stress, momentum is kept, and the angle of a step
-//! is that of the theta scheme, 2 atan(w h/2) at theta = 1/2.
+//! Blocks that spin freely: a rotation causes no stress, momentum is conserved, and the angle of a
+//! step is that of the theta scheme, 2 atan(w h/2) at theta = 1/2.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -26,14 +26,14 @@ fn spinning<S: Space>(
     s
 }
 
-/// Where the points of the mesh are (m).
+/// Positions of the points of the mesh (m).
 fn places<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
     let mesh = mesh(s, 0);
     let both = mesh.points.iter().zip(&mesh.displacement);
     both.map(|(x, u)| *x + *u).collect()
 }
 
-/// The angle of the line along the side that lay along x, up to whole turns.
+/// Angle of the side that initially lay along x, up to whole turns.
 fn angle<S: Space>(s: &Simulation<S>) -> f64 {
     let at = places(s);
     let along = at[4] - at[0];
@@ -65,8 +65,8 @@ fn momentum<S: Space>(s: &Simulation<S>, density: f64) -> f64 {
     sum
 }
 
-/// Stiff, at a tenth of a radian a step: a quarter and a whole turn without stress, with steps ten
-/// thousand times the time of a wave.
+/// A stiff block rotates by a tenth of a radian per step: a quarter and a whole turn cause no
+/// stress, with steps ten thousand times the time of a wave.
 fn turns_without_stress<S: Space>(strain: Strain) {
     let material = Elasticity {
         young: 1e11,
@@ -100,8 +100,8 @@ fn a_block_turns_without_stress() {
     }
 }
 
-/// Soft, stretched by its spin: angular momentum is kept, and what the scheme takes of the energy
-/// falls with the square of the step.
+/// A soft block stretched by its spin: angular momentum is conserved, and the energy loss of the
+/// scheme decreases with the square of the step.
 fn keeps_its_momentum<S: Space>(strain: Strain) {
     let (spin, time) = (40.0, 2.0 * PI / 40.0);
     let runs = [400, 800, 1600].map(|steps| {
@@ -138,8 +138,8 @@ fn a_spinning_block_keeps_its_angular_momentum() {
     }
 }
 
-/// Damping by stiffness takes the vibration that a sudden spin excites and does not brake the spin;
-/// damping by mass does, by (1 - alpha h/2)/(1 + alpha h/2) a step.
+/// Damping by stiffness removes the vibration that a sudden spin excites, and does not brake the
+/// spin; damping by mass brakes it by (1 - alpha h/2)/(1 + alpha h/2) per step.
 #[test]
 fn damping_follows_the_rotation() {
     for strain in LARGE {
@@ -174,8 +174,8 @@ fn damping_follows_the_rotation() {
     }
 }
 
-/// Steps far below and far above the time of a wave (3 ms across the block), moduli of jelly and
-/// far above steel: energy does not grow.
+/// With steps far below and far above the time of a wave (3 ms across the block), and moduli from
+/// jelly to far above steel, energy does not grow.
 #[test]
 fn any_step_and_modulus_is_stable() {
     for strain in LARGE {
@@ -195,7 +195,7 @@ fn any_step_and_modulus_is_stable() {
                     "{strain:?}, {young:e} Pa, {step} s, theta {theta}: energy grows by {most:e}, ledger {off:e}"
                 );
                 assert!(most < 1e-3, "{strain:?}: {most:e}");
-                // Stress of a strain of 1e-13 is rounded to some thousandths.
+                // The stress of a strain of 1e-13 has a relative round-off of some thousandths.
                 let rounded = if young > 1e14 { 1e-3 } else { 1e-8 };
                 assert!(off < rounded, "{strain:?}: {off:e}");
             }

@@ -1,6 +1,5 @@
-//! What grains in small strain lose when they are pressed hard: the force of a disk between two
-//! plates against that of the same mesh of a neo-Hookean material, of which the two agree to first
-//! order.
+//! Error of grains in small strain under large load: the force of a disk between two plates is
+//! compared with that of an equal mesh of a neo-Hookean material; the two agree to first order.
 
 use super::*;
 use fretwork::elastic::grain::mesh::{disk, polygon};
@@ -19,7 +18,7 @@ fn unit() -> Mesh<Dim2> {
     polygon::<Dim2>(&corners, &Vector2::zeros(), 1.0 / ELEMENTS as f64).unwrap()
 }
 
-/// Plates that close on a disk at the origin by a share of its radius over twenty steps, with
+/// Plates that close on a disk at the origin by a fraction of its radius over twenty steps, with
 /// theta 1.
 fn plates(share: f64) -> Simulation<Dim2> {
     let (gap, speed) = (RADIUS, share * RADIUS / (1e-3 * STEPS as f64));
@@ -42,7 +41,7 @@ fn force(s: &Simulation<Dim2>) -> f64 {
     0.5 * sum / 1e-3
 }
 
-/// Force, largest strain, and strain weighted by energy of the grain.
+/// Force, largest strain, and energy-weighted strain of the grain.
 fn grain(share: f64) -> (f64, f64, f64) {
     let mut s = plates(share);
     let system = ElasticGrain::<Dim2>::new(ElasticGrainSpec {
@@ -86,13 +85,13 @@ fn grain(share: f64) -> (f64, f64, f64) {
     (force(&s), strain, sum / all)
 }
 
-/// Force of the same disk of a neo-Hookean material.
+/// Force of an equal disk of a neo-Hookean material.
 fn neo_hookean(share: f64) -> f64 {
     let mut s = plates(share);
     let unit = unit();
     let points = unit.points().iter().map(|x| x * RADIUS).collect();
     let elements = unit.elements().flatten().copied().collect();
-    // A chain has two ends, here at the side that meets no plate.
+    // A chain has two ends, here at the side that touches no plate.
     let aside = |f: &usize| {
         !unit
             .facet(*f)
@@ -110,8 +109,8 @@ fn neo_hookean(share: f64) -> f64 {
     force(&s)
 }
 
-/// The warning of grains that deform begins at a strain of a tenth: their forces are then off by
-/// less than 1.5 per cent.
+/// The warning of deformable grains begins at a strain of a tenth: the error of their forces is
+/// then less than 1.5 per cent.
 #[test]
 fn forces_of_small_strain_hold_up_to_a_strain_of_a_tenth() {
     println!("approach/R, force (N/m), of the neo-Hookean disk, off by, largest strain, by energy");

@@ -1,5 +1,5 @@
-//! An elastic sphere on an elastic block of the same material, by their meshes, of which a quarter
-//! is there: Hertz's point contact (Johnson, "Contact Mechanics", section 4.2), a^3 = 3 P R/(4 E*),
+//! A quarter of an elastic sphere on a quarter of an elastic block of equal material, by their
+//! meshes: Hertz's point contact (Johnson, "Contact Mechanics", section 4.2), a^3 = 3 P R/(4 E*),
 //! p(r) = p0 sqrt(1 - r^2/a^2) with p0 = 3 P/(2 pi a^2).
 
 use super::*;
@@ -20,9 +20,9 @@ fn coordinates(n: usize) -> [Vec<f64>; 2] {
     [along.collect(), graded(0.0, FAR, size, 1.4)]
 }
 
-/// The half-width from the second moment of the pressure, 2 P a^2/5, over Hertz's, and the
-/// difference of the pressure on facets within 0.8 a, root mean square over p0, on the sphere and
-/// on the block.
+/// Half-width from the second moment of the pressure, 2 P a^2/5, relative to Hertz's, and root mean
+/// square difference of the pressure on facets within 0.8 a relative to p0, on the sphere and on
+/// the block.
 fn pressed(block_cells: usize, sphere_cells: usize) -> [f64; 3] {
     let modulus = 0.5 * STEEL.plane_strain();
     let load = 4.0 * modulus * A.powi(3) / (3.0 * RADIUS);
@@ -95,7 +95,7 @@ fn pressed(block_cells: usize, sphere_cells: usize) -> [f64; 3] {
     [(2.5 * moment / total).sqrt() / A, off[0], off[1]]
 }
 
-/// Meshes that do not match are as good as those that do.
+/// Meshes that do not match are as accurate as those that do.
 #[test]
 fn hertz_between_two_bodies() {
     let cells = [(4, 4), (4, 5), (5, 4), (4, 3), (3, 4)];

@@ -1,5 +1,5 @@
-//! Wear of deformable bodies: what is gone is what Archard's law says, and the pressure falls as
-//! the scar widens.
+//! Wear of deformable bodies: the removed volume is that of Archard's law, and the pressure
+//! decreases as the scar widens.
 
 use super::*;
 use crate::scene;
@@ -15,8 +15,8 @@ pub fn case<S: Space>(name: &str, sets: &[&str]) -> Simulation<S> {
     scene::case(name, sets)
 }
 
-/// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of
-/// the points that touch over the step.
+/// Normal force and slip of each contact in the last step (N, m; N/m in 2D). The slip is that of
+/// the touching points over the step.
 pub fn rubbed<S: Space>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
     let contacts = s.state.network.contacts.iter();
     contacts
@@ -32,19 +32,19 @@ pub fn rubbed<S: Space>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// What was found over a run.
+/// Results of a run.
 struct Found {
     /// k times the sum of force times slip of each contact and step (m^2).
     expected: f64,
     /// The wear that steps reported (m^2).
     booked: f64,
-    /// Highest traction and number of loaded contacts at the end of the first step under the load
-    /// and of the last (Pa).
+    /// Largest traction (Pa) and number of loaded contacts, at the end of the first step under the
+    /// load and of the last step.
     pressure: [f64; 2],
     loaded: [usize; 2],
 }
 
-/// Steps to `end`; the load has its value from `start` on, over points of a size (m).
+/// Steps to `end`; the load is constant from `start` on, and points have a given size (m).
 fn wear(s: &mut Simulation<Dim2>, start: f64, end: f64, size: f64) -> Found {
     let h = s.options.scheme.h;
     let mut found = Found {
@@ -66,8 +66,8 @@ fn wear(s: &mut Simulation<Dim2>, start: f64, end: f64, size: f64) -> Found {
     found
 }
 
-/// Area between the surface of the scar, as it is shown, and the one that its system would have
-/// without wear (m^2).
+/// Area between the surface of the scar and the surface that its system would have without wear
+/// (m^2).
 fn gone(s: &Simulation<Dim2>) -> f64 {
     let scar = &s.state.scars[0];
     let carried = &s.shapes.surfaces[scar.surface];
@@ -87,11 +87,11 @@ pub fn agree(what: &str, expected: f64, obtained: f64, tolerance: f64) {
     near(expected, obtained, tolerance);
 }
 
-/// One cycle of gross slip, between points of a size (m), and the cylinder lifted then.
+/// One cycle of gross slip with points of a size (m), after which the cylinder is lifted.
 fn a_cycle(mut s: Simulation<Dim2>, size: f64) {
     let found = wear(&mut s, 0.01, 0.01 + PERIOD, size);
     agree("booked", found.expected, found.booked, 1e-6);
-    // Where all slips the heat of friction is mu F s.
+    // If all contacts slip, the heat of friction is mu F s.
     agree("heat", K * s.state.energy.friction / MU, found.booked, 1e-6);
     let volume = |s: &Simulation<Dim2>, booked: f64| {
         let scar = &s.state.scars[0];
@@ -122,7 +122,7 @@ fn archards_volume_is_gone_from_a_half_space() {
     a_cycle(case("fretting_wear_elastic", &[&load]), 5e-5);
 }
 
-/// A flat of finite elements, which touches as a surface, wears by the volume of Archard's law.
+/// A flat of finite elements, which touches by its surface, wears by the volume of Archard's law.
 #[test]
 fn archards_volume_is_gone_from_a_body_of_finite_elements() {
     let flat = "elastic=[(

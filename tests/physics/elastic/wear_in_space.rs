@@ -1,5 +1,5 @@
-//! Wear of deformable bodies in space: what is gone is what the law says, and the load goes where
-//! less is gone.
+//! Wear of deformable bodies in 3D: the removed volume is that of the law, and the load moves to
+//! where less is removed.
 
 use super::wear::{agree, case, rubbed};
 use super::*;
@@ -40,8 +40,8 @@ fn dissipated_energy() -> String {
     )
 }
 
-/// Volume between the surface of the scar, as it is shown, and the one that its system would have
-/// without wear (m^3).
+/// Volume between the surface of the scar and the surface that its system would have without wear
+/// (m^3).
 fn gone(s: &Simulation<Dim3>) -> f64 {
     let scar = &s.state.scars[0];
     let carried = &s.shapes.surfaces[scar.surface];
@@ -60,7 +60,7 @@ fn gone(s: &Simulation<Dim3>) -> f64 {
     under(unworn.as_ref()) - under(carried.shape.as_ref())
 }
 
-/// Wear that steps reported, and k times the sum of force times slip (m^3).
+/// Returns the wear that steps reported, and k times the sum of force times slip (m^3).
 fn wear(s: &mut Simulation<Dim3>, end: f64) -> [f64; 2] {
     let h = s.options.scheme.h;
     let [mut booked, mut expected] = [0.0; 2];
@@ -77,7 +77,8 @@ fn wear(s: &mut Simulation<Dim3>, end: f64) -> [f64; 2] {
     [booked, expected]
 }
 
-/// The volume of the scar, of its depths, and of what is missing under the surface.
+/// Compares the volume of the scar with that of its depths, and with that missing under the
+/// surface.
 fn holds(s: &Simulation<Dim3>, booked: f64, strained: f64) {
     let scar = &s.state.scars[0];
     agree("scar", booked, scar.volume(), 1e-12);
@@ -90,10 +91,9 @@ fn holds(s: &Simulation<Dim3>, booked: f64, strained: f64) {
 /// A cycle of gross slip by Archard's law, and the sphere lifted then.
 fn a_cycle(mut s: Simulation<Dim3>) {
     let [booked, expected] = wear(&mut s, 0.01 + PERIOD);
-    // The places that touch are those of the end of the step here, and the law's those of its
-    // middle.
+    // The contact points are those at the end of the step here, and those at its middle in the law.
     agree("archard", expected, booked, 2e-5);
-    // Where all slips the heat of friction is mu F s.
+    // If all contacts slip, the heat of friction is mu F s.
     agree("heat", K * s.state.energy.friction / MU, booked, 1e-5);
     // Under load the surface is strained.
     holds(&s, booked, 1e-2);
@@ -128,7 +128,7 @@ fn the_volume_of_the_dissipated_energy_is_gone_from_a_half_space_above() {
     let scar = &s.state.scars[0];
     let shape = s.shapes.surfaces[scar.surface].shape.receding().unwrap();
     assert!(shape.sign() < 0.0 && scar.deepest() > 0.0);
-    // In the middle of the cells, where the sphere is.
+    // The sphere is at the middle of the cells.
     let at = scar.deepest_at();
     assert!(at.norm() < 2e-4, "{at}");
 }
@@ -169,7 +169,7 @@ fn archards_volume_is_gone_from_a_body_of_finite_elements() {
     ));
 }
 
-/// The round lower side of a block, that rubs itself off on the points of a half-space.
+/// The round lower side of a block wears on the points of a half-space.
 #[test]
 fn a_round_side_wears_by_the_dissipated_energy() {
     let law = format!(
@@ -201,8 +201,8 @@ fn a_round_side_wears_by_the_dissipated_energy() {
     assert!(scar.deepest() > 1e-8 && scar.deepest_at().xy().norm() < 3e-4);
 }
 
-/// A flat punch at rest on a half-space of which an even layer, and more at one place, has been
-/// worn off.
+/// A flat punch at rest on a half-space from which an even layer, and more at one place, has been
+/// removed.
 fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
     let sets = [
         "half_spaces.0.wears=(thickness: 1e-4)",
@@ -214,7 +214,7 @@ fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
         "half_spaces.1.dofs.z=Force(Ramp(from: 0.0, to: -50.0, start: 0.0, end: 8e-3))",
     ];
     let mut s = sphere(&archard(), &sets);
-    // The middle of the punch's second cell along both axes is one of the surface.
+    // The middle of the punch's second cell along both axes is a cell of the surface.
     let place = |v: &nalgebra::Vector3<f64>, middle: f64| {
         (v.x - middle).abs() < 1e-9 && (v.y - middle).abs() < 1e-9
     };
@@ -230,7 +230,7 @@ fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
     scar.apply_depth(&mut s.shapes, 1.0);
     go(&mut s, 40);
     let h = s.options.scheme.h;
-    // A cell may touch a face and vertices: its load is the sum.
+    // A cell may touch a face and vertices: its load is their sum.
     let mut loads: Vec<[f64; 3]> = Vec::new();
     for c in &s.state.network.contacts {
         let force = c.impulse.z.abs() / h;
@@ -266,7 +266,7 @@ fn a_punch_leaves_its_load_beside_a_pit() {
     let [one, two, none] = [&even.1, &shallow.1, &deep.1].map(|l| at(l, -1.2e-4));
     println!("{one:.4} N, then {two:.4}, then {none:.4}");
     assert!(two < 0.9 * one && two > 0.0 && none == 0.0);
-    // Beside it the load is higher, and the whole remains.
+    // Beside the deep cell the load is higher, and the total is unchanged.
     let [before, after] = [&even.1, &deep.1].map(|l| at(l, -4e-5));
     assert!(after > 1.01 * before, "{before}, then {after} N");
     for (_, loads) in [&even, &shallow, &deep] {

@@ -1,5 +1,5 @@
 //! The extremes that take seconds: each ends as it declares, met, or reported with its cause and
-//! what to change. The whole table: `cargo run --release --example extremes`.
+//! advice. `cargo run --release --example extremes` makes the whole table.
 
 #[path = "../../../validation/programs/extremes/bench/mod.rs"]
 pub(crate) mod bench;
@@ -24,7 +24,7 @@ fn long_extremes_end_as_they_declare() {
     assert!(rows >= 4, "{rows}");
 }
 
-/// Runs groups of rows; how many rows these are.
+/// Runs groups of rows; returns the number of rows.
 fn end_as_declared<'a>(groups: impl Iterator<Item = &'a bench::Group>) -> u32 {
     let mut rows = 0;
     for group in groups {
@@ -57,8 +57,8 @@ fn another_cause_than_the_declared_one_is_broken() {
     let late = (Cause::Late, late);
     assert!(!broken(HELD, true, true, &[]));
     assert!(!broken(reported(&[Cause::Late]), false, true, &[late]));
-    // Missed and silent; reported where it should be met; met where a limit was declared; another
-    // cause; one more.
+    // The wrong results are: missed without a report; reported where it should be met; met where a
+    // limit was declared; another cause; an additional cause.
     assert!(broken(HELD, false, true, &[]));
     assert!(broken(reported(&[Cause::Late]), false, true, &[]));
     assert!(broken(HELD, false, true, &[late]));
@@ -66,7 +66,7 @@ fn another_cause_than_the_declared_one_is_broken() {
     assert!(broken(reported(&[Cause::Late]), true, true, &[late]));
     assert!(broken(reported(&[Cause::Passed]), false, true, &[late]));
     assert!(broken(reported(&[Cause::Late]), false, true, &[late, late]));
-    // Without a proposal; not finite.
+    // The others are a report without advice, and numbers that are not finite.
     assert!(broken(
         reported(&[Cause::Late]),
         false,

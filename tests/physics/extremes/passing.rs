@@ -1,5 +1,5 @@
-//! Bodies that move farther in a step than they are thick: they meet what is in their way, or the
-//! run says that they may not have, when and which.
+//! Bodies that move farther in a step than their thickness: they meet what is in their way, or the
+//! run reports which bodies may have passed, and when.
 
 use super::bench::{G, Sketch, ball, floor, grains, place};
 use crate::stepping::steps;
@@ -31,13 +31,13 @@ fn moving<S: Space>(s: &Simulation<S>) -> usize {
     s.state.bodies.grains().find(moves).expect("one that moves")
 }
 
-/// No warning: nothing was passed through, nothing was seen late.
+/// Checks that there is no warning: nothing was passed through, nothing was detected late.
 fn silent<S: Space>(s: &Simulation<S>) {
     assert_eq!(s.state.network.step_size.warning(), None);
 }
 
-/// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of
-/// grains.
+/// A blade of half the grains' thickness is driven along a row of grains by ten times its thickness
+/// per step.
 #[test]
 fn a_driven_blade_takes_along_what_it_meets() {
     let row: Vec<String> = (0..10)
@@ -62,7 +62,7 @@ fn a_driven_blade_takes_along_what_it_meets() {
     silent(&s);
 }
 
-/// A capsule of 5 mm moves across its thickness by 200 mm a step, on to a row of grains at rest.
+/// A capsule of 5 mm moves across its thickness by 200 mm per step, onto a row of grains at rest.
 #[test]
 fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
     let row: Vec<String> = (0..9)
@@ -91,7 +91,8 @@ fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
     silent(&s);
 }
 
-/// A rod that turns by 0.3 rad a step: its ends go fifteen of its thicknesses. Driven, and free.
+/// A rod that rotates by 0.3 rad per step, so that its ends move by fifteen of its thicknesses;
+/// driven, and free.
 #[test]
 fn a_spinning_rod_hits_the_grain_in_its_way() {
     let far = 0.4;
@@ -111,7 +112,8 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     let mut s = built::<Dim2>(&paddle);
     steps(&mut s, 3);
     let v = s.state.bodies.velocity[0];
-    // Pushed in the sense of the rotation, no faster than where it was touched.
+    // The grain is pushed in the direction of the rotation, no faster than the point that touched
+    // it.
     let along = -v.x * angle.sin() + v.y * angle.cos();
     assert!(along > 1.0 && along < 1.5 * 300.0 * 0.5, "{v:?}");
     silent(&s);
@@ -134,8 +136,8 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     assert!((momentum(&s) - before).norm() < 1e-9 * scale);
 }
 
-/// Head on at ten radii a step: without restitution they stay together; with e the lighter part of
-/// the velocity is exchanged, v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
+/// Balls collide head on at ten radii per step: without restitution they stay together; with e,
+/// v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
 fn head_on<S: Space>() {
     for (contact, e) in [("coulomb", 0.0), ("newton-restitution", 0.8)] {
         let expected = [50.0 * (1.0 - e), 50.0 * (1.0 + e)];
@@ -171,8 +173,8 @@ fn fast_balls_meet_head_on() {
     head_on::<Dim3>();
 }
 
-/// Two balls that pass beside each other keep their velocities to the last bit, however near the
-/// line of their centres is to the motion at the start.
+/// Two balls that pass beside each other keep their velocities to the last bit, even if the line of
+/// their centres is nearly along the motion at the start.
 #[test]
 fn fast_balls_that_miss_each_other_do_not_meet() {
     for (x, aside) in [(0.1, 0.0201), (0.05, 0.03), (0.4, 0.021), (0.021, 0.0205)] {
@@ -188,7 +190,8 @@ fn fast_balls_that_miss_each_other_do_not_meet() {
     }
 }
 
-/// Thrown at ten radii a step at a plane, a height field and a wall thinner than the sphere.
+/// A sphere is thrown at ten radii per step at a plane, a height field and a wall thinner than the
+/// sphere.
 #[test]
 fn a_fast_sphere_stays_in_front_of_a_wall() {
     let flat = "HeightField(points: (3, 3), spacing: (1.0, 1.0), heights: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])";
@@ -217,8 +220,8 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
     }
 }
 
-/// A bond is made within the alert distance alone, and nothing pulls at a distance, however fast
-/// two grains come together.
+/// A bond is made only within the alert distance, and nothing pulls at a distance, however fast two
+/// grains approach.
 #[test]
 fn speed_makes_no_bonds() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [30.0, 0.0])".to_owned();
@@ -236,7 +239,7 @@ fn speed_makes_no_bonds() {
     assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
 }
 
-/// Where nothing is fast nothing is done: no contact is made ahead, no step is solved twice.
+/// Without fast motion no contact is made in advance, and no step is solved twice.
 #[test]
 fn slow_scenes_do_without() {
     let stack: Vec<String> = (0..5)
@@ -281,7 +284,7 @@ fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
     silent(&s);
 }
 
-/// A line that is at rest and turns by 0.4 rad a step at once meets the ball above its end.
+/// A line that is at rest and suddenly rotates by 0.4 rad per step meets the ball above its end.
 #[test]
 fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
     let mut s = built::<Dim2>(&Sketch {
@@ -307,8 +310,8 @@ fn passed<S: Space>(s: &Simulation<S>) {
     );
 }
 
-/// What bodies go through before the first detection, and by a jump of an imposed velocity, is
-/// reported.
+/// Bodies that pass through each other before the first detection, or by a jump of an imposed
+/// velocity, are reported.
 #[test]
 fn what_is_passed_before_detection_is_reported() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
@@ -331,7 +334,7 @@ fn what_is_passed_before_detection_is_reported() {
         s
     };
     passed(&kicked(0.025));
-    // Beyond the half move it is met.
+    // A grain farther away than half a step is met.
     let s = kicked(0.08);
     silent(&s);
     assert!(
@@ -356,7 +359,7 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], count: usize) -> Simulation
     let energy = s.state.bodies.kinetic_energy();
     for _ in 0..count {
         steps(&mut s, 1);
-        // None goes through another.
+        // No grain passes through another.
         for pair in [0, 1] {
             let apart = s.state.bodies.position[pair + 1].x - s.state.bodies.position[pair].x;
             assert!(apart > 0.015, "{apart}");
@@ -367,8 +370,8 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], count: usize) -> Simulation
     s
 }
 
-/// One impact after another: v1 = (1 - e) v/2, then v2 = (1 - e)(1 + e) v/4 and v3 = (1 + e)^2 v/4.
-/// Where both come in one step the second waits for the next step, and the run says so.
+/// Consecutive impacts: v1 = (1 - e) v/2, then v2 = (1 - e)(1 + e) v/4 and v3 = (1 + e)^2 v/4. If
+/// both occur in one step the second waits for the next step, which the run reports.
 #[test]
 fn impacts_with_restitution_one_after_the_other() {
     for e in [1.0, 0.8] {
@@ -395,7 +398,7 @@ fn impacts_with_restitution_one_after_the_other() {
     }
 }
 
-/// Two balls thrown at a wall one behind the other: the rear one does not bounce off the wall
+/// Two balls are thrown at a wall one behind the other: the rear one does not rebound from the wall
 /// through the front one.
 #[test]
 fn a_ball_does_not_bounce_through_another() {

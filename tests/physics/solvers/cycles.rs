@@ -1,5 +1,5 @@
-//! The smallest problems on which sweeps over rigid contacts never end, and what ends them: a disk
-//! that spins between walls.
+//! The smallest problems on which sweeps over rigid contacts never end, a disk that spins between
+//! walls, and the methods that solve them.
 //!
 //! A sweep solves one contact after the other. A contact that sticks projects the velocity
 //! orthogonally, one that slides along (1, mu) against its normal, which lengthens it by up to
@@ -37,7 +37,7 @@ fn pit(angles: &[f64], velocity: [f64; 3], mu: f64, compliance: f64) -> LocalPro
     }
 }
 
-/// Floor and wall.
+/// A corner of floor and wall.
 fn corner(mu: f64, compliance: f64) -> LocalProblem {
     pit(&[0.5 * PI, 0.0], [0.0, -1.0, 10.0], mu, compliance)
 }
@@ -58,8 +58,8 @@ fn by(method: Method, problem: &LocalProblem) -> Outcome {
     solve(problem, method, &limits)
 }
 
-/// Two contacts: all slide for mu = 1.2 > tan(pi/4), and p = (1, mu, mu, mu^2)/(1 + mu^2) solves
-/// the problem.
+/// Two contacts: all contacts slide for mu = 1.2 > tan(pi/4), and p = (1, mu, mu, mu^2)/(1 + mu^2)
+/// solves the problem.
 #[test]
 fn a_disk_that_spins_in_a_corner_is_not_solved_by_sweeps() {
     let problem = corner(1.2, 0.0);
@@ -93,14 +93,14 @@ fn a_disk_that_spins_in_a_corner_is_not_solved_by_sweeps() {
         let outcome = by(method, &problem);
         assert!(outcome.converged, "{}: {:e}", method.name(), outcome.error);
     }
-    // Below the threshold sweeps end, and above it where the contacts give way: all slide with
+    // Sweeps end below the threshold, and above it if the contacts are compliant: all slide with
     // mu/(1 + c) < 1.
     assert!(by(Method::Nlgs, &corner(0.9, 0.0)).converged);
     assert!(!by(Method::Nlgs, &corner(1.2, 0.19)).converged);
     assert!(by(Method::Nlgs, &corner(1.2, 0.21)).converged);
 }
 
-/// The file that the documentation solves is the corner.
+/// The file of the documentation is the corner problem.
 #[test]
 fn the_shipped_problem_is_the_corner() {
     let file = concat!(
@@ -127,7 +127,7 @@ fn the_shipped_problem_is_the_corner() {
     }
 }
 
-/// Five contacts have the threshold tan(pi/10) = 0.325, that of the friction of grains.
+/// Five contacts have the threshold tan(pi/10) = 0.325, which is the friction of grains.
 #[test]
 fn five_walls_cycle_at_the_friction_of_grains() {
     assert!(by(Method::Nlgs, &five(0.32)).converged);

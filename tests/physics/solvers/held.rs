@@ -1,36 +1,36 @@
 //! Contacts of bodies that are held in some or all directions: a spring, a bond, damping and
-//! friction give an impulse of the velocities that are imposed, without any mass. Every row and
-//! every method against the laws, written out.
+//! friction have an impulse that follows from the imposed velocities, without any mass. Every row
+//! and every method is compared with the laws.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::Problem;
 use fretwork::solve::form::{ContactForm, Elastic};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, MomentForm, Options, solve};
+use fretwork::solve::{AutoState, MomentForm, SolverOptions, solve};
 
-/// Pairs of bodies, more than a register of lanes holds.
+/// Number of pairs of bodies, more than a register has lanes.
 const PAIRS: usize = 21;
 
-/// What answers at the contact.
+/// Response of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Answer {
     /// A unilateral spring with friction, which sticks at every third contact.
     Spring,
     /// A bond, which only pulls at every third contact.
     Bond,
-    /// Both.
+    /// Spring and bond.
     Both,
     /// A rigid contact with attraction and shear cohesion.
     Cohesion,
 }
 
-/// How bodies can move.
+/// Free motions of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Moves {
     Not,
-    /// About the contact's normal's sides: they turn, and stay in place.
+    /// Rotation about axes across the contact's normal, at a fixed position.
     Turns,
-    /// Along the last axis.
+    /// Motion along the last axis.
     Along,
 }
 
@@ -84,7 +84,7 @@ fn contact<S: Space>(pair: usize, answer: Answer, central: bool) -> ContactForm<
         cohesion: if cohesive { 0.1 } else { 0.0 },
         elastic: matches!(answer, Answer::Bond | Answer::Both).then_some(bond),
         compliance: if sprung { [0.7, 1.1] } else { [0.0; 2] },
-        // Of the step before, when all was otherwise.
+        // The impulse of the previous step belongs to other conditions.
         impulse: normal * 9.0 + S::tangent_vector(&normal, &(aside(7.0) * 4.0)),
     }
 }
@@ -148,7 +148,7 @@ fn relative<S: Space>(problem: &Problem<S>, form: &ContactForm<S>) -> S::Vector 
     a - b
 }
 
-/// How far the impulse of a contact is off its laws at the velocities that there are.
+/// Deviation of the impulse of a contact from its laws at the present velocities.
 fn off<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> f64 {
     let (u, n, p) = (
         relative(problem, form),
@@ -163,7 +163,7 @@ fn off<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> f64 {
         pt += e.a_t + ut * e.b_t;
     }
     let [c_n, c_t] = form.compliance;
-    // A rigid contact that is held carries no pressure.
+    // A rigid contact between held bodies carries no pressure.
     let pressed = if c_n > 0.0 {
         (-(un + form.shift_n) / c_n).max(-form.tension)
     } else {
@@ -184,12 +184,12 @@ fn off<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> f64 {
 fn every_method<S: Space>(answer: Answer, moves: Moves, central: bool, moment: bool) {
     for method in Method::ALL.iter().copied() {
         let name = method.name();
-        // What a method does not serve is refused before.
+        // A problem that a method does not support is rejected before.
         let rotation_or_cohesion = moment || answer == Answer::Cohesion;
         if rotation_or_cohesion && matches!(name, "newton" | "interior") {
             continue;
         }
-        // Gradients crawl where directions of a block differ much.
+        // Gradient methods converge slowly if the directions of a block differ much.
         let gradient = matches!(name, "pg" | "cpg" | "pcpg" | "apgd");
         if gradient && moves != Moves::Not {
             continue;
@@ -199,11 +199,11 @@ fn every_method<S: Space>(answer: Answer, moves: Moves, central: bool, moment: b
             forms,
             moments,
         } = posed::<S>(answer, moves, central, moment);
-        let options = Options {
+        let options = SolverOptions {
             tolerance: 1e-8,
             max_iterations: 20_000,
             method,
-            ..Options::default()
+            ..SolverOptions::default()
         };
         let report = solve(
             &mut problem,
@@ -263,7 +263,7 @@ fn springs_bonds_and_friction_between_held_bodies_in_space() {
     everything::<Dim3>();
 }
 
-/// Bodies that can only turn, or only move along an axis: the laws hold at the velocities that the
+/// Bodies can only rotate, or only move along an axis: the laws hold at the velocities that the
 /// solver finds.
 #[test]
 fn contacts_of_bodies_that_are_held_in_part() {

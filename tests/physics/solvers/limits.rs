@@ -1,5 +1,4 @@
-//! The ends of the range: nothing to solve, contacts that nothing moves, numbers that are none, no
-//! time.
+//! Limits: nothing to solve, contacts that nothing moves, numbers that are not finite, no time.
 
 use super::made::{Made, friction, rng, well};
 use super::{run, tolerance};
@@ -47,19 +46,19 @@ fn immovable<const D: usize>() {
             }
             let name = format!("{D}D, contact {at} between immovable bodies, mu {mu}");
             let mut made = Made::<D>::new(w, friction(6, mu, true), name, &mut rng);
-            // It slides as it likes, and is not pressed.
+            // The contact slides freely, and is not pressed.
             made.q[at * D] = made.q[at * D].abs();
             for method in all() {
                 if made.q[at * D] > 0.0 || made.q[at * D + 1..at * D + D].iter().all(|x| *x == 0.0)
                 {
                     let (state, solved) = run(&made, method, Norm::Field);
                     let (name, error) = (method.name(), state.error);
-                    // With p = 0 and u = 0 in one contact the interior point ends near 1e-8.
+                    // With p = 0 and u = 0 in one contact the interior point method ends near 1e-8.
                     let near = method == Method::Interior && error <= 1e-7;
                     assert!(solved || near, "{name} on {}: {error:e}", made.name);
                 }
             }
-            // Pressed it has no solution, and nobody may say so.
+            // If the contact is pressed there is no solution, and no method may report one.
             made.q[at * D] = -1.0;
             for method in all() {
                 let (_, solved) = run(&made, method, Norm::Field);
@@ -67,7 +66,7 @@ fn immovable<const D: usize>() {
             }
         }
     }
-    // None moves at all.
+    // No contact moves.
     let mut made = Made::<D>::new(
         DMatrix::zeros(2 * D, 2 * D),
         friction(2, 0.3, false),
@@ -94,7 +93,7 @@ fn made<const D: usize>(seed: u64) -> Made<D> {
     let mut rng = rng(seed);
     let w = well(5 * D, 3.0, &mut rng);
     let mut made = Made::new(w, friction(5, 0.3, true), "five contacts".into(), &mut rng);
-    // One is pressed, so that p = 0 is no solution.
+    // One contact is pressed, so that p = 0 is not a solution.
     made.q[0] = -1.0;
     made
 }
@@ -122,7 +121,7 @@ fn not_a_number<const D: usize>() {
                     assert!(outcome.p.iter().all(|x| *x == 0.0));
                 }
             }
-            // Behind that check, too.
+            // The solver behind that check is tested too.
             for in_w in [false, true] {
                 let mut made = made::<D>(22);
                 if in_w {
@@ -169,7 +168,7 @@ fn a_problem_that_does_not_fit_is_refused() {
     }
 }
 
-/// q beyond what a square can hold.
+/// q is larger than what a square can represent.
 #[test]
 fn tiny_and_huge_velocities() {
     let made = made::<3>(23);
@@ -213,7 +212,7 @@ fn at_once<const D: usize>() {
             assert!(error <= before * (1.0 + 1e-12), "{name} made it worse");
             assert!((error - state.error).abs() <= 1e-12, "{name}");
         }
-        // What it gives is what it says, through the other door too.
+        // The result agrees with its report, also through the other interface.
         let outcome = solve(&made.problem(), method, &LIMITS);
         assert_eq!(outcome.error <= LIMITS.tolerance, outcome.converged);
         let error = made.error(&outcome.p, Norm::Field);
@@ -228,7 +227,7 @@ fn no_time_and_no_iterations() {
     at_once::<3>();
 }
 
-/// A problem of one contact from its block.
+/// Returns a problem of one contact from its block.
 fn single<const D: usize>(w: [[f64; D]; D], q: [f64; D], mu: f64) -> LocalProblem {
     let entries: Vec<(u32, u32, f64)> = (0..D * D)
         .map(|k| ((k / D) as u32, (k % D) as u32, w[k / D][k % D]))
@@ -241,8 +240,8 @@ fn single<const D: usize>(w: [[f64; D]; D], q: [f64; D], mu: f64) -> LocalProble
     }
 }
 
-/// Bodies that yield along some directions only: the slip of the others is given, and friction goes
-/// against it.
+/// Bodies move along some directions only: the slip in the other directions is given, and friction
+/// opposes it.
 #[test]
 fn blocks_of_less_than_full_rank() {
     let r = 0.3f64.hypot(1.0);
@@ -255,7 +254,7 @@ fn blocks_of_less_than_full_rank() {
             single([[1.0, 0.0], [0.0, 0.0]], [-1.0, 1.0], 0.5),
             vec![1.0, -0.5],
         ),
-        // u_n = p_n + p_t/2 - 1 = 0 and p_t = mu p_n, against u_t < 0.
+        // The equations are u_n = p_n + p_t/2 - 1 = 0 and p_t = mu p_n, against u_t < 0.
         (
             single([[1.0, 0.5], [0.5, 0.25]], [-1.0, -1.0], 0.3),
             vec![1.0 / 1.15, 0.3 / 1.15],
@@ -291,7 +290,7 @@ fn blocks_of_less_than_full_rank() {
             }
         }
     }
-    // One tangent yields: |p_t| = mu p_n along (u_1, u_2) with u_1 = p_1 - 0.3.
+    // One tangent is free: |p_t| = mu p_n along (u_1, u_2) with u_1 = p_1 - 0.3.
     let problem = single(
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]],
         [-1.0, -0.3, 0.3],
@@ -310,7 +309,7 @@ fn blocks_of_less_than_full_rank() {
     }
 }
 
-/// With a large mu the natural map hardly sees that nothing is carried.
+/// With a large mu the natural map is hardly affected if nothing is carried.
 #[test]
 fn large_friction_hides_no_penetration() {
     for mu in [1e3, 1e5, 1e6, 1e10, 1e50, 1e160] {
@@ -337,7 +336,7 @@ fn large_friction_hides_no_penetration() {
     }
 }
 
-/// u_1 + u_2 = -2 whatever the impulses: nobody may say that it is solved.
+/// u_1 + u_2 = -2 for any impulses: no method may report a solution.
 #[test]
 fn no_answer_is_no_success() {
     for mu in [0.0, 0.3] {

@@ -1,5 +1,6 @@
 //! Problems made from their solutions: impulses p and velocities u that satisfy the laws are drawn
-//! first, then an operator W, and q = u - W p. And the error, computed here from its formula alone.
+//! first, then an operator W, and q = u - W p. The error is computed here independently from its
+//! formula.
 
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::block::BlockMatrix;
@@ -73,7 +74,8 @@ fn answer<const D: usize>(law: &Law, normals: &[f64], rng: &mut Pcg64) -> ([f64;
             }
         },
         Law::Cohesive { mu, cohesion } => {
-            // Open or pressed; sticking or sliding: the cohesion holds an open contact too.
+            // The contact is open or pressed, and sticks or slides; cohesion holds an open contact
+            // too.
             let pressed = rng.random_range(0..2) == 1;
             let slides = rng.random_range(0..2) == 1;
             let n = if pressed { size } else { 0.0 };
@@ -112,10 +114,10 @@ fn answer<const D: usize>(law: &Law, normals: &[f64], rng: &mut Pcg64) -> ([f64;
 }
 
 impl<const D: usize> Made<D> {
-    /// Draws a solution of the laws and the free velocities that belong to it.
+    /// Draws a solution of the laws and the corresponding free velocities.
     pub fn new(w: DMatrix<f64>, laws: Vec<Law>, name: String, rng: &mut Pcg64) -> Self {
         let (mut p, mut u, mut normals) = (Vec::new(), Vec::new(), Vec::new());
-        // Impulses and velocities of the same size, in W's units.
+        // Impulses and velocities have equal size in the units of W.
         let count = w.nrows().max(1) as f64;
         let unit = w.trace() / count;
         let unit = if unit > 0.0 { unit } else { 1.0 };
@@ -174,9 +176,9 @@ impl<const D: usize> Made<D> {
         self.q.as_chunks().0.to_vec()
     }
 
-    /// The error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t| n))) /
-    /// rho or what that loses of min(p_n/rho, u_n), mu^2/(1 + mu^2); in the field's norm |r| /
-    /// max(|u|, |q|) where that is above a half.
+    /// Returns the error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t|
+    /// n))) / rho or the part that it misses of min(p_n/rho, u_n), mu^2/(1 + mu^2); in the FCLIB
+    /// norm |r| / max(|u|, |q|) where that is above a half.
     pub fn error(&self, p: &[f64], norm: Norm) -> f64 {
         let u = &self.w * DVector::from_column_slice(p) + DVector::from_column_slice(&self.q);
         let (mut r2, mut p2, mut u2) = (0.0, 0.0, 0.0);
@@ -219,7 +221,7 @@ impl<const D: usize> Made<D> {
         }
     }
 
-    /// What impulses too large for the velocities may lose of the error.
+    /// Error that impulses too large for the velocities may hide.
     pub fn rounding(&self, p: &[f64]) -> f64 {
         let sizes = self.w.abs() * DVector::from_column_slice(p).abs();
         let free = DVector::from_column_slice(&self.q).norm();
@@ -233,7 +235,7 @@ impl<const D: usize> Made<D> {
     }
 }
 
-/// The largest eigenvalue of a block from above: the largest absolute row sum of its symmetric
+/// Upper bound of the largest eigenvalue of a block: the largest absolute row sum of its symmetric
 /// part.
 fn bound(w: &DMatrix<f64>) -> f64 {
     let s = 0.5 * (w + w.transpose());
@@ -252,7 +254,7 @@ fn nearest(law: &Law, z: &[f64], push: impl Fn(u32) -> f64) -> Vec<f64> {
             .collect()
     };
     let cone = |mu: f64, c: f64| {
-        // Candidates: the point itself, the foot on the border, the half disc at n = 0.
+        // The candidates are the point itself, the foot on the border, and the half disk at n = 0.
         let (n, s) = (z[0], t - c);
         if n >= 0.0 && s <= mu * n {
             return at(n, t);
@@ -287,7 +289,8 @@ pub fn well(n: usize, condition: f64, rng: &mut Pcg64) -> DMatrix<f64> {
     &q * DMatrix::from_diagonal(&d) * q.transpose()
 }
 
-/// H^T M^-1 H of free rigid bodies: every contact lies between two of them, or one and the ground.
+/// H^T M^-1 H of free rigid bodies, where every contact is between two bodies, or a body and the
+/// ground.
 pub fn rigid<const D: usize>(bodies: usize, contacts: usize, rng: &mut Pcg64) -> DMatrix<f64> {
     let own = if D == 2 { 3 } else { 6 };
     let mut h = DMatrix::<f64>::zeros(bodies * own, contacts * D);
@@ -338,7 +341,7 @@ pub fn rigid<const D: usize>(bodies: usize, contacts: usize, rng: &mut Pcg64) ->
     h.transpose() * inverse * h
 }
 
-/// Blocks of one contact only.
+/// Blocks of separate contacts.
 pub fn apart<const D: usize>(contacts: usize, rng: &mut Pcg64) -> DMatrix<f64> {
     let mut w = DMatrix::<f64>::zeros(contacts * D, contacts * D);
     for c in 0..contacts {
@@ -348,7 +351,7 @@ pub fn apart<const D: usize>(contacts: usize, rng: &mut Pcg64) -> DMatrix<f64> {
     w
 }
 
-/// W + a part that is not symmetric, of a relative size.
+/// Returns W plus an unsymmetric part of a relative size.
 pub fn twisted(w: &DMatrix<f64>, size: f64, rng: &mut Pcg64) -> DMatrix<f64> {
     let n = w.nrows();
     let mean = w.norm() / (n.max(1) as f64);
@@ -356,7 +359,7 @@ pub fn twisted(w: &DMatrix<f64>, size: f64, rng: &mut Pcg64) -> DMatrix<f64> {
     w + (&noise - noise.transpose())
 }
 
-/// Friction coefficients: one for all, or every third contact without.
+/// Friction coefficients: one for all contacts, or none for every third contact.
 pub fn friction(contacts: usize, mu: f64, mixed: bool) -> Vec<Law> {
     (0..contacts)
         .map(|c| Law::Coulomb(if mixed && c % 3 == 0 { 0.0 } else { mu }))

@@ -1,6 +1,7 @@
-//! Every method on random problems whose solution is known, in the laws that it serves.
+//! Every method on random problems with known solutions, with the laws that it supports.
 //!
-//! What a method says of its error is never believed: `made` computes it anew, from its formula.
+//! The error that a method reports is not trusted: `made` computes it independently, from its
+//! formula.
 
 mod cycles;
 mod held;
@@ -21,8 +22,8 @@ fn tolerance(method: Method) -> f64 {
     }
 }
 
-/// Iterations that a problem of these sizes may take; one of Newton or the interior point
-/// factorises.
+/// Largest number of iterations for problems of these sizes; an iteration of Newton or the interior
+/// point method is a factorisation.
 fn iterations(method: Method) -> u32 {
     match method {
         Method::Newton | Method::Interior => 300,
@@ -31,7 +32,7 @@ fn iterations(method: Method) -> u32 {
     }
 }
 
-/// Solves from p = 0, checks what must hold whatever comes out, and says whether it is solved.
+/// Solves from p = 0, checks requirements on any result, and returns whether the problem is solved.
 fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (Iteration<D>, bool) {
     let (w, q) = (made.blocks(), made.free());
     let (tolerance, most) = (tolerance(method), iterations(method));
@@ -40,7 +41,7 @@ fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (Iteration
     let p = state.p.as_flattened();
     let name = format!("{} on {}", method.name(), made.name);
     assert!(p.iter().all(|x| x.is_finite()), "{name}: {p:?}");
-    // Sweeps between two tests of the error are not counted one by one.
+    // Sweeps between two tests of the error are not counted individually.
     assert!(
         state.iterations <= most + 10,
         "{name}: {}",
@@ -57,7 +58,7 @@ fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (Iteration
     (state, solved)
 }
 
-/// The share of the problems that a method is to solve at least.
+/// Smallest fraction of the problems that a method must solve.
 fn share<const D: usize>(
     problems: &[Made<D>],
     norm: Norm,
@@ -96,7 +97,7 @@ const FRICTION: [f64; 5] = [0.0, 0.1, 0.5, 1.0, 1.5];
 fn one_solution<const D: usize>(seed: u64) {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
-    // mu < lambda_min / lambda_max: the law with the De Saxce term is strongly monotone.
+    // For mu < lambda_min / lambda_max the law with the De Saxce term is strongly monotone.
     for n in [1, 2, 7, 20] {
         for mu in [0.0, 0.1, 0.2, 0.3] {
             for (mixed, twist) in [(false, 0.0), (true, 0.0), (true, 1e-3)] {
@@ -130,8 +131,8 @@ fn all_find_the_only_solution() {
     one_solution::<3>(2);
 }
 
-/// Packings of rigid bodies; `per` is the number of contacts a body, so that rows over rank is
-/// D per / (3 or 6).
+/// Packings of rigid bodies. `per` is the number of contacts per body, so that the ratio of rows to
+/// rank is D per / (3 or 6).
 fn packings<const D: usize>(sets: &[(usize, usize)], seed: u64) -> Vec<Made<D>> {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
@@ -162,15 +163,16 @@ fn rigid_bodies_of_full_rank() {
 
 #[test]
 fn hyperstatic_rigid_bodies() {
-    // The literature's figures: sweeps and first-order methods often stall, Newton and interior
-    // points solve most, and each problem is solved by one of them.
+    // These are the fractions known from the literature: sweeps and first-order methods often
+    // stall, Newton and interior points solve most problems, and each problem is solved by one of
+    // them.
     let least = |method| match method {
         Method::Auto => 1.0,
         Method::Newton => 0.85,
         Method::Interior => 0.8,
         _ => 0.4,
     };
-    // Rows over rank up to 3, and 7 for one.
+    // The ratio of rows to rank is up to 3, and 7 for one problem.
     let plane = packings::<2>(&[(1, 4), (3, 3), (5, 4), (1, 11)], 5);
     let space = packings::<3>(&[(1, 4), (3, 3), (3, 6), (1, 14)], 6);
     share(&plane, Norm::Field, least, |_, _, _| {});
@@ -190,7 +192,7 @@ fn any_unit<const D: usize>(seed: u64) {
             problems.push(Made::<D>::new(w, friction(8, mu, true), name, &mut rng));
         }
     }
-    // With mu above 1 the interior point may end a little short of its tolerance.
+    // With mu above 1 the interior point method may end slightly above its tolerance.
     let least = |method| match method {
         Method::Interior => 0.95,
         _ => 1.0,
@@ -233,7 +235,7 @@ fn other_laws<const D: usize>(seed: u64) {
                         },
                     })
                     .collect();
-                // A compliance of its own in every bond.
+                // Every bond has its own compliance.
                 let mut w = well(n * D, 3.0, &mut rng);
                 for (c, law) in laws.iter().enumerate() {
                     if *law == Law::Free {

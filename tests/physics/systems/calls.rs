@@ -1,5 +1,4 @@
-//! What a step asks of a system, and how often: A and the contacts do not change while a step is
-//! solved.
+//! Calls of a system in a step: A and the contacts do not change while a step is solved.
 
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
@@ -7,8 +6,8 @@ use crate::extremes::bench::{Sketch, ball, floor, grains, place, volume};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use std::sync::Arc;
 
-/// Both balls rub on the floor: their two contacts are asked once for their nodes, A^-1 is applied
-/// to each axis of each node, for the free velocity and for the impulses.
+/// Both balls slide on the floor: the nodes of their two contacts are queried once, and A^-1 is
+/// applied to each axis of each node, for the free velocity and for the impulses.
 fn once_a_step<S: Space>() {
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),
@@ -31,7 +30,7 @@ fn a_step_asks_once_for_nodes_and_compliance() {
 }
 
 /// A bond to a grain softens as it opens, and the step is solved until damage and opening agree:
-/// the compliance stays.
+/// the compliance is kept.
 fn iterates<S: Space>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let opens = v / omega;

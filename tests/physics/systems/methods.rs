@@ -1,4 +1,4 @@
-//! Methods that form W, or apply it to all impulses at a time, serve systems as sweeps do.
+//! Methods that form W, or apply it to all impulses together, support systems as sweeps do.
 
 use super::spring::Spring;
 use super::{R, at, built, closes, go, sketch};
@@ -7,8 +7,8 @@ use fretwork::contact::Contact;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::solve::local::solver::Method;
 
-/// It slides on the floor and pushes a grain before it, which spins: all methods give the motion
-/// that sweeps give.
+/// The system slides on the floor and pushes a spinning grain: all methods give the motion that
+/// sweeps give.
 fn solved_by<S: Space>(method: Method) -> Vec<S::Vector> {
     let row = [ball(&place::<S>(0.75, 0.0, R), R)];
     let mut s = built::<S>(&Sketch {

@@ -1,5 +1,5 @@
-//! Dynamical systems beside rigid bodies: a body of two masses on a spring, written here, vibrates,
-//! falls, slides, collides and is bonded by its closed forms, and goes on from a saved state.
+//! Dynamical systems beside rigid bodies: a body of two masses on a spring vibrates, falls, slides,
+//! collides and is bonded according to closed forms, and continues from a saved state.
 
 mod calls;
 mod methods;
@@ -10,7 +10,7 @@ mod stiffening;
 use crate::extremes::bench::{G, Sketch, ball, floor, grains, place, plane, volume};
 use crate::stepping::{closes, go, near, steps};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::{Simulation, State};
 use spring::{Spring, Touching};
 
@@ -54,8 +54,8 @@ fn momentum<S: Space>(s: &Simulation<S>, mass: [f64; 2]) -> f64 {
     grains + mass[0] * velocity[0] + mass[1] * velocity[S::D]
 }
 
-/// Free vibration. The midpoint rule conserves energy and turns the phase by 2 atan(w h/2) a step:
-/// tan(w' h/2) = w h/2.
+/// Free vibration. The midpoint rule conserves energy and advances the phase by 2 atan(w h/2) per
+/// step: tan(w' h/2) = w h/2.
 fn vibrates<S: Space>() {
     let (mass, k, stretch) = ([2.0, 3.0], 4e3, 0.01);
     let mut s = built::<S>(&Sketch {
@@ -92,8 +92,8 @@ fn it_vibrates_at_the_frequency_of_the_midpoint_rule() {
     vibrates::<Dim3>();
 }
 
-/// Dropped upright on a floor, without restitution: the lower ball then carries the weight of both,
-/// the spring that of the upper.
+/// The system is dropped upright on a floor, without restitution: the lower ball then carries the
+/// weight of both masses, the spring that of the upper one.
 fn comes_to_rest<S: Space>() {
     let (mass, k) = ([2.0, 3.0], 5e4);
     let mut s = built::<S>(&Sketch {
@@ -114,7 +114,7 @@ fn comes_to_rest<S: Space>() {
         panic!("two contactors")
     };
     near(mass[1] * G / k, 0.49 - (b[up] - a[up]), 1e-9);
-    // The step in which the ball meets the floor ends the gap that it began with.
+    // The step in which the ball reaches the floor closes the gap at its start.
     near(R, a[up], 1e-9);
     assert!(s.state.energy.viscous > 0.0 && s.state.energy.impact > 0.0);
     closes(&s, 1e-12);
@@ -126,7 +126,8 @@ fn it_comes_to_rest_and_the_contact_carries_its_weight() {
     comes_to_rest::<Dim3>();
 }
 
-/// Both balls rub on the floor at mu g, whatever their masses: v^2/(2 mu g) to the stop.
+/// Both balls slide on the floor with the deceleration mu g, whatever their masses: they stop after
+/// v^2/(2 mu g).
 fn slides<S: Space>() {
     let (v, mu) = (1.0, 0.3);
     let mut s = built::<S>(&Sketch {
@@ -157,8 +158,8 @@ fn it_slides_to_a_stop_at_mu_g() {
     slides::<Dim3>();
 }
 
-/// It strikes a grain: momentum stays, the ball leaves at e times the speed that it came with, the
-/// ledger closes.
+/// The system strikes a grain: momentum is conserved, the ball leaves at e times its approach
+/// speed, and the ledger closes.
 fn strikes<S: Space>(touching: Touching, theta: f64, stiffening: f64) {
     let (mass, e) = ([2.0, 3.0], 0.6);
     let row = [ball(&place::<S>(1.0, 0.0, 1.0), R)];
@@ -197,8 +198,8 @@ fn strikes<S: Space>(touching: Touching, theta: f64, stiffening: f64) {
         near(before, momentum(&s, mass), 1e-12);
     }
     assert!(struck > 0 && s.state.energy.elastic > 0.0);
-    // Velocities are averaged by theta: beyond 1/2 the scheme books a part of what the impact
-    // takes, and more; the tangent of a stiffening spring is not its secant.
+    // Velocities are averaged by theta: above 1/2 the scheme books part of the loss of the impact
+    // or more than it; the tangent of a stiffening spring is not its secant.
     let sinks = (s.state.energy.impact, s.state.energy.scheme);
     assert!(sinks.0 + sinks.1 > 0.0);
     assert_eq!(sinks.1 == 0.0, theta == 0.5 && stiffening == 0.0);
@@ -223,7 +224,7 @@ fn a_stiffening_one_strikes_a_grain_and_momentum_and_energy_are_booked() {
     }
 }
 
-/// Without a spring each mass is a smooth grain of the same mass: it falls and bounces as one.
+/// Without a spring each mass is a smooth grain of equal mass: it falls and bounces like one.
 fn is_a_grain<S: Space>() {
     let row = [ball(&place::<S>(0.0, 0.0, 0.5), R)];
     let rigid = Sketch {
@@ -257,8 +258,8 @@ fn masses_without_a_spring_bounce_as_grains() {
 }
 
 /// A bond between a grain and the second mass, as stiff as the spring, makes a chain of three equal
-/// masses. Outwards at v, at rest, outwards at v is its mode of w^2 = k/m: the bond opens by v/w
-/// sin w' t.
+/// masses. With initial velocities of v outwards, zero, and v outwards it is in its mode of w^2 =
+/// k/m: the bond opens by v/w sin w' t.
 fn is_bonded<S: Space>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let k = m * omega * omega;
@@ -308,8 +309,8 @@ fn a_bond_holds_it_to_a_grain() {
     is_bonded::<Dim3>();
 }
 
-/// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second
-/// one that runs into it, between walls.
+/// A heap of rough grains falls between walls on a sprung body whose balls may touch each other,
+/// and on a second one that runs into it.
 fn heap<S: Space>(theta: f64) -> Simulation<S> {
     let mut row = Vec::new();
     for k in 0..24u32 {
@@ -355,8 +356,8 @@ fn heap<S: Space>(theta: f64) -> Simulation<S> {
     s
 }
 
-/// Grains and contactors bear on each other, contactors on contactors of their own and of another
-/// system.
+/// Grains and contactors exert forces on each other, and so do contactors on those of their own and
+/// of another system.
 fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
     for c in &s.state.network.contacts {
         if c.impulse == S::Vector::zero() {
@@ -409,7 +410,7 @@ fn goes_on<S: Space>() {
         state(&whole) == state(&resumed),
         "the steps after it differ"
     );
-    // A scene without these systems does not take the state, and stays as it is.
+    // A scene without these systems rejects the state, and is unchanged.
     let mut other = heap::<S>(0.5);
     other.add_system(Box::new(Spring::<S>::new(
         [1.0, 1.0],
@@ -443,8 +444,8 @@ fn threads_do_not_change_its_bits() {
     assert!(one == after(1) && one == after(2) && one == after(3));
 }
 
-/// A system that moves when it is added keeps its kinetic energy in the ledger where imposed motion
-/// begins after it.
+/// A system that moves when it is added keeps its kinetic energy in the ledger if imposed motion
+/// begins later.
 #[test]
 fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
     let mut s = built::<Dim2>(&Sketch {
@@ -466,8 +467,8 @@ fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
     closes(&s, 1e-12);
 }
 
-/// A moment has no power on a contactor that does not turn: under rolling friction it slides as
-/// under friction alone, and slows down by mu g.
+/// A moment does no work on a contactor that does not rotate: with rolling friction it slides as
+/// with friction alone, and decelerates by mu g.
 #[test]
 fn a_contactor_that_does_not_turn_takes_moments_without_power() {
     let (mu, speed, mass) = (0.3, 2.0, [2.0, 3.0]);

@@ -1,13 +1,13 @@
-//! What a scene measures itself against takes in its systems: conditions of rest do, and what
-//! cannot is refused.
+//! Quantities to which a scene is compared include its systems: conditions of rest do, and
+//! unsupported settings are rejected.
 
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
 use crate::extremes::bench::{G, Sketch, floor};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 
-/// Dropped upright, and an imposed one beside it that never rests: the phase ends when m g d of the
-/// first has been above its kinetic energy for long enough, d the length over both balls.
+/// One system is dropped upright, beside an imposed one that never rests. The phase ends when the
+/// kinetic energy of the first has been below m g d for long enough, d the length over both balls.
 fn phase_of_rest<S: Space>() {
     let (mass, share, held) = ([2.0, 3.0], 1e-4, 0.05);
     let mut s = built::<S>(&Sketch {

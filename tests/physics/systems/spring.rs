@@ -1,5 +1,5 @@
 //! A body that is not rigid, as a user of the library writes one: two masses on a linear spring
-//! with a damper, which touch by a ball each or by one ball half-way between them. The spring may
+//! with a damper, with a ball each or one ball half-way between them as contactors. The spring may
 //! stiffen as it is stretched.
 
 use fretwork::bodies::{Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork};
@@ -7,7 +7,7 @@ use fretwork::geometry::space::{Space, VectorLike};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What of it touches.
+/// Contactors of the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Touching {
     /// A ball about each mass.
@@ -18,7 +18,7 @@ pub enum Touching {
     Middle,
 }
 
-/// How often its step asked for what is to be done once.
+/// Number of calls of the functions that a step should call once.
 #[derive(Debug, Default)]
 pub struct Calls {
     pub linearise: AtomicUsize,
@@ -31,38 +31,38 @@ impl Calls {
         counter.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Tangents, solves and contact nodes since the last time.
+    /// Returns the numbers of tangents, solves and contact nodes since the last call.
     pub fn take(&self) -> [usize; 3] {
         [&self.linearise, &self.solve, &self.contact_nodes].map(|c| c.swap(0, Ordering::Relaxed))
     }
 }
 
-/// The spring pulls along all axes alike, with s = d2 - d1 along an axis, d the displacements from
+/// The spring acts along all axes alike, with s = d2 - d1 along an axis, d the displacements from
 /// rest: the force on the first mass is k (s + stiffening s^3) + c ds/dt.
 #[derive(Clone, Debug)]
 pub struct Spring<S: Space> {
     pub mass: [f64; 2],
     pub stiffness: f64,
-    /// Zero of a linear spring (1/m^2).
+    /// Stiffening; zero for a linear spring (1/m^2).
     pub stiffening: f64,
     pub damping: f64,
     pub radius: f64,
     pub touching: Touching,
     pub driven: bool,
     pub calls: Arc<Calls>,
-    /// Places of the masses without load (m).
+    /// Positions of the masses without load (m).
     pub home: [S::Vector; 2],
-    /// Displacements, then velocities: of the first mass, then of the second.
+    /// Displacements and velocities of the first mass, then of the second.
     pub displacement: Vec<f64>,
     pub velocity: Vec<f64>,
-    /// Both at the start of the step.
+    /// Displacements and velocities at the start of the step.
     start: [Vec<f64>; 2],
-    /// A^-1 of each axis.
+    /// Inverse of A for each axis.
     inverse: [[[f64; 2]; 2]; 3],
 }
 
 impl<S: Space> Spring<S> {
-    /// At rest, undamped, with a ball of a radius (m) about each mass.
+    /// Returns the system at rest, undamped, with a ball of a radius (m) about each mass.
     pub fn new(mass: [f64; 2], stiffness: f64, radius: f64, home: [S::Vector; 2]) -> Self {
         Self {
             mass,
@@ -81,7 +81,7 @@ impl<S: Space> Spring<S> {
         }
     }
 
-    /// Moves both masses along the first axis (m/s).
+    /// Sets the velocities of both masses along the first axis (m/s).
     pub fn moving(mut self, first: f64, second: f64) -> Self {
         (self.velocity[0], self.velocity[S::D]) = (first, second);
         self
@@ -108,7 +108,7 @@ impl<S: Space> Spring<S> {
         self.stiffness * (0.5 * squared + 0.25 * self.stiffening * squared * squared)
     }
 
-    /// The stretch that the step would reach at theta without forces.
+    /// Stretch that the step would reach at theta without forces.
     fn expected(&self, step: &SystemStep<S>) -> S::Vector {
         let [x, v] = &self.start;
         Self::stretch(x) + Self::stretch(v) * (step.h * step.theta)

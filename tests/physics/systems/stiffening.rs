@@ -1,5 +1,4 @@
-//! A system that is not linear: two masses on a spring that stiffens, whose tangent is formed anew
-//! in each step.
+//! A nonlinear system: two masses on a spring that stiffens, whose tangent is formed in each step.
 
 use super::spring::Spring;
 use super::{R, at, built, closes, contactors, go, near, sketch};
@@ -25,7 +24,7 @@ fn period(a: f64, b: f64, amplitude: f64) -> f64 {
     4.0 * 0.5 * PI / (x * square.sqrt())
 }
 
-/// Where the cubic through two values and slopes is zero, as a share of the step.
+/// Position of the zero of the cubic through two values and slopes, as a fraction of the step.
 fn crossing(h: f64, [x, v]: [f64; 2], [y, w]: [f64; 2]) -> f64 {
     let cubic = |t: f64| {
         let s = 1.0 - t;
@@ -43,7 +42,7 @@ fn crossing(h: f64, [x, v]: [f64; 2], [y, w]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
-/// Mean period of ten, and the largest change of the energy as a share of it.
+/// Mean of ten periods, and the largest relative change of the energy.
 fn vibration<S: Space>(h: f64) -> (f64, f64) {
     let [k, stretch, stiffening] = SPRING;
     let mut s = built::<S>(&Sketch {
@@ -80,8 +79,8 @@ fn vibration<S: Space>(h: f64) -> (f64, f64) {
     ((downwards[10] - downwards[0]) / 10.0, changed)
 }
 
-/// The period tends to that of Duffing's oscillator with the square of the step, and so does the
-/// energy.
+/// The period converges to that of Duffing's oscillator with the square of the step, and so does
+/// the energy.
 fn follows_the_exact_period<S: Space>() {
     let [k, stretch, stiffening] = SPRING;
     let reduced = MASS[0] * MASS[1] / (MASS[0] + MASS[1]);
@@ -110,7 +109,7 @@ fn a_stiffening_spring_has_the_period_of_duffings_oscillator() {
 #[test]
 fn the_period_of_a_linear_and_of_a_cubic_spring() {
     near(2.0 * PI / 3.0, period(9.0, 0.0, 0.7), 1e-14);
-    // x'' + x^3 = 0 at the amplitude 1: sqrt(pi) Gamma(1/4)/Gamma(3/4) times sqrt 2 is
-    // 7.416298709...
+    // For x'' + x^3 = 0 at the amplitude 1 the period is sqrt(pi) Gamma(1/4)/Gamma(3/4) times sqrt
+    // 2 = 7.416298709...
     near(7.416_298_709_205_488, period(0.0, 1.0, 1.0), 1e-12);
 }

@@ -6,7 +6,7 @@ use fretwork::step::Simulation;
 
 const C: f64 = 1e12;
 const W: f64 = 0.1;
-/// r1 r2/(r1 + r2) of two grains of 1 m, times unit depth (m^2).
+/// Area r1 r2/(r1 + r2) of two grains of 1 m, times unit depth (m^2).
 const AREA: f64 = 0.5;
 
 pub fn all(table: &mut Table) {
@@ -28,7 +28,7 @@ fn traction(s: &Simulation<Dim2>) -> f64 {
     -s.state.received[grip].0.dot(&v) / v.norm() / s.options.scheme.h / AREA
 }
 
-/// Pulls to an opening: peak traction (Pa) and work (J/m^2).
+/// Pulls to an opening; returns peak traction (Pa) and work (J/m^2).
 fn pull(case: &str, sets: &[&str], reach: f64) -> (f64, f64) {
     let mut s = plane(case, sets);
     let (mut peak, mut work, mut opening) = (0.0f64, 0.0, 0.0);
@@ -54,8 +54,8 @@ fn modes(table: &mut Table) {
     }
 }
 
-/// The continuum limit b dbeta/dt = w - beta C u^2 for u = 0.045 t to 100 um, by Heun's rule with
-/// steps far below those of the case: peak and area.
+/// Returns peak and area of the continuum limit b dbeta/dt = w - beta C u^2 for u = 0.045 t to 100
+/// um, by Heun's rule with steps far below those of the case.
 fn ode(b: f64) -> (f64, f64) {
     let (rate, n) = (0.045, 4_000_000);
     let h = 100e-6 / rate / f64::from(n);
@@ -116,7 +116,7 @@ fn unload(table: &mut Table) {
         if below {
             at_turn = damage;
             gained = gained.max(now - damage);
-            // The step's traction is the secant at its theta-point.
+            // The traction of the step is the secant at its theta-point.
             let grip = s
                 .state
                 .bodies
@@ -139,7 +139,7 @@ fn unload(table: &mut Table) {
         gained,
         1e-12,
     );
-    // beta = w/(C u^2) at 2 u0.
+    // The law gives beta = w/(C u^2) at 2 u0.
     table.compare(
         case,
         "damage at 2 u0",

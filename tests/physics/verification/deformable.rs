@@ -1,4 +1,4 @@
-//! Deformable bodies that strain and turn a lot.
+//! Deformable bodies with large strain and rotation.
 
 use super::{Table, plane, until};
 use std::f64::consts::PI;
@@ -89,8 +89,8 @@ fn spinning_block(table: &mut Table) {
     let turned = along[1].atan2(along[0]).rem_euclid(2.0 * PI);
     let expected = 2.0 * f64::atan(0.5 * spin * h) * steps;
     table.compare("spinning_block", "angle (rad)", expected, turned, 1e-3);
-    // Stretched at once, it swings about the stress of steady spin, which the mean over the turn
-    // has.
+    // The body is stretched at once and oscillates about the stress of steady spin, which is the
+    // mean over the turn.
     let steady = RUBBER[2] * spin * spin * 0.2 * 0.2 / 8.0;
     table.compare(
         "spinning_block",

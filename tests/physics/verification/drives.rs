@@ -1,11 +1,11 @@
-//! Imposed motion: bodies are where their functions of time say, at every instant, and the work of
-//! it is booked.
+//! Imposed motion: bodies are at all times where their functions of time place them, and the work
+//! of the motion is booked.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
-use fretwork::scene::Loaded;
+use fretwork::scene::LoadedCase;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -28,7 +28,7 @@ fn text(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn loaded(dimension: usize, lines: &str) -> Loaded {
+fn loaded(dimension: usize, lines: &str) -> LoadedCase {
     scene::loaded_text(&text(dimension, lines))
 }
 
@@ -54,7 +54,7 @@ fn step<S: Space>(s: &mut Simulation<S>) {
 
 type Way = fn(f64) -> f64;
 
-/// Drives, the ways that they make, and the velocities that they begin with.
+/// Drives, the paths that they impose, and the initial velocities.
 const DRIVES: [(&str, Way, f64); 9] = [
     (
         "Displacement(Sine(amplitude: 0.01, frequency: 20.0))",
@@ -76,7 +76,8 @@ const DRIVES: [(&str, Way, f64); 9] = [
         |t| -0.1 * ((t - 0.0302) / 0.0407).clamp(0.0, 1.0),
         0.0,
     ),
-    // Corners at ends of steps (0.03 and 0.1), within steps, several within one, and a jump.
+    // There are corners at ends of steps (0.03 and 0.1), within steps, several within one step, and
+    // a jump.
     (
         "Displacement(Table([(0.0, 0.0), (0.03, 0.06), (0.0504, 0.02), (0.0811, 0.0), (0.0813, 0.01), (0.0815, -0.03), (0.1, 0.0), (0.1200001, 0.0), (0.1200002, 0.05)]))",
         |t| {
@@ -120,7 +121,7 @@ const DRIVES: [(&str, Way, f64); 9] = [
     ),
 ];
 
-/// Furthest from its way, over the steps of 0.15 s; the ledger closes at each.
+/// Largest distance from the path over the steps of 0.15 s; the ledger must close in each.
 fn off<S: Space>(mut s: Simulation<S>, way: Way, at: impl Fn(&Simulation<S>) -> f64) -> f64 {
     let mut worst = at(&s).abs();
     for _ in 0..150 {
@@ -143,7 +144,7 @@ fn imposed_translations_are_on_their_paths() {
         };
         for theta in [0.5, 0.7, 1.0] {
             let s = driven::<Dim2>("x", drive, theta, "gravity: [3.0, -9.81],");
-            // Once in motion, from the beginning: to the step's order.
+            // In motion from the beginning, the velocity is exact to the order of the step.
             let v = s.state.bodies.velocity[0].x;
             let order = if theta == 0.5 { 2e-3 } else { 0.1 };
             assert!(
@@ -184,8 +185,8 @@ fn imposed_rotations_are_on_their_paths() {
     }
 }
 
-/// Free under a force, then on a path that begins where it is, then at a velocity, then held: the
-/// work of the drives is the kinetic energy that they give.
+/// The body is free under a force, then on a path that begins at its position, then at a velocity,
+/// then fixed: the work of the drives is the kinetic energy that they supply.
 #[test]
 fn stages_take_over_where_the_body_is() {
     let mut s = driven::<Dim2>(
@@ -202,7 +203,7 @@ fn stages_take_over_where_the_body_is() {
     let place = |t: f64| {
         let (fallen, end) = (0.5 * 2.0 * t.min(0.02).powi(2), |a: f64| t.clamp(a, 1.0));
         let turned = sine(end(0.02).min(0.04)) - sine(0.02);
-        // A step belongs to the stage of its middle.
+        // A step belongs to the stage of its midpoint.
         let pushed = end(0.04).min(0.06) - 0.04;
         0.25 + fallen + turned + pushed - 0.5 * (end(0.06).min(0.08) - 0.06)
     };
@@ -221,7 +222,8 @@ fn stages_take_over_where_the_body_is() {
     assert!(s.state.energy.external_work.abs() < 1e-14);
 }
 
-/// Functions of a phase run on its own time; a repeated phase begins again where the body is.
+/// Functions of a phase use its own time; a repeated phase begins again at the position of the
+/// body.
 #[test]
 fn phases_begin_where_the_body_is() {
     let mut s = driven::<Dim2>(
@@ -261,8 +263,8 @@ fn phases_begin_where_the_body_is() {
     assert!(s.phases_finished());
 }
 
-/// After 100,000 steps bodies are where they should be, as exactly as a time and an angle of that
-/// size are numbers.
+/// After 100,000 steps bodies are at their positions to the precision of a time and an angle of
+/// that size.
 #[test]
 fn a_long_run_does_not_drift() {
     const STEPS: u32 = 100_000;
@@ -279,7 +281,7 @@ fn a_long_run_does_not_drift() {
         let bound = 4.0 * f64::EPSILON * (0.01 * angle + way(s.state.time).abs());
         assert!(worst <= bound, "{drive}: {worst:e}, {bound:e}");
     }
-    // A table of a saw's teeth for the velocity: its sum too.
+    // The velocity is a table of a sawtooth, whose integral is also tested.
     let points: Vec<String> = (0..=5000)
         .map(|k| {
             format!(
@@ -303,7 +305,8 @@ fn a_long_run_does_not_drift() {
     assert!((x - way).abs() < 1e-13 * way, "{x} {way}");
 }
 
-/// What begins to move at time zero has its energy from before; a corner costs m (v_s^2 - v_e^2)/2.
+/// A body that moves from time zero has its energy before the first step; a corner of the path
+/// costs m (v_s^2 - v_e^2)/2.
 #[test]
 fn jumps_of_the_velocity_are_work_of_the_drive() {
     let table = "Displacement(Table([(0.0, 0.0), (0.01, 0.02), (0.03, -0.08)]))";
@@ -326,8 +329,8 @@ fn jumps_of_the_velocity_are_work_of_the_drive() {
     }
 }
 
-/// A wall that moves from time zero on meets what touches it at its velocity: it leaves with (1 +
-/// e) V.
+/// A wall that moves from time zero hits a touching body with its velocity: the body leaves with
+/// (1 + e) V.
 #[test]
 fn a_wall_hits_with_the_velocity_it_starts_with() {
     let mut s: Simulation<Dim2> = build(
@@ -347,7 +350,7 @@ fn a_wall_hits_with_the_velocity_it_starts_with() {
     }
 }
 
-/// A block that friction holds on a floor that swings smoothly goes with it: after ten periods it
+/// A block held by friction on a floor that oscillates smoothly moves with it: after ten periods it
 /// has slipped by less than the square of the step's angle.
 #[test]
 fn what_sticks_goes_along() {
@@ -389,7 +392,8 @@ fn what_sticks_goes_along() {
     }
 }
 
-/// A state in the middle of stages, of a table's sum and of a turn goes on with the same bits.
+/// A state saved in the middle of stages, of the integral of a table and of a rotation continues
+/// bit by bit.
 #[test]
 fn a_kept_state_goes_on_along_its_paths() {
     let saw = "Velocity(Table([(0.0, 0.1), (0.0123, 0.4), (0.0247, -0.3), (0.0555, 0.2), (0.0809, 0.1)]))";
@@ -439,8 +443,8 @@ fn a_kept_state_goes_on_along_its_paths() {
     }
 }
 
-/// The slide of a friction test is the way of its body, and summaries say which drives the step
-/// cannot follow.
+/// The slide of a friction test is the path of its body, and summaries name the drives that the
+/// step cannot follow.
 #[test]
 fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     let case = |frequency: f64| {
@@ -508,7 +512,8 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
             "{reported}"
         );
         assert!(summary.text(false).contains(heading));
-        // A coarse path is a note; another frequency than the one asked for is a reason.
+        // A coarse path is a note; another frequency than the imposed one is a reason not to trust
+        // the run.
         let aliased = heading == "ALIASED DRIVE";
         assert_eq!(
             summary.run.reasons.iter().any(|r| r.starts_with(heading)),

@@ -14,7 +14,7 @@ pub fn all(table: &mut Table) {
     column(table);
 }
 
-/// The body that is no floor: the last one added, or the first grain.
+/// The body other than the floor: the last one added, or the first grain.
 fn mover<S: Space>(s: &Simulation<S>) -> usize {
     (0..s.state.bodies.len())
         .find(|b| !s.state.bodies.immovable(*b))
@@ -118,7 +118,7 @@ fn slide_to_stop(table: &mut Table) {
     table.compare("slide_to_stop", "v/(mu g) (s)", v / (mu * G), stopped, 5e-3);
 }
 
-/// Velocity, time and place where rolling begins.
+/// Velocity, time and position at which rolling begins.
 fn rolling<S: Space>(s: &mut Simulation<S>, axis: usize) -> (f64, f64, f64) {
     let (ball, r) = (mover(s), 0.1);
     let mut at = None;
@@ -149,7 +149,7 @@ fn slide_to_roll(table: &mut Table) {
             rolling(&mut solid("slide_to_roll_sphere", &[]), 1),
         ),
     ] {
-        // Inertia k m r^2: slip ends when v - mu g t = mu g t/k.
+        // With inertia k m r^2 slip ends when v - mu g t = mu g t/k.
         let t = v / (mu * G * (1.0 + 1.0 / k));
         table.compare(case, "rolling velocity (m/s)", v / (1.0 + k), got.0, 5e-3);
         table.compare(case, "time (s)", t, got.1, 5e-3);

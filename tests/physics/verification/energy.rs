@@ -12,7 +12,7 @@ pub fn all(table: &mut Table) {
     three_dimensions(table);
 }
 
-/// Bonds and friction under a moving lid, theta = 1/2, as the program runs and reports it.
+/// Bonds and friction under a moving lid, theta = 1/2, run and reported as by the program.
 fn ledger(table: &mut Table) {
     let sets = ["output.frames=0", "output.figures=false"];
     let summary = scene::ran("verification/energy", &sets, |_| {});
@@ -35,7 +35,7 @@ fn ledger(table: &mut Table) {
     }
 }
 
-/// A frictionless bond pulled away and sheared: there is no pressure, so no friction coefficient.
+/// A frictionless bond is pulled and sheared: without pressure there is no friction coefficient.
 fn pulled(table: &mut Table) {
     let summary = scene::ran("verification/pulled_friction", &[], |_| {});
     let mu = summary.found.number("friction_coefficient").unwrap_or(0.0);
@@ -55,7 +55,7 @@ fn three_dimensions(table: &mut Table) {
     while s.state.time < 0.07 {
         let before: Vec<_> = s.state.bodies.velocity.clone();
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        // What the free grains gained is what the driven bodies lost, gravity being off.
+        // Without gravity the free grains gain what the driven bodies lose.
         let driven = |b: usize| s.state.bodies.driven.iter().any(|d| d.body as usize == b);
         let gained: nalgebra::Vector3<f64> = (0..s.state.bodies.len())
             .filter(|b| !driven(*b))

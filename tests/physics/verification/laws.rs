@@ -1,4 +1,4 @@
-//! What laws do in a scene: moments, attraction without opening, bonds that form, implicit
+//! Effects of laws in a scene: moments, attraction without opening, bonds that form, implicit
 //! coupling.
 
 use super::{G, Table, plane, solid, until};
@@ -22,8 +22,8 @@ fn grain<S: Space>(s: &Simulation<S>) -> usize {
         .unwrap()
 }
 
-/// Thrown at v it slides until rolling, then loses g (l/R)/(1 + k) a second: measured over the
-/// rolling part.
+/// A grain thrown at v slides until it rolls, then decelerates by g (l/R)/(1 + k), measured over
+/// the rolling part.
 fn rolling(table: &mut Table) {
     fn slow<S: Space>(mut s: Simulation<S>) -> (f64, f64) {
         let b = grain(&s);
@@ -34,7 +34,7 @@ fn rolling(table: &mut Table) {
         let at = |t: f64| *seen.iter().find(|x| x.0 >= t).unwrap();
         let ((t0, v0), (t1, v1)) = (at(0.3), at(0.8));
         let rest = seen.last().unwrap().1;
-        // Nothing of the energy it was thrown with is left.
+        // None of its initial energy is left.
         let lost = s.state.energy.friction / s.state.energy.initial_kinetic;
         assert!(rest.abs() < 1e-9, "it rests");
         ((v0 - v1) / (t1 - t0), lost)
@@ -57,7 +57,7 @@ fn rolling(table: &mut Table) {
     }
 }
 
-/// Static shear and bending of a glued grain: R = 0.1 m, reduced radius 0.05 m.
+/// Static shear and bending of a glued grain with R = 0.1 m and the reduced radius 0.05 m.
 fn beams(table: &mut Table) {
     fn held<S: Space>(mut s: Simulation<S>) -> [f64; 4] {
         until(&mut s, 1.0, |_| {});
@@ -119,7 +119,7 @@ fn hanging(table: &mut Table) {
     let set = "interfaces.grain.parameters.cohesion.force=307.0";
     let mut s = plane("hanging", &[set]);
     until(&mut s, 0.1, |_| {});
-    // Held back for the steps in which the gap is within the range of 1 um.
+    // The grain is held back in the steps in which the gap is within the range of 1 um.
     let fall = -s.state.bodies.velocity[b].y;
     table.compare(
         "hanging",
@@ -140,8 +140,8 @@ fn healing(table: &mut Table) {
     });
     let first =
         |list: &[(f64, u64)], n: u64| list.iter().find(|x| x.1 >= n).map_or(f64::NAN, |x| x.0);
-    // It carries from the first step on, so it is pressed for 0.02 s when the step begins that ends
-    // at 0.0201 s.
+    // The contact carries a load from the first step on, so it has been pressed for 0.02 s at the
+    // start of the step that ends at 0.0201 s.
     table.compare("healing", "first bond (s)", 0.0201, first(&made, 1), 1e-9);
     // A pull of 1e3 N/m on 0.5 m is below the strength of 1e4 Pa, 1e4 N/m above it.
     table.compare(
@@ -177,8 +177,8 @@ fn healing(table: &mut Table) {
     );
 }
 
-/// One viscous MAC bond pulled at a given speed: both couplings meet the limit of small steps,
-/// first order.
+/// One viscous MAC bond is pulled at a given speed: both couplings converge to the limit of small
+/// steps with first order.
 fn coupling(table: &mut Table) {
     let run = |h: f64, coupling: &str| {
         let h = format!("time.step={h:e}");
@@ -203,7 +203,7 @@ fn coupling(table: &mut Table) {
     for coupling in ["coupling=Explicit", implicit] {
         let e = [4e-8, 2e-8, 1e-8].map(|h| run(h, coupling));
         orders.push(((e[0] - e[1]) / (e[1] - e[2])).log2());
-        // Richardson's limit of a first-order sequence.
+        // This is Richardson's limit of a first-order sequence.
         limits.push(2.0 * e[2] - e[1]);
     }
     table.compare(
@@ -229,12 +229,12 @@ fn coupling(table: &mut Table) {
     );
 }
 
-/// Rigid rotations: stored energy stays, and the force turns with the grains.
+/// Rigid rotations keep the stored energy, and the force rotates with the grains.
 fn turned(table: &mut Table) {
     let mut s = solid("turned_twist", &[]);
     until(&mut s, 0.2, |_| {});
     let before = s.state.energy.elastic;
-    // R = 0.05 m: J = pi R^4/2, twisted by 0.01 rad less a step at its start and end.
+    // With R = 0.05 m, J = pi R^4/2, twisted by 0.01 rad less a step at its start and end.
     let expected = 0.5 * 1e10 * 0.5 * PI * 0.05f64.powi(4) * 1e-4;
     table.compare(
         "turned_twist",
@@ -273,7 +273,7 @@ fn turned(table: &mut Table) {
     );
 }
 
-/// What a review found: each case once went wrong.
+/// Cases that failed in an earlier version.
 fn held(table: &mut Table) {
     let mut s = plane("stretched_on_surface", &[]);
     until(&mut s, 0.1, |_| {});
@@ -285,7 +285,7 @@ fn held(table: &mut Table) {
         broken,
         0.0,
     );
-    // Pulled 0.1 m: k A u^2/2, with a reduced radius of 1 m.
+    // Pulled by 0.1 m the bond stores k A u^2/2, with a reduced radius of 1 m.
     let energy = 0.5e9 * 0.1f64.powi(2);
     table.compare(
         "stretched_on_surface",
@@ -313,7 +313,8 @@ fn held(table: &mut Table) {
         most = most.max(s.state.network.contacts.len())
     });
     table.compare("pinned_roller", "contacts", 1.0, most as f64, 0.0);
-    // What the drive gave is in the roller's spin and, by friction at 1 m, in the grain: I w + m
+    // The energy of the drive is in the roller's spin and, by friction at 1 m, in the grain: I w +
+    // m
     // |v_x| R = M t.
     let roller = s.state.bodies.driven[0].body as usize;
     let on_top = (0..s.state.bodies.len()).find(|b| *b != roller).unwrap();

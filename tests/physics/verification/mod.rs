@@ -28,7 +28,7 @@ struct Table {
 }
 
 impl Table {
-    /// Compares with a relative tolerance, or an absolute one where zero is expected.
+    /// Compares with a relative tolerance, or with an absolute one if zero is expected.
     fn compare(
         &mut self,
         case: &str,
@@ -49,7 +49,7 @@ impl Table {
         }
     }
 
-    /// What should add up to nothing, as a share.
+    /// Checks that a residual is zero, given as a fraction.
     fn closes(&mut self, case: &str, quantity: &str, off: f64, tolerance: f64) {
         self.compare(case, quantity, 0.0, off, tolerance);
     }
@@ -67,7 +67,7 @@ fn solid(case: &str, sets: &[&str]) -> Simulation<Dim3> {
     scene(case, sets)
 }
 
-/// Steps until a time and calls `seen` after each.
+/// Steps until a time and calls `seen` after each step.
 fn until<S: Space>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
     while s.state.time < end - 0.5 * s.options.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));

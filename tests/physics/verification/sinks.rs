@@ -1,6 +1,6 @@
-//! Each sink of the energy ledger against its own closed form, and identities that do not follow
-//! from the ledger's residual: normal work from the lid's path, forces along a column, momentum in
-//! 3D.
+//! Each dissipation of the energy ledger is compared with its own closed form, and with identities
+//! that do not follow from the ledger's residual: normal work from the lid's path, forces along a
+//! column, momentum in 3D.
 
 use super::{G, Table, plane, solid, until};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -22,8 +22,8 @@ fn driven<S: Space>(s: &Simulation<S>, name: &str) -> usize {
     at.unwrap_or_else(|| panic!("there is a body `{name}`"))
 }
 
-/// What slides loses to friction: all of m v^2/2, or k/(1 + k) of it when it ends rolling (rows 3,
-/// 4).
+/// A sliding body loses energy to friction: all of m v^2/2, or k/(1 + k) of it if it ends rolling
+/// (rows 3, 4).
 fn friction(table: &mut Table) {
     let mut s = plane("slide_to_stop", &[]);
     let b = s.state.bodies.driven[driven(&s, "block")].body as usize;
@@ -59,8 +59,8 @@ fn friction(table: &mut Table) {
     );
 }
 
-/// A ball that has come to rest has lost m g h0 in its impacts (row 1); e = 1 loses nothing (row
-/// 6).
+/// A ball that has come to rest has lost m g h0 in its impacts (row 1); with e = 1 it loses nothing
+/// (row 6).
 fn impacts(table: &mut Table) {
     let mut s = plane("bouncing_ball", &[]);
     until(&mut s, 4.3, |_| {});
@@ -75,8 +75,8 @@ fn impacts(table: &mut Table) {
         s.state.energy.impact,
         1e-2,
     );
-    // A bounce loses (1 - e^2) m v^2/2 and is no lift, also where overlaps are taken out by a
-    // velocity.
+    // A bounce loses (1 - e^2) m v^2/2 and does not lift the ball, even where overlaps are removed
+    // by a velocity.
     for e in [0.5_f64, 0.9, 1.0] {
         let restitution = format!("interfaces.grain.parameters.contact.restitution_n={e}");
         let sets = ["gravity=[0.0, 0.0]", "solver.correction=0.2", &restitution];
@@ -115,8 +115,8 @@ fn impacts(table: &mut Table) {
     }
 }
 
-/// Of the area w (1 - 1/200) to 10 u0, beta^2 C u^2/2 = w/200 is still stored: w (1 - 1/100) was
-/// released (row 27).
+/// Of the area w (1 - 1/200) up to 10 u0, beta^2 C u^2/2 = w/200 is still stored, so w (1 - 1/100)
+/// was released (row 27).
 fn fracture(table: &mut Table) {
     let (c, w, area) = (1e12, 0.1f64, 0.5);
     for case in ["bond_mode_1", "bond_mode_2", "bond_mixed"] {
@@ -131,7 +131,8 @@ fn fracture(table: &mut Table) {
     }
 }
 
-/// Contact by contact, by height (row 7): the contact under grain k carries n - k grains, k from 0.
+/// Contacts are compared one by one, by height (row 7): the contact under grain k carries n - k
+/// grains, k from 0.
 fn column(table: &mut Table) {
     let mut s = plane("column", &["solver.tolerance=1e-10"]);
     until(&mut s, 2e-3, |_| {});
@@ -160,7 +161,7 @@ fn column(table: &mut Table) {
     );
 }
 
-/// Just above k/(1 + k) tan it rolls (row 5).
+/// Just above k/(1 + k) tan the body rolls (row 5).
 fn rolling_limit(table: &mut Table) {
     fn slip<S: Space>(mut s: Simulation<S>) -> f64 {
         until(&mut s, 0.5, |_| {});
@@ -191,7 +192,7 @@ fn rolling_limit(table: &mut Table) {
     );
 }
 
-/// What a lid did, from its contact forces and its path only (not from the ledger's external work).
+/// Work of a lid, from its contact forces and its path only (not from the ledger's external work).
 #[derive(Default)]
 struct Lid {
     /// Work of the tangential force on the layer (J).
@@ -209,9 +210,9 @@ impl Lid {
         self.pressure_path += received[normal] / h * moved[0].abs();
     }
 
-    /// mu from forces less mu from heat. The layer takes what the lid gives: drag + press = heat +
-    /// stored, the lid's own kinetic energy apart, so mu from heat is (heat + stored - press)/(P
-    /// V).
+    /// Friction from forces less friction from heat. The energy balance of the layer is drag +
+    /// press = heat + stored, without the lid's own kinetic energy, so mu from heat is (heat +
+    /// stored - press)/(P V).
     fn compare<S: Space>(&self, table: &mut Table, case: &str, s: &Simulation<S>, lid: usize) {
         let e = &s.state.energy;
         let v = s.state.bodies.velocity[lid];
@@ -223,7 +224,7 @@ impl Lid {
     }
 }
 
-/// The layer of row 34 at the case's own tolerance, every step converged, no bond lost.
+/// In the layer of row 34 at the case's own tolerance, every step converges and no bond is lost.
 fn lid(table: &mut Table) {
     let mut s: Simulation<Dim2> = plane("energy", &[]);
     let d = driven(&s, "top");
@@ -276,8 +277,8 @@ fn shear(table: &mut Table) {
         let now = s.state.bodies.position[b];
         lid.add::<Dim3>(&s.state.received[d].0, s.options.scheme.h, &(now - last), 2);
         last = now;
-        // Without gravity grains gain what contacts give them, and driven bodies receive the
-        // opposite.
+        // Without gravity grains gain the momentum that contacts supply, and driven bodies receive
+        // the opposite.
         let (mut sum, mut scale): (Vector3<f64>, f64) = (Vector3::zeros(), 0.0);
         for (k, v) in s
             .state

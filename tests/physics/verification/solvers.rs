@@ -1,4 +1,5 @@
-//! Every method in a run: a closed form where there is one, else what plain Gauss-Seidel finds.
+//! Every method in a run is compared with a closed form if there is one, otherwise with plain
+//! Gauss-Seidel.
 
 use super::{G, Table, scene};
 use crate::scene::loaded;
@@ -24,23 +25,23 @@ pub fn all(table: &mut Table) {
     column(table);
     dragged(table);
     thrown(table);
-    // Bonds that bend and twist: compliance, moments.
+    // The bonds bend and twist, which requires compliance and moments.
     alike::<Dim3>(
         table,
         "beam_3d",
         &["time.end=0.2"],
         &["Auto", "Anderson", "Newton", "Apgd", "Cpg", "Interior"],
     );
-    // Friction against rotation, bounded by another unknown.
+    // Friction against rotation is bounded by another unknown.
     alike::<Dim3>(
         table,
         "rolling_stop_sphere",
         &["time.end=0.02"],
         &["Auto", "Anderson", "Apgd", "Pcpg"],
     );
-    // Impacts: contacts with a gap bounce freely when they close, and until then carry nothing.
+    // Impacts: contacts with a gap rebound when they close, and carry nothing before.
     alike::<Dim2>(table, "cradle_touching", &[], &ALL);
-    // Bonds that only pull, under friction.
+    // The bonds act in tension only, with friction.
     alike::<Dim2>(
         table,
         "pulled_friction",
@@ -50,7 +51,7 @@ pub fn all(table: &mut Table) {
     refused();
 }
 
-/// The floor of a column carries its weight, whoever solves it.
+/// The floor of a column carries its weight with every method.
 fn column(table: &mut Table) {
     for method in ALL {
         let set = format!("solver.method={method}");
@@ -67,8 +68,8 @@ fn column(table: &mut Table) {
     }
 }
 
-/// A block that is dragged at a given velocity and free to rise: friction is mu times its weight,
-/// although no impulse changes its slip.
+/// A block that is dragged at a given velocity and free to rise has a friction of mu times its
+/// weight, although no impulse changes its slip.
 fn dragged(table: &mut Table) {
     for method in ALL {
         let mut s: Simulation<Dim2> = scene(
@@ -92,9 +93,9 @@ fn dragged(table: &mut Table) {
     }
 }
 
-/// A ball thrown obliquely on a floor of huge friction does not sink in: it rolls on at once, at
-/// v_x/(1 + 1/k), k = 1/2 of a disk, and the floor takes its normal momentum. Until it arrives the
-/// floor takes none.
+/// A ball thrown obliquely on a floor of very large friction does not sink in. It rolls immediately
+/// at v_x/(1 + 1/k), k = 1/2 for a disk, and the floor receives its normal momentum. Before the
+/// ball arrives the floor receives none.
 fn thrown(table: &mut Table) {
     for mu in ["0.3", "1e4", "1e7"] {
         for method in ALL {
@@ -126,7 +127,7 @@ fn thrown(table: &mut Table) {
             }
             let m = s.state.bodies.mass[ball];
             let quantity = format!("normal impulse over m v, mu {mu}, {method}");
-            // What the step leaves of the gap is closed at once.
+            // The remaining gap is closed within the step.
             table.compare("thrown", &quantity, 1.0, taken / m, 1e-3);
             let quantity = format!("velocity along the floor, mu {mu}, {method}");
             table.compare(
@@ -140,7 +141,7 @@ fn thrown(table: &mut Table) {
     }
 }
 
-/// Ends a case by plain Gauss-Seidel and by others: the same displacements.
+/// Compares the displacements at the end of a case by plain Gauss-Seidel and by other methods.
 fn alike<S: Space>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str]) {
     let end = |method: &str| {
         let set = format!("solver.method={method}");
@@ -174,8 +175,8 @@ fn alike<S: Space>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str
     }
 }
 
-/// What a method cannot solve is refused with the reason: before the run where the laws show it,
-/// else at the first step that asks for it.
+/// A problem that a method cannot solve is rejected with the reason: before the run if the laws
+/// show it, otherwise at the first step that needs it.
 fn refused() {
     for (case, method, word) in [
         ("rolling_stop_sphere", "Newton", "rotation"),

@@ -1,4 +1,4 @@
-//! Drives that follow one another, and the biaxial test that is made with them.
+//! Drives in sequence, and the biaxial test made with them.
 
 use super::{Table, plane, until};
 use crate::scene;
@@ -18,8 +18,8 @@ fn place(s: &Simulation<Dim2>, name: &str) -> usize {
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
 
-/// F for t1, then V, then -F. At theta = 1/2 the scheme is exact: V begins with a jump of the
-/// velocity, where the cart is.
+/// The drive is F for t1, then V, then -F. At theta = 1/2 the scheme is exact: V begins with a jump
+/// of the velocity at the position of the cart.
 fn cart(table: &mut Table) {
     let (f, m, v2, t1) = (10.0, 5.0, -0.7, 0.2);
     let mut s = plane("staged_drive", &[]);
@@ -54,8 +54,8 @@ fn cart(table: &mut Table) {
     table.compare(name, "pushed again: place (m)", x3, x, 1e-12);
 }
 
-/// The lid falls by the gap and rests on the grain, then it is lifted: the work is F times the gap,
-/// lost in impacts, then m V^2/2.
+/// The lid falls through the gap and rests on the grain, then it is lifted. The work is F times the
+/// gap, lost in impacts, then m V^2/2.
 fn lid(table: &mut Table) {
     let (f, gap, m, v) = (100.0, 0.01, 4.0, 0.3);
     let mut s = plane("staged_drive", &[]);
@@ -93,8 +93,8 @@ fn lid(table: &mut Table) {
     );
 }
 
-/// Momentum of the driven walls and half of that of the grains: its rate is how much the mean push
-/// on two walls exceeds the load.
+/// Momentum of the driven walls and half of that of the grains. Its rate is the difference between
+/// the mean force on two walls and the load.
 fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
     let walls = ["right", "top"].map(|name| s.state.bodies.driven[place(s, name)].body as usize);
     let mut sum = [0.0; 2];
@@ -110,8 +110,8 @@ fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
     sum
 }
 
-/// At rest: forces over lengths, and the Love-Weber stress. Then the strain that the wall's motion
-/// gives.
+/// At rest the stress is given by forces over lengths, and by the Love-Weber stress. Then the
+/// strain follows from the wall's motion.
 fn biaxial(table: &mut Table) {
     let name = "biaxial";
     let loaded = scene::loaded("verification/biaxial", &[""; 0]);
@@ -122,7 +122,7 @@ fn biaxial(table: &mut Table) {
         .as_ref()
         .unwrap_or_else(|| panic!("a test"));
     let mut test = Biaxial::new(spec, &s).unwrap_or_else(|| panic!("its walls"));
-    // While grains collide the forces need no digits; at rest all that there are.
+    // While grains collide the forces need few digits; at rest they need all.
     let tolerance = s.options.solver.tolerance;
     until(&mut s, 0.3, |s| test.follow(s));
     s.options.solver.tolerance = 1e-9;
@@ -134,12 +134,12 @@ fn biaxial(table: &mut Table) {
     let at = |s: &Simulation<Dim2>, name: &str| {
         s.state.bodies.position[s.state.bodies.driven[place(s, name)].body as usize]
     };
-    // The left wall stands 0.01 m below zero, the right one 0.14 m from its frame.
+    // The left wall is 0.01 m below zero, the right one 0.14 m from its frame.
     let width = at(&s, "right").x + 0.14 + 0.01;
     let height = at(&s, "top").y;
     let state = test.state(&s);
-    // Not quite at rest: on a driven wall push F and its inertia, on the one across the inertia of
-    // grains too.
+    // The sample is not quite at rest: a driven wall has the push F and its inertia, the wall
+    // across also the inertia of grains.
     let inertia = [0, 1].map(|k| (after[k] - before[k]) / s.options.scheme.h);
     table.compare(
         name,

@@ -1,4 +1,4 @@
-//! The mass ledger of whole runs, against what the scene makes happen.
+//! The mass ledger of whole runs, compared with the known motion of the scene.
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
@@ -18,7 +18,7 @@ fn what_falls_off_a_ceiling_passes_every_flow_once() {
     assert_eq!([f.source, f.ejected, f.wear].map(|a| a.grains), [8; 3]);
     assert_eq!([f.attached, f.recirculated].map(|a| a.grains), [0; 2]);
     assert_eq!((circuit.pieces, circuit.largest_piece), (5, 2));
-    // 1000 kg/m^3 of disks of 0.1 m.
+    // Disks of 0.1 m have 1000 kg/m^3.
     let mass = 8.0 * 1e3 * std::f64::consts::PI * 0.01;
     assert!((f.wear.mass / mass - 1.0).abs() < 1e-12);
     assert!((number("wear.Qw") * (number("time") - circuit.start) / mass - 1.0).abs() < 1e-12);
@@ -26,8 +26,8 @@ fn what_falls_off_a_ceiling_passes_every_flow_once() {
     for a in [r.tied, r.contact, r.ejected, r.lost] {
         assert!(a.grains == 0 && a.mass.abs() < 1e-12 * mass);
     }
-    // Grains that leave take their kinetic energy with them: each falls from rest, its mean 0.1 or
-    // 0.3 m deep, to more than 1 m, under two to three times the weight.
+    // Grains that are removed take their kinetic energy with them: each falls from rest, from a
+    // mean depth of 0.1 or 0.3 m to more than 1 m, under two to three times the weight.
     assert!(number("energy.carried") > mass * 9.81 * 0.7 * 2.0);
     assert!(
         number("energy_residual_relative") < 1e-6,
@@ -49,13 +49,13 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
     assert_eq!([f.source, f.attached, f.wear].map(|a| a.grains), [0; 3]);
 }
 
-/// Two roots of different strength on a bar of two grains: the first breaks alone, the second frees
-/// the bar; its debris cost both.
+/// Two roots of different strength hold a bar of two grains: the first breaks alone, the second
+/// frees the bar, whose debris has the energy of both.
 #[test]
 fn debris_remembers_the_bonds_that_broke_before_the_last() {
     use fretwork::process::circuit::GrainCircuit;
     use fretwork::scene::circuit;
-    // A heavy grain beside a light one: its root breaks first.
+    // The root of the heavy grain breaks before that of the light one.
     let sets = [
         "grains.0=List(material: \"grain\", grains: [(at: [0.0, -0.1], radius: 0.1), (at: [0.2, -0.1], radius: 0.1), (at: [0.2, -0.3], radius: 0.1)])",
         "interfaces.1.parameters.cohesion={\"k_n\": 1e8, \"k_t\": 1e6}",
@@ -71,7 +71,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
         account.record_bonds(&s);
         for b in &s.state.network.bond_breaks {
             when.push(s.state.time);
-            cost += b.life.fracture;
+            cost += b.energies.fracture;
         }
         account.update(&mut s);
     }

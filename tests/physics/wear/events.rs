@@ -1,12 +1,12 @@
-//! Breaks of bonds, and what is spent at contacts, against the ledger's sums.
+//! Breaks of bonds, and the energies spent at contacts, compared with the sums of the ledger.
 
 use crate::scene;
 use fretwork::contact::ContactDissipation;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
-/// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books,
-/// and what breaks report of themselves adds up to the fracture energy, with what intact bonds lost
-/// on the way.
+/// Runs a number of steps of a case. The energy spent by contact adds up to the ledger's entries in
+/// each step; the energies that broken bonds report and the losses of intact bonds add up to the
+/// fracture energy.
 fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let mut s = scene::case::<S>(case, sets);
     s.state.network.dissipation = Some(Vec::new());
@@ -21,7 +21,7 @@ fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
             .network
             .bond_breaks
             .iter()
-            .map(|b| b.life.fracture)
+            .map(|b| b.energies.fracture)
             .sum();
         let pairs = [
             (sum(|s| s.friction), totals.friction),
@@ -34,14 +34,14 @@ fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
             assert!((by_contact - booked).abs() < 1e-13 * scale);
         }
         for b in &s.state.network.bond_breaks {
-            let life = &b.life;
-            let work: f64 = life.work.iter().sum();
-            // All that was done on the bond was released or damped.
-            assert!(life.fracture > 0.0, "{b:?}");
-            let missing = work - life.fracture - life.viscous;
-            most = most.max(life.fracture);
+            let energies = &b.energies;
+            let work: f64 = energies.work.iter().sum();
+            // All work on the bond was released or damped.
+            assert!(energies.fracture > 0.0, "{b:?}");
+            let missing = work - energies.fracture - energies.viscous;
+            most = most.max(energies.fracture);
             assert!(missing.abs() < 1e-9 * most, "{missing} of {b:?}");
-            assert!((0.0..=1.0).contains(&life.mode_mix()));
+            assert!((0.0..=1.0).contains(&energies.mode_mix()));
             let near = b.bodies.iter().any(|i| {
                 let d = s.state.bodies.position[*i as usize] - S::Vector::from_slice(&b.place);
                 d.norm() < 3.0 * s.state.bodies.length[*i as usize].max(1e-12)
@@ -59,7 +59,7 @@ fn reported<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
         .iter()
         .flat_map(|m| &m.bonds)
         .filter(|b| b.intact())
-        .map(|b| b.life.fracture)
+        .map(|b| b.energies.fracture)
         .sum();
     let booked = s.state.energy.fracture;
     assert!(

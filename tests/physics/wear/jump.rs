@@ -1,4 +1,4 @@
-//! Jumps over cycles, against runs that compute every cycle.
+//! Jumps over cycles, compared with runs that compute every cycle.
 
 use crate::scene;
 use fretwork::record::Summary;
@@ -30,11 +30,11 @@ fn refused(case: &str, sets: &[&str]) -> String {
     }
 }
 
-/// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles
-/// within 4 %.
+/// Bound of the comparison from the literature: Cruzado et al. (2012) stay within 4 % over a
+/// hundred cycles.
 const BOUND: f64 = 0.04;
 
-/// The jump of a run that stands for 1000 cycles with a twentieth of the steps of the full one.
+/// The jumps of a run over 1000 cycles with a twentieth of the steps of the full run.
 fn twenty_times_fewer<'a>(jumped: &'a Summary, full: &Summary) -> &'a JumpSummary {
     let jump = jumped.found.get::<JumpSummary>().unwrap();
     assert_eq!(jump.represented_cycles, 1000);
@@ -43,8 +43,8 @@ fn twenty_times_fewer<'a>(jumped: &'a Summary, full: &Summary) -> &'a JumpSummar
     jump
 }
 
-/// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every
-/// cycle.
+/// Wear of the cylinder on a flat: volume, largest depth and profile are compared with the run that
+/// computes every cycle.
 #[test]
 fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     let (jumped, profile) = ran("fretting_wear_jump", &[]);
@@ -69,8 +69,8 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     assert!(estimate > 0.5 * truly, "{estimate} {truly}");
     assert!(estimate < 10.0 * truly.max(0.01));
     assert!(number(&jumped, "energy_residual_relative") < 1e-12);
-    // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P
-    // times it.
+    // The ratio of V to E_d covers all cycles: it is k/mu, since Archard's volume is k P times the
+    // path, and E_d is mu P times it.
     let [a, b] = [&jumped, &full].map(|s| number(s, "fretting.energy"));
     assert!((a / b - 1.0).abs() < BOUND, "{a} {b}");
     let alpha = number(&jumped, "fretting.alpha.value");
@@ -78,7 +78,7 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     assert!((number(&jumped, "wear.Qs") / number(&full, "wear.Qs") - 1.0).abs() < BOUND);
 }
 
-/// Damage of a bond under cycles of force, which grows ever faster as the bond weakens.
+/// Damage of a bond under cycles of force grows faster and faster as the bond weakens.
 #[test]
 fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
     let (jumped, _) = ran("verification/bond_fatigue", &[]);
@@ -94,7 +94,8 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
         jump.error_estimate.unwrap(),
         jump.jumps
     );
-    // Far from linear: the first cycle's rate would give less than three quarters of it.
+    // The growth is far from linear: the rate of the first cycle would give less than three
+    // quarters of it.
     assert!(number(&full, "mean_damage") > 0.2 && number(&full, "mean_damage") < 0.9);
     assert!(error.abs() < BOUND);
     let estimate = jump.error_estimate.unwrap();
@@ -102,23 +103,23 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
     let [a, b] = [&jumped, &full].map(|s| number(s, "fretting.energy"));
     println!("E_d {:.1e}", a / b - 1.0);
     assert!((a / b - 1.0).abs() < BOUND, "{a} {b}");
-    // The travel that the law counts, and the traction at which it last turned.
+    // Two variables are not extrapolated: the travel that the law counts, and the traction at the
+    // last reversal.
     assert_eq!(jump.not_jumped.len(), 2, "{:?}", jump.not_jumped);
     assert!(number(&jumped, "energy_residual_relative") < 1e-12);
 }
 
-/// A bond that breaks does so about the cycle at which it breaks without jumps, and its energy is
-/// booked.
+/// A bond breaks at about the cycle at which it breaks without jumps, and its energy is booked.
 #[test]
 fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     let soft = "interfaces.0.parameters.damage.length=0.4";
     let wear = "interfaces.0.wear=\"broken-bonds\"";
     let (jumped, _) = ran("verification/bond_fatigue", &[soft, wear]);
     assert_eq!(number(&jumped, "broken"), 1.0);
-    // A jump that broke the bond was off by something, and says so.
+    // A jump in which the bond broke has an error, which it reports.
     let estimate = jumped.found.get::<JumpSummary>().unwrap().error_estimate;
     assert!(estimate.is_some_and(|e| e > 0.0), "{estimate:?}");
-    // What a bond gives when it breaks it gives once, however many cycles the step stands for.
+    // A bond releases its energy once, however many cycles the step represents.
     let once = number(&jumped, "wear.volume_third_body");
     let (full, _) = ran("verification/bond_fatigue", &[soft, wear, "jump=None"]);
     assert_eq!(number(&full, "broken"), 1.0);
@@ -130,8 +131,8 @@ fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     );
 }
 
-/// Surfaces that follow seldom follow at once within a jump; the load is the case's, so the volume
-/// is Archard's whatever they do.
+/// Surfaces that are updated rarely are updated at once within a jump; the load is imposed, so the
+/// volume is Archard's in any case.
 #[test]
 fn surfaces_that_follow_seldom_do_so_at_once_in_a_jump() {
     let sets = ["bodies.flat.wears.every=40", "jump.cycles=300"];
@@ -206,13 +207,13 @@ fn jumps_that_mean_nothing_are_refused() {
     }
 }
 
-/// The wear of a half-space is what a jump may carry on, without a law of damage.
+/// Wear of a half-space is sufficient for jumps, without a damage law.
 #[test]
 fn wear_of_half_spaces_may_jump() {
     scene::loaded("fretting_wear_elastic", &["jump=(after: 3, at_most: 50)"]);
 }
 
-/// Drives of what holds deformable bodies repeat with each cycle too.
+/// Drives of holders of deformable bodies must repeat with each cycle too.
 #[test]
 fn drives_of_holders_that_do_not_repeat_are_refused() {
     let jump = "jump=(after: 3, at_most: 50)";

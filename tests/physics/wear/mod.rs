@@ -1,4 +1,4 @@
-//! The tribological circuit: what breaks is reported with where its energy went.
+//! The tribological circuit: breaks of bonds are reported with the spending of their energy.
 
 mod circuit;
 mod events;

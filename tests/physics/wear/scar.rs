@@ -1,4 +1,5 @@
-//! Surfaces that wear: what the laws book is what is gone, and contacts follow.
+//! Surfaces that wear: the volume that laws book is the removed volume, and contacts follow the
+//! surface.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -25,7 +26,7 @@ fn under<S: Space>(s: &Simulation<S>) -> f64 {
     outline.iter().map(prism).sum()
 }
 
-/// What the contacts of a step did: normal force, slip, work of friction and area, one by one.
+/// Normal force, slip, work of friction and area of each contact of a step.
 struct SlidingPart {
     force: f64,
     slip: f64,
@@ -33,9 +34,9 @@ struct SlidingPart {
     area: f64,
 }
 
-/// Runs and adds up what a law makes of each contact and step; compares with the scar, with the
-/// surface, and closes the ledger. The slip is the way that the slider itself went along the
-/// contact, it does not turn.
+/// Runs a case and sums the volume of a law over contacts and steps; compares it with the scar and
+/// the surface, and closes the ledger. The slip is the displacement of the slider along the
+/// contact, since it does not rotate.
 fn worn<S: Space>(
     name: &str,
     sets: &[&str],
@@ -86,7 +87,8 @@ fn archard(k: f64) -> impl Fn(f64, &SlidingPart) -> f64 {
 #[test]
 fn archards_volume_is_gone_from_a_profile() {
     let s = worn::<Dim2>("verification/worn_slide", &[], archard(1e-8));
-    // Pressed by 2000 N/m over 0.35 m, were the profile flat: 7e-6 m^2; it is within some per cent.
+    // With a flat profile, 2000 N/m over 0.35 m give 7e-6 m^2; the result agrees within some per
+    // cent.
     assert!((s.state.scars[0].volume() / 7e-6 - 1.0).abs() < 0.05);
 }
 
@@ -123,8 +125,8 @@ fn volume_is_alpha_times_the_energy_of_the_ledger() {
 }
 
 /// The regimes of the map of R8T on 900A (R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004)
-/// 467-478), mass per metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, 55 to 77.2,
-/// then 61.9 more for each N/mm^2, in ug/(m mm^2).
+/// 467-478), mass per metre rolled and area against T gamma/A: 5.3 x up to 10.4 N/mm^2, 55 up to
+/// 77.2, then 61.9 more for each N/mm^2, in ug/(m mm^2).
 #[test]
 fn t_gamma_wears_by_its_map() {
     for (speed, density, load, severe) in [(1.0, 785.0, -2e6, false), (1e-5, 7.85e-3, -150.0, true)]
@@ -147,14 +149,13 @@ fn t_gamma_wears_by_its_map() {
         let load = format!("bodies.block.dofs.y=Force(Constant({load:e}))");
         let sets = ["interfaces.0.wear=\"t-gamma\"", &law, &load];
         worn::<Dim2>("verification/worn_slide", &sets, map);
-        // The severe case is in that regime where one contact takes the load, four steps of five at
-        // least.
+        // The severe case is in that regime when one contact takes the load, in at least four steps
+        // of five.
         assert_eq!(in_severe.get() > 400, severe, "{}", in_severe.get());
     }
 }
 
-/// A flat block that goes back and forth, pressed, sinks by V over what it covers, its length and
-/// the stroke.
+/// A flat block that slides back and forth under load sinks by V over its length plus the stroke.
 #[test]
 fn a_block_sinks_into_what_it_covers() {
     let (width, amplitude, spacing) = (0.02, 0.002, 2e-4);
@@ -194,20 +195,21 @@ fn a_block_sinks_into_what_it_covers() {
         "sunk {sunk:.6e} m, V/length {expected:.6e} m, ledger {:.1e}",
         s.state.energy.relative_residual()
     );
-    // Ends of the stroke are covered for a moment only: a segment more or less at each.
+    // The ends of the stroke are covered only for a moment, which gives a segment more or less at
+    // each end.
     assert!((sunk / expected - 1.0).abs() < 0.05, "{sunk} {expected}");
     assert!(s.state.energy.relative_residual().abs() < 1e-9);
-    // What the load gave went to friction, and to the sinking.
+    // The work of the load went into friction and into the sinking.
     let o = shape::outline(&s.state.scars[0].along());
     assert_eq!(o.form, ScarForm::U);
     assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
 }
 
-/// The scar of a cylinder of radius R that goes a to each side under Archard's law, half as wide as
-/// b > a: the contact goes from edge to edge with the stroke, x = u b/a, so that all of the scar
-/// deepens alike; there its slope is the cylinder's, (x - u)/R. So it is a parabola of the
-/// curvature (1 - a/b)/R, of depth b (b - a)/(2 R) and of area 2 b^2 (b - a)/(3 R): the cylinder's
-/// own form where a is small beside b.
+/// The scar of a cylinder of radius R that moves by a to each side under Archard's law, with the
+/// half-width b > a. The contact moves from edge to edge during the stroke, x = u b/a, so that the
+/// whole scar deepens evenly; its slope at x is that of the cylinder, (x - u)/R. The scar is
+/// therefore a parabola of curvature (1 - a/b)/R, of depth b (b - a)/(2 R) and of area 2 b^2 (b -
+/// a)/(3 R): the shape of the cylinder if a is small compared with b.
 #[test]
 fn the_scar_of_a_cylinder_tends_to_its_form() {
     let (radius, a) = (0.05f64, 2e-4);
@@ -253,16 +255,16 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
     assert!(curvatures.windows(2).all(|w| w[0] < w[1] && w[1] < 1.0));
     let o = shape::outline(&s.state.scars[0].along());
     assert_eq!(o.form, ScarForm::U);
-    // k N s, the slip being that of the cylinder but for its rise.
+    // The volume is k N s, where the slip is that of the cylinder except for its rise.
     let kns = 3e-11 * 1e5 * 200.0 * a;
     let volume = s.state.scars[0].volume();
     assert!((volume / kns - 1.0).abs() < 0.01, "{volume} {kns}");
     assert!(s.state.energy.relative_residual().abs() < 1e-9);
 }
 
-/// A punch drawn 2 mm above its face, 4 mm wide: friction turns it onto its leading edge, and the
-/// scar is deeper at both sides than in the middle. Held against turning it stays flat, and sinks
-/// by V over width and stroke.
+/// A punch 4 mm wide is driven 2 mm above its face: friction turns it onto its leading edge, and
+/// the scar is deeper at both sides than in the middle. If it cannot rotate, the scar is flat, and
+/// the punch sinks by V over width plus stroke.
 #[test]
 fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     let form = |sets: &[&str]| {
@@ -285,8 +287,8 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     assert!((held.middle / (volume / 4.4e-3) - 1.0).abs() < 0.05);
 }
 
-/// Where the motion turns within a step, friction gives work back: later steps owe it to the law,
-/// and the volume stays that of the ledger's energy.
+/// If the motion reverses within a step, friction supplies energy: it is subtracted from the work
+/// of later steps in the law, and the volume remains that of the ledger's energy.
 #[test]
 fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
     let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"];

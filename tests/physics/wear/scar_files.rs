@@ -1,4 +1,4 @@
-//! What wear leaves on disk, and how a run ends that wore a surface through.
+//! Files written by wear, and the end of a run in which a surface was worn through.
 
 use crate::scene;
 use crate::temp::TempFolder;
@@ -38,7 +38,7 @@ fn build(sets: &[String]) -> Simulation<Dim2> {
     scene::simulation(&loaded)
 }
 
-/// x, z, z_first, depth, row by row.
+/// The rows have x, z, z_first and depth.
 fn rows(table: &str) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split(',').map(|x| x.parse().unwrap()).collect();
     table.lines().skip(1).map(numbers).collect()
@@ -48,7 +48,7 @@ fn rows(table: &str) -> Vec<Vec<f64>> {
 fn a_worn_profile_is_read_again_as_it_was_written() {
     for above in [false, true] {
         let out = Folder::new(if above { "above" } else { "below" });
-        // Above: the rail over the block, both upside down.
+        // In the second scene the rail is above the block; both are upside down.
         let flipped = [
             "bodies.rail.shapes.0.side=Above",
             "bodies.block.position=[-0.15, -0.101]",
@@ -73,7 +73,8 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
         assert!(rows.windows(2).all(|w| w[0][0] < w[1][0]));
         assert!(rows.iter().all(|r| r[1] == r[2] + up * r[3] && r[3] >= 0.0));
         assert!(rows.iter().any(|r| r[3] > 1e-5));
-        // Volume by trapezia of the written depths, and what summary and statistics say.
+        // The volume by the trapezoidal rule of the written depths is compared with summary and
+        // statistics.
         let volume: f64 = rows
             .windows(2)
             .map(|w| 0.5 * (w[1][0] - w[0][0]) * (w[0][3] + w[1][3]))
@@ -91,7 +92,7 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
         let last: Vec<&str> = statistics.lines().last().unwrap().split(',').collect();
         assert!((last[at].parse::<f64>().unwrap() / volume - 1.0).abs() < 1e-10);
         assert!(out.0.join("scar_rail.png").exists());
-        // The next run reads it as a profile, to the last bit.
+        // The next run reads the table as a profile, to the last bit.
         let file = out.0.join("scar_rail.csv");
         let shape = format!(
             "bodies.rail.shapes=[Profile(file: \"{}\", side: {})]",
@@ -113,9 +114,8 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
     }
 }
 
-/// Archard's law with k = 1e-8: a block drawn over a flat profile wears it by k P s, and the
-/// summary's V/(P s) is k again, for the body that wears. Mean depth times what was worn is the
-/// volume.
+/// Archard's law with k = 1e-8: a block drawn over a flat profile wears it by k P s, and V/(P s) of
+/// the summary is k, for the body that wears. Mean depth times the worn area is the volume.
 #[test]
 fn the_specific_wear_rate_is_that_of_the_law() {
     let out = Folder::new("rate");
@@ -135,7 +135,7 @@ fn the_specific_wear_rate_is_that_of_the_law() {
     );
     let rate = of(&bodies[0]["specific_rate"]);
     assert!((rate / 1e-8 - 1.0).abs() < 1e-3, "{rate}");
-    // 2000 N/m over 0.7 m/s for 0.6 s.
+    // The load is 2000 N/m, over 0.7 m/s for 0.6 s.
     assert!(
         (of(&wear["load_path"]) / 840.0 - 1.0).abs() < 3e-3,
         "{wear}"
@@ -144,7 +144,7 @@ fn the_specific_wear_rate_is_that_of_the_law() {
     let rows = rows(&out.read("scar_rail.csv"));
     let deepest = rows.iter().map(|r| r[3]).fold(0.0, f64::max);
     assert!((of(&bodies[0]["depth_max"]) / deepest - 1.0).abs() < 1e-10);
-    // All three vertices are worn: their mean, each for its part of the length, is over 1.1 m.
+    // All three vertices are worn; the mean depth, weighted by their lengths, is over 1.1 m.
     assert!(rows.iter().all(|r| r[3] > 0.0));
     assert!((of(&bodies[0]["depth_mean"]) * 1.1 / of(&bodies[0]["volume"]) - 1.0).abs() < 1e-10);
     let printed = String::from_utf8_lossy(&done.stdout);
@@ -206,7 +206,7 @@ fn wheel_and_rail_of_the_standards_are_shapes() {
     let rail = "bodies.rail.shapes=[StandardProfile(name: Rail60E1, inclination: Some(40.0), from: Some(-0.03))]";
     let s = build(&[rail.into(), "bodies.block.position=[0.0, 0.5]".into()]);
     let chain = s.shapes.surfaces[0].shape.outline().remove(0);
-    // Solid below: from left to right.
+    // A chain that is solid below goes from left to right.
     assert!(chain[0].x < chain[chain.len() - 1].x);
     assert!(chain.iter().all(|p| p.y <= 1e-12));
 }

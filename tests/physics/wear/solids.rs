@@ -1,5 +1,5 @@
-//! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off
-//! its grip.
+//! Debris of polygons and polyhedra, whose faces are bonded at several points: a plate that tears
+//! off its grip.
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
@@ -18,7 +18,7 @@ fn a_plate_of_polyhedra_comes_loose() {
     comes_loose::<Dim3>("voronoi_plate_3d", 1500);
 }
 
-/// The bodies that unbroken bonds tie to one, by a walk over all of them.
+/// Bodies that unbroken bonds connect to one body, by a search over all bonds.
 fn walk<S: Space>(s: &Simulation<S>, from: u32) -> Vec<bool> {
     let grains: HashSet<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
     let mut tied = vec![false; s.state.bodies.len()];
@@ -27,7 +27,7 @@ fn walk<S: Space>(s: &Simulation<S>, from: u32) -> Vec<bool> {
     let bonds: Vec<[u32; 2]> = contacts
         .filter(|c| s.state.network.bond(c).is_some_and(|b| b.intact()))
         .map(|c| c.bodies)
-        // Nothing belongs to one grip through the other.
+        // No body belongs to one grip through the other.
         .filter(|b| b.iter().all(|b| *b == from || grains.contains(b)))
         .collect();
     loop {
@@ -43,8 +43,8 @@ fn walk<S: Space>(s: &Simulation<S>, from: u32) -> Vec<bool> {
 }
 
 fn comes_loose<S: Space>(case: &str, steps: u64) {
-    // With damage at the start of a step bonds release more, and the crack of this sample runs
-    // through.
+    // With damage from the start of a step bonds release more energy, and the crack of this sample
+    // runs through.
     let sets = [
         r#"circuit=(bases: ["left"], every: 1)"#,
         "coupling=Explicit",
@@ -70,7 +70,7 @@ fn comes_loose<S: Space>(case: &str, steps: u64) {
             mass += d.mass;
             assert!(d.bonds > 0 && d.energy > 0.0 && (0.0..=1.0).contains(&d.mode_mix));
         }
-        // Faces hold while one of their points does.
+        // A face holds while one of its points does.
         let tied = walk(&s, base);
         let free: Vec<usize> = s.state.bodies.grains().collect();
         let places = free.iter().map(|b| (account.place(*b), tied[*b]));

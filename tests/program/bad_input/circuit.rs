@@ -2,7 +2,7 @@
 
 use super::trial::{PLANE, refused, with};
 
-/// The case with a bonding law and a circuit of these words.
+/// The case with a bonding law and this circuit.
 fn circuit(words: &str) -> String {
     let bonded = with(
         PLANE,

@@ -119,8 +119,8 @@ fn check_refuses_what_run_refuses() {
     refusal(&output, &[place, "expected a number between 0.5 and 1"]);
 }
 
-/// A study compares what the case computes, not the course of the run, and no friction where
-/// nothing is rubbed.
+/// A study compares results of the case, not the course of the run, and no friction without a
+/// friction test.
 #[test]
 fn a_study_of_what_the_case_does_not_have() {
     let trial = Trial::new();

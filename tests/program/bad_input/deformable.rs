@@ -1,9 +1,8 @@
-//! Deformable bodies that cannot be: their supports and materials.
+//! Invalid deformable bodies: their supports and materials.
 
 use super::trial::{MARK, PLANE, Trial, refused, with};
 
-/// The plane case without its period and with a deformable block of the given mesh and further
-/// fields.
+/// The 2D case without its period and with a deformable block of the given mesh and further fields.
 pub(super) fn block(mesh: &str, more: &str) -> String {
     let body = format!(
         "elastic: [(name: \"block\", material: \"grain\", mesh: {mesh}, {more})],\n    friction:"
@@ -20,7 +19,7 @@ pub(super) const HELD: &str = "supports: [(part: \"bottom\", x: Fixed, y: Fixed)
 pub(super) const STIFF: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"), properties: {
     "young": (value: 7e10, unit: "Pa", source: "chosen"), "poisson": (value: 0.2, unit: "", source: "chosen")})"#;
 
-/// The case is refused at its mark with these words, with a stone that has a modulus.
+/// The case is rejected at its mark with these words, with a stone that has a modulus.
 #[track_caller]
 pub(super) fn stiff_refused(marked: &str, words: &[&str]) {
     let trial = Trial::new();
@@ -80,7 +79,7 @@ fn supports_that_do_not_hold() {
     );
 }
 
-/// A body that turns needs a strain that follows, and then nothing that holds it.
+/// A body that rotates needs a measure of strain that follows rotations, and may then be free.
 #[test]
 fn strains_that_cannot_be() {
     stiff_refused(
@@ -106,7 +105,7 @@ fn strains_that_cannot_be() {
     }
 }
 
-/// A block in small strain that is sheared by a tenth runs, and is no run to trust; in large strain
+/// A block in small strain that is sheared by a tenth runs, but is not trustworthy; in large strain
 /// it is.
 #[test]
 fn strains_that_are_not_small_are_warned_of() {
@@ -150,7 +149,7 @@ fn names_that_are_none_and_bodies_that_would_pass_through_each_other() {
         &block(MESH, &second),
         &["pass through each other", "`Surface`"],
     );
-    // Grains of 1 cm between points 5 cm apart.
+    // The grains have 1 cm, between points 5 cm apart.
     stiff_refused(
         &block(MESH, &format!("{HELD}, touches: ‸Points(\"top\")")),
         &["fit between the points of `block`"],

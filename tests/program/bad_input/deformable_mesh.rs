@@ -1,4 +1,4 @@
-//! Meshes of deformable bodies that cannot be.
+//! Invalid meshes of deformable bodies.
 
 use super::deformable::{HELD, MESH, STIFF, block, stiff_refused};
 use super::trial::{MARK, Trial};
@@ -70,12 +70,12 @@ fn a_side_with_a_profile_that_cannot_be() {
     );
 }
 
-/// Four columns, and rows of 5, 3.75 and 11.25 cm away from the top.
+/// Four columns, and rows of 5, 3.75 and 11.25 cm from the top.
 const GROWN: &str = "Block(x: (from: 0.0, to: 0.2, size: 0.05), y: (from: -0.3, to: -0.1, size: 0.05, fine: (-0.15, -0.1), growth: 3.0), coarsen: (from: \"top\"))";
 
 /// Only the last row is as high as two columns are wide: 5 + 5 + 5 + 3 points and a centre for each
-/// of 4 + 4 + 2 cells, of which the last two are cut in five. With three times the width the second
-/// row joins too.
+/// of 4 + 4 + 2 cells, of which the last two are cut in five. With three times the width the
+/// columns join in the second row too.
 #[test]
 fn blocks_that_coarsen_are_checked_and_run() {
     let trial = Trial::new();
@@ -151,7 +151,7 @@ fn blocks_that_cannot_coarsen() {
     );
 }
 
-/// A wave as short as four columns: those that join to its length would lie upside down above its
+/// A wave as short as four columns: columns joined to its length would be inverted above its
 /// troughs.
 #[test]
 fn a_side_that_bends_too_much_to_coarsen_below() {

@@ -1,4 +1,5 @@
-//! Files that a case names: missing, empty, no regular files, other than they announce.
+//! Files named by a case that are missing, empty, not regular, or do not have the announced
+//! content.
 
 use super::trial::{PLANE, SOLID, Trial, refusal, with};
 
@@ -89,7 +90,7 @@ fn a_file_that_is_missing_or_empty_is_told_at_the_line_that_names_it() {
     );
 }
 
-/// Pipes and files below `/proc` that block are never waited for.
+/// The program does not wait for pipes and for files below `/proc` that block.
 #[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_refused_at_once() {
@@ -137,7 +138,7 @@ fn what_is_no_regular_file_is_refused_at_once() {
     ] {
         refusal(&trial.call(&arguments), &[word]);
     }
-    // What the kernel shows has no length; to read some of it waits for ever.
+    // Files of the kernel have no length; reading some of them never returns.
     if std::path::Path::new("/proc/kmsg").exists() {
         refusal(
             &trial.call(&["run", "/proc/kmsg"]),
@@ -146,7 +147,7 @@ fn what_is_no_regular_file_is_refused_at_once() {
     }
 }
 
-/// A binary STL file of a tetrahedron: as many triangles as it announces, or not.
+/// A binary STL file of a tetrahedron, with as many triangles as it announces, or not.
 fn stl(announced: u32, held: usize) -> Vec<u8> {
     let corners = [
         [0.0f32, 0.0, 0.0],
@@ -214,7 +215,7 @@ fn an_stl_file_holds_what_it_announces() {
     refuses(&stl(4, 4)[..60], &["shorter than the header"]);
     fits(text(4, "endsolid\n").as_bytes());
     fits(text(4, "endsolid\n").replace('\n', "\r\n").as_bytes());
-    // All solids count: the second closes the first.
+    // All solids count: the second one closes the first.
     let whole = text(4, "endsolid\n");
     let parts = whole.split("facet normal").collect::<Vec<_>>();
     let second = format!("facet normal{}facet normal{}", parts[3], parts[4]);
@@ -311,7 +312,7 @@ fn a_table_says_each_thing_once() {
     }
 }
 
-/// Stored, the pairs of these grains would take 10 GB.
+/// The pairs of these grains would take 10 GB.
 #[test]
 fn grains_in_one_place_are_refused_before_their_pairs_are_stored() {
     let trial = Trial::new();

@@ -193,7 +193,7 @@ fn a_scene_file_of_the_other_dimension() {
     }
 }
 
-/// Meshes that were cut short or that name what they do not have.
+/// Meshes that are truncated or refer to missing points.
 #[test]
 fn meshes_that_are_damaged() {
     let stl: Vec<u8> = [&[0u8; 80][..], &12u32.to_le_bytes(), &[1u8; 250]].concat();

@@ -1,5 +1,4 @@
-//! Elastic half-spaces that cannot be: their cells, depths, holders, profiles, and what they cannot
-//! do.
+//! Invalid elastic half-spaces: their cells, depths, holders, profiles, and unsupported uses.
 
 use super::trial::{MARK, PLANE, SOLID, Trial, with};
 
@@ -13,7 +12,7 @@ const LINE: &str = r#"name: "ground", material: "grain", position: [0.0, -0.5], 
 /// A half-space in space.
 const AREA: &str = r#"name: "ground", material: "grain", position: [0.0, 0.0, -0.5], x: (from: 0.0, to: 0.2, size: 0.05), y: (from: 0.0, to: 0.2, size: 0.05), touches: Surface"#;
 
-/// The plane case without its period and with these half-spaces.
+/// The 2D case without its period and with these half-spaces.
 fn plane(half_spaces: &str) -> String {
     let case = with(PLANE, "periodic: (x: 0.4),", "");
     added(
@@ -23,7 +22,7 @@ fn plane(half_spaces: &str) -> String {
     )
 }
 
-/// The case in space with these half-spaces.
+/// The 3D case with these half-spaces.
 fn solid(half_spaces: &str) -> String {
     let time = "time: (step: 1e-3, end: 0.002";
     let case = with(SOLID, time, &format!("{time}, theta: 1.0"));
@@ -56,8 +55,8 @@ fn two(old: &str, new: &str) -> String {
     plane(&format!("({LINE}), ({})", with(&second, old, new)))
 }
 
-/// The case is refused at its mark with these words, with a stone that has a modulus and these
-/// files beside it.
+/// The case is rejected at its mark with these words, with a stone that has a modulus and with
+/// these files beside it.
 #[track_caller]
 fn refused_beside(marked: &str, files: &[(&str, &str)], words: &[&str]) {
     let trial = Trial::new();
@@ -91,7 +90,7 @@ fn half_spaces_without_a_mistake_run() {
     runs(&plane(&format!("({LINE})")));
     runs(&solid(&format!("({AREA})")));
     runs(&two("touches: Surface", "touches: Points"));
-    // Without an interface between their materials both may touch alike.
+    // Without an interface between their materials both may touch in one way.
     let two_materials = two("material: \"grain\"", "material: \"other\"");
     runs(&with(
         &two_materials,
@@ -230,7 +229,7 @@ fn surfaces_that_roll_past_their_cells() {
         &line("depth", "rolling: ‸Constant(20.0), depth"),
         &["more than a cell", "shorten `time.step`"],
     );
-    // Where it reaches that speed is within the run.
+    // The speed is reached within the run.
     refused(
         &line(
             "depth",
@@ -276,7 +275,7 @@ fn bodies_that_would_pass_through_each_other() {
         &added(&case, "elastic", block),
         &["`block` and `ground` both touch by a surface"],
     );
-    // Grains of 1 cm between points 5 cm apart.
+    // The grains have 1 cm, between points 5 cm apart.
     refused(
         &line("touches: Surface", "touches: ‸Points").replace("size: 0.01", "size: 0.05"),
         &["fit between the points of `ground`"],
@@ -337,7 +336,7 @@ fn profiles() {
     }
 }
 
-/// A file of heights fits the cells by its rows and columns, and not by its count of numbers alone.
+/// A file of heights must fit the cells by its rows and columns, not only by its count of numbers.
 #[test]
 fn heights_of_other_rows() {
     let file = |cells: &str| {
@@ -368,7 +367,7 @@ fn unmarked(case: &str) -> String {
     case.replace('‸', "")
 }
 
-/// The case is refused at a line of a file beside it.
+/// The case is rejected at a line of a file beside it.
 #[track_caller]
 fn refused_in(file: &str, case: &str, (text, line): (&str, usize), words: &[&str]) {
     let trial = Trial::new();
@@ -416,7 +415,7 @@ fn wear() {
         )),
         &["must be at least 1"],
     );
-    // In space too.
+    // This holds in 3D too.
     let worn = |case: &str| {
         let law = "contact: \"coulomb\", wear: \"archard\")";
         with(case, "contact: \"coulomb\")", law)
@@ -425,7 +424,7 @@ fn wear() {
     runs(&worn(&ground));
 }
 
-/// Only a surface that has one height at each place recedes.
+/// Only a surface with one height at each position can recede.
 #[test]
 fn wear_of_walls() {
     let line = "(from: 0.0, to: 0.2, size: 0.1)";
@@ -483,7 +482,7 @@ fn friction_tests_of_bodies_that_nothing_holds() {
         ),
         &["no part of `block` is held along axis 0"],
     );
-    // A half-space is held along each axis.
+    // A half-space has a drive along each axis.
     runs(&with(
         &plane(&format!("({LINE})")),
         "friction: (body: \"lid\"",

@@ -1,8 +1,8 @@
-//! Heat of a case: what is missing, what does not fit.
+//! Invalid settings of heat in a case.
 
 use super::trial::{PLANE, refused, with};
 
-/// The case in the plane, of a material that conducts, with something said of heat.
+/// The 2D case with a material that conducts, and these settings of heat.
 fn heat(text: &str) -> String {
     let case = with(
         PLANE,
@@ -103,7 +103,7 @@ fn a_circuit_that_is_none() {
 
 #[test]
 fn bodies_that_cannot_expand() {
-    // A material with all that heat needs, but for its expansion.
+    // The material has all properties for heat except its expansion.
     let oxide = with(&heat("expansion: true"), "_steel\"", "_oxide\"");
     refused(
         &with(&oxide, "\"grain\": \"", "\"grain\": ‸\""),
@@ -117,14 +117,14 @@ fn bodies_that_cannot_expand() {
         &with(&row, "shapes: [HalfSpace(normal: [0.0, 1.0])]", balls),
         &["more than half of the period", "`Fixed`"],
     );
-    // Grains that deform.
+    // The grains deform.
     let soft = with(
         &heat("expansion: ‸true"),
         "    output: (",
         "    elastic_grains: [(material: \"grain\")],\n    output: (",
     );
     refused(&soft, &["grains that deform do not expand", "rigid grains"]);
-    // Walls alone have no size of their own.
+    // Walls alone do not expand.
     let case = with(
         &heat("expansion: ‸true"),
         "periodic: (x: 0.4),",

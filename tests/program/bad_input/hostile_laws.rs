@@ -1,11 +1,11 @@
-//! Laws that hang, exit or crash, while they are loaded or in a step, and laws that answer what
-//! cannot be.
+//! Laws that hang, exit or crash while they are loaded or in a step, and laws with impossible
+//! outputs.
 
 use super::trial::{Trial, refusal};
 use super::trust::{own, run, says};
 use std::path::PathBuf;
 
-/// A run of 40,000 steps, more than the laws here last, with states to go on from.
+/// A run of 40,000 steps, more than the laws here allow, with saved states.
 const LONG: [&str; 6] = [
     "--set",
     "time.end=40.0",
@@ -61,7 +61,7 @@ fn a_library_that_exits_or_crashes_when_it_is_loaded() {
         &run(&trial, &[]),
         &["contact_own", "crashed in loading (SIGSEGV"],
     );
-    // The others are listed all the same.
+    // The other laws are still listed.
     let listed = trial.call(&["law", "list", "--plugin-path", "."]);
     let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
     let line = |part: &str| listed.lines().find(|l| l.contains(part)).unwrap();
@@ -69,7 +69,7 @@ fn a_library_that_exits_or_crashes_when_it_is_loaded() {
     assert!(line("coulomb ").contains("friction"), "{listed}");
 }
 
-/// Its pages are mapped and not there: the dynamic linker finds out by a signal.
+/// The pages of the library are mapped but missing: the dynamic linker receives a signal.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_library_that_is_cut_short() {
@@ -90,7 +90,7 @@ fn a_library_that_prints_when_it_is_loaded() {
     assert!(run(&trial, &[]).status.success());
 }
 
-/// What a library prints passes for no answer of the process that tries it.
+/// Output of a library is not taken for an answer of the process that tests it.
 #[cfg(unix)]
 #[test]
 fn a_library_that_prints_what_the_program_tells_itself() {
@@ -109,14 +109,14 @@ fn a_library_that_prints_what_the_program_tells_itself() {
     assert!(!trial.path("results").exists());
 }
 
-/// Rows and a summary that says why are there, and the run can be gone on with.
+/// Rows and a summary with the reason exist, and the run can be resumed.
 fn stopped(trial: &Trial, why: &str) {
     let out = |name: &str| trial.path(&format!("results/case/{name}"));
     let summary = std::fs::read_to_string(out("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let steps = summary["steps"].as_u64().unwrap() as usize;
-    // The law lasts a thousand calls. Each step makes one or more of them: grains touch the floor
-    // from the start. It makes up to four: a few steps in a hundred are repeated twice
+    // The law allows a thousand calls. Each step makes one or more of them, since grains touch the
+    // floor from the start. It makes up to four: a few steps in a hundred are repeated twice
     // (`uncertainty`), and a step may be solved twice.
     assert!((250..=1000).contains(&steps), "{steps}");
     let said = summary["stopped"].as_str().unwrap();
@@ -166,7 +166,8 @@ fn a_law_that_ends_the_program_in_a_step() {
     }
 }
 
-/// A run without states that a law ended is not begun again unasked: that would replace its rows.
+/// A run without states that a law ended is not started again without request, which would replace
+/// its rows.
 #[cfg(unix)]
 #[test]
 fn rows_that_a_law_left_without_a_state_are_not_replaced() {
@@ -189,8 +190,8 @@ fn rows_that_a_law_left_without_a_state_are_not_replaced() {
     says(&run(&trial, &never), 1, &["`own` crashed in prepare"]);
 }
 
-/// Nothing in the process can see `_exit`. The folder does not say that the run is done, and it can
-/// be gone on with.
+/// Nothing in the process can detect `_exit`. The folder does not show the run as finished, and it
+/// can be resumed.
 #[cfg(unix)]
 #[test]
 fn a_law_that_ends_the_process_at_once() {
@@ -227,7 +228,7 @@ fn answers_that_cannot_be() {
                 "(interface `grains`, contact of bodies",
             ],
         );
-        // A law that is the same everywhere is asked once, for no contact.
+        // A constant law is called once, without a contact.
         trial.compile_bad_law("own", "FW_FLAG_CONSTANT", fault);
         let output = run(&trial, &[]);
         says(&output, 1, &words);
@@ -235,7 +236,7 @@ fn answers_that_cannot_be() {
     }
 }
 
-/// A crash, an exit or a hang costs a line of the certificate, and names the check.
+/// A crash, an exit or a hang fails one line of the certificate, which names the check.
 #[cfg(unix)]
 #[test]
 fn certificates_of_laws_that_end_the_process() {
@@ -270,8 +271,8 @@ fn certificates_of_laws_that_end_the_process() {
     }
 }
 
-/// A process that has no memory says nothing of the law that it tests: no shipped law is blamed
-/// under limits that are met in a test.
+/// A process without memory proves nothing about the law that it tests: no shipped law is blamed
+/// under limits that are reached in a test.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_law_that_could_not_be_tested_is_not_blamed() {
@@ -296,8 +297,8 @@ fn a_law_that_could_not_be_tested_is_not_blamed() {
     assert!(untested > 0, "no limit was met in a test");
 }
 
-/// Rounding and subnormal numbers belong to the caller: the run is that of a law which leaves them
-/// alone, and the certificate names it.
+/// Rounding and subnormal numbers are restored for the caller: the run equals that of a law which
+/// does not change them, and the certificate reports the change.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn a_law_that_changes_rounding_changes_no_number() {
@@ -354,8 +355,8 @@ fn flags_of_a_later_interface_are_refused() {
     );
 }
 
-/// A file beside the user, named without a folder: the linker would look for it where the system
-/// has its libraries.
+/// A file in the working folder is named without a folder: the linker would search it among the
+/// system's libraries.
 #[test]
 fn a_library_is_certified_in_its_own_folder() {
     let (trial, _) = own("SPOOFS");

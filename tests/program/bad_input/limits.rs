@@ -1,8 +1,8 @@
-//! Much work in few words: refused where it is asked for, before it is begun.
+//! Short cases that request much work: they are rejected at the request, before the work begins.
 
 use super::trial::{PLANE, SOLID, refused, with};
 
-/// The plane case with these grains beside its own.
+/// The 2D case with these additional grains.
 fn grains(case: &str, more: &str) -> String {
     let to = format!("    grains: [\n{more},\n");
     let list = if case == PLANE {
@@ -93,7 +93,7 @@ fn a_skin_that_makes_all_grains_neighbours() {
     );
 }
 
-/// What there are too many of is named.
+/// The message names what there are too many of.
 #[test]
 fn more_materials_than_a_table_of_pairs_holds() {
     let many: Vec<String> = (0..10_001)

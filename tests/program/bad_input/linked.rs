@@ -1,5 +1,5 @@
-//! Laws that link to libraries beside them: these are a part of the law, whatever else is opened,
-//! and nothing else comes with them.
+//! Laws that link to libraries beside them: these are part of the law, whatever else is loaded, and
+//! nothing else is loaded with them.
 
 use super::trial::{PLANE, Trial, refusal, with};
 use super::trust::{run, says};
@@ -47,7 +47,7 @@ fn shown(trial: &Trial, law: &str) -> String {
     String::from_utf8_lossy(&shown.stdout).into_owned()
 }
 
-/// SHA-256 of a law with what it links to.
+/// SHA-256 of a law with its linked libraries.
 fn sum(trial: &Trial, law: &str) -> String {
     let shown = shown(trial, law);
     assert!(
@@ -58,7 +58,7 @@ fn sum(trial: &Trial, law: &str) -> String {
     line.split_whitespace().last().unwrap().to_owned()
 }
 
-/// What a law links to runs with it: it is doubted, pinned and recorded with it.
+/// A library that a law links to runs with it: it is checked, pinned and recorded with the law.
 #[test]
 fn a_library_that_a_law_links_to_is_a_part_of_it() {
     let trial = with_helper();
@@ -69,7 +69,7 @@ fn a_library_that_a_law_links_to_is_a_part_of_it() {
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let link = summary["plugins"][0]["links"][0].as_str().unwrap();
     assert!(link.contains("libhelper.so "), "{link}");
-    // Pinned with the law: another helper is another law.
+    // A pin covers the helper: with another helper the law is another one.
     let library = trial.compile_helper("lib", "0.4");
     assert_ne!(sum(&trial, "own"), first);
     let pin = format!("pins.contact/own={first}");
@@ -84,7 +84,7 @@ fn a_library_that_a_law_links_to_is_a_part_of_it() {
     );
 }
 
-/// The second opening finds the helper in the process: it is the same law with the same sum.
+/// On the second loading the helper is already in the process: the law has an equal SHA-256.
 #[test]
 fn a_linked_law_is_opened_for_two_interfaces() {
     let trial = with_helper();
@@ -117,8 +117,8 @@ fn two_laws_link_to_one_library() {
         let line = listed.lines().find(|l| l.contains(law)).unwrap();
         assert!(!line.contains("unusable"), "{line}");
     }
-    // All are opened before the first is tested; that all shipped ones are tested then is not
-    // waited for.
+    // All are loaded before the first is tested; the test does not wait until all shipped laws are
+    // tested.
     let mut certify = trial.start(&["law", "certify", "--all", "--plugin-path", "."]);
     std::thread::sleep(std::time::Duration::from_secs(2));
     let running = certify.try_wait().unwrap();
@@ -129,8 +129,8 @@ fn two_laws_link_to_one_library() {
     assert!(!said.contains("changed while"), "{said}");
 }
 
-/// Two files of one name: the linker takes the first for both, so the second law is not what its
-/// file says.
+/// Two files have one name: the linker uses the first for both, so the second law is not that of
+/// its file.
 #[test]
 fn two_libraries_of_one_name_do_not_stand_for_each_other() {
     let trial = with_helper();
@@ -147,7 +147,7 @@ fn two_libraries_of_one_name_do_not_stand_for_each_other() {
     assert!(!trial.path("results").exists());
 }
 
-/// The linker prefers a variant for the processor in a sub-folder: no code of it runs unseen.
+/// The linker prefers a variant for the processor in a sub-folder: no code of it runs unexamined.
 #[test]
 fn where_the_linker_looks_depends_on_no_machine() {
     let words = ["what ", "links to depends on the machine"];

@@ -1,6 +1,6 @@
-//! Numbers that are possible one by one and together are outside the range of the computation:
-//! refused at their place, or the run ends with a sentence; nothing that is not finite reaches a
-//! file of a run that says it is done.
+//! Numbers that are valid individually but together exceed the range of the computation: they are
+//! rejected at their position, or the run ends with a message; no value that is not finite reaches
+//! a file of a run that reports success.
 
 use super::trial::{PLANE, SOLID, Trial, refused, with};
 
@@ -76,7 +76,7 @@ fn what_overflows_later_ends_the_run() {
     assert!(!rows.contains("inf") && !rows.contains("NaN"), "{rows}");
 }
 
-/// A floor that is carried far away moves on by less than the spacing of numbers there.
+/// A floor that is far from the origin moves by less than the spacing of numbers there.
 #[test]
 fn motion_that_is_lost_later_is_reported() {
     let trial = Trial::new();

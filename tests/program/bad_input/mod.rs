@@ -1,5 +1,5 @@
-//! Wrong input, one mistake at a time: the program ends with exit code 2 and says where the mistake
-//! stands, what was expected, and which valid name is nearest. It never panics.
+//! Invalid input, one error at a time: the program ends with exit code 2 and reports the position
+//! of the error, what was expected, and the nearest valid name. It never panics.
 
 mod circuit;
 mod command_line;

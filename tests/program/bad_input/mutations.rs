@@ -1,5 +1,5 @@
-//! Random damage to a valid case, the same at every run: whatever the text, the library answers
-//! with a scene or a refusal.
+//! Random damage to a valid case, equal in every run: for any text the library returns a scene or
+//! an error.
 
 use super::trial::{PLANE, SOLID, Trial, with};
 use fretwork::laws::SearchPath;
@@ -11,14 +11,13 @@ use std::path::Path;
 
 const ROUNDS: usize = 300;
 
-/// Pieces that hurt most.
+/// Pieces that are most likely to cause errors.
 const PIECES: [&str; 20] = [
     "-", "0", "9", "1e", "e300", "e-300", ".", "NaN", "inf", "(", ")", "[", "]", "{", "}", ",",
     "\"", ":", "\u{0}", "\u{e9}",
 ];
 
-/// A text with some of its bytes changed; with `numbers`, only digits, so that most stay well
-/// formed.
+/// Changes some bytes of a text; with `numbers` only digits, so that most texts remain well formed.
 fn damaged(text: &str, numbers: bool, rng: &mut Pcg64) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..rng.random_range(1..=3) {
@@ -55,7 +54,7 @@ fn damaged(text: &str, numbers: bool, rng: &mut Pcg64) -> Vec<u8> {
     bytes
 }
 
-/// Whether a case was accepted; it then goes two steps.
+/// Whether a case was accepted; it is then stepped twice.
 fn tried(case: &Path, laws: &SearchPath) -> bool {
     let built = load(case, &[]).and_then(|loaded| loaded.build(laws));
     match built {
@@ -71,7 +70,7 @@ fn tried(case: &Path, laws: &SearchPath) -> bool {
 #[test]
 fn a_damaged_case_never_panics() {
     let trial = Trial::new();
-    // A small library: the time goes into hashing those it loads.
+    // The library is small, since most of the time goes into hashing loaded libraries.
     trial.compile_law("tiny", "0");
     let laws = SearchPath::new(&[trial.path("")]);
     let [plane, solid] = [PLANE, SOLID].map(|case| with(case, "\"coulomb\"", "\"tiny\""));
@@ -96,6 +95,6 @@ fn a_damaged_case_never_panics() {
             Err(_) => panic!("round {round}:\n{}", String::from_utf8_lossy(&bytes)),
         }
     }
-    // Enough of them reach the scene for the trial to mean something.
+    // Enough cases must reach the scene for the test to be meaningful.
     assert!(accepted >= ROUNDS / 10, "{accepted} accepted");
 }

@@ -88,7 +88,7 @@ fn a_wrong_value_in_a_parameter_file() {
         let place = trial.write_marked("materials/laws.ron", &laws).1.unwrap();
         let case = trial.write("case.ron", with(PLANE, r#"{"mu": 0.3}"#, "{}"));
         let said = trial.refuses(&case, &[], &words);
-        // A parameter whose name is wrong is shown where it stands, too.
+        // A parameter with a wrong name is reported at its position, too.
         assert!(said.starts_with(&place), "not at {place}\n{said}");
     }
 }
@@ -194,7 +194,7 @@ fn a_law_for_three_dimensions_in_two() {
     let words = ["the contact law `solid-only` is for three dimensions only, the case has 2"];
     let said = trial.refuses(&case, &more, &words);
     assert!(said.starts_with(&place.unwrap()), "{said}");
-    // In three dimensions it is welcome.
+    // In three dimensions the case is valid.
     let case = with(SOLID, r#"contact: "coulomb""#, r#"contact: "solid-only""#);
     trial.write("case.ron", case);
     let output = trial.call(&["check", "case.ron", more[0], more[1]]);
@@ -234,7 +234,7 @@ fn two_interfaces_of_one_name() {
     );
 }
 
-/// Names of bodies stand in names of files and columns, and in paths of the results.
+/// Names of bodies occur in names of files and columns, and in paths of the results.
 #[test]
 fn a_body_whose_name_is_a_path() {
     for bad in [
@@ -258,7 +258,7 @@ fn a_body_whose_name_is_a_path() {
         &with(PLANE, r#"name: "floor""#, &format!("name: ‸\"{long}\"")),
         &["at most 100 bytes"],
     );
-    // Spaces, points and letters of any language are none.
+    // Spaces, dots and letters of any language are invalid.
     let trial = Trial::new();
     let case = with(
         PLANE,
@@ -269,7 +269,7 @@ fn a_body_whose_name_is_a_path() {
     assert!(trial.call(&["run", "case.ron"]).status.success());
 }
 
-/// `run`, before anything is written, and `check` refuse the case with one sentence.
+/// `run`, before anything is written, and `check` reject the case with one message.
 fn taken(case: &str, words: &[&str]) {
     refused(case, words);
     let trial = Trial::new();
@@ -301,7 +301,7 @@ fn a_measure_with_the_name_of_a_column_of_a_body() {
     );
 }
 
-/// Of two measures, and of a part that a measure adds to its name.
+/// The name is that of two measures, or of a measure with a suffix.
 #[test]
 fn two_measures_with_one_file() {
     let profile = |name: &str| {

@@ -2,7 +2,7 @@
 
 use super::trial::{PLANE, SOLID, refused, with};
 
-/// The plane case with these grains beside its own.
+/// The 2D case with these additional grains.
 fn grains(more: &str) -> String {
     with(
         PLANE,
@@ -11,7 +11,7 @@ fn grains(more: &str) -> String {
     )
 }
 
-/// The plane case with this shape as its lid.
+/// The 2D case with this shape as its lid.
 fn lid(shape: &str) -> String {
     with(PLANE, "HalfSpace(normal: [0.0, -1.0])", shape)
 }

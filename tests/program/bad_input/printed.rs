@@ -1,12 +1,12 @@
-//! What is printed: titles without commands to a terminal, pairs that pass through each other,
-//! places of laws.
+//! Printed text: titles without terminal control characters, pairs that pass through each other,
+//! paths of laws.
 
 use super::trial::{PLANE, Trial, refusal, with};
 
 #[test]
 fn no_text_of_a_user_commands_the_terminal() {
     let bad = "a\\u{1b}[2Jb\\u{9b}31mc\\u{7}\\rd\\u{202e}e";
-    // Names of bodies and interfaces have none, and are refused without them.
+    // Names of bodies and interfaces cannot contain control characters.
     let titled = PLANE.replace("grains between a floor and a lid", bad);
     let case = titled
         .replace("\"lid\"", &format!("\"{bad}\""))

@@ -1,18 +1,18 @@
-//! Grains that cannot deform: their material, elements, damping and shapes.
+//! Invalid deformable grains: their material, elements, damping and shapes.
 
 use super::trial::{PLANE, SOLID, Trial, with};
 
-/// A stone that deforms.
+/// A deformable stone.
 const STIFF: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"), properties: {
     "young": (value: 7e10, unit: "Pa", source: "chosen"), "poisson": (value: 0.2, unit: "", source: "chosen")})"#;
 
-/// The case with these entries of grains that deform.
+/// The case with these entries of `elastic_grains`.
 fn soft(case: &str, entries: &str) -> String {
     let key = format!("elastic_grains: {entries},\n    output:");
     with(case, "output:", &key)
 }
 
-/// The case is refused at its mark with these words, with a stone that has a modulus.
+/// The case is rejected at its mark with these words, with a stone that has a modulus.
 #[track_caller]
 fn stiff_refused(marked: &str, words: &[&str]) {
     refused_of(STIFF, marked, words);
@@ -134,7 +134,7 @@ fn projection_of_overlaps() {
     );
 }
 
-/// Grains are named by their places, since users give them no names.
+/// Grains are identified by their positions, since they have no names.
 #[test]
 fn grains_that_overlap() {
     let from = PLANE.find("List(").unwrap();

@@ -1,8 +1,8 @@
-//! What is read in more than one spelling, and what a map may not say twice.
+//! Values that may be written in several forms, and repeated keys of a map.
 
 use super::trial::{PLANE, SOLID, Trial, refused, refused_with, with};
 
-/// The summary of a run, without what the clock gives.
+/// Returns the summary of a run without values of the clock.
 fn summary(case: &str, more: &[&str]) -> serde_json::Value {
     let trial = Trial::new();
     trial.write("case.ron", case);
@@ -10,12 +10,12 @@ fn summary(case: &str, more: &[&str]) -> serde_json::Value {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
     let mut value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    for pointer in fretwork::record::summary::FROM_THE_CLOCK {
+    for pointer in fretwork::record::summary::NOT_REPRODUCIBLE {
         if let Some(found) = value.pointer_mut(pointer) {
             *found = serde_json::Value::Null;
         }
     }
-    // The name of the case's text, which is another one.
+    // The identity includes the text of the case, which differs.
     value["identity"] = serde_json::Value::Null;
     value
 }
@@ -79,7 +79,7 @@ fn lists_and_tuples_stand_for_each_other() {
         .replace("at: [0.05, 0.011]", "at: (0.05, 0.011)");
     assert_ne!(all, PLANE);
     assert_eq!(summary(&all, &[]), summary(PLANE, &[]));
-    // Errors keep their places, also behind what is spelt otherwise.
+    // Errors keep their positions, also after values in another form.
     refused(
         &with(&all, "along: 0", "along: ‸4"),
         &["axis 4 does not exist"],
@@ -146,7 +146,7 @@ fn a_number_is_a_constant_function_of_time() {
     ] {
         assert_eq!(summary(&drive(short), &[]), summary(&drive(long), &[]));
     }
-    // By --set too, and with what is wrong behind it at its own place.
+    // This also holds for --set, and for errors after the value.
     let set = ["--set", "bodies.lid.dofs.y=Force(-1.5)"];
     assert_eq!(
         summary(PLANE, &set),
@@ -161,7 +161,7 @@ fn a_number_is_a_constant_function_of_time() {
         &with(PLANE, force, "Force(‸inf)").replace("y: Force(‸inf)", "y: ‸Force(inf)"),
         &["a constant must be finite"],
     );
-    // Where no enum has a constant, a number stays what it was.
+    // If no enum has a constant, a number remains a number.
     refused_with(
         &with(
             PLANE,
@@ -242,7 +242,7 @@ fn every_field_of_the_schema_can_be_set() {
     ] {
         trial.refuses(&case, &["--set", set], words);
     }
-    // What the maps and structs around a value are called is not written twice.
+    // Keys of the maps and structs around a value are not written twice.
     let plain = with(
         PLANE,
         "            parameters: (contact: {\"mu\": 0.3}),\n",
@@ -274,7 +274,7 @@ fn text_after_a_case_and_marks_of_editors() {
     );
 }
 
-/// A function of time that is written as something else: what it may be is said, and no name.
+/// A function of time in an invalid form: the message gives the valid forms, and no name.
 #[test]
 fn what_is_no_function_of_time() {
     let sine = "Displacement(Sine(amplitude: 1e-4, frequency: 20.0))";

@@ -1,4 +1,4 @@
-//! Drives that follow one another, and the walls of a biaxial test.
+//! Drives in sequence, and the walls of a biaxial test.
 
 use super::trial::{PLANE, refused, with};
 

@@ -1,4 +1,4 @@
-//! The text: names of fields, types, brackets, files.
+//! Errors in the text: names of fields, types, brackets, files.
 
 use super::trial::{PLANE, Trial, refused, with};
 
@@ -44,7 +44,7 @@ fn a_missing_field() {
 
 #[test]
 fn a_bracket_that_is_not_closed() {
-    // What stands after the bracket is wrong first; a note names the bracket.
+    // The text after the bracket is reported as wrong first; a note names the bracket.
     let open = with(PLANE, "gravity: [0.0, -9.81]", "gravity: [0.0, -9.81");
     refused(
         &with(&open, "periodic: (x", "‸periodic: (x"),
@@ -69,7 +69,7 @@ fn a_text_nested_200_levels_deep() {
     let trial = Trial::new();
     let (case, _) = trial.write_marked("case.ron", &with(PLANE, "[0.0, -9.81]", &nested));
     let said = trial.refuses(&case, &[], &["nested more than"]);
-    // `gravity` stands on line 5; the place is one of its brackets.
+    // `gravity` is on line 5; the position is that of one of its brackets.
     assert!(
         said.starts_with(&format!("{}:5:", case.display())),
         "{said}"

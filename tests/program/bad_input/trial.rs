@@ -1,13 +1,13 @@
-//! One trial of the program: a folder with a case and materials, a call, and what it must say.
+//! One trial of the program: a folder with a case and materials, a call, and its expected output.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Stands before the token at fault; no part of the case.
+/// Mark before the wrong token; not part of the case.
 pub const MARK: char = '‸';
 
-/// A valid case in the plane: three grains above a floor, a lid pressed by a table of time.
+/// A valid 2D case: three grains above a floor, a lid pressed by a table of time.
 pub const PLANE: &str = r#"(
     name: "grains between a floor and a lid",
     dimension: 2,
@@ -148,7 +148,7 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
     if (calls > 1000) pthread_exit(NULL);
 #endif
 #ifdef THROWS
-    // What a C++ compiler makes of `throw`.
+    // This is the code that a C++ compiler generates for `throw`.
     static struct _Unwind_Exception thrown;
     if (calls > 1000) _Unwind_RaiseException(&thrown);
 #endif
@@ -209,13 +209,13 @@ const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", s
 const LAWS: &str =
     r#"(doc: "laws", contact: {"coulomb": {"mu": (value: 0.4, source: "a guess")}})"#;
 
-/// `case` with its one `old` replaced by `new`.
+/// Returns `case` with its one occurrence of `old` replaced by `new`.
 pub fn with(case: &str, old: &str, new: &str) -> String {
     assert_eq!(case.matches(old).count(), 1, "`{old}` in the case");
     case.replace(old, new)
 }
 
-/// A folder of its own for each trial, removed at its end: `case.ron`, `materials/` beside it.
+/// A separate folder for each trial, removed at its end: `case.ron`, `materials/` beside it.
 pub struct Trial {
     folder: PathBuf,
 }
@@ -243,7 +243,7 @@ impl Trial {
         path
     }
 
-    /// Writes a text without its mark; `path:line:column` of the mark, if there is one.
+    /// Writes a text without its mark; returns `path:line:column` of the mark, if there is one.
     pub fn write_marked(&self, name: &str, marked: &str) -> (PathBuf, Option<String>) {
         let path = self.write(name, marked.replace(MARK, ""));
         let place = marked.find(MARK).map(|at| {
@@ -260,21 +260,21 @@ impl Trial {
         self.compile_bad_law(name, flags, "GOOD");
     }
 
-    /// Compiles a law with a defect, named by a word of its text: `LOOPS` for ever in prepare, say,
-    /// or `SPILLS` behind a column.
+    /// Compiles a law with a defect, named by a word of its text: `LOOPS` without end in prepare,
+    /// say, or `SPILLS` beyond a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         self.compile(name, flags, fault, &[]);
     }
 
-    /// A law that links to `libhelper.so` of a folder, which it finds beside itself by this run
-    /// path.
+    /// Compiles a law that links to `libhelper.so` of a folder, which it finds relative to itself
+    /// by this run path.
     pub fn compile_linked_law(&self, name: &str, folder: &str, run_path: &str) {
         let folder = format!("-L{folder}");
         let run_path = format!("-Wl,-rpath,{run_path}");
         self.compile(name, "0", "LINKS", &[&folder, "-lhelper", &run_path]);
     }
 
-    /// That library, which gives the friction coefficient.
+    /// Compiles that library, which gives the friction coefficient.
     pub fn compile_helper(&self, folder: &str, value: &str) -> PathBuf {
         std::fs::create_dir_all(self.path(folder)).unwrap();
         let source = self.write(
@@ -309,7 +309,7 @@ impl Trial {
         assert!(compiled.success());
     }
 
-    /// Calls the program; no variable of the caller's reaches it.
+    /// Calls the program without variables of the environment.
     pub fn call(&self, arguments: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .args(arguments)
@@ -333,7 +333,8 @@ impl Trial {
             .unwrap()
     }
 
-    /// `run` of a case that must be refused with all of `words`, before anything is written.
+    /// Calls `run` for a case that must be rejected with all of `words`, before anything is
+    /// written.
     pub fn refuses(&self, case: &Path, more: &[&str], words: &[&str]) -> String {
         let mut arguments = vec!["run", case.to_str().unwrap()];
         arguments.extend_from_slice(more);
@@ -349,7 +350,8 @@ impl Drop for Trial {
     }
 }
 
-/// Standard error of a call that must have ended with exit code 2, without a panic, saying `words`.
+/// Returns standard error of a call that must have ended with exit code 2, without a panic, with
+/// `words`.
 pub fn refusal(output: &Output, words: &[&str]) -> String {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!said.contains("panicked"), "{said}");
@@ -360,13 +362,13 @@ pub fn refusal(output: &Output, words: &[&str]) -> String {
     said
 }
 
-/// Runs a marked case: it must be refused at the mark, on the first line, with all of `words`.
+/// Runs a marked case, which must be rejected at the mark, on the first line, with all of `words`.
 #[track_caller]
 pub fn refused(marked: &str, words: &[&str]) {
     refused_with(marked, &[], words);
 }
 
-/// [`refused`] with further arguments.
+/// Does as [`refused`] with further arguments.
 #[track_caller]
 pub fn refused_with(marked: &str, more: &[&str], words: &[&str]) {
     let trial = Trial::new();

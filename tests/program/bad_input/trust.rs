@@ -1,5 +1,5 @@
-//! Libraries that others may have put there, that are not those of the case, and that do not keep
-//! to their columns.
+//! Libraries that others may have placed, that are not those of the case, and that write beyond
+//! their columns.
 
 use super::trial::{PLANE, Trial, refusal, with};
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ fn a_law_that_writes_behind_its_columns() {
     );
 }
 
-/// Two interfaces have one law, which fails in the second: the error leads to that line.
+/// Two interfaces have one law, which fails in the second: the error refers to that line.
 #[test]
 fn the_interface_that_failed_is_the_one_that_is_shown() {
     let (trial, case) = own("DRIVES_IF_ROUGH");
@@ -158,7 +158,7 @@ fn the_interface_that_failed_is_the_one_that_is_shown() {
     }
 }
 
-/// A library that is another one once it was tried is not opened.
+/// A library that is replaced after it was tested is not opened.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_library_that_is_replaced_while_it_is_tried() {
@@ -177,7 +177,8 @@ fn a_library_that_is_replaced_while_it_is_tried() {
             &["contact_own", "changed while it was being opened"],
         );
     }
-    // A run tries all libraries of its case at first; the one that came since is tried by itself.
+    // A run tests all libraries of its case at first; a library that was added later is tested
+    // alone.
     std::fs::write(&library, &swaps).unwrap();
     trial.write("next", "another library");
     refusal(&run(&trial, &[]), &["contact_own", "cannot use the plugin"]);
@@ -216,7 +217,7 @@ fn a_folder_farther_up_or_behind_a_link_that_anybody_may_write_to() {
         assert!(said.contains("/up (mode"), "{folder}: {said}");
         let trusting = [&words[..], &["--trust-plugins"]].concat();
         assert!(trial.call(&trusting).status.success());
-        // Others may not rename what is not theirs.
+        // Others may not rename files that they do not own.
         mode(0o1777);
         assert!(trial.call(&words).status.success(), "{folder}");
         mode(0o755);
@@ -244,7 +245,7 @@ fn a_law_that_does_not_come_back() {
             "all rows up to this step and a summary.json",
         ],
     );
-    // Nothing that was computed is lost, and the summary says why there is no more.
+    // No computed result is lost, and the summary gives the reason.
     let out = |name: &str| trial.path(&format!("results/case/{name}"));
     let summary = std::fs::read_to_string(out("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
@@ -260,15 +261,15 @@ fn a_law_that_does_not_come_back() {
     let rows = rows.read_raw::<f64>().unwrap();
     assert_eq!(rows.len(), steps);
     assert_eq!(rows.last(), Some(&(steps as f64)));
-    // It is a run that was stopped, not one that ended: it can be gone on with, and hangs again.
+    // The run counts as stopped, not as ended: it can be resumed, and hangs again.
     let again = run(&trial, &[&more[..], &["--resume"]].concat());
     says(&again, 1, &["has not come back from prepare"]);
     let said = String::from_utf8_lossy(&again.stdout).into_owned();
     assert!(said.contains("resuming the run"), "{said}");
 }
 
-/// The trial steps of `check`: a law that fails in one is reported, one that does not come back
-/// holds nothing up.
+/// In the trial steps of `check` a law that fails is reported, and one that does not return does
+/// not block the command.
 #[test]
 fn check_times_steps_of_laws_that_fail_and_hang() {
     for (fault, says) in [
@@ -280,7 +281,7 @@ fn check_times_steps_of_laws_that_fail_and_hang() {
         let long = std::fs::read_to_string(&case).unwrap();
         trial.write("case.ron", long.replace("end: 0.002", "end: 20.0"));
         let folder = trial.path("");
-        // The watch over laws would end it with code 1 much later.
+        // The watch over laws would end the command with code 1 much later.
         let words = [
             "check",
             "case.ron",

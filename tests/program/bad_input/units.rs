@@ -1,4 +1,4 @@
-//! Units beside numbers: converted, or refused at their place.
+//! Numbers with units are converted, or rejected at their position.
 
 use super::trial::{PLANE, Trial, refused, with};
 
@@ -112,7 +112,7 @@ fn units_of_another_kind_are_refused() {
 #[test]
 fn units_of_parameters_are_those_of_the_law() {
     let trial = Trial::new();
-    // What the case gives itself would win over the file.
+    // A value in the case would take precedence over the file.
     let own = "            parameters: (contact: {\"mu\": 0.3}),\n";
     let case = trial.write("case.ron", with(PLANE, own, ""));
     let laws = |unit: &str| {
@@ -131,7 +131,7 @@ fn units_of_parameters_are_those_of_the_law() {
             "a pure number",
         ],
     );
-    // Of laws that the case does not use, too, as far as they are no units at all.
+    // Units of laws that the case does not use are also checked for validity.
     trial.write("materials/laws.ron", laws("").replace("J/m^2", "kj/m^2"));
     trial.refuses(
         &case,
@@ -164,8 +164,8 @@ fn units_of_parameters_are_those_of_the_law() {
     );
 }
 
-/// Every file of the repository reads, and its numbers keep their values: their units are those of
-/// the schema.
+/// Every file of the repository can be read, and its numbers keep their values: their units are
+/// those of the schema.
 #[test]
 fn shipped_materials_pass() {
     use fretwork::scene::material::{InterfaceParameters, Material};

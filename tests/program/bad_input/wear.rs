@@ -1,11 +1,11 @@
-//! Profiles that are none, and surfaces that nothing can wear.
+//! Invalid profiles, and surfaces that nothing can wear.
 
 use super::trial::{PLANE, SOLID, Trial, refused, with};
 
 const FLOOR: &str =
     r#"(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])"#;
 
-/// The case in the plane with another floor.
+/// The 2D case with another floor.
 fn floor(text: &str) -> String {
     with(PLANE, FLOOR, text)
 }
@@ -149,7 +149,7 @@ fn wear_laws_that_find_no_slip_or_no_friction() {
             ],
         );
     }
-    // The lid rests on the floor's material too: a lid that is held, no grains.
+    // The lid has the floor's material too; it is held, and there are no grains.
     let case = r#"(
     name: "held",
     dimension: 2,

@@ -1,10 +1,10 @@
-//! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere
+//! Every shipped law passes certification; laws with one defect fail where they should and nowhere
 //! else.
 
 use fretwork::certify::{Certificate, CheckOutcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::bench::{Bench, Motion};
-use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
+use fretwork::laws::bench::{Bench, BenchMotion};
+use fretwork::laws::{Interface, Kind, LoadedLaw, Plugin, SearchPath};
 use fretwork::scene::load;
 use fretwork::shipped::{built_in, search_path};
 use fretwork::step::Simulation;
@@ -18,7 +18,7 @@ fn certificate(plugin: &Plugin) -> Certificate {
 }
 
 fn broken(certificate: &Certificate) -> Vec<&str> {
-    let failed = |l: &&fretwork::certify::Line| l.outcome == CheckOutcome::Fail;
+    let failed = |l: &&fretwork::certify::CheckResult| l.outcome == CheckOutcome::Fail;
     certificate
         .lines
         .iter()
@@ -38,8 +38,8 @@ fn every_shipped_law_is_certified() {
     assert_eq!(count, 50);
 }
 
-/// Built-in laws have no memory of their own that could be compared before and after calls, as that
-/// of a library is: their sources declare no static memory.
+/// Built-in laws have no separate memory that could be compared before and after calls, as a
+/// library has: their sources declare no static memory.
 #[test]
 fn shipped_laws_have_no_static_memory() {
     let mut files = 0;
@@ -67,7 +67,7 @@ fn shipped_laws_have_no_static_memory() {
     assert!(files > 50, "{files}");
 }
 
-/// Laws are certified with the parameters of shipped cases too: none warns of its own laws.
+/// Laws are also certified with the parameters of shipped cases: no case reports its own laws.
 #[test]
 fn laws_of_shipped_cases_are_certified() {
     let path = search_path();
@@ -101,15 +101,15 @@ fn laws_of_shipped_cases_are_certified() {
     assert!(known.len() > 20, "{}", known.len());
 }
 
-/// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D
-/// grows, and no work comes out.
+/// Every damage law with every cohesion law that has an opening: in loading, unloading and loading
+/// again D grows, and no work is gained.
 #[test]
 fn any_damage_goes_with_any_cohesion_that_opens() {
     let path = search_path();
     let laws = path.laws();
     let loaded = |kind: Kind, name: &str| {
         let plugin = path.find(kind, name).unwrap_or_else(|e| panic!("{e}"));
-        Loaded::with_defaults(plugin)
+        LoadedLaw::with_defaults(plugin)
     };
     let (mut pairs, mut refused) = (0, 0);
     for (_, cohesion, _) in laws.iter().filter(|l| l.0 == Kind::COHESION) {
@@ -131,9 +131,9 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
             let (mut work, mut last) = (0.0, (0.0, 0.0, 0.0));
             for k in 1..=4000 {
                 let u = 2e-5 * (f64::from(k) / 4000.0 * 6.0).sin().abs() * f64::from(k) / 4000.0;
-                let motion = Motion {
+                let motion = BenchMotion {
                     opening: [0.6 * u, 0.8 * u, 0.0],
-                    ..Motion::default()
+                    ..BenchMotion::default()
                 };
                 let a = bench
                     .step(&mut state, &[motion], 1e-4)
@@ -150,7 +150,7 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
     assert_eq!((pairs, refused), (7 * 11, 6 * 11));
 }
 
-/// Compiles `law.c` with one promise broken against the header in `include`.
+/// Compiles `law.c` with one defect against the header in `include`.
 fn compile(wrong: &str, library: &Path, include: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let made = Command::new("cc")
@@ -166,8 +166,8 @@ fn compile(wrong: &str, library: &Path, include: &str) {
     assert!(made.success(), "{wrong}");
 }
 
-/// The header of version 1.0 is frozen in `tests/certify/1.0`: what is built with it goes on
-/// working.
+/// The header of version 1.0 is kept in `tests/certify/1.0`: libraries built with it continue to
+/// work.
 #[test]
 fn a_law_built_with_the_first_header_is_certified() {
     let folder = std::env::temp_dir().join(format!("fretwork-frozen-{}", std::process::id()));
@@ -179,14 +179,14 @@ fn a_law_built_with_the_first_header_is_certified() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// A law that says it stores more than it does shows in the energy residual of a run.
+/// A law that reports more stored energy than it has is detected by the energy residual of a run.
 #[test]
 fn a_wrong_energy_shows_in_the_residual() {
     let folder = std::env::temp_dir().join(format!("fretwork-residual-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let library = folder.join(fretwork::laws::search::file_name(Kind::COHESION, "tested"));
     let residual = |wrong: &str| {
-        // A library stays open for the life of a program: each has a folder of its own.
+        // A library stays open for the life of a program, so each has its own folder.
         let place = folder.join(wrong);
         std::fs::create_dir_all(&place).unwrap();
         compile(
@@ -213,12 +213,13 @@ fn a_wrong_energy_shows_in_the_residual() {
     };
     assert!(residual("NOTHING") < 1e-9);
     let wrong = residual("DISSIPATION");
-    // The scale holds the kinetic energy of the grip, 3 J/m; half of 0.01 J/m is missing.
+    // The scale contains the kinetic energy of the grip, 3 J/m; half of 0.01 J/m is missing.
     assert!(wrong > 1e-3, "{wrong}");
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// Of a bad cohesion and a good damage law beside it only the first is said to be uncertified.
+/// Of a defective cohesion law and a valid damage law with it only the first is reported as
+/// uncertified.
 #[test]
 fn a_law_beside_a_bad_one_is_not_blamed() {
     let folder = std::env::temp_dir().join(format!("fretwork-blame-{}", std::process::id()));
@@ -254,12 +255,12 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// Whether a law converges does not depend on where within a step its bond breaks: every energy of
-/// the rate law, also where it breaks soon after its onset.
+/// The convergence of a law does not depend on where in a step its bond breaks: tested for every
+/// energy of the rate law, also if the bond breaks soon after its onset.
 #[test]
 fn convergence_is_not_a_matter_of_chance() {
     let path = search_path();
-    let open = |kind| Loaded::with_defaults(path.find(kind, "mac").unwrap());
+    let open = |kind| LoadedLaw::with_defaults(path.find(kind, "mac").unwrap());
     let (cohesion, damage) = (open(Kind::COHESION), open(Kind::DAMAGE));
     assert_eq!(damage.plugin.parameters[0].name, "w");
     for k in 0..12 {
@@ -286,15 +287,16 @@ fn wrong_laws_fail_their_line_and_no_other() {
         ("FRAME", &["objectivity"]),
         ("STEP", &["convergence"]),
         ("TANGENT", &["tangent"]),
-        // A bond whose traction is curved and that stores what it carries unloads along its own
+        // A bond with a curved traction, whose stored energy is consistent, unloads along its own
         // curve.
         ("CURVED", &[]),
         ("SECANT", &["dissipation", "secant"]),
-        // What it carries at small openings is not what it stores: unloading shows that too.
+        // If the stored energy is not consistent at small openings, unloading shows it.
         ("DEGRADATION", &["dissipation", "degradation"]),
         ("BATCH", &["batch"]),
         ("THREADS", &["threads"]),
-        // A number kept between calls shows when a call is made again; no more is tested then.
+        // A number kept between calls is detected when a call is repeated; nothing more is tested
+        // then.
         ("HIDDEN", &["columns"]),
         ("NUMBERS", &["bad numbers"]),
         ("INPUT", &["columns"]),
@@ -314,8 +316,8 @@ fn wrong_laws_fail_their_line_and_no_other() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// What a law keeps in its library between calls is found, whether or not threads happen to meet
-/// there. (That they do not is chance: the line `threads` may fail beside it.)
+/// Static memory of a law's library is detected whether or not threads happen to collide there.
+/// (The line `threads` may fail too, by chance.)
 #[cfg(target_os = "linux")]
 #[test]
 fn laws_with_static_memory_are_found() {

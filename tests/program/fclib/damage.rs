@@ -1,5 +1,5 @@
-//! Damaged files, the same at every run: whatever the bytes, reading answers with a problem or a
-//! sentence, at once and in little memory.
+//! Damaged files, equal in every run: for any bytes, reading returns a problem or an error message,
+//! quickly and with little memory.
 
 use super::shared;
 use fretwork::record::fclib::{self, FclibError};
@@ -11,39 +11,40 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 thread_local! {
-    /// The largest single allocation of this thread so far: other tests of this program run beside.
+    /// Largest single allocation of this thread so far, since other tests of this program run in
+    /// parallel.
     static LARGEST: Cell<usize> = const { Cell::new(0) };
 }
 
 fn asked_for(bytes: usize) {
-    // A thread that ends has no such variable any more.
+    // A thread that is ending has no such variable any more.
     let _ = LARGEST.try_with(|l| l.set(l.get().max(bytes)));
 }
 
 struct Watched;
 
-// SAFETY: every call goes to the system's allocator as it is.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Watched {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         asked_for(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller fulfils the contract of the allocator.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         asked_for(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller fulfils the contract of the allocator.
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         asked_for(size);
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller fulfils the contract of the allocator.
         unsafe { System.realloc(at, layout, size) }
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller fulfils the contract of the allocator.
         unsafe { System.dealloc(at, layout) }
     }
 }
@@ -51,16 +52,15 @@ unsafe impl GlobalAlloc for Watched {
 #[global_allocator]
 static WATCHED: Watched = Watched;
 
-/// No single allocation may be larger; the files have some ten to thirty thousand bytes.
+/// Limit on a single allocation; the files have some ten to thirty thousand bytes.
 const MAX_ALLOCATION: usize = 4 << 20;
 
-/// Bytes that hurt most in sizes and addresses.
+/// Bytes that are most likely to cause errors in sizes and addresses.
 const EXTREMES: [u8; 6] = [0x00, 0x01, 0x7f, 0x80, 0xfe, 0xff];
 
 fn damaged(bytes: &[u8], rng: &mut Pcg64) -> Vec<u8> {
     let mut out = bytes.to_vec();
-    // The structure of the file is a small part of it: half of the hits aim at bytes that are not
-    // zero.
+    // The structure is a small part of the file: half of the hits aim at bytes that are not zero.
     let aim = |rng: &mut Pcg64, out: &[u8]| {
         let at = rng.random_range(0..out.len());
         match rng.random_range(0..2) {
@@ -80,7 +80,8 @@ fn damaged(bytes: &[u8], rng: &mut Pcg64) -> Vec<u8> {
                 out[at..end].fill(x);
             }
             4 => {
-                // A number of eight bytes from elsewhere in the file: an address that exists.
+                // The replacement is a number of eight bytes from elsewhere in the file: an
+                // existing address.
                 let from = aim(rng, &out);
                 let count = 8.min(out.len() - at.max(from));
                 out.copy_within(from..from + count, at);
@@ -94,8 +95,8 @@ fn damaged(bytes: &[u8], rng: &mut Pcg64) -> Vec<u8> {
 
 #[test]
 fn damaged_files_are_refused_without_a_panic() {
-    // Small files, whose structure is hit often; the last in the newer format, with checksums and
-    // attributes.
+    // The files are small, so that their structure is hit often; the last is in the newer format,
+    // with checksums and attributes.
     let files = [
         "gfc3d_Example00_badly_scaled.hdf5",
         "fc2d_SliderCrankLagrangian00000.hdf5",
@@ -150,7 +151,7 @@ fn damaged_files_are_refused_without_a_panic() {
     }
     std::fs::remove_file(&path).ok();
     eprintln!("{read} read, {refused} refused {kinds:?}, slowest {slowest:?}, largest {most}");
-    // Both happen often enough for the trial to mean something.
+    // Both results must occur often enough for the test to be meaningful.
     assert!(
         read > rounds / 10 && refused > rounds / 10,
         "{read} read, {refused} refused"

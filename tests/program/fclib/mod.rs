@@ -1,4 +1,4 @@
-//! FCLIB files: the shared ones, what comes back of what is written, and damaged bytes.
+//! FCLIB files: shared files, reading of written files, and damaged bytes.
 
 mod damage;
 
@@ -26,7 +26,7 @@ fn global(path: &Path) -> Global {
     }
 }
 
-/// A file name of its own, removed at the end.
+/// A separate file name, removed at the end.
 struct Scratch(PathBuf);
 
 impl Scratch {
@@ -68,7 +68,7 @@ fn a_global_problem_has_the_local_form_that_was_computed_elsewhere() {
     close(&dense(&reduction.local.w), &dense(&known.w), "W");
     close(&reduction.local.q, &known.q, "q");
     assert_eq!(reduction.local.mu, known.mu);
-    // And back: the velocities of any impulses give the relative velocities of the local form.
+    // In return, the velocities of any impulses give the relative velocities of the local form.
     let r = [0.5, -1.0, 2.0];
     let (v, l) = reduction.velocities(&problem, &r);
     assert!(l.is_empty());
@@ -101,7 +101,8 @@ fn the_upper_triangle_of_a_matrix_is_read_as_it_stands() {
     assert!((0..problem.m.rows).all(|r| problem.m.row(r).all(|(c, x)| c >= r || x == 0.0)));
     let local = Reduction::new(&problem).unwrap().local;
     assert_eq!(local.mu.len(), 9);
-    // W of the triangle is far from symmetric (index of the collection: 0.16 of its largest entry).
+    // W read as a triangle is far from symmetric (index of the collection: 0.16 of its largest
+    // entry).
     let w = dense(&local.w);
     let largest = w.iter().fold(0.0f64, |s, x| s.max(x.abs()));
     let gap = (0..27).flat_map(|i| (0..27).map(move |j| (i, j)));
@@ -131,7 +132,8 @@ fn every_shared_file_comes_back_as_it_was_read() {
 
 #[test]
 fn what_other_writers_do_is_read_or_refused_with_what_to_do() {
-    // Big-endian 64-bit whole numbers and 32-bit reals, attributes, texts that are no text.
+    // The file has big-endian 64-bit integers and 32-bit reals, attributes, and texts that are not
+    // valid.
     let foreign = local(&shared("foreign_types.hdf5"));
     assert_eq!(foreign.problem.w.values, [2.0, 1.0]);
     assert_eq!(foreign.problem.q, [-1.0, 0.0]);
@@ -144,7 +146,7 @@ fn what_other_writers_do_is_read_or_refused_with_what_to_do() {
     assert_eq!(foreign.info.math_info, None);
     let solution = fclib::read_solution(&shared("foreign_types.hdf5")).unwrap();
     assert_eq!(solution.unwrap().r, [0.0; 2]);
-    // Never written: zeros.
+    // Unwritten data read as zeros.
     assert_eq!(local(&shared("foreign_unwritten.hdf5")).problem.q, [0.0; 2]);
 
     for (name, words) in [
@@ -170,10 +172,10 @@ fn unit(n: u32, x: f64) -> Csr {
     )
 }
 
-/// A local problem with one multiplier: it holds the first tangent.
+/// A local problem with one multiplier, which holds the first tangent.
 fn constrained_local() -> Local {
     let mut w = unit(3, 1.0);
-    // A full block, as it is written.
+    // The block is full, as it is written.
     w = Csr::from_triplets(
         3,
         3,

@@ -1,13 +1,13 @@
-//! `fretwork fit` through the program: planted parameters found again within their intervals,
+//! `fretwork fit` through the program: planted parameters are found within their intervals;
 //! directions that the measurements do not determine, ends of ranges, failed runs, resuming, and
-//! wrong input.
+//! invalid input.
 
 use crate::temp::TempFolder;
 use serde_json::Value;
 use std::process::{Command, Output};
 
-/// A slider whose velocity rises to 4 m/s: friction is mu_0 ((1 - A) exp(-B v) + A), Polach's law,
-/// in every row.
+/// A slider whose velocity increases to 4 m/s: friction is mu_0 ((1 - A) exp(-B v) + A), Polach's
+/// law, in every row.
 const SLIDER: &str = r#"(
     name: "friction test", dimension: 2, time: (step: 1e-3, end: 0.4),
     materials: {"steel": "contact_steel"},
@@ -24,7 +24,7 @@ const SLIDER: &str = r#"(
     output: (frames: 0, views: 0, figures: false, every: 4),
 )"#;
 
-/// A folder of a test with the case and a measured curve, taken away at its end.
+/// A folder of a test with the case and a measured curve, removed at its end.
 struct Folder(TempFolder);
 
 impl Folder {
@@ -40,12 +40,12 @@ impl Folder {
         std::fs::write(self.0.join(name), text).unwrap();
     }
 
-    /// A fit of the friction curve with these parameters and other fields.
+    /// Returns a fit of the friction curve with these parameters and other fields.
     fn fit(&self, parameters: &str, more: &str, set: &str) -> Output {
         self.fit_against("slider_vx - 0.01", parameters, more, set)
     }
 
-    /// Fits with this expression for the velocity.
+    /// Returns a fit with this expression for the velocity.
     fn fit_against(&self, velocity: &str, parameters: &str, more: &str, set: &str) -> Output {
         let text = format!(
             r#"(tests: [Curve(name: "friction", case: "slider.ron", set: [{set}],
@@ -110,9 +110,9 @@ fn number(value: &Value, key: &str) -> f64 {
         .unwrap_or_else(|| panic!("no {key} in {value}"))
 }
 
-/// The simultaneous intervals hold the planted values, they are not as wide as the ranges, the sum
-/// of squares is one of 30 values with 3 parameters (27 +- 2.6 x 7.3), and a second call makes no
-/// run and finds the same.
+/// The simultaneous intervals contain the planted values and are narrower than the ranges; the sum
+/// of squares is that of 30 values with 3 parameters (27 +- 2.6 x 7.3); a second call makes no run
+/// and finds equal results.
 #[test]
 fn planted_parameters_are_found_within_their_intervals() {
     let folder = Folder::new("planted");
@@ -151,8 +151,8 @@ fn planted_parameters_are_found_within_their_intervals() {
     }
 }
 
-/// Only the product of two factors acts: together up and down they are not determined, and each may
-/// be anything.
+/// Only the product of two factors has an effect: their ratio is not determined, and each may have
+/// any value.
 #[test]
 fn what_measurements_do_not_tell_is_said() {
     let folder = Folder::new("flat");
@@ -172,7 +172,7 @@ fn what_measurements_do_not_tell_is_said() {
     assert!((product - 0.5).abs() < 0.05, "{product}");
 }
 
-/// The truth lies beyond the range: the parameter is at its end, and the model does not describe
+/// The true value is beyond the range: the parameter is at its end, and the model does not describe
 /// the measurement.
 #[test]
 fn a_range_without_the_truth_is_told() {
@@ -185,8 +185,8 @@ fn a_range_without_the_truth_is_told() {
     assert!(number(&found, "widened") > 2.0);
 }
 
-/// Half of the region gives no curve, as the slider does not reach the measured velocities: these
-/// points are kept with their reason, and the rest is searched.
+/// Half of the region gives no curve, since the slider does not reach the measured velocities:
+/// these points are stored with their reason, and the rest is searched.
 #[test]
 fn failed_runs_are_data() {
     let folder = Folder::new("failed");
@@ -201,9 +201,10 @@ fn failed_runs_are_data() {
     assert!(table.contains("run it farther"), "{table}");
 }
 
-/// A row has velocity and friction of the end of its step. Over the velocity at its beginning the
-/// curve is shifted by 10 m/s^2 times the step. The estimate is wrong in proportion to the step, so
-/// that the change with half the step is half its error; the sum of squares hides it.
+/// A row has velocity and friction at the end of its step. As a function of the velocity at its
+/// beginning the curve is shifted by 10 m/s^2 times the step. The error of the estimate is
+/// proportional to the step, so the change with half the step is half of the error; the sum of
+/// squares does not show it.
 #[test]
 fn a_step_that_moves_a_parameter_is_told() {
     let folder = Folder::new("step");
@@ -226,7 +227,7 @@ fn a_step_that_moves_a_parameter_is_told() {
         "{value} +- {width}"
     );
     assert!((2.0 * half - value - 0.5).abs() < width, "{value} {half}");
-    // Without the shift nothing is left of it.
+    // Without the shift there is no error.
     let (value, half, width, reported) = fit("slider_vx", coarse);
     assert!(
         !reported && (value - 0.5).abs() < width,
@@ -240,7 +241,7 @@ fn wrong_input_is_refused_with_what_to_change() {
     let folder = Folder::new("wrong");
     let said = folder.refused(r#"(name: "x", low: 0.0, high: 1.0)"#, "", "");
     assert!(said.contains("no test uses this parameter"), "{said}");
-    // A key that has the letters of its name is no use of it.
+    // A key that contains the letters of the parameter's name does not use it.
     let said = folder.refused(
         r#"(name: "mu", low: 0.0, high: 1.0)"#,
         "",

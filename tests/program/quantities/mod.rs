@@ -1,5 +1,6 @@
-//! Quantities are declared by observers and shown by everything else: one observer in one file is
-//! found everywhere, no other source names a quantity, and the page on outputs lists them all.
+//! Quantities are declared by observers and shown by everything else: the quantity of one observer
+//! in one file appears everywhere, no other source names a quantity, and the page on outputs lists
+//! them all.
 
 mod named;
 mod page;
@@ -10,7 +11,7 @@ use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
 use fretwork::record::statistics::Column;
 use fretwork::record::{Observer, Observers, Run, RunEnd, RunOptions, RunView, Summary};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::StepReport;
 use fretwork_experiments::runs::output::OutputName;
@@ -18,8 +19,8 @@ use fretwork_experiments::runs::unit::unit_of;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// The highest place that a ball reached, and an event for each step in which it is higher than in
-/// all before.
+/// The greatest height that a ball reached, and an event for each step in which it is higher than
+/// in all before.
 #[derive(Debug, Default)]
 struct Summit {
     highest: f64,
@@ -78,7 +79,7 @@ impl Observer for Summit {
     }
 }
 
-fn cradle() -> (Loaded, Built) {
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let sets = ["time.end=0.01", "output.frames=0", "output.figures=false"].map(str::to_owned);
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
@@ -104,7 +105,7 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
     assert!(highest.is_finite());
     let shown = fretwork::record::quantity::quantity(highest, "m");
 
-    // summary.json, nested by its path, with what it is.
+    // summary.json has the value by its path, with its description.
     let text = std::fs::read_to_string(folder.0.join("summary.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["summit"]["highest"], highest);
@@ -114,11 +115,11 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
     assert_eq!(entry.unit.as_deref(), Some("m"));
     assert_eq!(entry.doc, "highest place that a ball reached");
 
-    // Statistics.
+    // The statistics have it.
     let rows = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
     assert!(rows.lines().next().unwrap().ends_with(",summit [m]"));
 
-    // results.h5.
+    // The results file has it.
     let file = hdf5::H5File::open(folder.0.join("results.h5")).unwrap();
     let heights = file.dataset("events/summits/height").unwrap();
     let values = heights.read_raw::<f64>().unwrap();
@@ -126,14 +127,14 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
     let times = file.dataset("events/summits/time").unwrap();
     assert_eq!(times.read_raw::<f64>().unwrap().len(), values.len());
 
-    // Terminal.
+    // The terminal shows it.
     let text = summary.text(false);
     assert!(
         text.contains(&format!("highest summit         {shown}")),
         "{text}"
     );
 
-    // Report and comparison.
+    // Report and comparison show it.
     let options = fretwork_view::Options {
         bytes: None,
         law: &|_, _| None,
@@ -148,7 +149,7 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
         assert!(page.contains("highest summit") && page.contains("work of the climb"));
     }
 
-    // Outputs of studies, fits and trades.
+    // Studies, fits and trades accept it as an output.
     for (name, value, unit) in [
         ("summit.highest", highest, "m"),
         ("summit.climbs.0.work", 2.5, "J"),
@@ -160,8 +161,8 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
     }
 }
 
-/// An event of a table that its observer did not declare ends the run with a sentence, and is not
-/// lost without a word.
+/// An event of a table that its observer did not declare ends the run with a message, and is not
+/// lost silently.
 #[test]
 fn events_without_a_table_are_refused() {
     #[derive(Debug)]
@@ -189,7 +190,7 @@ fn events_without_a_table_are_refused() {
     assert!(error.to_string().contains("the table `strays`"), "{error}");
 }
 
-/// Values are matched to columns by their order, so that their number is checked at every row.
+/// Values are matched to columns by their order, so their number is checked in every row.
 #[test]
 fn an_observer_gives_a_value_for_each_of_its_columns() {
     #[derive(Debug)]
@@ -215,7 +216,7 @@ fn an_observer_gives_a_value_for_each_of_its_columns() {
     );
 }
 
-/// Every number of a run has a unit and an explanation, also those in lists.
+/// Numbers in lists have them too.
 #[test]
 fn every_number_of_a_run_has_a_unit() {
     let folder = Folder::new("quantities-units");

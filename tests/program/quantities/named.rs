@@ -1,10 +1,10 @@
-//! No source that shows results names a quantity: adding one touches its observer alone.
+//! No source that presents results names a quantity, so adding one changes only its observer.
 
 use super::page::declared;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Folders of what shows results.
+/// Folders of sources that present results.
 const SHOWS: [&str; 6] = [
     "crates/store/src",
     "crates/view/src",
@@ -25,7 +25,7 @@ fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// Texts between quotes of the code of a source, without comments and tests.
+/// Strings in the code of a source, without comments and tests.
 fn literals(text: &str) -> BTreeSet<&str> {
     let code = text.split("#[cfg(test)]").next().unwrap_or(text);
     let lines = code.lines().filter(|l| {
@@ -42,7 +42,7 @@ fn what_shows_results_names_no_quantity() {
     let mut names = BTreeSet::new();
     for (path, ..) in declared().into_iter().filter(|d| !d.3) {
         let last = path.rsplit('.').next().unwrap().to_owned();
-        // Short words stand for other things too.
+        // Short words occur for other reasons too.
         if last.contains('_') && last.len() > 11 {
             names.insert(format!("/{}", path.replace('.', "/")));
             names.insert(last);

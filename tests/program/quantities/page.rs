@@ -2,7 +2,7 @@
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
 use fretwork::record::quantity::{Role, Topic};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard;
 use std::collections::BTreeMap;
@@ -19,7 +19,8 @@ const CASES: [&str; 8] = [
     "surface_temperatures",
 ];
 
-/// Cases that with those before have all columns of the statistics, with their `--set` arguments.
+/// Cases that together with those above have all columns of the statistics, with their `--set`
+/// arguments.
 const FOR_COLUMNS: [(&str, &[&str]); 5] = [
     ("fretting_resistance", &[]),
     ("rotating_drum_2d", &[]),
@@ -28,14 +29,14 @@ const FOR_COLUMNS: [(&str, &[&str]); 5] = [
     ("wheel_rail_fretting", &["accuracy=0.05"]),
 ];
 
-/// Path, units in space and in the plane, explanation, and whether it is of the course of the run.
+/// Path, units in 3D and 2D, explanation, and whether it describes the course of the run.
 pub type Declared = (String, [String; 2], String, bool);
 
-fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
+fn add(loaded: &LoadedCase, built: &Built, all: &mut Vec<Declared>) {
     let found = standard::declared(&loaded.case, built.simulation.view());
     let spelled =
         |unit: fretwork::record::quantity::Unit| [3, 2].map(|d| unit.symbol(d).to_owned());
-    // Names that a case chose.
+    // Names that a case chose are replaced.
     let chosen = |path: &str| {
         ["measures.", "measure_units.", "findings."]
             .iter()
@@ -57,7 +58,7 @@ fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
     all.extend(now.chain(later).filter(|d| !chosen(&d.0)));
 }
 
-fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
+fn built(case: &str, sets: &[&str]) -> (LoadedCase, Built) {
     let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     let loaded = load(path.as_ref(), &sets).unwrap_or_else(|e| panic!("{e}"));
@@ -83,12 +84,12 @@ pub fn declared() -> Vec<Declared> {
 type Columns = Vec<[String; 3]>;
 
 /// The columns of the statistics, by their observers. `NAME` stands for a measure, `BODY` for a
-/// first body and `PART` for a part of it by which it is held.
+/// first body and `PART` for a part by which it is held.
 fn columns() -> BTreeMap<String, Columns> {
     let mut all: BTreeMap<String, Columns> = BTreeMap::new();
     let cases = CASES.map(|case| (case, &[][..]));
     for (case, sets) in cases.into_iter().chain(FOR_COLUMNS) {
-        let (Loaded { case, .. }, built) = built(case, sets);
+        let (LoadedCase { case, .. }, built) = built(case, sets);
         let measures: Vec<&str> = case.measures.iter().map(|m| m.name()).collect();
         let bodies = case.bodies.iter().map(|b| b.name.as_str());
         let bodies = bodies.chain(case.elastic.iter().map(|b| b.name.as_str()));

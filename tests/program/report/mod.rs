@@ -1,5 +1,5 @@
-//! `fretwork report` and `fretwork compare`: what is on a page, that it stays small, loads nothing,
-//! and that no text of a case becomes markup. What a browser makes of it is in `tests/browser`.
+//! `fretwork report` and `fretwork compare`: content of a page; its size is limited, it loads
+//! nothing, and no text of a case becomes markup. `tests/browser` tests pages in a browser.
 
 mod pages;
 mod refusals;
@@ -13,7 +13,7 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A short run with bonds, a friction test and a title that would be markup.
+/// A short run with bonds, a friction test and a title that looks like markup.
 const CASE: &str = include_str!("bonded.ron");
 
 struct Trial(TempFolder);
@@ -59,7 +59,7 @@ fn text(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
-/// The data that the scripts of a page read.
+/// Returns the data that the scripts of a page read.
 pub fn data(page: &str) -> serde_json::Value {
     let start = page.find("id=\"data\">").unwrap() + "id=\"data\">".len();
     let end = page[start..].find("</script>").unwrap();

@@ -13,7 +13,7 @@ fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
     let page = trial.page("out/report.html");
     let summary: Value = serde_json::from_str(&trial.page("out/summary.json")).unwrap();
 
-    // Verdict and warnings come before the results, as the summary has them.
+    // Verdict and warnings come before the results, in the words of the summary.
     let verdict = page.find("class=\"verdict").unwrap();
     assert!(verdict < page.find("id=\"results\"").unwrap());
     let escaped = |t: &str| {
@@ -30,12 +30,13 @@ fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
             "{key}"
         );
     }
-    // Laws with version and SHA-256, identity, parameters with their units, inputs given and not.
+    // The page has laws with version and SHA-256, identity, parameters with their units, and inputs
+    // that are given or not.
     for plugin in summary["plugins"].as_array().unwrap() {
         for key in ["name", "version", "sha256"] {
             assert!(page.contains(plugin[key].as_str().unwrap()), "{plugin}");
         }
-        // Where a library lies on this machine is nobody else's business.
+        // The path of a library on this machine must not appear.
         assert!(!page.contains(plugin["path"].as_str().unwrap()), "{plugin}");
     }
     assert!(page.contains(summary["identity"].as_str().unwrap()));
@@ -61,7 +62,7 @@ fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
     );
 }
 
-/// Four digits, without zeros at the end.
+/// Formats with four digits, without zeros at the end.
 fn four_digits(value: f64) -> String {
     let text = format!(
         "{:.*}",
@@ -132,7 +133,7 @@ fn a_figure_is_the_same_in_its_picture_and_on_the_page() {
         "" => text(&a["name"]),
         unit => format!("{} ({unit})", text(&a["name"])),
     };
-    // What the page draws, in the words of the pictures.
+    // The page draws the figures with the titles of the pictures.
     let mut page: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for chart in data["figures"].as_array().unwrap() {
         let Some(figure) = chart["figure"].as_str() else {
@@ -239,7 +240,7 @@ fn a_page_keeps_to_its_size_and_says_what_it_leaves_out() {
     let scene = &data(&page)["scene"];
     let shown = scene["times"].as_array().unwrap();
     assert!(shown.len() < 401 && shown.len() > 3, "{}", shown.len());
-    // From the first state to the last.
+    // The states include the first and the last.
     assert_eq!(shown.first(), Some(&0.0.into()));
     assert_eq!(
         shown.last(),
@@ -266,7 +267,7 @@ fn without_views_there_is_a_small_page_and_without_a_wish_none() {
         data(&page)["scene"].is_null()
             || data(&page)["scene"]["times"].as_array().unwrap().len() <= 1
     );
-    // The next run removes the page of the one before.
+    // The next run removes the page of the previous one.
     let output = trial.call(&["run", "case.ron", "--out", "out", "--no-report"]);
     assert!(output.status.success(), "{}", text(&output));
     assert!(!trial.path("out/report.html").exists());

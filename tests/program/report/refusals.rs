@@ -1,4 +1,4 @@
-//! Folders that hold no run, and runs that did not end.
+//! Folders that contain no run, and runs that did not end.
 
 use super::{Trial, data, text};
 use std::fs;
@@ -81,7 +81,7 @@ fn a_run_without_its_summary_is_shown_as_not_finished() {
     assert!(page.contains("Not finished") && page.contains("Last recorded row"));
     assert!(page.contains("There is no summary.json"));
     assert_eq!(data(&page)["scene"]["times"].as_array().unwrap().len(), 7);
-    // A summary of another run is not taken for this one's.
+    // A summary of another run is not used for this one.
     fs::write(
         trial.path("out/summary.json"),
         r#"{"case": "another", "trustworthy": true}"#,

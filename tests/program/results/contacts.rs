@@ -1,5 +1,4 @@
-//! What `results.h5` keeps of each contact: forces with their directions, bodies, status, work of
-//! friction.
+//! Contacts in `results.h5`: forces with their directions, bodies, status, work of friction.
 
 use super::ledger::table;
 use super::{folder, run};
@@ -15,7 +14,7 @@ struct Contacts {
 }
 
 impl Contacts {
-    /// Of a state counted from 0, or the last.
+    /// Reads a state counted from 0, or the last.
     fn of(path: &Path, state: Option<usize>) -> Self {
         let file = H5File::open(path).unwrap();
         let whole = |name: &str| {
@@ -55,7 +54,7 @@ impl Contacts {
         one.into_iter().zip(other).map(|(a, b)| [a, b]).collect()
     }
 
-    /// Force on `body_1` of each contact, put together from its components.
+    /// Force on `body_1` of each contact, from its components.
     fn forces(&self, dimension: usize) -> Vec<Vec<f64>> {
         let normal = vectors(self, "normal", dimension);
         let (pn, p1) = (
@@ -95,8 +94,8 @@ fn vectors(contacts: &Contacts, name: &str, dimension: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The forces of the contacts of a driven body of this identity add up to what the statistics say
-/// it receives.
+/// Checks that the forces of the contacts of a driven body with this identity add up to those in
+/// the statistics.
 fn forces_add_up(case: &str, (body, id): (&str, i64), dimension: usize, sets: &[&str]) {
     let out = folder(&format!("forces-{dimension}"));
     let mut args = vec!["--set", "output.frames=0", "--set", "output.figures=false"];
@@ -129,7 +128,7 @@ fn forces_add_up(case: &str, (body, id): (&str, i64), dimension: usize, sets: &[
         );
     }
     assert!(touching > 3, "{touching}");
-    // The norm that was there before is that of the components.
+    // The recorded norm is that of the components.
     let (norm, one) = (
         contacts.column("force_tangential"),
         contacts.column("force_tangential_1"),
@@ -173,8 +172,8 @@ fn forces_of_contacts_add_up_to_those_on_a_body_in_space() {
     forces_add_up("shear_cell_3d", ("lid", 481), 3, &["time.end=0.02"]);
 }
 
-/// A sphere thrown at v = 1 m/s slides until 2 v/(7 mu g) = 0.097 s and then rolls; friction takes
-/// m v^2/7.
+/// A sphere thrown at v = 1 m/s slides until 2 v/(7 mu g) = 0.097 s and then rolls; friction
+/// dissipates m v^2/7.
 #[test]
 fn a_sphere_slides_and_then_rolls_and_friction_took_a_seventh() {
     let out = folder("status");
@@ -210,7 +209,7 @@ fn a_sphere_slides_and_then_rolls_and_friction_took_a_seventh() {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// Every dataset that grows, and every number that is written once, says its unit and what it is.
+/// Every dataset that grows, and every number that is written once, has a unit and a description.
 #[test]
 fn every_dataset_says_its_unit_and_what_it_is() {
     let out = folder("units");
@@ -250,7 +249,7 @@ fn every_dataset_says_its_unit_and_what_it_is() {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// Flows count from the start of the friction test: what the sliding wore since then, over the time
+/// Flows count from the start of the friction test: they are the wear since then over the time
 /// since then.
 #[test]
 fn the_source_flow_counts_from_the_start_of_the_friction_test() {

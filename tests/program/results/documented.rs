@@ -1,15 +1,15 @@
-//! Every column and every key that a run writes stands in docs/outputs.md.
+//! Every column and every key that a run writes is in docs/outputs.md.
 
 use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::statistics_columns;
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard::declared;
 use std::collections::BTreeSet;
 
-/// What stands between backticks in the page.
+/// Texts between backticks in the page.
 fn documented() -> BTreeSet<String> {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(path).unwrap();
@@ -19,9 +19,9 @@ fn documented() -> BTreeSet<String> {
     words.map(str::to_owned).collect()
 }
 
-fn missing(loaded: &Loaded, built: &Built, page: &BTreeSet<String>) -> Vec<String> {
+fn missing(loaded: &LoadedCase, built: &Built, page: &BTreeSet<String>) -> Vec<String> {
     let case = &loaded.case;
-    // Names that a case chose stand in the page as BODY and NAME.
+    // Names that a case chose are BODY and NAME in the page.
     let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));
     let measures = case.measures.iter().map(|m| (m.name(), "NAME"));
     let chosen: Vec<(&str, &str)> = bodies.chain(measures).collect();
@@ -63,7 +63,7 @@ fn every_column_of_the_shipped_cases_is_documented() {
     }
 }
 
-/// Fields whose row in the page lacks, or does not say their unit.
+/// Fields without a row in the page, or whose row has another unit.
 pub(super) fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a str> {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(path).unwrap();
@@ -75,7 +75,7 @@ pub(super) fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>)
     missing.map(|(name, _)| name).collect()
 }
 
-/// The tables of fields in the page: of what, and the names in their first column.
+/// Tables of fields in the page: their objects, and the names in their first column.
 pub(super) fn field_tables() -> Vec<(String, BTreeSet<String>)> {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(path).unwrap();

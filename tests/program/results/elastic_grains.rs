@@ -1,12 +1,11 @@
-//! Fields inside grains that deform, in `results.h5`: those of the other files of the run, and of a
-//! rigid motion.
+//! Fields inside deformable grains in `results.h5`: they agree with the other files of the run, and
+//! with a rigid motion.
 
 use super::meshes::{Field, legacy};
 use super::{folder, run};
 use fretwork::record::results::Reader;
 
-/// A disk that rests on the floor, and a square far above it that flies out of the period and
-/// spins.
+/// A disk at rest on the floor, and a square far above it that leaves the period and spins.
 const CASE: &str = r#"(
     name: "two grains", dimension: 2, time: (step: 1e-4, end: 0.04, theta: 0.5), gravity: [0.0, -10.0],
     periodic: (x: 1.0), detection: (alert: 1e-4, skin: 1e-3),
@@ -49,7 +48,8 @@ fn fields_of_grains_are_those_of_the_other_files_and_of_their_motion() {
     };
     assert_eq!(grains.states(), 5);
     assert!(results.join("elastic_grains_soft.vtkhdf").exists());
-    // At the end: deformation and stress of the legacy file, and its places but for the period.
+    // At the end grains have the deformation and stress of the legacy file, and its positions up to
+    // the period.
     let file = results.join("elastic_grains.vtk");
     let deformation = grains.last("Point", "deformation", 3);
     let count = deformation.len() / 3;
@@ -71,15 +71,14 @@ fn fields_of_grains_are_those_of_the_other_files_and_of_their_motion() {
     let square = *bodies.last().unwrap();
     assert_ne!(bodies[0], square);
     for (k, body) in bodies.iter().enumerate() {
-        // The square came from 0.9 to 1.09, where the period ends at 1.
+        // The square moved from 0.9 to 1.09, where the period ends at 1.
         let shift = if *body == square { 1.0 } else { 0.0 };
         for axis in 0..2 {
             let at = start[k][axis] + way[k][axis] + if axis == 0 { shift } else { 0.0 };
             assert!((at - now[k][axis]).abs() < 1e-12, "{at} {}", now[k][axis]);
         }
     }
-    // The square moves as a rigid one: v = V + w x r without stress; the disk on the floor has
-    // some.
+    // The square moves rigidly, v = V + w x r, without stress; the disk on the floor has stress.
     let cells = stress.len() / 6;
     let of_cells = reader.whole(&format!("{group}/CellData/body"), (0, cells));
     let of_cells = of_cells.unwrap();

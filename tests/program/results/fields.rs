@@ -1,17 +1,18 @@
-//! A field that is registered here, and nowhere else, is in `results.h5` with its unit and its doc.
+//! A field that is registered here, and nowhere else, is in `results.h5` with its unit and its
+//! description.
 
 use super::folder;
 use fretwork::fields::{Field, id_fields};
 use fretwork::geometry::space::{Dim3, Space};
 use fretwork::record::{RunOptions, run};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use hdf5::H5File;
 use std::path::Path;
 
-/// Registers two fields, runs the case and reads back what the last state has of them.
-fn ran<S: Space>(loaded: &Loaded, mut built: Built, out: &Path) {
+/// Registers two fields, runs the case and reads their values in the last state.
+fn ran<S: Space>(loaded: &LoadedCase, mut built: Built, out: &Path) {
     let s = built.simulation.get_mut::<S>().unwrap();
     let age = |s: &Simulation<S>, c: &fretwork::contact::Contact<S>| s.state.time - c.formed_at;
     let age = Field::number("age", "s", "time since the contact formed", age);
@@ -37,7 +38,7 @@ fn ran<S: Space>(loaded: &Loaded, mut built: Built, out: &Path) {
     assert!(!ages.is_empty() && ages.len() == gaps.len());
     assert!(ages.iter().all(|a| (0.0..=end).contains(a)));
     assert!(ages.iter().any(|a| *a > 0.0));
-    // Energies agree with the velocities beside them, of grains of one mass.
+    // Energies agree with the recorded velocities, for grains of equal mass.
     let energies = numbers("views/grains/PointData/kinetic_energy");
     let squares: Vec<f64> = {
         let axes =

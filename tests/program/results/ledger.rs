@@ -37,8 +37,8 @@ const STORED_AND_SPENT: [&str; 11] = [
     "carried",
 ];
 
-/// Runs a case; its columns must add up row by row, these entries must not be zero, and the last
-/// row is that of the summary.
+/// Runs a case. Its columns must add up row by row, these entries must not be zero, and the last
+/// row must be that of the summary.
 fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
     let out = folder(&format!("ledger-{name}"));
     let mut args = Vec::new();
@@ -78,7 +78,7 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
         .chain(&["external_work", "residual"])
     {
         let last = summary["energy"][*name].as_f64().unwrap();
-        // The reader of JSON is right to the last digit but one.
+        // The JSON reader is exact to the last digit but one.
         let row = columns[*name][rows - 1];
         assert!(
             (last - row).abs() <= 1e-15 * row.abs(),

@@ -1,4 +1,4 @@
-//! Fields of deformable bodies in `results.h5` are those of the other files of the run.
+//! Fields of deformable bodies in `results.h5` agree with the other files of the run.
 
 use super::{folder, run};
 use fretwork::record::results::Reader;
@@ -56,7 +56,7 @@ fn assert_near(name: &str, a: f64, b: f64, scale: f64) {
     assert!((a - b).abs() <= 1e-12 * scale, "{name}: {a} and {b}");
 }
 
-/// Tractions along a surface sum up to the forces of its contacts.
+/// Checks that tractions along a surface add up to the forces of its contacts.
 fn check_surface(out: &Path, reader: &Reader, name: &str, axes: &[&str]) {
     let surface = Field {
         reader,
@@ -109,7 +109,7 @@ fn fields_of_bodies_of_finite_elements_are_those_of_the_other_files() {
         let rows = displacement.len() / 3;
         let legacy_displacement = legacy(&file, "VECTORS displacement", rows);
         assert_eq!(displacement, legacy_displacement);
-        // Rows of the tensor are xx xy xz, xy yy yz, xz yz zz.
+        // The rows of the tensor are xx xy xz, xy yy yz, xz yz zz.
         let stress = mesh.last("Cell", "stress", 6);
         let tensors = legacy(&file, "TENSORS stress", stress.len() / 2);
         for (own, legacy) in stress.chunks_exact(6).zip(tensors.chunks_exact(9)) {
@@ -138,7 +138,7 @@ fn tractions_of_half_spaces_sum_up_to_their_forces() {
     assert!(out.join("frames/slip_00000032.png").exists());
     for name in ["flat", "sphere"] {
         check_surface(&out, &reader, name, &["x", "y", "z"]);
-        // What sticks and slips is drawn at the end, and with the pictures of the run.
+        // Stick and slip are drawn at the end, and with the pictures of the run.
         assert!(out.join(format!("{name}_slip.png")).exists());
     }
     std::fs::remove_dir_all(out).ok();

@@ -1,4 +1,4 @@
-//! What a run leaves behind, through the program: the files of the contract and how they agree.
+//! Files of a run, written by the program: their contents and their agreement.
 
 mod contacts;
 mod documented;
@@ -229,7 +229,7 @@ fn a_biaxial_test_leaves_its_figure_and_its_columns() {
     assert!(output.status.success(), "{said}");
     assert!(said.contains("friction angle"), "{said}");
     let test = &s["biaxial"];
-    // 0.02 m/s for 0.02 s on a sample of some 0.1 m.
+    // The sample of some 0.1 m is compressed at 0.02 m/s for 0.02 s.
     let strain = test["axial_strain"].as_f64().unwrap();
     assert!((3e-3..6e-3).contains(&strain), "{strain}");
     let compacity = test["compacity_start"].as_f64().unwrap();

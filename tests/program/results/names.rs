@@ -1,5 +1,5 @@
 //! Names, units and descriptions in the files of a run are those of the registries of fields and
-//! columns, and the page of the outputs has no field that no registry has.
+//! columns, and the page of the outputs has only registered fields.
 
 use super::documented::{field_tables, undocumented};
 use super::folder;
@@ -7,7 +7,7 @@ use fretwork::fields::{FieldList, Fields, orientation};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{MeshField, of_bodies, of_grains, of_surfaces};
 use fretwork::record::{RunOptions, run, statistics_columns};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use hdf5::H5File;
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,7 +32,7 @@ fn of_mesh<T>(fields: &[MeshField<T>]) -> Known {
     known(fields.iter().map(|f| (f.name, f.unit, f.doc)))
 }
 
-/// What stands in the file in these groups.
+/// Returns the datasets of the file in these groups.
 fn written(file: &H5File, groups: &[&str]) -> Known {
     let mut out = Known::new();
     for path in file.dataset_names() {
@@ -68,8 +68,8 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// The columns of `statistics.csv`, of `/statistics` and of the observers are the same.
-fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
+/// The columns of `statistics.csv`, of `/statistics` and of the observers are equal.
+fn statistics_agree(loaded: &LoadedCase, built: Built, out: &Path) {
     let columns = statistics_columns(&loaded.case, built.simulation.view());
     let dimension = built.simulation.dimension();
     let options = RunOptions {
@@ -100,8 +100,8 @@ fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
     }
 }
 
-/// Fields of grains and contacts in the file: those of the registry, and those that observers add,
-/// which stand in the page.
+/// Fields of grains and contacts in the file are those of the registry, and those that observers
+/// add, which are in the page.
 fn views_agree<S: Space>(file: &H5File) {
     let mut fields = Fields::<S>::default();
     orientation().into_iter().for_each(|f| fields.grains.add(f));
@@ -121,7 +121,7 @@ fn views_agree<S: Space>(file: &H5File) {
     assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
     let bodies = written(file, &["views/bodies/CellData"]);
     assert_eq!(bodies.keys().collect::<Vec<_>>(), ["body"]);
-    // Vectors are of three numbers: what viewers draw arrows of.
+    // Vectors have three numbers, with which viewers draw arrows.
     for field in [
         "contacts/CellData/force",
         "contacts/CellData/normal",
@@ -179,7 +179,7 @@ fn no_field_is_documented_that_no_registry_has() {
         .map(|known| known.into_keys().collect())
     }
     let (plane, space) = (names::<Dim2>(), names::<Dim3>());
-    // Of observers; and what stands in the file once, beside the fields.
+    // Further fields are those of observers, and those stored once.
     let more: [&[&str]; 5] = [&["shear"], &[], &[], &["body"], &[]];
     let tables = field_tables();
     let kinds: Vec<&str> = tables.iter().map(|(kind, _)| kind.as_str()).collect();

@@ -1,5 +1,5 @@
-//! Standard streams that are closed or full: nothing panics, a run ends as it would have, and an
-//! answer that was asked for and could not be written is a failure.
+//! Standard streams that are closed or full: nothing panics, a run ends as usual, and a requested
+//! answer that could not be written is a failure.
 #![cfg(unix)]
 
 use super::folder;
@@ -36,7 +36,7 @@ fn code(output: &Output) -> i32 {
 
 const CASE: &str = "cases/verification/bouncing_ball.ron";
 
-/// What is fast to do with every command, and what it ends with where all streams are open.
+/// Commands that are fast, and their exit codes if all streams are open.
 fn commands(out: &str) -> Vec<(String, i32)> {
     let solve = "solve tests/fclib/fc3d_OneContact_reduced.hdf5";
     vec![
@@ -93,7 +93,7 @@ fn standard_output_that_is_full_fails_answers_and_no_run() {
         let reported = String::from_utf8_lossy(&output.stderr);
         assert!(reported.contains("cannot write the answer"), "{reported}");
     }
-    // What was recorded is there.
+    // The recorded results exist.
     assert!(out.join("summary.json").exists());
     std::fs::remove_dir_all(out).ok();
 }
@@ -112,7 +112,7 @@ fn both_streams_full_or_read_by_nobody() {
             expected,
             "{arguments}"
         );
-        // A reader that went away has what it wanted.
+        // A reader that closed its pipe is not an error.
         assert_eq!(broken_pipe(&arguments), Some(expected), "{arguments}");
     }
     std::fs::remove_dir_all(out).ok();
@@ -138,7 +138,7 @@ fn a_study_goes_on_without_its_streams() {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// Memory for so many stacks is not there: a sentence, and not a panic.
+/// Memory for this number of stacks does not exist: there is a message, and not a panic.
 #[test]
 fn threads_that_cannot_be_started_are_told() {
     let out = folder("threads-limit");
@@ -155,7 +155,8 @@ fn threads_that_cannot_be_started_are_told() {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// Memory that the system refuses ends the program with a sentence and exit code 1, and no signal.
+/// Memory that the system refuses ends the program with a message and exit code 1, without a
+/// signal.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_that_runs_out_is_told() {

@@ -1,10 +1,10 @@
-//! Cases that are killed, and resumed with one thread and with two: all files are those of a run
-//! that was not stopped.
+//! Cases that are killed, and resumed with one thread and with two: all files equal those of an
+//! uninterrupted run.
 
 use super::common::{Folder, Job, same};
 
-/// The run is killed as soon as each of these numbers of states was kept; what each kill leaves is
-/// resumed twice.
+/// The run is killed as soon as each of these numbers of states was saved; the result of each kill
+/// is resumed twice.
 fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
     let whole = Folder::new(&format!("{name}-whole"));
     job.done(&whole.0, &[]);
@@ -22,7 +22,8 @@ fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
     }
 }
 
-/// Bonds of two kinds with damage and wear, a friction test, profiles of the third body.
+/// The case has bonds of two kinds with damage and wear, a friction test, and profiles of the third
+/// body.
 #[test]
 fn fretting_with_damage_in_the_plane() {
     let sets = [
@@ -43,7 +44,7 @@ fn fretting_with_damage_in_the_plane() {
     resumes("fretting", job, &[7]);
 }
 
-/// A run that chooses its step and tolerance.
+/// The run chooses its step and tolerance.
 #[test]
 fn a_scar_with_an_accuracy() {
     let sets = [
@@ -61,7 +62,7 @@ fn a_scar_with_an_accuracy() {
     resumes("accuracy", job, &[2, 9]);
 }
 
-/// Steps that have grown: a checkpoint is between two of them.
+/// The steps have grown: a checkpoint is between two of them.
 #[test]
 fn disks_at_rest_in_steps_that_grow() {
     let sets = [
@@ -79,7 +80,7 @@ fn disks_at_rest_in_steps_that_grow() {
     resumes("growth", job, &[1, 2]);
 }
 
-/// A height field, wear, overlaps that are taken out; steps written as problems.
+/// The case has a height field, wear, removal of overlaps, and steps written as problems.
 #[test]
 fn shear_in_space() {
     let sets = [
@@ -95,8 +96,8 @@ fn shear_in_space() {
     resumes("space", job, &[3]);
 }
 
-/// Phases of which one ends by rest, colours and strains that begin with the second one, means of
-/// profiles.
+/// The case has phases one of which ends at rest, colours and strains that begin with the second
+/// phase, and means of profiles.
 #[test]
 fn phases_and_measures() {
     let sets = [
@@ -116,12 +117,12 @@ fn phases_and_measures() {
         case: "rotating_drum_2d",
         sets: &sets,
     };
-    // Before and after the second phase began.
+    // The kills are before and after the start of the second phase.
     resumes("phases", job, &[3, 11]);
 }
 
-/// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and taken
-/// out.
+/// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and
+/// removed.
 #[test]
 fn the_circuit() {
     let sets = [
@@ -138,11 +139,11 @@ fn the_circuit() {
         case: "third_body_steady",
         sets: &sets,
     };
-    // After the slider began to tear grains off at 0.05 s.
+    // The kill is after the slider began to tear off grains at 0.05 s.
     resumes("circuit", job, &[20]);
 }
 
-/// A profile that wears, and jumps over cycles.
+/// The case has a profile that wears, and jumps over cycles.
 #[test]
 fn scars_and_jumps() {
     // A row of the statistics is begun before some checkpoints and ends after.
@@ -169,7 +170,8 @@ fn scars_and_jumps() {
     resumes("scar", job, &[4]);
 }
 
-/// Walls that follow an area, stages, a band of shear: what a biaxial test measures from.
+/// The case has walls with a servo, stages, a shear band, and the reference state of a biaxial
+/// test.
 #[test]
 fn a_biaxial_test() {
     let sets = [
@@ -186,7 +188,7 @@ fn a_biaxial_test() {
     resumes("biaxial", job, &[3]);
 }
 
-/// Deformable bodies: displacements, velocities, and the factor that is formed anew.
+/// Deformable bodies: displacements, velocities, and the factor, which is formed again.
 #[test]
 fn deformable_bodies() {
     let sets = [
@@ -213,8 +215,8 @@ fn deformable_bodies() {
     resumes("deformable-phases", job, &[3]);
 }
 
-/// Half-spaces: one that wears under a friction test, and two that roll, of which a step begins
-/// with the forces of the one before.
+/// Half-spaces: one that wears under a friction test, and two that roll, in which a step begins
+/// with the forces of the previous one.
 #[test]
 fn half_spaces() {
     let sets = [

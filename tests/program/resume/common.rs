@@ -1,8 +1,8 @@
-//! Runs through the program: to their end, or killed; and whether two folders hold the same.
+//! Runs of the program to their end or until they are killed, and comparison of two folders.
 
-use fretwork::record::checkpoint::{Frame, Kind};
+use fretwork::record::checkpoint::{Frame, FrameKind};
 use fretwork::record::results::PreviousResults;
-use fretwork::record::summary::FROM_THE_CLOCK;
+use fretwork::record::summary::NOT_REPRODUCIBLE;
 use hdf5::H5File;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A folder of its own, empty and removed in the end.
+/// A separate folder, initially empty and finally removed.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -40,18 +40,17 @@ impl Drop for Folder {
     }
 }
 
-/// A case of the repository with what is changed in it.
+/// A case of the repository with changes.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
     pub case: &'a str,
     pub sets: &'a [&'a str],
 }
 
-/// A variable of the environment that makes the file of results grow in place from so many bytes
-/// on.
+/// Environment variable that makes the results file grow in place from this number of bytes on.
 pub const IN_PLACE: &str = "FRETWORK_COPY_LIMIT";
 
-/// Whether a file is marked as being written: a byte of its superblock says so.
+/// Whether a file is marked as being written, by a byte of its superblock.
 pub fn marked(path: &Path) -> bool {
     let bytes = std::fs::read(path).unwrap();
     assert!(bytes.starts_with(b"\x89HDF\r\n\x1a\n") && bytes[8] >= 2);
@@ -60,7 +59,8 @@ pub fn marked(path: &Path) -> bool {
 
 impl Job<'_> {
     pub fn command(&self, out: &Path, extra: &[&str]) -> Command {
-        // Repeated steps are most of the work of a short run: only of jobs that name them.
+        // Repeated steps are most of the work of a short run, so only jobs that name them make
+        // them.
         let repeats = self.sets.iter().any(|s| s.starts_with("uncertainty."));
         let without: &[&str] = if repeats {
             &[]
@@ -79,26 +79,26 @@ impl Job<'_> {
         command
     }
 
-    /// To its end.
+    /// Runs to the end.
     pub fn run(&self, out: &Path, extra: &[&str]) -> Output {
         self.command(out, extra).output().unwrap()
     }
 
-    /// To its end, which must be a good one; what it said.
+    /// Runs to the end, which must be successful; returns the output.
     pub fn done(&self, out: &Path, extra: &[&str]) -> String {
         said(&self.run(out, extra), 0)
     }
 
-    /// In the background, to be killed.
+    /// Starts the run in the background, to be killed.
     pub fn start(&self, out: &Path, extra: &[&str]) -> Child {
         let mut command = self.command(out, extra);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         command.spawn().unwrap()
     }
 
-    /// Killed as soon as so many states were kept.
+    /// Kills the run as soon as this number of states was saved.
     pub fn killed_after(&self, out: &Path, states: u64) {
-        // On a busy machine a run may end before it is seen.
+        // On a busy machine a run may end before it is noticed.
         for _ in 0..5 {
             if self.try_kill(out, states) {
                 return;
@@ -112,10 +112,10 @@ impl Job<'_> {
         let mut child = self.start(out, &[]);
         let begun = Instant::now();
         loop {
-            // A file that is being written may be read in the middle of a change: it is looked at
+            // A file that is being written may be read in the middle of a change, so it is read
             // again.
             let last = last_frame(out);
-            if last.is_some_and(|f| f.kind == Kind::State && f.number >= states) {
+            if last.is_some_and(|f| f.kind == FrameKind::State && f.number >= states) {
                 break;
             }
             if let Some(status) = child.try_wait().unwrap() {
@@ -131,7 +131,7 @@ impl Job<'_> {
     }
 }
 
-/// The file that a run writes before it takes the name of the results; a run that is killed may
+/// Name of the file that a run writes before it gets the name of the results; a killed run may
 /// leave one.
 pub fn draft(out: &Path) -> Option<Vec<u8>> {
     std::fs::read(out.join("results.h5.part")).ok()
@@ -148,7 +148,7 @@ pub fn last_frame(out: &Path) -> Option<Frame> {
     frames.max_by_key(|f| f.number)
 }
 
-/// What a command said, which must have ended with this code and without a panic.
+/// Returns the output of a command, which must have ended with this code and without a panic.
 pub fn said(output: &Output, code: i32) -> String {
     let text = [&output.stdout[..], &output.stderr[..]].concat();
     let text = String::from_utf8_lossy(&text).into_owned();
@@ -157,7 +157,7 @@ pub fn said(output: &Output, code: i32) -> String {
     text
 }
 
-/// All files below a folder, by their paths in it.
+/// Returns all files below a folder, by their relative paths.
 pub fn files(folder: &Path) -> Vec<String> {
     let mut out = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -177,7 +177,7 @@ pub fn files(folder: &Path) -> Vec<String> {
     out
 }
 
-/// The datasets of a results file, those of checkpoints apart: shape and bytes, or texts.
+/// Returns the datasets of a results file except checkpoints: shape and bytes, or texts.
 fn datasets(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<u8>)> {
     let file = H5File::open(path).unwrap();
     let mut out = BTreeMap::new();
@@ -202,11 +202,11 @@ fn datasets(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<u8>)> {
     out
 }
 
-/// A summary without what the clock and the machine say.
+/// Returns a summary without values that depend on the clock and the machine.
 fn summary(folder: &Path) -> Value {
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
     let mut value: Value = serde_json::from_str(&text).unwrap();
-    for pointer in FROM_THE_CLOCK {
+    for pointer in NOT_REPRODUCIBLE {
         if let Some(found) = value.pointer_mut(pointer) {
             *found = Value::Null;
         }
@@ -214,14 +214,15 @@ fn summary(folder: &Path) -> Value {
     value
 }
 
-/// A report without what the clock and the machine say: rows of a class of their own.
+/// Returns a report without values that depend on the clock and the machine, which are rows of a
+/// separate class.
 fn without_clock(page: &[u8]) -> Vec<u8> {
     let lines = page.split(|b| *b == b'\n');
     let clock = |line: &&[u8]| !line.starts_with(b"<tr class=\"clock\">");
     lines.filter(clock).collect::<Vec<_>>().join(&b'\n')
 }
 
-/// Two folders must hold the same, bit by bit, but for what the clock says and the checkpoints.
+/// Checks that two folders are bit-identical, except for values of the clock and checkpoints.
 pub fn same(one: &Path, other: &Path) {
     assert_eq!(files(one), files(other));
     let (a, b) = (

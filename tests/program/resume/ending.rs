@@ -1,4 +1,4 @@
-//! What a run says at its end: reasons not to trust it before any number, on the terminal, in the
+//! Final output of a run: reasons not to trust it before any number, on the terminal, in the
 //! summary and over pictures.
 
 use super::common::{Folder, Job, said};
@@ -40,7 +40,7 @@ fn a_run_that_missed_the_tolerance_says_so_first() {
     assert_eq!(summary["trustworthy"], true, "{:?}", summary["reasons"]);
     assert!(sentences(&summary["reasons"]).is_empty());
 
-    // Exit codes stay as they are; --strict makes it 1.
+    // Exit codes are unchanged, except that --strict makes it 1.
     let output = hasty.run(&bad.0, &[]);
     let text = said(&output, 0);
     let end = String::from_utf8_lossy(&output.stdout);
@@ -73,7 +73,7 @@ fn a_run_that_missed_the_tolerance_says_so_first() {
     let strict = said(&hasty.run(&bad.0, &["--strict", "--json"]), 1);
     assert!(strict.contains("\"trustworthy\": false"), "{strict}");
 
-    // The band is above the pictures, whatever they are of.
+    // The band is above the pictures, whatever they show.
     for name in [
         "energy.png",
         "fretting_loops.png",
@@ -84,7 +84,7 @@ fn a_run_that_missed_the_tolerance_says_so_first() {
     }
 }
 
-/// Student's interval over the later half of the cycles, from the list in the summary itself; k
+/// Student's interval over the later half of the cycles follows from the list in the summary, and k
 /// from the other numbers.
 #[test]
 fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
@@ -106,7 +106,7 @@ fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
         .map(|c| c["friction_coefficient"].as_f64().unwrap())
         .collect();
     assert_eq!(mu.len(), 4);
-    // The later half is two: three are taken, and t(2, 0.975) = 4.302653.
+    // The later half would be two cycles: three are used, and t(2, 0.975) = 4.302653.
     let mu = &mu[1..];
     let mean = mu.iter().sum::<f64>() / 3.0;
     let square: f64 = mu.iter().map(|m| (m - mean).powi(2)).sum();
@@ -114,7 +114,7 @@ fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
     let known = &summary["uncertainty"]["friction_coefficient"];
     assert!((known["value"].as_f64().unwrap() / mean - 1.0).abs() < 1e-12);
     assert!((known["scatter"].as_f64().unwrap() / half - 1.0).abs() < 1e-6);
-    // Of repeated steps.
+    // These half-widths are from repeated steps.
     assert!(known["step"].as_f64().unwrap() >= 0.0 && known["tolerance"].as_f64().unwrap() >= 0.0);
     assert!(text.contains("(95 %, Student, cycles 2 to 4)"), "{text}");
     let damage = &summary["uncertainty"]["damage_ratio"];

@@ -1,7 +1,7 @@
-//! What cannot go on says so in a sentence.
+//! Runs that cannot be resumed are reported with a message.
 
 use super::common::{Folder, Job, draft, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use std::path::Path;
 use std::process::Command;
 
@@ -19,12 +19,12 @@ fn job() -> Job<'static> {
     }
 }
 
-/// The number of the frame whose head stands at a place.
+/// Returns the number of the frame whose head is at a position.
 fn number(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(bytes[at + 16..at + 24].try_into().unwrap())
 }
 
-/// Where the heads of frames stand in the bytes of a file; what follows them is in chunks.
+/// Positions of the headers of frames in the bytes of a file; the content is in chunks.
 fn frames(bytes: &[u8]) -> Vec<usize> {
     let found = bytes
         .windows(8)
@@ -97,7 +97,7 @@ fn another_version_is_refused() {
     assert_eq!(frame.version.len(), ours.len());
     for at in frames(&bytes) {
         if number(&bytes, at) == frame.number {
-            // Hash and version are at its head.
+            // The header has hash and version.
             bytes[at..at + 100].copy_from_slice(&frame.bytes()[..100]);
         }
     }
@@ -154,7 +154,7 @@ fn a_file_that_changed_behind_the_case_is_refused() {
         "{reported}"
     );
     std::fs::write(&steel, old).unwrap();
-    // Comments of the case do not count.
+    // Comments of the case do not matter.
     let text = std::fs::read_to_string(&case).unwrap();
     std::fs::write(&case, format!("// a comment\n{text}")).unwrap();
     assert!(said(&run(&["--resume"]), 0).contains("is finished"));
@@ -184,7 +184,7 @@ fn one_damaged_checkpoint_costs_some_steps_two_are_refused() {
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
     let last = last_frame(&out.0).unwrap();
-    assert_eq!((last.number, last.kind), (found[0].0, Kind::State));
+    assert_eq!((last.number, last.kind), (found[0].0, FrameKind::State));
     job().done(&out.0, &["--resume"]);
     same(&whole.0, &out.0);
 }
@@ -206,8 +206,8 @@ fn a_file_that_is_cut_or_none_is_refused() {
     refused(&out.0, job(), 1, &["it is not a file"]);
 }
 
-/// What lies behind the end of a cut file would be read as zeros: refused, or the bits of a run
-/// that was not stopped.
+/// Data beyond the end of a truncated file would be read as zeros: the file is rejected, or the
+/// results are bit-identical to those of an uninterrupted run.
 #[test]
 fn a_file_that_is_cut_anywhere_gives_no_other_numbers() {
     let (out, whole) = (Folder::new("cut-anywhere"), Folder::new("not-cut"));
@@ -237,11 +237,11 @@ fn a_folder_that_cannot_be_written_is_told() {
         reported.contains("cannot write") && reported.contains("--out"),
         "{reported}"
     );
-    // What cannot be made beside the results leaves them as they are.
+    // If files cannot be created beside the results, the results are unchanged.
     let out = Folder::new("readonly");
     job().killed_after(&out.0, 2);
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
-    // What the killed run was writing may still be there.
+    // The file that the killed run was writing may still exist.
     std::fs::remove_file(out.0.join("results.h5.part")).ok();
     std::fs::create_dir(out.0.join("results.h5.part")).unwrap();
     let reported = said(&job().run(&out.0, &["--resume"]), 1);
@@ -249,7 +249,7 @@ fn a_folder_that_cannot_be_written_is_told() {
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
 }
 
-/// Files may not grow beyond a limit, as on a full disk; what is there goes on when there is room.
+/// Files may not grow beyond a limit, as on a full disk; the run continues when there is space.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_is_told_and_the_run_goes_on_when_there_is_room() {

@@ -1,5 +1,5 @@
-//! What a folder holds beside a state: settings that change no number, files of older runs,
-//! summaries of others.
+//! Content of a folder besides a state: settings that change no number, files of older runs,
+//! summaries of other runs.
 
 use super::common::{Folder, Job, draft, files, said, same};
 
@@ -68,7 +68,7 @@ fn files_of_an_older_run_go_and_those_of_others_stay() {
     for name in own {
         std::fs::write(out.0.join(name), "mine").unwrap();
     }
-    // What cannot begin takes nothing away.
+    // A run that cannot begin removes nothing.
     let refused = Job {
         case: "shear_cell_3d",
         sets: &["time.end=-1.0"],
@@ -96,8 +96,8 @@ fn a_summary_of_another_run_ends_none() {
     let other = Folder::new("summary-other");
     job(&OTHER).done(&other.0, &[]);
     let out = Folder::new("summary");
-    // That of another case, and that of another run of the same case: the file knows that it is not
-    // at its end.
+    // The summary is that of another case, or of another run of the same case: the file shows that
+    // the run is not at its end.
     for from in [&other, &whole] {
         std::fs::remove_dir_all(&out.0).ok();
         job(&SETS).killed_after(&out.0, 2);
@@ -106,7 +106,7 @@ fn a_summary_of_another_run_ends_none() {
         assert!(reported.contains("resuming the run"), "{reported}");
         same(&whole.0, &out.0);
     }
-    // At its end, but beside the summary of another case.
+    // The run is at its end, but the folder has the summary of another case.
     std::fs::copy(other.0.join("summary.json"), out.0.join("summary.json")).unwrap();
     let reported = job(&SETS).done(&out.0, &["--resume"]);
     assert!(reported.contains("resuming the run"), "{reported}");
@@ -115,8 +115,8 @@ fn a_summary_of_another_run_ends_none() {
     assert!(reported.contains("is finished"), "{reported}");
 }
 
-/// What hangs on the whole length of a run is its spacing of states and pictures: without them it
-/// is the run that was longer from its start.
+/// The total length of a run determines the spacing of states and pictures: without them an
+/// extended run equals one that was longer from its start.
 #[test]
 fn a_run_goes_on_beyond_its_end() {
     const SHORT: [&str; 4] = [
@@ -137,7 +137,7 @@ fn a_run_goes_on_beyond_its_end() {
     };
     let long = Folder::new("long");
     job(&LONG).done(&long.0, &[]);
-    // Cut off by a kill, and at its end.
+    // The run was killed, or is at its end.
     for killed in [true, false] {
         let out = Folder::new(if killed { "longer-killed" } else { "longer" });
         if killed {
@@ -148,7 +148,7 @@ fn a_run_goes_on_beyond_its_end() {
         let reported = job(&LONG).done(&out.0, &["--resume"]);
         assert!(reported.contains("resuming the run"), "{reported}");
         same(&long.0, &out.0);
-        // Back to an earlier end there is no way.
+        // An extended run cannot return to an earlier end.
         let reported = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);
         assert!(
             reported.contains("`time.end` was 0.06 in the original run"),
@@ -157,7 +157,7 @@ fn a_run_goes_on_beyond_its_end() {
     }
 }
 
-/// A run that was over before a state was due has nothing to go on from, and stays.
+/// A run that finished before a state was due has nothing to continue from, and is kept.
 #[test]
 fn a_short_run_is_not_replaced_by_a_longer_one() {
     const SHORT: [&str; 3] = [
@@ -245,8 +245,7 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     job(&SETS).done(&out.0, &["--resume"]);
 }
 
-/// What the documentation excepts from equal bits, and nothing else, differs between two runs of
-/// one case.
+/// Two runs of one case differ only in the values that the documentation excepts.
 #[test]
 fn two_runs_differ_in_what_the_clock_gives_alone() {
     let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/checkpoints.md"));
@@ -258,7 +257,7 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     let excepted = paragraph.split("are equal, except for").nth(1).unwrap();
     let excepted = excepted.split('.').next().unwrap();
     let named: Vec<&str> = excepted.split('`').skip(1).step_by(2).collect();
-    let listed: Vec<&str> = fretwork::record::summary::FROM_THE_CLOCK
+    let listed: Vec<&str> = fretwork::record::summary::NOT_REPRODUCIBLE
         .iter()
         .filter_map(|pointer| pointer.rsplit('/').next())
         .collect();
@@ -269,8 +268,8 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     same(&one.0, &other.0);
 }
 
-/// A process that is ended while it makes the report leaves a whole run: the next command makes the
-/// page.
+/// A process that is ended while it makes the report leaves a complete run: the next command makes
+/// the page.
 #[test]
 fn a_finished_run_without_its_report_gets_it() {
     let (out, whole) = (Folder::new("no-page"), Folder::new("no-page-whole"));

@@ -1,6 +1,7 @@
-//! SIGKILL at random moments: what is left opens, the run resumes, and ends in the same bits.
+//! SIGKILL at random moments: the files can be opened, and the run resumes to bit-identical
+//! results.
 //!
-//! A few in the suite; a hundred every night (`.ci/nightly`), by
+//! A few kills are made in the test suite, and a hundred every night (`.ci/nightly`), by
 //! `FRETWORK_KILLS=100 cargo test --release --test program resume::kills -- --nocapture`.
 
 use super::common::{Folder, IN_PLACE, Job, last_frame, marked, same};
@@ -14,21 +15,21 @@ fn kills() -> u32 {
     kills.ok().and_then(|n| n.parse().ok()).unwrap_or(5)
 }
 
-/// A file that is copied and replaced is never seen half written.
+/// A file that is copied and replaced is never seen incomplete.
 #[test]
 fn kills_at_random_moments_lose_nothing() {
     kill_at_random("kills", 20, None);
 }
 
 /// Kills lose nothing of a file that grows in place, as large ones do: from the first flush on, or
-/// after some.
+/// after some flushes.
 #[test]
 fn kills_at_random_moments_lose_nothing_of_a_file_that_grows_in_place() {
     kill_at_random("kills-in-place", 21, Some("0"));
     kill_at_random("kills-on-the-way", 22, Some("2500000"));
 }
 
-/// Kills lose no fields inside deformable bodies, which are most of such a file.
+/// Kills lose no fields of deformable bodies, which are the largest part of such a file.
 #[test]
 fn kills_at_random_moments_lose_no_fields_of_deformable_bodies() {
     let sets = [
@@ -46,7 +47,7 @@ fn kills_at_random_moments_lose_no_fields_of_deformable_bodies() {
 }
 
 fn kill_at_random(name: &str, seed: u64, in_place: Option<&str>) {
-    // Checkpoints and flushes as often as can be, so that many kills meet one.
+    // Checkpoints and flushes are as frequent as possible, so that many kills meet one.
     let sets = [
         "time.end=0.012",
         "output.checkpoint=Steps(3)",
@@ -75,8 +76,8 @@ fn kill_job(job: Job<'_>, name: &str, seed: u64, in_place: Option<&str>) {
     let (mut killed, mut ended, mut with_file) = (0, 0, 0);
     let folder = Folder::new(name);
     while killed < kills {
-        // Short ones too: a kill may meet the making of the file, or its replacement by the resumed
-        // one.
+        // Delays are short too: a kill may occur during the creation of the file, or its
+        // replacement by the resumed one.
         let share: f64 = rng.random_range(0.0f64..1.0);
         let wait = length.mul_f64(share * share);
         let mut command = job.command(&folder.0, &["--resume"]);

@@ -1,5 +1,4 @@
-//! Every shipped law in turn: its internal variables, bonds and the wear it is owed go on with the
-//! same bits.
+//! Every shipped law in turn: its internal variables, bonds and deferred wear continue bit by bit.
 
 use super::common::Folder;
 use super::state::goes_on;
@@ -9,7 +8,7 @@ use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork_abi::FLAG_TEMPERATURE;
 
-/// A row of balls drawn to and fro over another one, with loose ones on it; x is along the rows.
+/// A row of balls is moved to and fro on another row, with loose balls on it; x is along the rows.
 fn case(dimension: usize, laws: &str, heated: bool) -> String {
     let (material, heat) = match heated {
         false => ("verification_grain", ""),
@@ -50,7 +49,7 @@ fn case(dimension: usize, laws: &str, heated: bool) -> String {
     )
 }
 
-/// Goes on with a law in a dimension; whether the law is of it.
+/// Resumes a run with a law in a dimension; returns whether the law supports it.
 fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
     let plugin = search_path().find(kind, name);

@@ -1,12 +1,12 @@
-//! A run of the library with an observer and a process that are written here: they stand in its
-//! files, its checkpoints and its summary, and a callback stops it.
+//! A run of the library with an observer and a process that are defined here: their results are in
+//! its files, its checkpoints and its summary, and a callback stops it.
 
 use super::common::{Folder, marked, same};
 use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::process::{Process, ProcessError};
 use fretwork::record::checkpoint::FolderState;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::output::Output;
 use fretwork::record::quantity::Findings;
 use fretwork::record::quantity::unit::METRE;
@@ -14,7 +14,7 @@ use fretwork::record::results::PreviousResults;
 use fretwork::record::statistics::Column;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, RunView, Summary, stopped};
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
 use std::ops::ControlFlow;
@@ -62,17 +62,17 @@ impl Observer for MeanGap {
         vec![Output::Text { file, text }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&(self.sum, self.steps))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         (self.sum, self.steps) = decode(from)?;
         Ok(())
     }
 }
 
-/// Pushes a ball along x with a force that dies away with the impulse that it gave: F = F0 (1 -
+/// Pushes a ball along x with a force that decreases with the impulse that it gave: F = F0 (1 -
 /// J/J0).
 #[derive(Debug)]
 struct Push {
@@ -96,11 +96,11 @@ impl<S: Space> Process<S> for Push {
         Ok(())
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.given)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.given = decode(from)?;
         Ok(())
     }
@@ -108,8 +108,8 @@ impl<S: Space> Process<S> for Push {
 
 const SETS: [&str; 2] = ["output.checkpoint=Never", "output.frames=2"];
 
-/// Newton's cradle with a push on the ball in its middle.
-fn cradle() -> (Loaded, Built) {
+/// Newton's cradle with a push on the middle ball.
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build(&search_path());
@@ -129,7 +129,7 @@ fn options(folder: &Folder) -> RunOptions {
     }
 }
 
-/// Stops the run in a folder after so many steps.
+/// Stops the run in a folder after a number of steps.
 fn stop_after(folder: &Folder, step: u64) -> Summary {
     let (loaded, built) = cradle();
     let options = options(folder);
@@ -141,7 +141,7 @@ fn stop_after(folder: &Folder, step: u64) -> Summary {
     stopped.unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Runs on to the end from where the run in a folder was stopped.
+/// Resumes the run in a folder to its end.
 fn resume(folder: &Folder, observer: Option<MeanGap>) -> Result<Summary, RunError> {
     let (loaded, built) = cradle();
     let options = options(folder);
@@ -164,8 +164,8 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
     assert!(summary.run.stopped.is_none());
-    // Three pairs of balls are half a millimetre apart; half a step, at whose end gaps are
-    // measured, takes the ball that is pushed nearer to one of them by h v/2, v = h F0/m.
+    // Three pairs of balls are half a millimetre apart. Half a step, at whose end gaps are
+    // measured, moves the pushed ball by h v/2 towards one of them, v = h F0/m.
     let kept = PreviousResults::open(&folder.0.join("results.h5")).unwrap();
     let names = ["mean_gap", "kinetic", "external_work"].map(str::to_owned);
     let columns = kept.statistics(&names, 600).unwrap();
@@ -180,7 +180,7 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     assert_eq!(unit, Some("m"));
     assert!(folder.0.join("mean_gap.txt").exists());
     // J = J0 (1 - (1 - h F0/J0)^n), and the work of the push is the gain of kinetic energy: impacts
-    // with e = 1 lose none.
+    // with e = 1 dissipate nothing.
     let given = LIMIT * (1.0 - (1.0 - 1e-4 * FORCE / LIMIT).powi(600));
     assert!(given > 0.5 * LIMIT && mass > 0.0);
     let e = summary.found.get::<Energy>().unwrap();
@@ -232,8 +232,8 @@ fn a_run_does_not_go_on_without_its_observers() {
     resume(&folder, Some(MeanGap::default())).unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// What a process of a user does in a step cannot be undone unless it says so: the run does not
-/// estimate its error then.
+/// The effect of a user's process in a step cannot be undone unless the process says so: the run
+/// then does not estimate its error.
 #[test]
 fn steps_with_a_process_that_does_not_permit_it_are_not_repeated() {
     let folder = Folder::new("library-repeats");

@@ -1,12 +1,12 @@
-//! Limits that the system sets to a run: on its time and on the size of its files. It ends with a
-//! sentence, and goes on where there is room.
+//! Limits of the system on a run, on its time and on the size of its files: it ends with a message,
+//! and can be resumed when the limit is lifted.
 
 use super::common::{Folder, Job, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A table that is larger than the file of results: every step has a row of digits.
+/// A table that is larger than the results file: every step has a row of digits.
 const SETS: [&str; 6] = [
     "output.checkpoint=Never",
     "output.frames=0",
@@ -21,7 +21,7 @@ const JOB: Job<'static> = Job {
     sets: &SETS,
 };
 
-/// A run in a shell that has set a limit.
+/// Starts a run in a shell that has set a limit.
 fn limited(limit: &str, job: &Job<'_>, out: &Path, extra: &[&str]) -> Output {
     let run = job.command(out, extra);
     let mut shell = Command::new("sh");
@@ -37,7 +37,7 @@ fn size(out: &Path, name: &str) -> u64 {
     std::fs::metadata(out.join(name)).map_or(0, |m| m.len())
 }
 
-/// Blocks of a shell's limit on the size of files (bytes).
+/// Unit of a shell's limit on the size of files (bytes).
 fn block() -> u64 {
     let reported = Command::new("sh")
         .args([
@@ -53,8 +53,8 @@ fn block() -> u64 {
     block
 }
 
-/// The table grows beyond the limit, and the results do not: their state is kept, and the run goes
-/// on without the limit.
+/// The table grows beyond the limit, and the results do not: their state is saved, and the run
+/// continues without the limit.
 #[test]
 fn a_table_that_may_not_grow_leaves_a_state() {
     let (whole, out) = (Folder::new("limit-whole"), Folder::new("limit"));
@@ -63,7 +63,7 @@ fn a_table_that_may_not_grow_leaves_a_state() {
         size(&whole.0, "statistics.csv"),
         size(&whole.0, "results.h5"),
     );
-    // Room for most of the rows.
+    // The limit has room for most of the rows.
     let limit = (table * 3 / 4).max(results) / block();
     assert!(limit * block() < table, "{table} {results}");
     let reported = limited(&format!("-f {limit}"), &JOB, &out.0, &["--no-report"]);
@@ -72,13 +72,13 @@ fn a_table_that_may_not_grow_leaves_a_state() {
         reported.contains("statistics.csv") && reported.contains("ulimit -f"),
         "{reported}"
     );
-    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == FrameKind::State));
     let reported = JOB.done(&out.0, &["--resume", "--no-report"]);
     assert!(reported.contains("resuming the run"), "{reported}");
     same(&whole.0, &out.0);
 }
 
-/// `ulimit -t` sets the limit that asks and the one that ends to the same time.
+/// `ulimit -t` sets the soft and the hard limit to equal times.
 #[test]
 fn a_limit_on_time_ends_a_run_with_a_sentence() {
     let long = [&SETS[..5], &["time.end=1000.0"]].concat();
@@ -94,5 +94,5 @@ fn a_limit_on_time_ends_a_run_with_a_sentence() {
         ),
         "{reported}"
     );
-    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == FrameKind::State));
 }

@@ -1,5 +1,4 @@
-//! Runs with half-spaces of heat that are extended: the depth that follows from `time.end` stays
-//! what it was.
+//! Extended runs with thermal half-spaces: the depth that follows from `time.end` does not change.
 
 use super::common::{Folder, Job, said, same};
 use serde_json::Value;
@@ -21,7 +20,7 @@ fn shallow(summary: &Value) -> bool {
     warnings.any(|w| w.as_str().unwrap().starts_with("SHALLOW HALF-SPACES: "))
 }
 
-/// Rise of the surface (K) and that of a half-space, 2 q sqrt(t/pi)/e.
+/// Temperature rise of the surface (K) and that of a half-space, 2 q sqrt(t/pi)/e.
 fn rise(out: &Path, time: f64) -> [f64; 2] {
     let text = std::fs::read_to_string(out.join("surface_temperature_rail.csv")).unwrap();
     let last = text.lines().last().unwrap().rsplit_once(',').unwrap().1;
@@ -76,7 +75,7 @@ fn with_a_depth_the_bits_are_those_of_a_run_with_the_later_end() {
         [
             "heat.bodies.rail.store.depth=Some(2e-2)",
             "output.checkpoint=Steps(50)",
-            // Their times follow from the first end.
+            // The times of views and frames follow from the first end.
             "output.frames=0",
             "output.views=0",
             end,

@@ -1,5 +1,5 @@
-//! Checkpoints: what is kept of a run, and that a run which was stopped ends in the bits of one
-//! that was not.
+//! Checkpoints: a run that was stopped ends with results that are bit-identical to those of an
+//! uninterrupted one.
 
 mod cases;
 pub(crate) mod common;

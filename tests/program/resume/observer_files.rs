@@ -1,24 +1,24 @@
-//! An observer of a user of the library with a table and pictures of its own: they are in the
-//! folder of the run, go on with a resumed run, and those of an older run are removed when a run
-//! starts over.
+//! An observer of a user of the library with its own table and pictures: they are in the folder of
+//! the run, are continued by a resumed run, and those of an older run are removed when a run
+//! starts.
 
 use super::common::{Folder, files, same};
 use crate::scene;
 use fretwork::record::checkpoint::FolderState;
-use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::encoding::{EncodingError, decode, encode};
 use fretwork::record::output::Output;
 
 use fretwork::record::{
-    Observer, Paint, Picture, Run, RunEnd, RunOptions, RunView, Shows, Summary, stopped,
+    Observer, Paint, Picture, PictureContent, Run, RunEnd, RunOptions, RunView, Summary, stopped,
 };
-use fretwork::scene::{Built, Loaded, load};
+use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::step::StepReport;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// The largest speed of the balls every ten steps, as a table; and pictures in which each ball has
-/// a colour of its own.
+/// Writes the largest speed of the balls every ten steps as a table, and pictures in which each
+/// ball has its own colour.
 #[derive(Debug, Default)]
 struct Speeds {
     rows: Vec<(f64, f64)>,
@@ -41,7 +41,7 @@ impl Observer for Speeds {
         let paints = (0..run.balls().len()).map(|k| Paint::Layer(k as i64));
         vec![Picture {
             name: "balls",
-            shows: Shows::Paints(paints.collect()),
+            shows: PictureContent::Paints(paints.collect()),
         }]
     }
 
@@ -62,11 +62,11 @@ impl Observer for Speeds {
         vec!["speeds.csv".to_owned()]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.rows)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.rows = decode(from)?;
         Ok(())
     }
@@ -80,15 +80,14 @@ const SETS: [&str; 4] = [
 ];
 
 /// Newton's cradle, 600 steps.
-fn cradle() -> (Loaded, Built) {
+fn cradle() -> (LoadedCase, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
     let built = scene::built(&loaded);
     (loaded, built)
 }
 
-/// Runs to the end, or until a step; from the start, or from where the run in the folder was
-/// stopped.
+/// Runs to the end or to a step, from the start or from the state in the folder.
 fn run(folder: &Folder, until: Option<u64>, resumed: bool) -> Summary {
     let (loaded, built) = cradle();
     let options = RunOptions {
@@ -117,7 +116,7 @@ fn a_table_of_an_observer_goes_on_over_a_resumption() {
     let table = |folder: &Folder| std::fs::read_to_string(folder.0.join("speeds.csv")).unwrap();
     let text = table(&whole);
     assert_eq!(text.lines().count(), 1 + 60);
-    // The first ball comes with 1 m/s, and balls of one mass that lose nothing hand that on.
+    // The first ball arrives with 1 m/s, and balls of equal mass that lose nothing pass it on.
     for line in text.lines().skip(1) {
         let speed: f64 = line.split_once(',').unwrap().1.parse().unwrap();
         assert!((speed - 1.0).abs() < 1e-6, "{line}");
@@ -142,7 +141,7 @@ impl Observer for Named {
     }
 }
 
-/// Files of the program are nobody else's: refused before anything is written or removed.
+/// Names of the program's files are rejected before anything is written or removed.
 #[test]
 fn a_file_of_an_observer_is_none_of_the_programs() {
     let folder = Folder::new("observer-own");
@@ -173,7 +172,7 @@ fn a_file_of_an_observer_is_none_of_the_programs() {
         );
         assert!(!folder.0.exists(), "{name}");
     }
-    // Another name is its own.
+    // Another name is allowed.
     let (loaded, built) = cradle();
     let options = RunOptions {
         out: folder.0.clone(),
@@ -195,14 +194,14 @@ fn files_and_pictures_of_an_observer_are_removed_when_a_run_starts_over() {
             .count()
     };
     assert_eq!(pictures(&first), 3);
-    // A picture of a longer run, and two files that no observer names.
+    // The folder has a picture of a longer run, and two files that no observer names.
     let old = folder.0.join("frames/balls_00099999.png");
     let others = ["frames/mine_00000001.png", "speeds.csv.bak"];
     std::fs::write(&old, "old").unwrap();
     for other in others {
         std::fs::write(folder.0.join(other), "other").unwrap();
     }
-    // The table of the old run is gone as soon as the new one has begun.
+    // The table of the old run is removed as soon as the new run has begun.
     let (loaded, built) = cradle();
     let options = RunOptions {
         out: folder.0.clone(),

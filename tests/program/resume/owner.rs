@@ -1,14 +1,14 @@
-//! A folder is one run's: another that begins there, or goes on, or a page that is made of it
-//! meanwhile, is refused and changes nothing.
+//! A folder belongs to one run: another run or resumption in it, or a report of it meanwhile, is
+//! rejected and changes nothing.
 
 use super::common::{Folder, IN_PLACE, Job, files, last_frame, said, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Long enough to be met.
+/// The run is long enough to be met.
 const SETS: [&str; 3] = [
     "output.checkpoint=Steps(50)",
     "output.frames=0",
@@ -32,10 +32,10 @@ fn refused(output: &std::process::Output, words: &str) {
 
 /// Whether a run owns the folder.
 fn held(out: &Path) -> bool {
-    FolderLock::read(out, RUN_LOCK).is_err()
+    FolderLock::shared(out, RUN_LOCK).is_err()
 }
 
-/// What is done in the folder while a run, new or resumed, writes there.
+/// Tries all commands in the folder while a run, new or resumed, writes there.
 fn all_refused(out: &Path) {
     let words = "another run is writing in";
     let before = files(out).len();
@@ -53,20 +53,20 @@ fn a_folder_is_one_runs() {
     for more in [&[][..], &["--resume"]] {
         let mut child = JOB.start(&out.0, more);
         let begun = Instant::now();
-        while last_frame(&out.0).is_none_or(|f| f.kind != Kind::State) || !held(&out.0) {
+        while last_frame(&out.0).is_none_or(|f| f.kind != FrameKind::State) || !held(&out.0) {
             assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
             std::thread::sleep(Duration::from_millis(2));
         }
-        // Held still, so that it does not end meanwhile.
+        // The process is stopped, so that it does not end meanwhile.
         let stop = |number: i32| {
             // SAFETY: no memory is touched; the child has not been waited for, so the number is its
             // own.
             assert_eq!(unsafe { libc::kill(child.id() as libc::pid_t, number) }, 0);
         };
         stop(libc::SIGSTOP);
-        // It may go on for a moment, and end a file.
+        // The process may continue for a moment, and complete a file.
         let mut status = 0;
-        // SAFETY: as above, and the status is written to a place of its own.
+        // SAFETY: the child has not been waited for, and the status is a local variable.
         let of =
             unsafe { libc::waitpid(child.id() as libc::pid_t, &raw mut status, libc::WUNTRACED) };
         assert!(
@@ -78,13 +78,14 @@ fn a_folder_is_one_runs() {
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    // The system releases what a killed run held; the bits are those of a run that nobody met.
+    // The system releases the lock of a killed run; the results are bit-identical to those of an
+    // undisturbed run.
     JOB.done(&out.0, &["--resume"]);
     same(&whole.0, &out.0);
     said(&report(&out.0), 0);
 }
 
-/// A run that is held still once it has saved a state.
+/// A run that is stopped once it has saved a state.
 struct Held(std::process::Child);
 
 impl Held {
@@ -95,15 +96,14 @@ impl Held {
             .stderr(std::process::Stdio::piped());
         let held = Self(command.spawn().unwrap());
         let begun = Instant::now();
-        while last_frame(out).is_none_or(|f| f.kind != Kind::State) {
+        while last_frame(out).is_none_or(|f| f.kind != FrameKind::State) {
             assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
             std::thread::sleep(Duration::from_millis(2));
         }
         held.signal(libc::SIGSTOP);
-        // The signal is on its way; until it has arrived the run may still make a file.
+        // The signal is on its way; until it has arrived the run may still complete a file.
         let mut status = 0;
-        // SAFETY: the status is this function's own, and a stopped child is not taken from its
-        // owner.
+        // SAFETY: the status is a local variable, and a stopped child is not reaped.
         let stopped =
             unsafe { libc::waitpid(held.0.id() as libc::pid_t, &raw mut status, libc::WUNTRACED) };
         assert!(stopped > 0 && libc::WIFSTOPPED(status), "status {status}");
@@ -116,7 +116,7 @@ impl Held {
         assert_eq!(unsafe { libc::kill(self.0.id() as libc::pid_t, number) }, 0);
     }
 
-    /// Goes on, and must find its folder gone.
+    /// Continues the run, which must find its folder lost.
     fn loses_its_folder(self, out: &Path) {
         self.signal(libc::SIGCONT);
         let output = self.0.wait_with_output().unwrap();
@@ -130,26 +130,26 @@ impl Held {
     }
 }
 
-/// Who removes or moves the folder of a run takes it from the run: it writes nothing more there,
-/// and another run is not disturbed.
+/// If the folder of a run is removed or moved, the run writes nothing more there, and another run
+/// is not disturbed.
 #[test]
 fn a_folder_that_is_removed_or_moved_is_no_runs() {
     let whole = Folder::new("lost-whole");
     JOB.done(&whole.0, &[]);
-    // Removed, and taken by another run.
+    // The folder is removed, and used by another run.
     let out = Folder::new("lost");
     let first = Held::start(&out.0);
     std::fs::remove_dir_all(&out.0).unwrap();
     JOB.done(&out.0, &[]);
     first.loses_its_folder(&out.0);
     same(&whole.0, &out.0);
-    // Removed, and taken by nobody: it does not come back.
+    // The folder is removed, and used by nobody: it is not created again.
     std::fs::remove_dir_all(&out.0).unwrap();
     let alone = Held::start(&out.0);
     std::fs::remove_dir_all(&out.0).unwrap();
     alone.loses_its_folder(&out.0);
     assert!(!out.0.exists());
-    // Moved: it can be gone on with where it is now.
+    // The folder is moved: the run can be resumed at the new place.
     let moved = Folder::new("lost-moved");
     let third = Held::start(&out.0);
     std::fs::rename(&out.0, &moved.0).unwrap();
@@ -183,8 +183,8 @@ fn a_finished_run_is_not_owned_by_who_looks_at_it() {
     assert!(!lock.exists());
 }
 
-/// A damaged state of a finished run is not a run to be started over: neither at its end nor with a
-/// later one.
+/// A finished run with a damaged state must not be started again: neither to its end nor to a later
+/// one.
 #[test]
 fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
     const LATER: [&str; 4] = [SETS[0], SETS[1], SETS[2], "time.end=0.2"];
@@ -197,7 +197,7 @@ fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
         said(&command.output().unwrap(), 0);
         let path = out.0.join("results.h5");
         let mut bytes = std::fs::read(&path).unwrap();
-        // The frame of the state, behind its head; that of the end has no state.
+        // The frame of the state is damaged behind its header; the frame of the end has no state.
         let heads = bytes
             .windows(8)
             .enumerate()

@@ -1,5 +1,5 @@
-//! Repeated steps: they leave no trace in a run, and what they say of its error is right where it
-//! is known.
+//! Repeated steps have no effect on a run, and the error that they report is right where it is
+//! known.
 
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
@@ -12,7 +12,7 @@ use fretwork::step::Simulation;
 use fretwork_observe::error_estimate::{Change, ErrorEstimate, Repeats};
 use std::path::Path;
 
-/// Steps of a simulation of which some are repeated with other settings, and of one of which none
+/// Steps a simulation in which some steps are repeated with other settings, and one in which none
 /// are.
 fn leave_no_trace<S: Space>(both: [Simulation<S>; 2], before: u32, after: u32) {
     let [mut whole, mut repeated] = both;
@@ -20,7 +20,7 @@ fn leave_no_trace<S: Space>(both: [Simulation<S>; 2], before: u32, after: u32) {
         // Recession is a process of the scene; it declares that it can be repeated.
         assert_eq!(s.repeatable(), Ok(()));
         steps(s, before);
-        // The next step would do it.
+        // The next step would do this.
         s.between_steps().unwrap();
     }
     let bytes = all(&repeated);
@@ -70,7 +70,8 @@ fn the_steps_after_repeated_ones_have_the_same_bits() {
     check("verification/rubber_block", &[], 10, 10);
 }
 
-/// A phase that begins in a repeated step, and sets a parameter of a law there, has not begun.
+/// A phase that begins in a repeated step, and sets a parameter of a law there, has not begun in
+/// the run.
 #[test]
 fn a_phase_that_begins_in_a_repeated_step_has_not_begun() {
     let sets = [
@@ -81,7 +82,7 @@ fn a_phase_that_begins_in_a_repeated_step_has_not_begun() {
     check("rotating_drum_2d", &sets, 5, 40);
 }
 
-/// Bits of a run with repeated steps are those of one without, whatever acts in it.
+/// A run with repeated steps is bit-identical to one without, whatever acts in it.
 #[test]
 fn a_run_with_repeated_steps_has_the_same_statistics() {
     let fretting: &[&str] = &["grains.0.count=300", "time.step=1e-4", "time.end=0.056"];
@@ -118,9 +119,9 @@ fn a_run_with_repeated_steps_has_the_same_statistics() {
     }
 }
 
-/// A block that slides to a stop, with theta = 1: its path in n steps of h is n h v - mu g h^2 n
-/// (n + 1)/2, so that friction takes too little by a share that is linear in h, and the estimate is
-/// exact.
+/// A block slides to a stop with theta = 1: its path in n steps of h is n h v - mu g h^2 n (n +
+/// 1)/2, so that the energy of friction is too small by a fraction that is linear in h, and the
+/// estimate is exact.
 #[test]
 fn the_error_of_a_step_of_first_order_is_found() {
     for length in [1, 3, 6] {
@@ -148,7 +149,7 @@ fn slide_to_a_stop(length: u32) {
     }
     let found: Repeats = estimate.report(&s.state.energy, 0.0);
     assert_eq!((found.places, found.failed, found.steps), (8, 0, length));
-    // The later half of the steps, from the velocity that is left after the earlier ones.
+    // The later half of the steps is compared, from the velocity that is left after the first half.
     let earlier = f64::from(length / 2);
     let later = f64::from(length) - earlier;
     let paths = |coarse: f64| -> f64 {
@@ -167,7 +168,7 @@ fn slide_to_a_stop(length: u32) {
     );
     // The share differs from place to place, with the velocity.
     assert!(half_width > 0.0 && half_width < change, "{half_width}");
-    // The solver is at its end: a tighter tolerance changes nothing.
+    // The solver is exact: a tighter tolerance changes nothing.
     let tolerance = found.tolerance.friction_energy.unwrap();
     assert!(tolerance.bound() < 1e-9, "{tolerance:?}");
     assert_eq!(found.coupling, None);

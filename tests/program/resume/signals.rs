@@ -1,8 +1,8 @@
 //! SIGINT, SIGTERM, and the signals of a terminal and of limits: a run ends at the end of its step
-//! with a summary, says how to go on, and ends in the same bits then.
+//! with a summary, prints how to resume it, and is then bit-identical to an uninterrupted one.
 
 use super::common::{Folder, Job, last_frame, same};
-use fretwork::record::checkpoint::Kind;
+use fretwork::record::checkpoint::FrameKind;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -30,12 +30,12 @@ fn signal(child: &Child, signal: i32) {
 
 /// Whether the run in a folder has kept a state.
 fn kept(out: &Path) -> bool {
-    last_frame(out).is_some_and(|f| f.kind == Kind::State && f.number >= 1)
+    last_frame(out).is_some_and(|f| f.kind == FrameKind::State && f.number >= 1)
 }
 
-/// Interrupts a run between its first checkpoint and its end; what it said.
+/// Interrupts a run between its first checkpoint and its end; returns its output.
 fn interrupted(job: &Job<'_>, out: &Path, number: i32) -> Output {
-    // On a busy machine a run may end before it is seen.
+    // On a busy machine a run may end before it is noticed.
     for _ in 0..5 {
         let mut command = job.command(out, &[]);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -102,10 +102,10 @@ fn a_run_that_is_interrupted_ends_well_and_goes_on_with_the_same_bits() {
                 .unwrap()
                 .starts_with("INTERRUPTED: ")
         );
-        // The state is of the step it ended with: nothing is computed again.
+        // The state is that of the step with which the run ended: nothing is computed again.
         let rows = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
         assert_eq!(rows.lines().count() as u64, steps + 1);
-        // The command that it printed, word by word, in a shell.
+        // The printed command is run literally in a shell.
         let mut shell = std::process::Command::new("sh");
         shell
             .args(["-c", command.trim()])
@@ -137,7 +137,7 @@ fn a_run_without_checkpoints_is_kept_when_it_is_interrupted() {
     for _ in 0..5 {
         let mut child = job.start(&folder.0, &["--json"]);
         let begun = Instant::now();
-        // Rows are flushed once a second at most; the file is there before the first step.
+        // Rows are flushed at most once a second; the file exists before the first step.
         while !folder.0.join("statistics.csv").exists() && child.try_wait().unwrap().is_none() {
             assert!(begun.elapsed() < Duration::from_secs(300));
             std::thread::sleep(Duration::from_millis(1));

@@ -1,8 +1,8 @@
-//! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
+//! The state of a simulation is serialised, and restored by a simulation that was built again.
 
 use fretwork::AnySimulation;
 use fretwork::geometry::space::{Dim2, Space};
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
@@ -23,7 +23,7 @@ fn in_its_dimension<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     simulation.unwrap_or_else(|_| panic!("{case} has another dimension"))
 }
 
-/// All that a simulation holds, as text: numbers are printed so that they read back as they are.
+/// Content of a simulation as text, with numbers in a form that reads back exactly.
 pub fn all<S: Space>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }
@@ -113,7 +113,7 @@ fn a_deformable_body_that_wears_in_space_goes_on_with_the_same_bits() {
     );
 }
 
-/// A state has no tangent: it is formed again.
+/// A state has no tangent, which is formed again.
 #[test]
 fn a_body_in_large_strain_goes_on_with_the_same_bits() {
     check("verification/rubber_block", &[], 10, 10);
@@ -129,8 +129,9 @@ fn a_state_of_another_scene_is_not_taken() {
     assert!(all(&other) == before);
 }
 
-/// A column that sweeps do not cross in their share of a step, nor Newton: what `auto` learns of
-/// that is a part of the state. Two threads give the bits of one.
+/// Load on a column is crossed neither by sweeps in their share of a step nor by Newton's method:
+/// what `auto` learns from this is part of the state. Results on two threads are bit-identical to
+/// those on one.
 #[test]
 fn what_auto_learned_goes_on_with_the_same_bits() {
     const DISKS: usize = 10_000;
@@ -154,7 +155,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     std::fs::write(&path, case).unwrap();
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
     let build = || loaded.build_in::<Dim2>(&search_path()).unwrap();
-    // Twice the weight in each step: what the step before found does not help.
+    // The weight is doubled in each step, so that the previous solution does not help.
     fn step<S: Space>(s: &mut Simulation<S>) {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged, "{:?}", report.solver);
@@ -178,9 +179,9 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     assert!(all(&whole) == all(&threads), "two threads give other bits");
 }
 
-/// Phases that set friction and the tolerance of the solver for a block on a plane, pulled by a
-/// slanting gravity: the state holds what is in force, and gives it to a scene that was built
-/// again; it is no state of a scene without the phases.
+/// Phases set friction and the tolerance of the solver for a block on a plane, pulled by an oblique
+/// gravity. The state contains the present values, and restores them to a scene that was built
+/// again; a scene without the phases rejects it.
 #[test]
 fn what_phases_have_set_goes_on() {
     let phases = r#"phases=[
@@ -210,7 +211,7 @@ fn what_phases_have_set_goes_on() {
     assert!(all(&whole) == before);
 }
 
-/// Bonds formed and broken in the last step are read by processes before the next one: they are
+/// Bonds formed and broken in the last step are read by processes before the next step: they are
 /// part of the state.
 #[test]
 fn bonds_of_the_last_step_are_part_of_the_state() {
@@ -241,8 +242,8 @@ fn bonds_of_the_last_step_are_part_of_the_state() {
     assert_eq!(keys(&resumed), keys(&whole));
 }
 
-/// The motion of the walls in the last step is a part of the state: what is read between a
-/// resumption and the next step is what was read before.
+/// The motion of the walls in the last step is part of the state: values read between a resumption
+/// and the next step are those read before.
 #[test]
 fn readings_of_the_last_step_are_the_same_after_a_resumption() {
     let scene = || in_its_dimension::<Dim2>("wheel_rail_rigid", &[]);
@@ -255,8 +256,7 @@ fn readings_of_the_last_step_are_the_same_after_a_resumption() {
     assert_eq!(whole.state.received, resumed.state.received);
 }
 
-/// A state whose numbers are those of no scene, behind a checksum that is right, is refused before
-/// a step is made.
+/// A state with invalid numbers behind a valid checksum is rejected before a step is made.
 #[test]
 fn a_state_of_no_scene_is_refused() {
     use fretwork::geometry::space::Dim3;
@@ -338,17 +338,17 @@ fn a_state_of_no_scene_is_refused() {
             ("other springs", |s| s.network.memory[0].compliant ^= true),
             ("other rotations", |s| s.network.memory[0].rotates ^= true),
             ("a gate of a drive that is not there", |s| {
-                s.control.gates.push((1000, 0.0))
+                s.control.removals.push((1000, 0.0))
             }),
             ("no gravity", |s| s.gravity.x = f64::NAN),
         ],
     );
 }
 
-/// What is wrong with a state, and how it is made so.
+/// A kind of fault of a state, and a function that causes it.
 type Fault<'a> = (&'a str, fn(&mut State<Dim2>));
 
-/// States of a plane case that are no states of it any more.
+/// States of a 2D case with one of these faults are rejected.
 fn none_of(case: &str, changes: &[Fault<'_>]) {
     let scene = || in_its_dimension::<Dim2>(case, &[]);
     let mut whole = scene();

@@ -1,4 +1,4 @@
-//! Maps of regimes and comparisons of laws whose results are known beforehand.
+//! Maps of regimes and comparisons of laws with known results.
 
 use super::{Folder, json, numbers, values};
 use crate::report::{chart_numbers, data};
@@ -22,7 +22,7 @@ const BLOCK: &str = r#"(
     friction: (body: "block", start: 0.05),
 )"#;
 
-/// With the stiffness K of the springs the block slips where K d > mu N. Its loop has then the area
+/// With the stiffness K of the springs the block slips if K d > mu N. The area of its loop is then
 /// 4 mu N (d - mu N/K): the regime is gross slip from E_d/(4 Q d) = 1 - mu N/(K d) = 0.2 on, a
 /// drive K d of 1.25 mu N.
 #[test]
@@ -95,7 +95,7 @@ fn a_map_of_regimes_has_coulombs_bound() {
             assert_eq!(numbers[curve[key].as_str().unwrap()], wanted);
         }
     }
-    // And by setting in the table.
+    // The table has them by setting.
     let mut reader = csv::Reader::from_path(folder.0.join("out/settings.csv")).unwrap();
     let place = reader
         .headers()
@@ -112,7 +112,7 @@ fn a_map_of_regimes_has_coulombs_bound() {
     );
 }
 
-/// Disks of random sizes that fall on a floor of 1 kg that moves.
+/// Disks of random sizes fall on a floor of 1 kg that moves.
 const DISKS: &str = r#"(
     name: "disks on a floor", dimension: 2, seed: 1, time: (step: 1e-4, end: 0.2), gravity: [0.0, -9.81],
     solver: (tolerance: 1e-10, norm: Velocity, max_iterations: 1000, test_every: 1),
@@ -122,9 +122,9 @@ const DISKS: &str = r#"(
     grains: [Lattice(material: "glass", count: 6, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.2, 0.02])],
 )"#;
 
-/// A floor of velocity V slides below disks until they roll, at V/3: whatever their friction is and
-/// however they fall, slip dissipates m V^2/6, as much as their energy is then. A law of two
-/// coefficients that are equal is Coulomb's law, without friction nothing is dissipated.
+/// A floor of velocity V slides below disks until they roll, at V/3: for any friction and any fall
+/// slip dissipates m V^2/6, which is also their energy then. A law of two equal coefficients is
+/// Coulomb's law; without friction nothing is dissipated.
 #[test]
 fn laws_differ_by_what_they_dissipate() {
     let folder = Folder::new("laws");
@@ -159,7 +159,7 @@ fn laws_differ_by_what_they_dissipate() {
     }
     let mean = slip[..4].iter().sum::<f64>() / 4.0;
     let scatter = (slip[..4].iter().map(|s| (s - mean).powi(2)).sum::<f64>() / 3.0).sqrt();
-    // Means over four seeds: Student's quantile of three degrees of freedom.
+    // For means over four seeds Student's quantile has three degrees of freedom.
     let half = 3.182 * scatter / 2.0;
     assert!(scatter > 0.0 && half < mean, "{mean} {half}");
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
@@ -190,7 +190,7 @@ fn laws_differ_by_what_they_dissipate() {
             cells[0]
         );
     }
-    // The table of settings has the same.
+    // The table of settings has equal values.
     let mut reader = csv::Reader::from_path(folder.0.join("out/settings.csv")).unwrap();
     let means: Vec<f64> = reader
         .records()
@@ -200,7 +200,7 @@ fn laws_differ_by_what_they_dissipate() {
     assert!(json(&folder.0.join("out/study.json"))["random"] == true);
 }
 
-/// A number with a unit of the page, such as `-6.510 mJ/m`.
+/// Reads a number with a unit from the page, such as `-6.510 mJ/m`.
 fn joules(text: &str) -> f64 {
     let (number, unit) = text.trim().split_once(' ').unwrap();
     let factor = match unit {
@@ -212,7 +212,7 @@ fn joules(text: &str) -> f64 {
     factor * number.parse::<f64>().unwrap()
 }
 
-/// A figure of the page, by its title, and the numbers of the page.
+/// Returns a figure of the page, by its title, and the numbers of the page.
 fn figure(folder: &Folder, title: &str) -> (Value, BTreeMap<String, Vec<f32>>) {
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
     let data = data(&page);

@@ -1,9 +1,9 @@
-//! Units of work for other engines; tests/engines/run.sh runs them through each.
+//! Units of work for other engines; tests/engines/run.sh runs them with each engine.
 
 use super::{Folder, json, mu};
 use std::process::{Command, Stdio};
 
-/// Two processes that are given the same run make it once.
+/// Two processes with one run make it once.
 #[test]
 fn a_run_is_made_by_one_of_two_processes() {
     let folder = Folder::new("same");
@@ -132,7 +132,7 @@ fn a_name_with_an_end_of_a_line_becomes_no_command() {
             assert!(!folder.0.join("out").join(script).exists(), "{script}");
         }
     }
-    // Quotes and dollars are a part of the name to every shell.
+    // Quotes and dollars are part of the name in every shell.
     let name = "a'$first-$last'$(touch made).ron";
     std::fs::rename(
         folder.0.join("study\ntouch made\n.ron"),
@@ -144,7 +144,7 @@ fn a_name_with_an_end_of_a_line_becomes_no_command() {
     assert!(export.status.success(), "{export:?}");
     let script = std::fs::read_to_string(folder.0.join("out/array.sbatch")).unwrap();
     let line = script.lines().find(|l| l.starts_with("exec ")).unwrap();
-    // What the shell makes of the words.
+    // The shell splits the line into these words.
     let words = line.replacen("exec ", "printf '%s\\n' ", 1);
     let shell = Command::new("sh")
         .args(["-c", &words])

@@ -1,9 +1,9 @@
-//! What is kept, and what is run again.
+//! Runs that are kept, and those that are made again.
 
 use super::{BEAD, Folder, HEAP, json, mu, numbers, values};
 use std::process::Command;
 
-/// The table has what the runs left, by number, setting and seed; a second call makes no run.
+/// The table has the results of the runs by number, setting and seed; a second call makes no run.
 #[test]
 fn the_table_is_what_the_runs_left() {
     let folder = Folder::new("table");
@@ -23,7 +23,7 @@ fn the_table_is_what_the_runs_left() {
         assert_eq!(summary["identity"], values(&study, "identity")[k]);
         assert!(!place.join("results.h5").exists());
     }
-    // Seeds are samples of their own.
+    // Seeds give different samples.
     assert_ne!(
         numbers(&study, "energy.friction")[0],
         numbers(&study, "energy.friction")[1]
@@ -48,8 +48,8 @@ fn the_table_is_what_the_runs_left() {
     assert_eq!(csv.lines().count(), 5);
 }
 
-/// One more value is one more run; the same value spelled otherwise is none; another material is
-/// all of them.
+/// One more value needs one more run; a value in another spelling needs none; another material
+/// needs all.
 #[test]
 fn only_what_is_new_is_run() {
     let folder = Folder::new("new");
@@ -59,7 +59,7 @@ fn only_what_is_new_is_run() {
     folder.study(&mu("0.1, 3e-1, 0.5"), "");
     folder.run();
     assert_eq!(folder.runs().len(), 3);
-    // Comments and defaults do not change what a case says.
+    // Comments and defaults do not change the content of a case.
     folder.put(
         "heap.ron",
         &format!(
@@ -75,7 +75,7 @@ fn only_what_is_new_is_run() {
     assert_eq!(folder.runs().len(), 6);
 }
 
-/// A case that draws nothing has perturbed steps in place of seeds, also where the study sets its
+/// A case without random numbers has perturbed steps instead of seeds, also if the study sets its
 /// whole `time`.
 #[test]
 fn perturbed_steps_take_the_place_of_seeds() {
@@ -98,7 +98,7 @@ fn perturbed_steps_take_the_place_of_seeds() {
     }
 }
 
-/// A run that fails is a row with its reason, and the study ends well.
+/// A run that fails is a row with its reason, and the study succeeds.
 #[test]
 fn failed_runs_are_rows() {
     let folder = Folder::new("failed");
@@ -112,18 +112,18 @@ fn failed_runs_are_rows() {
     let reason = values(&study, "reason")[1].as_str().unwrap();
     assert!(reason.contains("did not converge"), "{reason}");
     assert_eq!(values(&study, "status")[0], "done");
-    // The table of settings says how its runs ended.
+    // The table of settings gives the status of its runs.
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
     assert!(page.contains("<th scope=\"row\">2</th><td>1</td><td>rejected</td>"));
-    // A combination that the case refuses, though it takes each value alone, and a run that takes
-    // too long.
+    // A combination that the case rejects although it accepts each value alone, and a run that
+    // takes too long.
     let set = r#"set: ["interfaces.all.parameters.contact.mu=${0.5 - sign}"]"#;
     folder.study(r#"Values(name: "sign", values: [0.1, 1.0])"#, set);
     let study = folder.run();
     assert_eq!(values(&study, "status")[1], "refused");
     let reason = values(&study, "reason")[1].as_str().unwrap();
     assert!(reason.contains("`mu`"), "{reason}");
-    // Engines take it as a result.
+    // Other engines treat it as a result.
     let point = folder.call(&["point", "study.ron", "2", "--out", "out"]);
     assert!(point.status.success());
     folder.put("heap.ron", &HEAP.replace("end: 0.05", "end: 500.0"));
@@ -141,8 +141,8 @@ fn failed_runs_are_rows() {
     assert_eq!(values(&study, "status")[0], "stopped");
 }
 
-/// Runs of another study by another program, case or file are not mistaken for its own, nor its
-/// tables replaced by empty ones.
+/// Runs of another study by another program, case or file are not mistaken for its own, and its
+/// tables are not replaced by empty ones.
 #[test]
 fn tables_are_not_replaced_by_empty_ones() {
     let folder = Folder::new("empty");
@@ -158,7 +158,7 @@ fn tables_are_not_replaced_by_empty_ones() {
     assert_eq!(std::fs::read_to_string(&table).unwrap(), before);
 }
 
-/// After SIGINT the runs that ended are there, and the same command makes the rest.
+/// After SIGINT the finished runs exist, and the command makes the rest.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_goes_on() {

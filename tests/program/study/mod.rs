@@ -1,6 +1,6 @@
-//! `fretwork study` through the program: what is run and what is not run again, tables recomputed
-//! from what the runs left, other engines' units of work, what a study says against closed forms,
-//! and wrong input.
+//! `fretwork study` through the program: runs that are made and not made again, tables recomputed
+//! from the files of the runs, units of work of other engines, results compared with closed forms,
+//! and invalid input.
 
 mod compared;
 mod engines;
@@ -28,7 +28,7 @@ const BEAD: &str = r#"(doc: "a bead", density: (value: 2500.0, unit: "kg/m^3", s
 
 const MU: &str = "interfaces.all.parameters.contact.mu";
 
-/// A folder of a test with the heap and its material, taken away at its end.
+/// A folder of a test with the heap and its material, removed at its end.
 struct Folder(TempFolder);
 
 impl Folder {
@@ -65,7 +65,7 @@ impl Folder {
         self.command(words).output().unwrap()
     }
 
-    /// Runs the study; its answer as JSON.
+    /// Runs the study; returns its answer as JSON.
     fn run(&self) -> Value {
         self.answer(&["run", "study.ron", "--out", "out", "--jobs", "2", "--json"])
     }

@@ -1,4 +1,4 @@
-//! Studies that are refused before anything runs.
+//! Studies that are rejected before anything runs.
 
 use super::{Folder, MU, mu};
 
@@ -11,7 +11,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
         let output = folder.call(&["run", "study.ron", "--out", "out"]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{said}");
-        // Nothing is left behind.
+        // No files are left.
         assert!(!folder.0.join("out").exists());
         said
     };
@@ -89,7 +89,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &said(&mu("0.1"), "design: Table(file: \"points.csv\")"),
         &["there is no column `friction`", "there are fric"],
     );
-    // Numbers that the scale of a range does not have.
+    // The scale of a range does not have these numbers.
     for (scale, value, why) in [
         ("Log", "0.0", "numbers are above zero"),
         ("Log", "-0.1", "numbers are above zero"),

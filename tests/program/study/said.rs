@@ -1,9 +1,9 @@
-//! What a study says, against closed forms and by hand.
+//! Results of a study, compared with closed forms and independent computations.
 
 use super::{Folder, mu, numbers, values};
 use serde_json::Value;
 
-/// A MAC bond opened far: damage releases w (1 - 1/100) times an area of 0.5 m^2/m, whatever its
+/// A MAC bond is opened far: damage releases w (1 - 1/100) times an area of 0.5 m^2/m for any
 /// stiffness, if it is opened to ten times the opening of its strength; see
 /// cases/verification/bond_mode_1.ron.
 const BOND: &str = concat!(
@@ -21,9 +21,8 @@ fn bond(folder: &Folder, factors: &str, more: &str) -> Value {
     folder.run()
 }
 
-/// The energy released is w A to a few per cent: linear in w over two ranges of w, and the
-/// restitution of the solver does not matter. With w uniform the total index of w is 1, that of a
-/// factor without effect 0.
+/// The released energy is w A to a few per cent, and the tangential stiffness has no effect on it.
+/// With w uniform the total index of w is 1, that of a factor without effect 0.
 #[test]
 fn sobol_indices_find_what_matters() {
     let folder = Folder::new("indices");
@@ -31,7 +30,7 @@ fn sobol_indices_find_what_matters() {
         Range(name: "nothing", key: "interfaces.grain.parameters.cohesion.c_t", low: 5e11, high: 2e12, scale: Log)"#;
     bond(&folder, factors, "design: Sensitivity(points: 16)");
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
-    // Total index with its interval, `1.02 (0.9 to 1.1)`.
+    // The total index is given with its interval, `1.02 (0.9 to 1.1)`.
     let total = |name: &str| -> Vec<f64> {
         let start = page
             .find(&format!("<th scope=\"row\">{name}</th><td>"))
@@ -53,7 +52,7 @@ fn sobol_indices_find_what_matters() {
     );
 }
 
-/// A grid in its order, with an expression: w and its half in place of w.
+/// A grid in its order, with an expression: w is replaced by half of it.
 #[test]
 fn values_follow_from_factors() {
     let folder = Folder::new("follow");
@@ -69,7 +68,8 @@ fn values_follow_from_factors() {
     assert_eq!(numbers(&study, "twice"), [0.1, 0.1, 0.2, 0.2]);
     assert_eq!(values(&study, "coupling")[1], "explicit");
     let energy = numbers(&study, "energy.fracture");
-    // w A within what is left at the end of the opening and the error of the coarse step.
+    // The energy is w A up to the energy left at the end of the opening and the error of the coarse
+    // step.
     for (k, w) in [(0, 0.05), (2, 0.1)] {
         assert!((energy[k] / (0.5 * w) - 1.0).abs() < 0.03, "{energy:?}");
     }
@@ -77,7 +77,7 @@ fn values_follow_from_factors() {
     assert!(page.contains("explicit less midpoint"));
 }
 
-/// Means and half-widths over three seeds, by Student's t of 4.303.
+/// Means and half-widths over three seeds have Student's t of 4.303.
 #[test]
 fn means_have_students_intervals() {
     let folder = Folder::new("means");
@@ -100,8 +100,8 @@ fn means_have_students_intervals() {
     assert_eq!(rows.len(), 2);
 }
 
-/// Points of the designs: as many as are asked for, in their ranges; a longer Sobol sequence begins
-/// with the shorter one, whose runs are there.
+/// Points of the designs: the requested number, in their ranges; a longer Sobol sequence begins
+/// with the shorter one, whose runs exist.
 #[test]
 fn designs_have_their_points() {
     let folder = Folder::new("designs");
@@ -133,8 +133,8 @@ fn designs_have_their_points() {
     assert_eq!(numbers(&study, "friction"), [0.3, 0.1, 0.5]);
 }
 
-/// No spreadsheet takes a heading for a formula, and the table of a study reads back as points of
-/// it.
+/// No spreadsheet takes a heading for a formula, and the table of a study can be read as its
+/// points.
 #[test]
 fn headings_are_no_formulas_and_read_back() {
     let folder = Folder::new("headings");
@@ -154,8 +154,8 @@ fn headings_are_no_formulas_and_read_back() {
     assert_eq!(numbers(&folder.run(), "=1+1"), [0.4, 0.5]);
 }
 
-/// The value of a case that its file does not give, a default of a law, is unknown; the levels
-/// beside it are numbers.
+/// A value that the file of a case does not give, a default of a law, is unknown; the levels beside
+/// it are numbers.
 #[test]
 fn levels_beside_a_default_are_numbers() {
     let folder = Folder::new("default");
@@ -171,7 +171,7 @@ fn levels_beside_a_default_are_numbers() {
     assert!(page.contains("The other factors as in the case"));
 }
 
-/// A misspelled regime is reported with the texts that there are; a right one is not.
+/// A misspelled regime is reported with the existing texts; a valid one is not.
 #[test]
 fn a_regime_that_no_run_has_is_told() {
     let folder = Folder::new("regime");

@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// What `study check` says of each study in a folder; nothing is run or written.
+/// Output of `study check` for each study in a folder; nothing is run or written.
 fn checks(folder: &str) -> Vec<Value> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let name = format!("fretwork-shipped-{folder}-{}", std::process::id());
@@ -30,7 +30,7 @@ fn checks(folder: &str) -> Vec<Value> {
     found
 }
 
-/// Each has the outputs that it asks for and refuses no level.
+/// Each study has its outputs and rejects no level.
 #[test]
 fn shipped_studies_are_right() {
     let found = checks("studies");
@@ -41,7 +41,7 @@ fn shipped_studies_are_right() {
     }
 }
 
-/// Each has three seeds or more, for an interval.
+/// Each study has three seeds or more, for an interval.
 #[test]
 fn studies_of_the_validation_are_right() {
     let found = checks("validation");

@@ -1,9 +1,9 @@
-//! Runs that choose their step and tolerance, beside fixed ones.
+//! Runs that choose their step and tolerance, compared with fixed settings.
 
 use super::{Folder, frontier_is_what_nothing_dominates, number, settings, study};
 
-/// A case that asks for nothing is its own fixed setting; a run that is asked for a tenth of a per
-/// cent refines its step until it is nearer to the reference of a sixteenth of the step.
+/// A case without an accuracy is its own fixed setting; a run with an accuracy of a tenth of a per
+/// cent refines its step until it is nearer to the reference with a sixteenth of the step.
 #[test]
 fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
     let folder = Folder::new("accuracy");

@@ -1,4 +1,4 @@
-//! The budget of a study, and going on after an interruption.
+//! The budget of a study, and resuming after an interruption.
 
 use super::{BOND, Folder, call, command, study};
 use serde_json::Value;
@@ -6,14 +6,14 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// A command in a process group of its own.
+/// A command in a separate process group.
 fn in_a_group(mut command: Command) -> Command {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command
 }
 
-/// Command lines of the processes that name a folder; none where the system does not list them as
+/// Command lines of the processes that name a folder; none if the system does not list them as
 /// Linux does.
 fn running(folder: &str) -> Vec<String> {
     let list = std::fs::read_dir("/proc").into_iter().flatten().flatten();
@@ -26,7 +26,7 @@ fn running(folder: &str) -> Vec<String> {
 fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let folder = Folder::new("budget");
     let out = folder.out();
-    // The finest step takes 280,000 steps, longer than the budget on any machine; the case's own
+    // The finest setting takes 280,000 steps, longer than the budget on any machine; the case's own
     // some 1700.
     let long = [
         BOND,
@@ -50,7 +50,8 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
         said.contains("forecast") && said.contains("INCOMPLETE, the budget is spent"),
         "{said}"
     );
-    // Building, the trial for the budget and two probes come on top, on a machine that may be busy.
+    // Building, the trial for the budget and two probes take additional time, on a machine that may
+    // be busy.
     assert!(
         started.elapsed() < Duration::from_secs(60),
         "{:?}",
@@ -94,7 +95,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
         .unwrap_or_default();
     assert!(again.contains(" trade ") && again.contains(&out), "{said}");
     assert_eq!(running(&out), Vec::<String>::new(), "runs that were left");
-    // What the signal ended is not kept as a run that failed.
+    // Runs that the signal ended are not stored as failed runs.
     let runs = std::fs::read_dir(Path::new(&out).join("runs")).unwrap_or_else(|e| panic!("{e}"));
     for run in runs.flatten() {
         let kept = std::fs::read_to_string(run.path().join("run.json")).unwrap_or_default();
@@ -103,7 +104,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let text = std::fs::read_to_string(Path::new(&out).join("trade.json")).unwrap_or_default();
     let left: Value = serde_json::from_str(&text).unwrap_or_default();
     assert_eq!(left["complete"], false, "{text}");
-    // A quick question to the same folder is answered.
+    // A quick study in the folder is answered.
     let quick = study(&[
         BOND,
         "--set",

@@ -1,4 +1,4 @@
-//! The setting `deformability` and `--variant`: forms of one case that differ in what deforms.
+//! The setting `deformability` and `--variant`: forms of one case that differ in what may deform.
 
 use super::{Folder, call, number, settings, study};
 use serde_json::Value;
@@ -32,7 +32,7 @@ const SHEAR: &str = r#"(
     output: (frames: 0, views: 0, every: 5, figures: false),
 )"#;
 
-/// What `fretwork check` says of the case of a setting.
+/// Output of `fretwork check` for the case of a setting.
 fn check(case: &str, setting: &Value) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     command.args(["check", case]);
@@ -84,7 +84,8 @@ fn each_form_is_the_case_with_more_that_deforms() {
         named(&found, "deformability grains"),
         named(&found, "deformability rigid"),
     );
-    // The grains that deform are the reference, since the others leave out what they have.
+    // The level with deformable grains is the reference, since the others neglect their
+    // deformation.
     assert_eq!(grains["reference"], true);
     for form in [&own, &grains, &rigid] {
         assert!(form["failed"].is_null(), "{form}");
@@ -96,7 +97,7 @@ fn each_form_is_the_case_with_more_that_deforms() {
     }
     let cost = |s: &Value| number(s, "/seconds");
     assert!(cost(&grains) > 2.0 * cost(&own) && cost(&grains) > 2.0 * cost(&rigid));
-    // What each of them is.
+    // The levels have these changes.
     assert_eq!(own["sets"], serde_json::json!([]));
     assert_eq!(
         contacts(&check(&case, &own)),
@@ -135,8 +136,8 @@ fn each_form_is_the_case_with_more_that_deforms() {
     );
 }
 
-/// A load under which disks pass through each other: the report says which rows are of runs that
-/// warn about themselves.
+/// Under a load at which disks pass through each other, the report marks the rows of runs with
+/// their own warnings.
 #[test]
 fn rows_of_runs_that_are_not_trustworthy_are_marked() {
     let folder = Folder::new("doubts");
@@ -167,7 +168,7 @@ fn rows_of_runs_that_are_not_trustworthy_are_marked() {
     assert!(doubted > 0, "{table}");
 }
 
-/// Runs of a setting whose own summary says that they are not trustworthy.
+/// Runs of a setting whose summary reports that they are not trustworthy.
 fn doubted_runs(out: &str, setting: &Value) -> usize {
     let read = |path: std::path::PathBuf| -> Option<Value> {
         serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
@@ -183,8 +184,8 @@ fn doubted_runs(out: &str, setting: &Value) -> usize {
         .count()
 }
 
-/// From the other forms: rigid contacts get springs of the materials, grains and
-/// half-spaces become rigid.
+/// From the other forms, rigid contacts get springs of the materials, grains and half-spaces become
+/// rigid.
 #[test]
 fn every_form_leads_to_the_others() {
     let folder = Folder::new("forms");
@@ -308,7 +309,7 @@ fn what_has_one_form_only_is_refused_with_the_reasons() {
     }
 }
 
-/// A file that differs in several sections is run as it is.
+/// A file that differs in several sections is run unchanged.
 #[test]
 fn another_file_is_a_form_of_the_case() {
     let folder = Folder::new("variant");
@@ -341,7 +342,7 @@ fn another_file_is_a_form_of_the_case() {
     named(&found, "the case's own (variant usual)");
     let level = named(&found, "variant few");
     assert_eq!(level["reference"], true);
-    // Its numbers are those of a run of the file itself.
+    // The results are those of a run of the file itself.
     let alone = folder.0.join("alone");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     command
@@ -355,7 +356,7 @@ fn another_file_is_a_form_of_the_case() {
         number(&level, "/outputs/energy.friction/value/mean"),
     );
     assert_eq!(a, b);
-    // A file that is no case is refused with its place.
+    // A file that is not a case is rejected with its position.
     let wrong = format!("lone={refused}");
     let output = call(
         &[

@@ -1,4 +1,4 @@
-//! Errors of a study against a closed form, and what failed runs leave.
+//! Errors of a study compared with a closed form, and the effect of failed runs.
 
 use super::{
     BOND, Folder, HEAP, RELEASED, call, frontier_is_what_nothing_dominates, number, set_to,
@@ -46,14 +46,15 @@ fn errors_fall_with_the_step_against_a_closed_form() {
         .collect();
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert_eq!(errors.len(), 4);
-    // Damage is coupled explicitly: first order, each halving of the step halves the error.
+    // Damage is coupled explicitly: the method is of first order, so halving the step halves the
+    // error.
     for pair in errors.windows(2) {
         let ratio = pair[1].1 / pair[0].1;
         assert!((1.7..2.3).contains(&ratio), "{errors:?}");
     }
     assert!(errors[0].1.abs() < 5e-3, "{errors:?}");
     frontier_is_what_nothing_dominates(&found, "energy.fracture");
-    // The cheapest for 1 % is the cheapest of those within 1 % of the truth.
+    // The cheapest setting for 1 % is the cheapest within 1 % of the exact value.
     let within: Vec<Value> = settings(&found)
         .into_iter()
         .filter(|s| number(s, "/outputs/energy.fracture/error/mean").abs() <= 0.01)
@@ -71,8 +72,8 @@ fn errors_fall_with_the_step_against_a_closed_form() {
     let picture = std::fs::read(Path::new(&out).join("trade.png")).unwrap_or_default();
     assert!(picture.starts_with(b"\x89PNG") && picture.len() > 5000);
 
-    // Again, without the truth, from the runs that are there: the reference's own error is what its
-    // neighbour differs by, and what is claimed with it must hold against the truth.
+    // The study is repeated without the exact value, from the existing runs: the reference's own
+    // error is the difference to its neighbour, and the claims must agree with the exact value.
     let again = study(&[&common[..], &["--output", "energy.fracture=1%"]].concat());
     assert_eq!(
         (&again["runs"]["fresh"], &again["runs"]["reused"]),

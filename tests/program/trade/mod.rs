@@ -1,6 +1,6 @@
-//! `fretwork trade` through the program: errors against a closed form, statistics recomputed from
-//! what the runs left, the frontier by its definition, resuming, the budget, interruption, and
-//! wrong input.
+//! `fretwork trade` through the program: errors compared with a closed form, statistics recomputed
+//! from the files of the runs, the frontier by its definition, resuming, the budget, interruption,
+//! and invalid input.
 
 mod accuracy;
 mod budget;
@@ -13,8 +13,8 @@ use crate::temp::TempFolder;
 use serde_json::Value;
 use std::process::{Command, Output};
 
-/// A MAC bond (C = 1e12 N/m3, w = 0.1 J/m2, b = 0) opened from 0 to 10 u0, u0 = sqrt(w/C): beyond
-/// u0 beta = (u0/u)^2, and damage releases w (1 - beta) A = 0.1 (1 - 1/100) A. A = 0.5 m2/m: the
+/// A MAC bond (C = 1e12 N/m3, w = 0.1 J/m2, b = 0) opened from 0 to 10 u0, u0 = sqrt(w/C). Beyond
+/// u0 beta = (u0/u)^2, and damage releases w (1 - beta) A = 0.1 (1 - 1/100) A. A = 0.5 m2/m is the
 /// effective radius of two disks of 1 m, times the unit depth.
 pub const BOND: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -36,7 +36,7 @@ pub const HEAP: &str = r#"(
     grains: [Lattice(material: "glass", count: 24, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.06, 0.2])],
 )"#;
 
-/// A folder of a test, taken away at its end.
+/// A folder of a test, removed at its end.
 pub struct Folder(pub TempFolder);
 
 impl Folder {
@@ -83,7 +83,7 @@ pub fn number(value: &Value, path: &str) -> f64 {
     found.unwrap_or_else(|| panic!("no {path} in {value}"))
 }
 
-/// Where a set of `--set` says `key=`.
+/// Value of `key=` in the `--set` arguments of a setting.
 pub fn set_to(setting: &Value, key: &str) -> Option<f64> {
     let sets = setting["sets"].as_array()?;
     let texts = sets.iter().filter_map(Value::as_str);
@@ -92,12 +92,12 @@ pub fn set_to(setting: &Value, key: &str) -> Option<f64> {
         .next()
 }
 
-/// Flags of the frontier against its definition.
+/// Compares the flags of the frontier with its definition.
 pub fn frontier_is_what_nothing_dominates(study: &Value, output: &str) {
     let all = settings(study);
     let point = |s: &Value| {
         let error = s.pointer(&format!("/outputs/{output}/at_most_with_reference"));
-        // Where the reference's own error is unknown, it is right by definition.
+        // If the reference's own error is unknown, it is exact by definition.
         let unknown = if s["reference"] == true {
             0.0
         } else {

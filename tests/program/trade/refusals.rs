@@ -1,4 +1,4 @@
-//! Wrong input of a study, and outputs that a case does not have.
+//! Invalid input of a study, and outputs that a case does not have.
 
 use super::{BOND, Folder, HEAP, call};
 use std::path::Path;
@@ -98,8 +98,8 @@ fn wrong_input_is_answered_with_the_nearest_name() {
     }
 }
 
-/// What a case does not have is reported before anything runs, with what it has: nothing is left on
-/// disk.
+/// An output that a case does not have is reported before anything runs, with the existing ones:
+/// nothing is left on disk.
 #[test]
 fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {
     let folder = Folder::new("absent");
@@ -120,7 +120,7 @@ fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {
         if output != "measures.layer_flow" {
             assert!(said.contains(why), "{output}: {said}");
         }
-        // The list of those it has, or of the columns.
+        // The message lists the outputs of the case, or its columns.
         let list = if output.starts_with("statistics") {
             "kinetic"
         } else {
@@ -130,7 +130,7 @@ fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {
         assert!(!said.contains("there are friction_coefficient"), "{said}");
         assert!(!Path::new(&out).exists(), "{output} left something");
     }
-    // The default asks for what there is, and there is nothing here.
+    // The default outputs are those that exist, and there are none here.
     let answer = call(&[&case, "--out", &out]);
     let said = String::from_utf8_lossy(&answer.stderr);
     assert_eq!(answer.status.code(), Some(2), "{said}");

@@ -1,12 +1,12 @@
-//! Errors distinguished from scatter: of seeds, and of collisions that are chaotic without one.
+//! Errors distinguished from scatter: that of seeds, and that of chaotic collisions without seeds.
 
 use super::{Folder, HEAP, frontier_is_what_nothing_dominates, number, settings, study};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Disks that are thrown at each other in a box. Nothing is drawn, but every collision of disks
-/// spreads a difference.
+/// Disks are thrown at each other in a box. Nothing is random, but every collision of disks
+/// amplifies a difference.
 const BILLIARD: &str = r#"(
     name: "a billiard",
     dimension: 2,
@@ -58,7 +58,7 @@ fn errors_are_told_from_scatter() {
     );
     assert_eq!(found["seeds"], serde_json::json!([3, 4, 5]));
     assert_eq!(found["runs"]["fresh"], 9);
-    // By hand, from what the runs left.
+    // The expected values are computed here from the files of the runs.
     let mut friction: BTreeMap<(String, u64), f64> = BTreeMap::new();
     for entry in std::fs::read_dir(Path::new(&out).join("runs")).unwrap_or_else(|e| panic!("{e}")) {
         let place = entry.unwrap_or_else(|e| panic!("{e}")).path();
@@ -94,7 +94,7 @@ fn errors_are_told_from_scatter() {
             .collect();
         let mean = d.iter().sum::<f64>() / 3.0;
         let sd = (d.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
-        // Student's t of 95 % and two degrees of freedom: 4.303.
+        // Student's t of 95 % and two degrees of freedom is 4.303.
         let half = 4.3027 * sd / 3f64.sqrt();
         let close = |path: &str, x: f64| {
             let got = number(s, &format!("/outputs/energy.friction{path}"));
@@ -117,8 +117,8 @@ fn errors_are_told_from_scatter() {
     );
 }
 
-/// Runs whose steps differ by parts in 1e10 stand for seeds where nothing is drawn and collisions
-/// are chaotic; a bond that opens is not, see above.
+/// If nothing is random and collisions are chaotic, runs whose steps differ by parts in 1e10
+/// replace seeds; a bond that opens is not chaotic, see above.
 #[test]
 fn chaos_without_draws_has_intervals() {
     let folder = Folder::new("billiard");

@@ -1,7 +1,7 @@
 //! Runs of a 2D case, step by step, with the counts and times for the figures.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::record::biaxial::{Biaxial, State};
+use fretwork::record::biaxial::{Biaxial, BiaxialState};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::LocalProblem;
@@ -23,13 +23,13 @@ pub struct Step {
     /// Kinetic energy of the grains' translation (J/m).
     pub kinetic: f64,
     /// The biaxial test, if the case has one.
-    pub test: State,
+    pub test: BiaxialState,
 }
 
 /// A run.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Its steps.
+    /// Steps of the run.
     pub steps: Vec<Step>,
     /// Contact problem of the last step.
     pub last: Option<LocalProblem>,

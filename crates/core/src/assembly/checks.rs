@@ -1,18 +1,18 @@
-//! Pairs of grains that a scene may make, counted before any pair is stored.
+//! Numbers of pairs of grains in a scene, counted before any pair is stored.
 
-use super::Parts;
+use super::SceneParts;
 use crate::contact::detect::{LawTable, centre};
 use crate::geometry::grid::{self, Balls};
 use crate::geometry::space::{Space, VectorLike};
 
-/// A place where more grains come near each other than can be.
+/// A place where more grains are close to each other than is possible.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pile {
-    /// A body there.
+pub struct Overcrowding {
+    /// Index of a body at this place.
     pub body: u32,
-    /// Its place (m).
+    /// Position (m).
     pub at: [f64; 3],
-    /// Number of shapes there.
+    /// Number of shapes at this place.
     pub count: usize,
     /// Size of the grid cell in which they are counted (m).
     pub size: f64,
@@ -20,7 +20,7 @@ pub struct Pile {
     pub pairs: f64,
 }
 
-impl<S: Space> Parts<S> {
+impl<S: Space> SceneParts<S> {
     /// Radii of all balls, and of the bounding balls of the convex parts (m).
     pub(super) fn all_radii(&self) -> Vec<f64> {
         let pieces = self.shapes.pieces.iter().map(|p| p.bound);
@@ -42,12 +42,12 @@ impl<S: Space> Parts<S> {
         })
     }
 
-    pub(super) fn find_pile(
+    pub(super) fn find_overcrowding(
         &self,
         reach: f64,
         most: &dyn Fn(usize) -> usize,
         table: &LawTable,
-    ) -> Option<Pile> {
+    ) -> Option<Overcrowding> {
         let balls = &self.shapes.balls;
         let owner = |at: u32| match balls.get(at as usize) {
             Some(ball) => (ball.body, ball.material),
@@ -62,7 +62,7 @@ impl<S: Space> Parts<S> {
             self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
         }));
         let radii = self.all_radii();
-        let still = self.bodies.still();
+        let still = self.bodies.fixed_bodies();
         let keep = |a: u32, b: u32| {
             let ((i, m), (j, n)) = (owner(a), owner(b));
             i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
@@ -74,7 +74,7 @@ impl<S: Space> Parts<S> {
             periodic: &self.shapes.periodic,
         };
         let dense = grid::dense_cell(&all, most(centres.len()), keep)?;
-        Some(Pile {
+        Some(Overcrowding {
             body: owner(dense.ball).0,
             at: centres[dense.ball as usize].padded(),
             count: dense.count,

@@ -10,8 +10,8 @@ mod recorded;
 mod system;
 mod union;
 
-pub use checks::Pile;
-pub use parts::{AnyParts, Parts};
+pub use checks::Overcrowding;
+pub use parts::{AnySceneParts, SceneParts};
 pub use recorded::RecordedPiece;
 pub use system::AnySystem;
 pub use union::AnyUnion;
@@ -25,36 +25,36 @@ use crate::laws::Interface;
 use crate::view::AnySimulation;
 use std::fmt::Debug;
 
-/// Where a body is and how it moves at the start.
+/// Position and motion of a body at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct InitialState {
     /// Position (m).
     pub position: [f64; 3],
-    /// Orientation as in [`crate::view::Motion`]; `None` if aligned with the axes of the case.
+    /// Orientation as in [`crate::view::BodyMotion`]; `None` if aligned with the axes of the case.
     pub rotation: Option<[f64; 4]>,
-    /// Velocity (m/s); in 2D that along x and y counts.
+    /// Velocity (m/s); in 2D only the components along x and y are used.
     pub velocity: [f64; 3],
-    /// Angular velocity (rad/s); in 2D that about the third axis counts.
+    /// Angular velocity (rad/s); in 2D only the component about the third axis is used.
     pub spin: [f64; 3],
 }
 
 /// Index of a material and its density (kg/m^3).
-pub type Filling = (u16, f64);
+pub type MaterialDensity = (u16, f64);
 
 /// Moments of inertia of a first body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inertia {
     /// Equal about all axes (kg m^2; kg m in 2D).
     Uniform(f64),
-    /// The mean over the axes of that of the shapes, at a density (kg/m^3).
+    /// Mean over the axes of the moments of inertia of the shapes, at a density (kg/m^3).
     Mean(f64),
-    /// That of the shapes, at a density (kg/m^3).
+    /// Moments of inertia of the shapes, at a density (kg/m^3).
     OfShapes(f64),
 }
 
 /// Mass and inertia of a body of several shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Weight {
+pub enum MassProperties {
     /// A grain: mass and inertia of the shapes, at a density (kg/m^3).
     Grain(f64),
     /// A first body: mass (kg; kg/m in 2D) and moments of inertia.
@@ -63,27 +63,27 @@ pub enum Weight {
 
 /// A body of one convex part.
 #[derive(Clone, Debug)]
-pub struct Block {
+pub struct ConvexBody {
     /// The part.
     pub part: AnyPart,
     /// Start of the body; the position is that of the centre of mass.
-    pub start: Start,
+    pub start: InitialState,
     /// Volume (m^3; m^2 in 2D).
     pub volume: f64,
-    /// Moment of inertia about its centre of mass at unit density (m^5; m^4 in 2D); that of the
-    /// part where it is not given.
+    /// Moment of inertia about the centre of mass at unit density (m^5; m^4 in 2D); `None` for that
+    /// of the part.
     pub inertia: Option<f64>,
     /// Position of the part's centre relative to the centre of mass (m).
     pub offset: [f64; 3],
 }
 
-impl Block {
-    /// The block of a part that does not move relative to it, at rest.
+impl ConvexBody {
+    /// Returns a block of one part at rest.
     pub fn of(part: AnyPart) -> Self {
         Self {
-            start: Start {
+            start: InitialState {
                 position: part.centre(),
-                ..Start::default()
+                ..InitialState::default()
             },
             volume: part.volume(),
             inertia: None,
@@ -93,7 +93,7 @@ impl Block {
     }
 }
 
-/// A scene that is being put together.
+/// A scene while it is assembled.
 pub trait Assembly: Debug + Send {
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
@@ -118,27 +118,33 @@ pub trait Assembly: Debug + Send {
     fn worn_names(&self) -> Vec<&str>;
 
     /// Adds a ball of a radius (m) as a grain; returns its index.
-    fn add_ball(&mut self, radius: f64, of: Filling, start: &Start) -> u32;
+    fn add_ball(&mut self, radius: f64, of: MaterialDensity, start: &InitialState) -> u32;
     /// Adds a fixed plane as a first body, with its outward unit normal.
     fn add_wall(&mut self, name: String, at: [f64; 3], normal: [f64; 3], material: u16);
-    /// Adds a body of several shapes, where `start` is that of the frame of the shapes; returns its
+    /// Adds a body of several shapes, where `start` gives the frame of the shapes; returns its
     /// index.
-    fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32;
+    fn add_union(
+        &mut self,
+        union: AnyUnion,
+        mass_properties: MassProperties,
+        material: u16,
+        start: &InitialState,
+    ) -> u32;
     /// Adds a grain of one convex part; returns its index.
-    fn add_block(&mut self, block: Block, of: Filling) -> u32;
+    fn add_block(&mut self, block: ConvexBody, of: MaterialDensity) -> u32;
     /// Adds a grain of a mass (kg; kg/m in 2D), with a tensor of inertia in its axes, row by row
     /// (kg m^2; in 2D the first entry alone, kg m), which is multiplied by `factor`, and a length
     /// (m). Returns its index.
     ///
     /// # Errors
-    /// A position that is not finite, or an orientation that is not a rotation.
+    /// The position is not finite, or the orientation is not a rotation.
     fn add_weighed(
         &mut self,
         mass: f64,
         inertia: &[f64; 9],
         factor: f64,
         length: f64,
-        start: &Start,
+        start: &InitialState,
     ) -> Result<u32, String>;
     /// Adds a ball to a body, at an offset in its frame (m).
     ///
@@ -168,12 +174,17 @@ pub trait Assembly: Debug + Send {
     fn most_pairs(&self, reach: f64) -> f64;
     /// Finds a place where too many shapes are close together: more than `most(number of shapes)`
     /// pairs of shapes with an interface are within a distance (m) of each other.
-    fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile>;
+    fn overcrowding(
+        &self,
+        reach: f64,
+        most: &dyn Fn(usize) -> usize,
+        table: &LawTable,
+    ) -> Option<Overcrowding>;
 
     /// The bodies and shapes in their dimension.
-    fn parts(&mut self) -> AnyParts<'_>;
-    /// Builds the simulation; also returns the index of the surface that each dynamical system has
-    /// added, if any.
+    fn parts(&mut self) -> AnySceneParts<'_>;
+    /// Builds the simulation; also returns, for each dynamical system, the index of the surface
+    /// that it has added, if any.
     fn into_simulation(
         self: Box<Self>,
         laws: Vec<Interface>,
@@ -183,21 +194,22 @@ pub trait Assembly: Debug + Send {
     ) -> (AnySimulation, Vec<Option<usize>>);
 }
 
-/// An empty scene of so many dimensions.
+/// Returns an empty scene in a dimension.
 pub fn empty(dimension: usize, periodic: Periodic) -> Box<dyn Assembly> {
     match dimension {
-        2 => Box::new(Parts::<Dim2>::new(periodic)),
-        _ => Box::new(Parts::<Dim3>::new(periodic)),
+        2 => Box::new(SceneParts::<Dim2>::new(periodic)),
+        _ => Box::new(SceneParts::<Dim3>::new(periodic)),
     }
 }
 
-/// A plane whose open side is that of its outward unit normal; figures show it up to a distance
-/// (m).
+/// Returns a plane whose outward unit normal points to its open side; figures show it up to a
+/// distance (m).
 pub fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
     parts::half_space(dimension, normal, shown)
 }
 
-/// The vector turned by an orientation in numbers; `None` if they are not those of a rotation.
+/// Returns the vector rotated by an orientation given in numbers; `None` if these are not a
+/// rotation.
 pub fn turned(dimension: usize, rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
     match dimension {
         2 => parts::turned::<Dim2>(rotation, v),

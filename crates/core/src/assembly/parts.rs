@@ -1,7 +1,8 @@
 //! The parts of a scene in one dimension: bodies, shapes, wear and dynamical systems.
 
 use super::{
-    AnySystem, AnyUnion, Assembly, Block, Filling, Inertia, Pile, RecordedPiece, Start, Weight,
+    AnySystem, AnyUnion, Assembly, ConvexBody, Inertia, InitialState, MassProperties,
+    MaterialDensity, Overcrowding, RecordedPiece,
 };
 use crate::bodies::{Bodies, Dof, Driven, DynamicalSystem, tensor};
 use crate::contact::detect::LawTable;
@@ -17,7 +18,7 @@ use crate::wear::Scar;
 
 /// The parts of a scene while it is assembled.
 #[derive(Debug)]
-pub struct Parts<S: Space> {
+pub struct SceneParts<S: Space> {
     /// The bodies.
     pub bodies: Bodies<S>,
     /// Shapes of the bodies.
@@ -30,20 +31,20 @@ pub struct Parts<S: Space> {
 
 /// The parts of a scene of either dimension.
 #[derive(Debug)]
-pub enum AnyParts<'a> {
+pub enum AnySceneParts<'a> {
     /// In two dimensions.
-    Plane(&'a mut Parts<Dim2>),
+    Plane(&'a mut SceneParts<Dim2>),
     /// In three dimensions.
-    Space(&'a mut Parts<Dim3>),
+    Space(&'a mut SceneParts<Dim3>),
 }
 
-/// Rotates a vector by the numbers of a rotation; `None` if they are not one.
+/// Rotates a vector by a rotation given in numbers; `None` if these are not a rotation.
 pub(super) fn turned<S: Space>(rotation: &[f64; 4], v: [f64; 3]) -> Option<[f64; 3]> {
     let rotation = S::rotation_from(rotation)?;
     Some(S::rotate(&rotation, &S::Vector::from_slice(&v)).padded())
 }
 
-/// A half-space with this outward normal, drawn over a distance `shown` (m).
+/// Returns a half-space with this outward normal, drawn over a distance `shown` (m).
 pub(super) fn half_space(dimension: usize, normal: [f64; 3], shown: f64) -> AnySurface {
     match dimension {
         2 => AnySurface::Plane(Box::new(plane::<Dim2>(normal, shown))),
@@ -58,8 +59,8 @@ fn plane<S: Space>(normal: [f64; 3], shown: f64) -> HalfSpace<S> {
     }
 }
 
-impl<S: Space> Parts<S> {
-    /// No bodies, in a periodic cell.
+impl<S: Space> SceneParts<S> {
+    /// Creates a scene without bodies, in a periodic cell.
     pub fn new(periodic: Periodic) -> Self {
         Self {
             bodies: Bodies::default(),
@@ -74,7 +75,7 @@ impl<S: Space> Parts<S> {
         }
     }
 
-    fn set_motion(&mut self, body: u32, start: &Start) {
+    fn set_motion(&mut self, body: u32, start: &InitialState) {
         self.bodies.velocity[body as usize] = S::Vector::from_slice(&start.velocity);
         self.bodies.spin[body as usize] = spin_about::<S>(&start.spin);
     }
@@ -98,7 +99,7 @@ impl<S: Space> Parts<S> {
     }
 }
 
-impl<S: Space> Assembly for Parts<S> {
+impl<S: Space> Assembly for SceneParts<S> {
     fn dimension(&self) -> usize {
         S::D
     }
@@ -144,7 +145,12 @@ impl<S: Space> Assembly for Parts<S> {
         self.scars.iter().map(|s| s.name.as_str()).collect()
     }
 
-    fn add_ball(&mut self, radius: f64, (material, density): Filling, start: &Start) -> u32 {
+    fn add_ball(
+        &mut self,
+        radius: f64,
+        (material, density): MaterialDensity,
+        start: &InitialState,
+    ) -> u32 {
         let at = S::Vector::from_slice(&start.position);
         let body = self.bodies.add_ball(at, radius, density);
         let rotation = start.rotation.and_then(|r| S::rotation_from(&r));
@@ -173,19 +179,25 @@ impl<S: Space> Assembly for Parts<S> {
         });
     }
 
-    fn add_union(&mut self, union: AnyUnion, weight: Weight, material: u16, start: &Start) -> u32 {
+    fn add_union(
+        &mut self,
+        union: AnyUnion,
+        mass_properties: MassProperties,
+        material: u16,
+        start: &InitialState,
+    ) -> u32 {
         let Some(union) = union.into_dimension::<S>() else {
             unreachable!("the union has the dimension of the scene");
         };
         let centre = union.centre();
         let (volume, own) = (union.volume(), union.inertia(&centre));
         let only = union.only_ball();
-        let (mass, inertia, length) = match weight {
-            Weight::Grain(density) => {
+        let (mass, inertia, length) = match mass_properties {
+            MassProperties::Grain(density) => {
                 let length = only.unwrap_or((tensor::mean::<S>(&own) / volume).sqrt());
                 (density * volume, own.scaled(density), length)
             }
-            Weight::First(mass, inertia) => {
+            MassProperties::First(mass, inertia) => {
                 let inertia = match inertia {
                     Inertia::Uniform(inertia) => S::Tensor::uniform(inertia),
                     Inertia::Mean(density) => S::Tensor::uniform(tensor::mean::<S>(&own) * density),
@@ -227,7 +239,7 @@ impl<S: Space> Assembly for Parts<S> {
         body
     }
 
-    fn add_block(&mut self, block: Block, (material, density): Filling) -> u32 {
+    fn add_block(&mut self, block: ConvexBody, (material, density): MaterialDensity) -> u32 {
         let Some(part) = block.part.into_dimension::<S>() else {
             unreachable!("the part has the dimension of the scene");
         };
@@ -248,7 +260,7 @@ impl<S: Space> Assembly for Parts<S> {
         inertia: &[f64; 9],
         factor: f64,
         length: f64,
-        start: &Start,
+        start: &InitialState,
     ) -> Result<u32, String> {
         let n = S::Spin::N;
         let entry = |i: usize, j: usize| inertia[3 * i + j];
@@ -341,20 +353,25 @@ impl<S: Space> Assembly for Parts<S> {
         self.pairs_of_bodies(reach)
     }
 
-    fn pile(&self, reach: f64, most: &dyn Fn(usize) -> usize, table: &LawTable) -> Option<Pile> {
-        self.find_pile(reach, most, table)
+    fn overcrowding(
+        &self,
+        reach: f64,
+        most: &dyn Fn(usize) -> usize,
+        table: &LawTable,
+    ) -> Option<Overcrowding> {
+        self.find_overcrowding(reach, most, table)
     }
 
-    fn parts(&mut self) -> AnyParts<'_> {
+    fn parts(&mut self) -> AnySceneParts<'_> {
         let parts: &mut dyn std::any::Any = self;
-        if parts.is::<Parts<Dim2>>() {
+        if parts.is::<SceneParts<Dim2>>() {
             return match parts.downcast_mut() {
-                Some(plane) => AnyParts::Plane(plane),
+                Some(plane) => AnySceneParts::Plane(plane),
                 None => unreachable!("it is of this type"),
             };
         }
         match parts.downcast_mut() {
-            Some(space) => AnyParts::Space(space),
+            Some(space) => AnySceneParts::Space(space),
             None => unreachable!("there are two and three dimensions"),
         }
     }

@@ -3,16 +3,16 @@
 use crate::geometry::convex::{Boundary, ConvexCollider, Core};
 use crate::geometry::space::{Space, VectorLike};
 
-/// A convex part of a body, as it was recorded.
+/// A convex part of a body, from a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedPiece {
     /// Rounding radius (m).
     pub rounding: f64,
     /// Radius of the ball (2D: disk) of the same volume (m).
     pub size: f64,
-    /// Position of its centre in the frame of the body (m).
+    /// Position of the part's centre in the frame of the body (m).
     pub offset: [f64; 3],
-    /// Corners relative to its centre (m).
+    /// Corners relative to the part's centre (m).
     pub corners: Vec<[f64; 3]>,
     /// Faces as lists of corner indices.
     pub faces: Vec<Vec<u32>>,
@@ -22,7 +22,7 @@ impl RecordedPiece {
     /// The part on a body.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns why the record is invalid.
     pub(super) fn carried<S: Space>(
         self,
         body: u32,

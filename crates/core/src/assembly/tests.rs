@@ -1,5 +1,6 @@
 use super::{
-    AnyUnion, Assembly, Block, Inertia, RecordedPiece, Start, Weight, empty, half_space, turned,
+    AnyUnion, Assembly, ConvexBody, Inertia, InitialState, MassProperties, RecordedPiece, empty,
+    half_space, turned,
 };
 use crate::bodies::{Dof, Driven};
 use crate::contact::detect::LawTable;
@@ -14,7 +15,7 @@ fn scene(dimension: usize) -> Box<dyn Assembly> {
     empty(dimension, Periodic { period: [None; 3] })
 }
 
-/// Two balls of one radius, a metre left and right of a place.
+/// Returns two balls of one radius, one metre to the left and right of a position.
 fn dumbbell(radius: f64) -> AnyUnion {
     let mut union = AnyUnion::default();
     union.add_ball([-1.0, 0.0, 0.0], radius);
@@ -26,15 +27,15 @@ fn dumbbell(radius: f64) -> AnyUnion {
 fn a_union_has_the_mass_and_inertia_of_its_shapes() {
     for (dimension, volume, share) in [(2, PI * 0.25, 0.5), (3, PI / 6.0, 0.4)] {
         let mut scene = scene(dimension);
-        let start = Start {
+        let start = InitialState {
             position: [3.0, 1.0, 0.0],
             velocity: [0.5, 0.0, 0.0],
             spin: [0.0, 0.0, 2.0],
-            ..Start::default()
+            ..InitialState::default()
         };
         let union = dumbbell(0.5);
         assert!((union.volume(dimension) - 2.0 * volume).abs() < 1e-14);
-        let body = scene.add_union(union, Weight::Grain(1000.0), 0, &start);
+        let body = scene.add_union(union, MassProperties::Grain(1000.0), 0, &start);
         let (run, _) = scene.into_simulation(Vec::new(), LawTable::new(1), 0.1, 0.1);
         let mass = 2000.0 * volume;
         let (motion, bodies) = (run.motion(body as usize), run.bodies());
@@ -60,8 +61,8 @@ fn a_first_body_has_its_own_mass_and_wears_where_it_can() {
     let mut scene = scene(2);
     let mut union = AnyUnion::default();
     union.add_surface([0.0; 3], half_space(2, [0.0, 1.0, 0.0], 1.0));
-    let weight = Weight::First(2.0, Inertia::Uniform(8.0));
-    let body = scene.add_union(union, weight, 0, &Start::default());
+    let mass_properties = MassProperties::First(2.0, Inertia::Uniform(8.0));
+    let body = scene.add_union(union, mass_properties, 0, &InitialState::default());
     scene.drive(Driven {
         name: "floor".to_owned(),
         body,
@@ -82,13 +83,13 @@ fn blocks_and_records_are_placed_by_their_centres() {
     let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)];
     let corners = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
     let part = AnyPart::Plane(Polygon::new(corners).unwrap().part(0.0));
-    let block = Block::of(part.moved([1.0, 0.0, 0.0]));
+    let block = ConvexBody::of(part.moved([1.0, 0.0, 0.0]));
     let [x, y, z] = block.start.position;
     assert!((x - 2.0).abs() < 1e-14 && (y - 0.5).abs() < 1e-14 && z == 0.0);
     scene.add_block(block, (0, 10.0));
-    let start = Start {
+    let start = InitialState {
         rotation: Some([FRAC_PI_2, 0.0, 0.0, 0.0]),
-        ..Start::default()
+        ..InitialState::default()
     };
     let inertia = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let weighed = scene.add_weighed(4.0, &inertia, 2.0, 1.0, &start);

@@ -29,23 +29,23 @@ impl AnyUnion {
         self.surfaces.push((at, surface));
     }
 
-    /// Whether it has no shape.
+    /// Returns whether the union has no shape.
     pub fn is_empty(&self) -> bool {
         self.balls.is_empty() && self.parts.is_empty() && self.surfaces.is_empty()
     }
 
-    /// Whether it has a surface.
+    /// Returns whether the union has a surface.
     pub fn has_surfaces(&self) -> bool {
         !self.surfaces.is_empty()
     }
 
-    /// Total volume in so many dimensions (m^3; m^2 in 2D); surfaces have none.
+    /// Returns the total volume in a dimension (m^3; m^2 in 2D); surfaces have none.
     pub fn volume(&self, dimension: usize) -> f64 {
         let balls = self.balls.iter().map(|b| ball_volume(dimension, b.1));
         balls.chain(self.parts.iter().map(AnyPart::volume)).sum()
     }
 
-    /// The union in dimension `S`; `None` if a part of it has the other.
+    /// Returns the union in dimension `S`; `None` if a part of it has the other dimension.
     pub(super) fn into_dimension<S: Space>(self) -> Option<Union<S>> {
         let balls = self.balls.into_iter();
         let parts = self.parts.into_iter();
@@ -61,18 +61,18 @@ impl AnyUnion {
 }
 
 /// A surface, and its offset in the frame of its body (m).
-type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+type PlacedSurface<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 
 /// Balls, convex parts and surfaces that move together.
 pub(super) struct Union<S: Space> {
     pub balls: Vec<(S::Vector, f64)>,
     pub parts: Vec<ConvexPart<S>>,
-    pub surfaces: Vec<Placed<S>>,
+    pub surfaces: Vec<PlacedSurface<S>>,
 }
 
 impl<S: Space> Union<S> {
-    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about it at unit density, of each
-    /// shape that has a volume.
+    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about the centre at unit density,
+    /// of each shape that has a volume.
     fn volumes(&self) -> impl Iterator<Item = (S::Vector, f64, S::Tensor)> + '_ {
         let ball = |(x, r): &(S::Vector, f64)| {
             let volume = S::ball_volume(*r);
@@ -86,12 +86,13 @@ impl<S: Space> Union<S> {
         self.balls.iter().map(ball).chain(parts)
     }
 
-    /// Total volume (m^3; 2D: m^2).
+    /// Returns the total volume (m^3; 2D: m^2).
     pub fn volume(&self) -> f64 {
         self.volumes().map(|v| v.1).sum()
     }
 
-    /// Centre of mass (m); the origin if the union has surfaces only, which have no volume.
+    /// Returns the centre of mass (m); the origin if the union has surfaces only, which have no
+    /// volume.
     pub fn centre(&self) -> S::Vector {
         let (mut centre, volume) = (S::Vector::zero(), self.volume());
         if volume > 0.0 && self.surfaces.is_empty() {
@@ -102,7 +103,7 @@ impl<S: Space> Union<S> {
         centre
     }
 
-    /// Moments of inertia about a point at unit density (m^5; 2D: m^4).
+    /// Returns the moments of inertia about a point at unit density (m^5; 2D: m^4).
     pub fn inertia(&self, about: &S::Vector) -> S::Tensor {
         self.volumes()
             .fold(S::Tensor::uniform(0.0), |sum, (x, volume, own)| {

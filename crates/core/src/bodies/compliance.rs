@@ -36,13 +36,13 @@ impl<S: Space> Compliance<S> {
         &self.nodes
     }
 
-    /// The place of a node in the list; `None` for a node that is not in it.
+    /// Returns the index of a node in the list; `None` for a node that is not in it.
     pub fn place(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
     }
 
-    /// The column of the node at a place, found now where it was not before: `find` gives the
-    /// velocity of a place for an impulse of one along an axis (1/kg).
+    /// Returns the column of the node at an index, which is computed at the first call: `find`
+    /// gives the velocity of a node for a unit impulse along an axis (1/kg).
     pub fn column_or<F: Fn(usize) -> S::Vector>(
         &self,
         at: usize,
@@ -58,8 +58,8 @@ impl<S: Space> Compliance<S> {
     }
 }
 
-/// A column of a number of nodes: `find` gives for each axis of the impulse the velocity of a node
-/// by its place (1/kg).
+/// Returns a column of a number of nodes: for each axis of the impulse `find` gives the velocity of
+/// a node by its index (1/kg).
 pub fn column_of<S: Space, F: Fn(usize) -> S::Vector>(
     count: usize,
     mut find: impl FnMut(usize) -> F,

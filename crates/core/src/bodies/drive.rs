@@ -93,13 +93,13 @@ impl Dof {
         stages.iter().map(|s| &s.drive).chain(simple)
     }
 
-    /// Returns whether contacts can move it at some time.
+    /// Returns whether contacts can move the degree of freedom at some time.
     pub fn yields(&self) -> bool {
         self.drives()
             .any(|d| matches!(d, Self::Free | Self::Force(_) | Self::Pressure { .. }))
     }
 
-    /// Returns whether its motion is imposed at some time.
+    /// Returns whether the motion is imposed at some time.
     pub fn imposes(&self) -> bool {
         self.drives()
             .any(|d| matches!(d, Self::Fixed | Self::Velocity(_) | Self::Displacement(_)))
@@ -145,7 +145,7 @@ impl Dof {
         }
     }
 
-    /// Returns the same drive, shifted to `by` seconds later.
+    /// Returns the same drive with a delay of `by` seconds.
     pub fn delayed(&self, by: f64) -> Self {
         let mut later = self.clone();
         match &mut later {
@@ -211,7 +211,7 @@ pub struct Driven {
 }
 
 impl Driven {
-    /// Whether contacts and gravity alone move it along all axes, as a grain.
+    /// Returns whether only contacts and gravity move the body along all axes, as a grain.
     pub fn is_free(&self) -> bool {
         let dimension = if self.dofs.len() == 3 { 2 } else { 3 };
         let translations = self.dofs.iter().take(dimension);

@@ -89,9 +89,9 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 
 /// A body with generalised coordinates of its own.
 ///
-/// In each step it is called in this order:
+/// In each step its methods are called in this order:
 ///
-/// 1. [`begin_step`](Self::begin_step) at the state of its start,
+/// 1. [`begin_step`](Self::begin_step) in the state at the start of the step,
 /// 2. [`advance`](Self::advance) by (1 - theta) h, to q_m, where contacts are found,
 /// 3. [`linearise`](Self::linearise) and [`free_velocity`](Self::free_velocity), once,
 /// 4. [`contact_nodes`](Self::contact_nodes) once for each contact, then

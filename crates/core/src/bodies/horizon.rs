@@ -3,8 +3,8 @@
 use super::drive::Dof;
 use super::time_function::TimeFunction;
 
-/// Steps in a period of a sine or in a ramp that resolve it: linear interpolation between 20 points
-/// has an error of (pi/20)^2/2, 1.2 % of the amplitude.
+/// Number of steps in a period of a sine or in a ramp that resolve it: linear interpolation between
+/// 20 points has an error of (pi/20)^2/2, 1.2 % of the amplitude.
 pub const STEPS_A_PERIOD: f64 = 20.0;
 
 impl TimeFunction {
@@ -26,8 +26,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the longest step from `t` on (s) that resolves it; infinite where it is constant,
-    /// and in tables, which are linear up to the next kink.
+    /// Returns the longest step from `t` on (s) that resolves the function; infinite where it is
+    /// constant, and for tables, which are linear up to the next kink.
     pub fn resolved_step(&self, t: f64) -> f64 {
         match self {
             Self::Sine {
@@ -66,7 +66,7 @@ impl Dof {
         kinks.fold(ends.unwrap_or(f64::INFINITY), f64::min)
     }
 
-    /// Returns the longest step from `t` on (s) that resolves its active drive; infinite where that
+    /// Returns the longest step from `t` on (s) that resolves the active drive; infinite where that
     /// is constant.
     pub fn resolved_step(&self, t: f64) -> f64 {
         let function = self.at(t).function();

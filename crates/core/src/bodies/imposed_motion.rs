@@ -50,8 +50,8 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Sets imposed coordinates to their paths at the end of the step of `h` from `from` to `to`
-    /// (s).
+    /// Sets imposed coordinates to their paths at the end of a step of `h` between the times `from`
+    /// and `to` (s).
     ///
     /// A rotation about one axis follows its path; where rotations about several axes are imposed,
     /// which do not commute, the orientation is that of the integrated velocities.

@@ -293,7 +293,8 @@ mod tests {
         assert!(sine.rate_after(0.1) > 1.0);
     }
 
-    /// Constant outside, with the slope between: at both ends, also at time zero, which is exact.
+    /// A ramp is constant outside and linear between its ends; this holds at both ends, also at
+    /// time zero, which is exact.
     #[test]
     fn a_function_is_at_rest_before_its_start_and_after_its_end() {
         for start in [-1.0, 0.0, 0.3] {

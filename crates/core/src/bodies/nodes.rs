@@ -56,9 +56,9 @@ impl Nodes {
         }
     }
 
-    /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to
-    /// rounding, that node itself, and on an edge two nodes, which cost the solver less. `None`
-    /// without vertices.
+    /// Returns a position on a facet as the weighted sum of its vertices by its shape functions: at
+    /// a vertex, to rounding, the node alone, and on an edge two nodes, which costs the solver
+    /// less. `None` without vertices.
     pub fn on_facet(terms: &[(u32, f64)]) -> Option<Self> {
         let there = terms.iter().filter(|(_, weight)| weight.abs() > ROUNDING);
         let there: Vec<_> = there.copied().collect();
@@ -81,7 +81,7 @@ impl Nodes {
         }
     }
 
-    /// A total order of points, by nodes and then by weights; equal if both are equal.
+    /// Compares points by nodes and then by weights; equal if both are equal.
     pub fn order(&self, other: &Self) -> Ordering {
         let ids = |p: &Self, q: &Self| p.terms().map(|t| t.0).cmp(q.terms().map(|t| t.0));
         let by_nodes = self.count().cmp(&other.count());
@@ -93,7 +93,7 @@ impl Nodes {
         })
     }
 
-    /// The node at an index, from 0 to `count` - 1, and its weight.
+    /// Returns the node at an index, from 0 to `count` - 1, and its weight.
     fn term(&self, k: usize) -> (u32, f64) {
         match &self.0 {
             Terms::Inline { ids, weights, .. } => (ids[k], weights[k]),
@@ -101,7 +101,7 @@ impl Nodes {
         }
     }
 
-    /// The weighted sum of the vectors that `of` gives at the nodes.
+    /// Returns the weighted sum of the vectors that `of` gives at the nodes.
     pub fn sum_of<V: VectorLike>(&self, of: impl Fn(u32) -> V) -> V {
         let terms = self.terms();
         terms.fold(V::zero(), |sum, (node, weight)| sum + of(node) * weight)

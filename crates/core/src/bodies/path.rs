@@ -64,7 +64,7 @@ impl Dof {
         })
     }
 
-    /// Returns whether it imposes a path.
+    /// Returns whether the drive imposes a path.
     pub(super) fn imposes_path(&self) -> bool {
         matches!(self, Self::Velocity(_) | Self::Displacement(_))
     }
@@ -117,7 +117,7 @@ impl ImposedPath {
     }
 }
 
-/// ImposedPaths of a driven body, in the order of its degrees of freedom.
+/// Paths of the imposed degrees of freedom of a driven body, in their order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct ImposedPaths<S: Space> {
@@ -180,8 +180,8 @@ mod tests {
         }
     }
 
-    /// Linear between points that are the ends of steps: each step has the slope of its segment at
-    /// both ends, the first one too.
+    /// For a table whose points are ends of steps, each step has the slope of its segment at both
+    /// ends, including the first.
     #[test]
     fn a_table_has_the_slopes_of_its_segments() {
         let h = 0.125;

@@ -17,15 +17,15 @@ struct Face {
 
 /// The body or holder on which a servo acts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Pushed {
-    /// A driven body: its index among these, and that of the degree of freedom.
+pub enum ServoTarget {
+    /// A driven body: index among the driven bodies, and index of the degree of freedom.
     Body(usize, usize),
     /// The holder of a part of a deformable body.
     Holder(HeldAxis),
 }
 
-impl Pushed {
-    /// Index of the degree of freedom.
+impl ServoTarget {
+    /// Returns the index of the degree of freedom.
     fn dof(&self) -> usize {
         match self {
             Self::Body(_, dof) => *dof,
@@ -37,8 +37,8 @@ impl Pushed {
 /// A drive that depends on the area between walls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
-    /// The body or holder on which it acts.
-    pushed: Pushed,
+    /// Body or holder on which the servo acts.
+    target: ServoTarget,
     /// Index of the stage, 0 where there are no stages.
     drive: usize,
     /// Product of the periodic lengths (m, m^2).
@@ -48,9 +48,9 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// Returns the body or holder on which it acts.
-    pub(crate) fn pushed(&self) -> &Pushed {
-        &self.pushed
+    /// Returns the body or holder on which the servo acts.
+    pub(crate) fn target(&self) -> &ServoTarget {
+        &self.target
     }
 
     /// Returns the servos of one degree of freedom, one for each stage that is a pressure.
@@ -60,11 +60,11 @@ impl Servo {
     pub fn of<S: Space>(
         bodies: &Bodies<S>,
         shapes: &Shapes<S>,
-        pushed: &Pushed,
+        target: &ServoTarget,
         drive: &Dof,
     ) -> Result<Vec<Self>, String> {
         let mut servos = Vec::new();
-        let dof = pushed.dof();
+        let dof = target.dof();
         for (k, drive) in drive.drives().enumerate() {
             let Dof::Pressure { between, .. } = drive else {
                 continue;
@@ -75,7 +75,7 @@ impl Servo {
                 );
             }
             let mut servo = Self {
-                pushed: pushed.clone(),
+                target: target.clone(),
                 drive: k,
                 fixed: 1.0,
                 spans: Vec::new(),
@@ -110,9 +110,9 @@ impl Servo {
             let [low, high] = faces.map(|f| bodies.position[f.body][*axis] + f.offset);
             now *= (high - low).abs();
         }
-        let dof = match &self.pushed {
-            Pushed::Body(place, dof) => Some(&mut bodies.driven[*place].dofs[*dof]),
-            Pushed::Holder(held) => systems.drive_mut(held),
+        let dof = match &self.target {
+            ServoTarget::Body(place, dof) => Some(&mut bodies.driven[*place].dofs[*dof]),
+            ServoTarget::Holder(held) => systems.drive_mut(held),
         };
         let Some(dof) = dof else { return };
         let drive = match dof {
@@ -202,7 +202,7 @@ mod tests {
             });
         }
         let servos =
-            Servo::of(&bodies, &shapes, &Pushed::Body(2, 2), &pressure).unwrap_or_default();
+            Servo::of(&bodies, &shapes, &ServoTarget::Body(2, 2), &pressure).unwrap_or_default();
         for wide in [0.3, 0.2] {
             bodies.position[1].x = wide;
             servos[0].measure(&mut bodies, &mut Systems::default());
@@ -214,7 +214,7 @@ mod tests {
             between: Vec::new(),
             area: 0.0,
         };
-        let said = Servo::of(&bodies, &shapes, &Pushed::Body(2, 2), &blind).unwrap_err();
+        let said = Servo::of(&bodies, &shapes, &ServoTarget::Body(2, 2), &blind).unwrap_err();
         assert!(said.contains("length along x"), "{said}");
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::sum;
 use serde::{Deserialize, Serialize};
 
-/// Approximate time to evaluate the energy of a body (ns).
+/// Approximate time to compute the energy of a body (ns).
 const ENERGY: f64 = 5.0;
 
 /// All bodies of a scene, grains and first bodies, as a structure of arrays. In 2D masses are per
@@ -40,7 +40,7 @@ pub struct Bodies<S: Space> {
     pub inverse_inertia: Vec<f64>,
     /// The driven first bodies.
     pub driven: Vec<Driven>,
-    /// ImposedPaths of their imposed motion, in the same order.
+    /// Paths of the imposed motion of driven bodies, in the same order.
     pub paths: Vec<ImposedPaths<S>>,
     /// Whether each body has been removed: it then has no contacts and is not drawn.
     pub removed: Vec<bool>,
@@ -157,7 +157,7 @@ impl<S: Space> Bodies<S> {
         self.carriers.get(body).copied().flatten()
     }
 
-    /// Whether two bodies are contactors of one system that cannot touch each other.
+    /// Returns whether two bodies are contactors of one system that cannot touch each other.
     #[inline]
     pub fn belong_together(&self, a: usize, b: usize) -> bool {
         match (self.carrier(a), self.carrier(b)) {
@@ -246,11 +246,11 @@ impl<S: Space> Bodies<S> {
         self.update_constraints(place, time);
     }
 
-    /// Leaves out bodies of which the flag is false, before anything else refers to bodies by
-    /// index; gives the new index of each.
+    /// Removes bodies whose flag is false, before anything else refers to bodies by index; returns
+    /// the new index of each body.
     ///
     /// # Panics
-    /// Not with a flag for each body.
+    /// The number of flags is not the number of bodies.
     pub fn keep(&mut self, kept: &[bool]) -> Vec<Option<u32>> {
         fn filter<T>(column: &mut Vec<T>, kept: &[bool]) {
             let mut flags = kept.iter();
@@ -283,7 +283,7 @@ impl<S: Space> Bodies<S> {
         moved
     }
 
-    /// Removes a driven body for good.
+    /// Removes a driven body permanently.
     pub fn remove(&mut self, place: usize) {
         let driven = &mut self.driven[place];
         self.removed[driven.body as usize] = true;
@@ -292,7 +292,7 @@ impl<S: Space> Bodies<S> {
         self.update_constraints(place, 0.0);
     }
 
-    /// Removes a grain for good; it is then at rest.
+    /// Removes a grain permanently; it is then at rest.
     pub fn remove_body(&mut self, body: usize) {
         self.removed[body] = true;
         (self.velocity[body], self.spin[body]) = (S::Vector::zero(), S::Spin::zero());
@@ -300,8 +300,8 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven or carried by a system, unless that is a
-    /// grain that deforms, and are still there.
+    /// Returns for each body whether it is a grain: not driven, not removed, and not carried by a
+    /// system unless that is a deformable grain.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {
@@ -350,7 +350,7 @@ impl<S: Space> Bodies<S> {
     }
 
     /// Returns which bodies never move: all their degrees of freedom are fixed.
-    pub fn still(&self) -> Vec<bool> {
+    pub fn fixed_bodies(&self) -> Vec<bool> {
         let mut still = vec![false; self.len()];
         for driven in &self.driven {
             still[driven.body as usize] = driven.dofs.iter().all(|d| *d == Dof::Fixed);

@@ -9,13 +9,14 @@ use nalgebra::Vector3;
 pub struct DeformedMesh<V> {
     /// Points without load (m).
     pub points: Vec<V>,
-    /// Their displacements (m).
+    /// Displacements of the points (m).
     pub displacement: Vec<V>,
     /// The D + 1 points of each element, one after the other.
     pub elements: Vec<u32>,
     /// The D points of each facet of the boundary.
     pub boundary: Vec<u32>,
-    /// Stress in each element (Pa): xx, yy, zz, yz, xz, xy; in plane strain zz is along the depth.
+    /// Stress in each element (Pa): xx, yy, zz, yz, xz, xy; in plane strain zz is the stress along
+    /// the depth.
     pub stress: Vec<[f64; 6]>,
 }
 
@@ -32,14 +33,14 @@ impl<V: VectorLike> DeformedMesh<V> {
     }
 }
 
-/// The surface of a system that touches, as points with facets between them; `V` is a vector.
+/// The contact surface of a system, as points with facets between them; `V` is a vector.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TouchingSurface<V> {
     /// The node of the system at each point.
     pub nodes: Vec<u32>,
-    /// Places of the points without load (m).
+    /// Positions of the points without load (m).
     pub points: Vec<V>,
-    /// The D points of each facet, one after the other, by their place among the points.
+    /// The D points of each facet, one after the other, by their indices in `points`.
     pub facets: Vec<u32>,
     /// Current tributary area of each point (m^2; tributary length in the plane, m). Their sum is
     /// the area of the surface.
@@ -58,7 +59,7 @@ impl<V: VectorLike> TouchingSurface<V> {
     }
 }
 
-/// Vectors with three components; the third is zero in the plane.
+/// Returns vectors with three components; the third is zero in the plane.
 pub(crate) fn padded<V: VectorLike>(all: &[V]) -> Vec<Vector3<f64>> {
     all.iter().map(|v| v.padded().into()).collect()
 }
@@ -67,15 +68,15 @@ pub(crate) fn padded<V: VectorLike>(all: &[V]) -> Vec<Vector3<f64>> {
 /// step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SystemSize {
-    /// Unknowns of a solution.
+    /// Number of unknowns of a solution.
     pub unknowns: usize,
-    /// The matrix that is assembled once.
+    /// Memory of the matrix that is assembled once.
     pub matrix: usize,
-    /// The factor of A, with its pattern; zero of systems without a factor.
+    /// Memory of the factor of A, with its pattern; zero for systems without a factor.
     pub factor: usize,
-    /// Compliance of the surface that is kept once all of it was touched.
+    /// Memory of the compliance of the surface once all of it was touched.
     pub surface: usize,
-    /// Compliance of a single point of the surface.
+    /// Memory of the compliance of a single point of the surface.
     pub point: usize,
     /// Floating-point operations of a factorisation, and of a solution with the factor or the table
     /// of influences.

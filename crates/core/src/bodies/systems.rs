@@ -13,14 +13,15 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A node that turns with a part of a system, see [`DynamicalSystem::turning_node`].
+/// A node that represents the rotation of a part of a system, see
+/// [`DynamicalSystem::turning_node`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurningNode {
     /// Index of the system.
     pub system: u32,
-    /// Id in the system.
+    /// Id of the node in the system.
     pub node: u32,
-    /// Velocity over its angular velocity (m).
+    /// Ratio of the node's velocity to the angular velocity (m).
     pub length: f64,
 }
 
@@ -35,14 +36,14 @@ pub struct HeldAxis {
     pub axis: usize,
 }
 
-/// A system with the data that steps keep of it.
+/// A system with its data for steps.
 #[derive(Clone, Debug)]
 struct SystemEntry<S: Space> {
     system: Box<dyn DynamicalSystem<S>>,
     contactors: Vec<Contactor>,
-    /// The bodies that represent its contactors, in order.
+    /// Bodies that represent the contactors, in order.
     bodies: Vec<u32>,
-    /// The points of its surface among the balls, of a grain.
+    /// For a grain, the range of its surface points among the balls.
     points: Range<usize>,
     /// Velocities at the start of the step, and without contacts at its end.
     start: Vec<f64>,
@@ -78,7 +79,7 @@ impl<'de, S: Space> Deserialize<'de> for Systems<S> {
 }
 
 impl<S: Space> Systems<S> {
-    /// Whether there is none.
+    /// Returns whether there are no systems.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -88,7 +89,7 @@ impl<S: Space> Systems<S> {
         self.entries.len()
     }
 
-    /// A system by its index, in the order in which they were added.
+    /// Returns a system by its index, in the order in which they were added.
     pub fn get(&self, system: usize) -> Option<&dyn DynamicalSystem<S>> {
         self.entries.get(system).map(|e| e.system.as_ref())
     }
@@ -98,7 +99,7 @@ impl<S: Space> Systems<S> {
         self.entries.get(system).map_or(&[], |e| &e.bodies)
     }
 
-    /// Adds a system, and a body for each of its contactors; gives its index.
+    /// Adds a system, and a body for each of its contactors; returns its index.
     pub fn add(&mut self, system: Box<dyn DynamicalSystem<S>>, bodies: &mut Bodies<S>) -> usize {
         let index = self.entries.len();
         let contactors = system.contactors();
@@ -114,7 +115,7 @@ impl<S: Space> Systems<S> {
             let length = if positive { contactor.radius } else { 1.0 };
             let body = bodies.add_carried(at, length, carrier);
             if carrier.grain {
-                // Used by measures only; the system has the inertia.
+                // The mass of the body is used in measures only; the system has the inertia.
                 bodies.mass[body as usize] = system.mass();
             }
             body
@@ -139,12 +140,12 @@ impl<S: Space> Systems<S> {
         entry.system.drive_mut(&of.part, of.axis)
     }
 
-    /// The index of a system by its name.
+    /// Returns the index of a system by its name.
     pub fn named(&self, name: &str) -> Option<usize> {
         self.entries.iter().position(|e| e.system.name() == name)
     }
 
-    /// Puts the bodies of all contactors where their systems have them.
+    /// Moves the bodies of all contactors to the positions in their systems.
     pub fn carry(&self, bodies: &mut Bodies<S>) {
         for entry in &self.entries {
             for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
@@ -168,8 +169,8 @@ impl<S: Space> Systems<S> {
         self.entries[system].points = balls;
     }
 
-    /// Gives the surfaces of contactors their vertices as they are now, and the points of grains
-    /// their places.
+    /// Updates the vertices of the surfaces of contactors, and the positions of the points of
+    /// grains.
     pub fn deform(&self, bodies: &Bodies<S>, shapes: &mut Shapes<S>) {
         for surface in &mut shapes.surfaces {
             let Some(carrier) = bodies.carrier(surface.body as usize) else {
@@ -196,7 +197,7 @@ impl<S: Space> Systems<S> {
         self.entries[system].system.set_free_strain(of_points);
     }
 
-    /// Begins a step with all systems.
+    /// Begins a step for all systems.
     pub fn begin_step(&mut self, step: &SystemStep<S>) {
         for entry in &mut self.entries {
             // An imposed velocity may jump at the start of a step.
@@ -217,7 +218,7 @@ impl<S: Space> Systems<S> {
     /// of contactors are written to `free`, which has an entry per body.
     pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
         for entry in &mut self.entries {
-            // Rotation without contacts may have turned spins since the start.
+            // Free rotation may have changed spins since the start.
             entry.start.clear();
             entry.start.extend_from_slice(entry.system.velocity());
             entry.system.linearise(step);
@@ -228,11 +229,11 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Linearises those systems again whose forces are not those at their current velocities, and
+    /// Linearises again the systems whose forces differ from those at their current velocities, and
     /// computes their velocities without contacts; returns the indices of these systems.
     ///
     /// # Errors
-    /// The index of a system that finds no balance, and why.
+    /// Returns the index of a system that finds no equilibrium, and the reason.
     pub fn relinearise(&mut self, step: &SystemStep<S>) -> Result<Vec<usize>, (usize, String)> {
         let mut changed = Vec::new();
         for (k, entry) in self.entries.iter_mut().enumerate() {
@@ -250,13 +251,13 @@ impl<S: Space> Systems<S> {
         entry.system.node_velocity(node, &entry.free)
     }
 
-    /// Compliance of nodes of a system, see [`DynamicalSystem::compliance`].
+    /// Returns the compliance of nodes of a system, see [`DynamicalSystem::compliance`].
     pub fn compliance(&self, system: usize, nodes: &[u32]) -> Vec<S::Matrix> {
         self.entries[system].system.compliance(nodes)
     }
 
-    /// The compliance that a system keeps, where at least a third of its nodes are touched: an
-    /// impulse changes the velocities of all.
+    /// Returns the compliance that a system keeps, where at least a third of its nodes are touched:
+    /// with it an impulse changes the velocities of all nodes.
     pub fn kept_compliance(&self, system: usize, touched: &[u32]) -> Option<Arc<Compliance<S>>> {
         let system = &self.entries[system].system;
         let nodes = system.kept_nodes()?;
@@ -266,7 +267,7 @@ impl<S: Space> Systems<S> {
         system.kept_compliance(touched)
     }
 
-    /// Compliance of points of a system, see [`DynamicalSystem::point_compliance`].
+    /// Returns the compliance of points of a system, see [`DynamicalSystem::point_compliance`].
     pub fn point_compliance(&self, system: usize, points: &[Nodes]) -> Vec<S::Matrix> {
         self.entries[system].system.point_compliance(points)
     }
@@ -283,14 +284,15 @@ impl<S: Space> Systems<S> {
         (entry.system.as_ref(), contactor)
     }
 
-    /// The nodes that a contact with a contactor's body acts on, at an arm from its centre (m).
+    /// Returns the nodes on which a contact with a contactor's body acts, at an arm from its centre
+    /// (m).
     pub fn contact_nodes(&self, carrier: Carrier, arm: &S::Vector) -> Nodes {
         let (system, contactor) = self.contactor(carrier);
         system.contact_nodes(contactor, arm)
     }
 
-    /// The node that turns with a contactor's body at an arm from its centre (m); see
-    /// [`DynamicalSystem::turning_node`].
+    /// Returns the node that represents the rotation of a contactor's body at an arm from its
+    /// centre (m); see [`DynamicalSystem::turning_node`].
     pub fn turning_node(&self, carrier: Carrier, arm: &S::Vector) -> Option<TurningNode> {
         let (system, contactor) = self.contactor(carrier);
         let (node, length) = system.turning_node(contactor, arm)?;
@@ -301,7 +303,8 @@ impl<S: Space> Systems<S> {
         })
     }
 
-    /// Angular velocities that a node turns with, at the start of the step and now (rad/s).
+    /// Returns the angular velocities that a node represents, at the start of the step and now
+    /// (rad/s).
     pub fn spins(&self, of: &TurningNode) -> [S::Spin; 2] {
         let entry = &self.entries[of.system as usize];
         [&entry.start[..], entry.system.velocity()].map(|velocity| {
@@ -314,19 +317,19 @@ impl<S: Space> Systems<S> {
         })
     }
 
-    /// The facets at a contactor that is a point, see [`DynamicalSystem::facets_at`].
+    /// Returns the facets at a contactor that is a point, see [`DynamicalSystem::facets_at`].
     pub(crate) fn facets_at(&self, carrier: Carrier) -> Vec<([S::Vector; 3], usize)> {
         let entry = &self.entries[carrier.system as usize];
         entry.system.facets_at(carrier.contactor as usize)
     }
 
-    /// The nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].
+    /// Returns the nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].
     pub(crate) fn vertex_nodes(&self, carrier: Carrier, weights: &[(u32, f64)]) -> Option<Nodes> {
         let (system, contactor) = self.contactor(carrier);
         system.vertex_nodes(contactor, weights)
     }
 
-    /// Whether two contactors are on grids of equal cells, up to a share of these.
+    /// Returns whether two contactors are on grids of equal cells, within a relative tolerance.
     pub(crate) fn equal_cells(&self, carriers: [Carrier; 2], tolerance: f64) -> bool {
         let cells = carriers.map(|c| self.entries[c.system as usize].system.cell_size());
         let [Some(one), Some(other)] = cells else {
@@ -336,13 +339,13 @@ impl<S: Space> Systems<S> {
         along.all(|(a, b)| (a - b).abs() <= tolerance * a)
     }
 
-    /// Velocity of a point of a system at the current velocities (m/s).
+    /// Returns the velocity of a point of a system at the current velocities (m/s).
     pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
         let system = &self.entries[system].system;
         nodes.sum_of(|node| system.node_velocity(node, system.velocity()))
     }
 
-    /// Gives a system the velocity that impulses on its nodes (N s) lead to.
+    /// Sets the velocity of a system that results from impulses on its nodes (N s).
     pub fn apply(&mut self, system: usize, impulses: impl Iterator<Item = (u32, S::Vector)>) {
         let entry = &mut self.entries[system];
         let mut impulses = impulses.peekable();
@@ -362,14 +365,14 @@ impl<S: Space> Systems<S> {
         entry.system.set_velocity(&change);
     }
 
-    /// Gives all systems the velocities back that they began the step with.
+    /// Restores the velocities of all systems at the start of the step.
     pub fn restart(&mut self) {
         for entry in &mut self.entries {
             entry.system.set_velocity(&entry.start);
         }
     }
 
-    /// Kinetic and stored energy of all systems (J; J/m in 2D).
+    /// Returns the kinetic and stored energy of all systems (J; J/m in 2D).
     pub fn energies(&self) -> (f64, f64) {
         self.entries.iter().fold((0.0, 0.0), |sum, entry| {
             let system = &entry.system;
@@ -380,8 +383,8 @@ impl<S: Space> Systems<S> {
         })
     }
 
-    /// Kinetic energy (J) and mass times twice the length (kg m) of the systems of which nothing is
-    /// imposed (per metre of depth in 2D).
+    /// Returns the kinetic energy (J) and the mass times twice the length (kg m) of the systems
+    /// without imposed motion (per metre of depth in 2D).
     pub fn motion_of_free(&self) -> (f64, f64) {
         let free = self.entries.iter().map(|e| &e.system);
         free.filter(|s| !s.is_driven()).fold((0.0, 0.0), |sum, s| {
@@ -404,7 +407,7 @@ impl<S: Space> Systems<S> {
         sum
     }
 
-    /// The name of the first system with a velocity that is not finite.
+    /// Returns the name of the first system with a velocity that is not finite.
     pub fn not_finite(&self) -> Option<&str> {
         let bad = |e: &&SystemEntry<S>| e.system.velocity().iter().any(|v| !v.is_finite());
         self.entries.iter().find(bad).map(|e| e.system.name())
@@ -420,7 +423,7 @@ impl<S: Space> Systems<S> {
     }
 
     /// Replaces these systems by those of a scene that was built again, restored to the states of
-    /// these. Returns false, without a change, if the states belong to other systems.
+    /// the present ones. Returns false, without a change, if the states belong to other systems.
     #[must_use]
     pub fn resume(&mut self, built: &Self) -> bool {
         let states = self.states();

@@ -127,7 +127,7 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the same function, shifted to `by` seconds later.
+    /// Returns the same function with a delay of `by` seconds.
     pub fn delayed(&self, by: f64) -> Self {
         let mut later = self.clone();
         match &mut later {
@@ -142,7 +142,7 @@ impl TimeFunction {
 
 #[cfg(test)]
 impl TimeFunction {
-    /// One function of each kind.
+    /// Returns one function of each kind.
     pub(super) fn samples() -> [Self; 4] {
         let ramp = Self::Ramp {
             from: 1.0,
@@ -179,8 +179,8 @@ mod tests {
         }
     }
 
-    /// A ramp is a table of two points, also at these points; a sine begins with its later slope
-    /// with.
+    /// A ramp equals a table of two points, also at these points; at its start a sine has the slope
+    /// after it.
     #[test]
     fn rates_at_kinks_are_those_of_the_documented_side() {
         let [_, ramp, ..] = TimeFunction::samples();

@@ -1,8 +1,8 @@
 //! Checks of laws with an opening: cohesion and damage.
 
 use super::rig::{Rig, pull};
-use super::{Check, Line};
-use crate::laws::bench::{Answer, Motion};
+use super::{Check, CheckResult};
+use crate::laws::bench::{BenchMotion, BenchOutputs};
 use crate::laws::{Kind, LawError};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -19,25 +19,25 @@ pub const CHECKS: [(&str, Check); 9] = [
 ];
 
 /// Checks that the stored energy declared for the undamaged bond is the work done on it.
-fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
+fn stored_energy(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "stored energy";
     /// Number of intervals of Simpson's rule.
     const N: usize = 400;
     if rig.kind != Kind::COHESION {
-        return Ok(Line::skip(NAME, "the energy is the cohesion's"));
+        return Ok(CheckResult::skip(NAME, "the energy is the cohesion's"));
     }
     // The onset is known to a tenth of a decade only.
     let reach = if rig.damages() { 0.5 } else { 1.0 } * rig.onset;
     let (mut worst, mut tested) = (0.0f64, 0);
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
-        let motions: Vec<Motion> = (0..=N)
+        let motions: Vec<BenchMotion> = (0..=N)
             .map(|k| pull(reach * k as f64 / N as f64, angle))
             .collect();
         let answers = rig.drive(&motions, 1.0)?;
         if answers.iter().any(|a| a.damage > 0.0) {
             continue;
         }
-        let along = |a: &Answer| a.traction[0] * angle.cos() + a.traction[1] * angle.sin();
+        let along = |a: &BenchOutputs| a.traction[0] * angle.cos() + a.traction[1] * angle.sin();
         let weighted = answers.iter().enumerate().map(|(k, a)| {
             let weight = match k {
                 0 | N => 1.0,
@@ -53,10 +53,13 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
         tested += 1;
     }
     if tested == 0 {
-        return Ok(Line::skip(NAME, "the bond has damage at any opening"));
+        return Ok(CheckResult::skip(
+            NAME,
+            "the bond has damage at any opening",
+        ));
     }
     // The error of Simpson's rule is of the order of (1/400)^4 for a smooth law.
-    Ok(Line::below(
+    Ok(CheckResult::below(
         NAME,
         worst,
         1e-6,
@@ -66,7 +69,7 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
 
 /// Checks that the declared fracture energy is the area under one slow pull to failure, in modes I,
 /// mixed and II.
-fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
+fn fracture_energy(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "fracture energy";
     let tested = rig.tested();
     let declared = |angle: f64| tested.plugin.fracture_energy(&tested.parameters, angle);
@@ -75,7 +78,10 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
         .filter_map(|angle| declared(angle).map(|e| (angle, e)))
         .collect();
     if modes.is_empty() {
-        return Ok(Line::skip(NAME, "the law declares no fracture energy"));
+        return Ok(CheckResult::skip(
+            NAME,
+            "the law declares no fracture energy",
+        ));
     }
     // An unbounded tail is cut where it is negligible.
     let end = rig.end.unwrap_or(1e3 * rig.onset);
@@ -85,7 +91,7 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
         let near = (1..=20_000).map(|k| 3.0 * rig.onset * f64::from(k) / 20_000.0);
         let decades = (30.0 * end / (3.0 * rig.onset)).max(1.0).ln();
         let far = (1..=20_000).map(|k| 3.0 * rig.onset * (decades * f64::from(k) / 20_000.0).exp());
-        let motions: Vec<Motion> = near.chain(far).map(|u| pull(u, angle)).collect();
+        let motions: Vec<BenchMotion> = near.chain(far).map(|u| pull(u, angle)).collect();
         let answers = rig.drive(&motions, 1.0)?;
         let area = increments(&motions, &answers).sum::<f64>();
         worst = worst.max((area / declared - 1.0).abs());
@@ -96,7 +102,7 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
     }
     // A law may cut its tail at a thousandth of the energy; the error of the trapezoidal rule is
     // 2e-4 for an abrupt failure, 1e-6 otherwise.
-    Ok(Line::below(
+    Ok(CheckResult::below(
         NAME,
         worst,
         2e-3,
@@ -105,8 +111,8 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Returns the work per area done on a new bond in each step, by the trapezoidal rule (J/m^2).
-fn increments(motions: &[Motion], answers: &[Answer]) -> impl Iterator<Item = f64> {
-    let mut last = (Motion::default(), Answer::default());
+fn increments(motions: &[BenchMotion], answers: &[BenchOutputs]) -> impl Iterator<Item = f64> {
+    let mut last = (BenchMotion::default(), BenchOutputs::default());
     motions.iter().zip(answers).map(move |(to, b)| {
         let (from, a) = std::mem::replace(&mut last, (*to, *b));
         let mut sum = 0.0;
@@ -119,10 +125,10 @@ fn increments(motions: &[Motion], answers: &[Answer]) -> impl Iterator<Item = f6
 }
 
 /// Checks on random walks that dissipation, work minus stored energy, never decreases.
-fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
+fn dissipation(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
-    let walks = (0..24).map(|seed| rig.walk(seed, 800, 0.02));
-    let paths: Vec<Vec<Motion>> = walks.chain(loops(rig)).collect();
+    let walks = (0..24).map(|seed| rig.random_walk(seed, 800, 0.02));
+    let paths: Vec<Vec<BenchMotion>> = walks.chain(loops(rig)).collect();
     for motions in paths {
         let answers = rig.drive(&motions, 1e-3)?;
         let (mut work, mut most, mut scale, mut fall) = (0.0, 0.0f64, 0.0f64, 0.0f64);
@@ -137,7 +143,7 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
     }
     // The error of the trapezoidal rule is quadratic in the step of the walk: 2e-3 where damage
     // starts within a step.
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "dissipation",
         worst,
         5e-3,
@@ -147,7 +153,7 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
 
 /// Returns paths of loading, unloading, reloading and unloading to several levels beyond the onset,
 /// in three directions.
-fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
+fn loops(rig: &Rig) -> Vec<Vec<BenchMotion>> {
     let mut out = Vec::new();
     for level in [1.2, 1.5, 2.0, 3.0] {
         let top = level * rig.onset;
@@ -163,14 +169,14 @@ fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
 }
 
 /// Checks that the traction at D is (1 - D)^m times that of the undamaged bond.
-fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
+fn degradation(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "degradation";
     if rig.kind != Kind::COHESION {
-        return Ok(Line::skip(NAME, "the traction is the cohesion's"));
+        return Ok(CheckResult::skip(NAME, "the traction is the cohesion's"));
     }
     let m = rig.tested().plugin.degradation;
     if m <= 0.0 {
-        return Ok(Line::skip(NAME, "the law has no damage"));
+        return Ok(CheckResult::skip(NAME, "the law has no damage"));
     }
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
@@ -188,7 +194,7 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
             }
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         NAME,
         worst,
         // Not zero: a law without an onset has a little damage at any opening.
@@ -200,14 +206,14 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Checks that D never decreases, stays in [0, 1], and that broken bonds stay broken.
-fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
+fn damage_grows(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "damage grows";
     if !rig.damages() {
-        return Ok(Line::skip(NAME, "no damage"));
+        return Ok(CheckResult::skip(NAME, "no damage"));
     }
     let (mut worst, mut highest, mut raw) = (0.0f64, 0.0f64, 0.0f64);
     for seed in 0..24 {
-        let motions = rig.walk(100 + seed, 400, 0.3);
+        let motions = rig.random_walk(100 + seed, 400, 0.3);
         let mut state = rig.bench.fresh();
         for motion in &motions {
             let before = state.damage;
@@ -221,31 +227,31 @@ fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
     // The check is not meaningful for a law that caused no damage on the path.
     let kept = worst <= 0.0 && raw <= 1e-12 && highest <= 1.0 && highest > 0.0;
     let text = format!("largest decrease of D on random walks, which reached D = {highest:.3}");
-    Ok(Line::judged(NAME, kept, raw.max(worst), text))
+    Ok(CheckResult::judged(NAME, kept, raw.max(worst), text))
 }
 
 /// Checks that rotating the tangential axes rotates the result and changes nothing else.
-fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
-    let motions = rig.walk(7, 300, 0.1);
-    let turned = motions.iter().map(|m| Motion {
-        opening: rig.turned(m.opening),
-        rotation: rig.turned(m.rotation),
+fn objectivity(rig: &mut Rig) -> Result<CheckResult, LawError> {
+    let motions = rig.random_walk(7, 300, 0.1);
+    let turned = motions.iter().map(|m| BenchMotion {
+        opening: rig.in_rotated_axes(m.opening),
+        rotation: rig.in_rotated_axes(m.rotation),
         ..*m
     });
-    let turned: Vec<Motion> = turned.collect();
+    let turned: Vec<BenchMotion> = turned.collect();
     let plain = rig.drive(&motions, 1e-3)?;
     let other = rig.drive(&turned, 1e-3)?;
     let pairs = || plain.iter().zip(&other);
     // Largest difference of a vector, relative to its largest component.
-    let difference = |of: fn(&Answer) -> [f64; 3]| {
+    let difference = |of: fn(&BenchOutputs) -> [f64; 3]| {
         let largest = plain.iter().flat_map(of);
         let largest = largest.fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-        let vectors = pairs().flat_map(|(a, b)| rig.turned(of(a)).into_iter().zip(of(b)));
+        let vectors = pairs().flat_map(|(a, b)| rig.in_rotated_axes(of(a)).into_iter().zip(of(b)));
         vectors.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs())) / largest
     };
     let damage = pairs().fold(0.0, |m: f64, (a, b)| m.max((a.damage - b.damage).abs()));
     let worst = damage.max(difference(|a| a.traction));
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "objectivity",
         worst.max(difference(|a| a.moment)),
         1e-8,
@@ -254,7 +260,7 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Measures the order at which the energy of a pull of fixed duration converges with the step.
-fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
+fn convergence(rig: &mut Rig) -> Result<CheckResult, LawError> {
     /// Steps of the coarsest pull.
     const COARSEST: u32 = 50;
     /// Number of times that the steps are halved.
@@ -276,7 +282,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
         let mut energies = Vec::new();
         for halving in 0..=HALVINGS {
             let n = COARSEST << halving;
-            let motions: Vec<Motion> = (1..=n)
+            let motions: Vec<BenchMotion> = (1..=n)
                 .map(|k| pull(reach * f64::from(k) / f64::from(n), 0.3))
                 .collect();
             let answers = rig.drive(&motions, 1e-2 / f64::from(n))?;
@@ -290,7 +296,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     let changes = squares.map(|sum| sum.sqrt() / scale);
     let (first, last) = (changes[0], changes[HALVINGS as usize - 1]);
     if last <= 1e-9 {
-        return Ok(Line::judged(
+        return Ok(CheckResult::judged(
             "convergence",
             true,
             last,
@@ -301,15 +307,20 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     let text = format!(
         "order in the step of the energy of a pull, from the root mean square of {REACHES} pulls, last relative change {last:.1e}; at least 0.7"
     );
-    Ok(Line::judged("convergence", order >= 0.7, order, text))
+    Ok(CheckResult::judged(
+        "convergence",
+        order >= 0.7,
+        order,
+        text,
+    ))
 }
 
 /// Checks that the stiffness is the tangent or the secant of the traction, at frozen damage and
 /// variables.
-fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
+fn tangent(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "tangent";
     if rig.kind != Kind::COHESION {
-        return Ok(Line::skip(NAME, "the traction is the cohesion's"));
+        return Ok(CheckResult::skip(NAME, "the traction is the cohesion's"));
     }
     let mut worst = 0.0f64;
     for (u, angle) in [(0.3, 0.0), (0.6, 0.7), (0.9, 1.4), (0.5, FRAC_PI_2)] {
@@ -339,7 +350,7 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
             worst = worst.max(off);
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         NAME,
         worst,
         1e-3,
@@ -349,7 +360,7 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
 
 /// Checks that unloading half way and completely follows the path of the undamaged bond, scaled by
 /// the remaining stiffness, to the origin, and that reloading returns along it.
-fn secant(rig: &mut Rig) -> Result<Line, LawError> {
+fn secant(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
@@ -370,8 +381,9 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
             continue;
         }
         // A fatigue law causes damage on the way: tractions are divided by the remaining stiffness.
-        let remaining = |a: &Answer| (1.0 - a.damage).max(f64::MIN_POSITIVE);
-        let same = |a: &Answer, b: &Answer| (remaining(a) / remaining(b) - 1.0).abs() < 1e-12;
+        let remaining = |a: &BenchOutputs| (1.0 - a.damage).max(f64::MIN_POSITIVE);
+        let same =
+            |a: &BenchOutputs, b: &BenchOutputs| (remaining(a) / remaining(b) - 1.0).abs() < 1e-12;
         worst = worst.max(length(&none) / scale);
         if same(&half, &again) {
             worst = worst.max((length(&half) - length(&again)).abs() / scale);
@@ -380,7 +392,7 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
             worst = worst.max((share * length(&up) - length(&half)).abs() / scale);
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         NAME,
         worst,
         1e-6,
@@ -396,7 +408,7 @@ fn before_failure(rig: &Rig, multiple: f64) -> f64 {
 }
 
 /// Returns the magnitude of the traction (Pa).
-fn length(a: &Answer) -> f64 {
+fn length(a: &BenchOutputs) -> f64 {
     a.traction.iter().map(|t| t * t).sum::<f64>().sqrt()
 }
 

@@ -1,9 +1,11 @@
 //! Certification of a law in a child process, so that a law that crashes, ends the program or hangs
 //! only fails a line of its certificate.
 
-use super::{Certificate, CertifyProgress, Line, border, certify, certify_with_progress};
+use super::{
+    Certificate, CertifyProgress, CheckResult, certify, certify_with_progress, plugin_interface,
+};
 use crate::laws::child::{self, End};
-use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
+use crate::laws::{BuiltInLaws, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::PathBuf;
@@ -35,7 +37,7 @@ impl LawRequest {
         }
     }
 
-    fn open(self, built_in: &BuiltInLaws) -> Result<Loaded, LawError> {
+    fn open(self, built_in: &BuiltInLaws) -> Result<LoadedLaw, LawError> {
         let plugin = match &self.library {
             Some((path, sha256)) => Plugin::open_pinned(path, Some(sha256))?,
             None => {
@@ -50,7 +52,7 @@ impl LawRequest {
             }
         };
         let parameters = self.parameters.into_iter().map(f64::from_bits);
-        Ok(Loaded::new(plugin, parameters.collect()))
+        Ok(LoadedLaw::new(plugin, parameters.collect()))
     }
 }
 
@@ -62,7 +64,7 @@ impl LawRequest {
 pub fn certify_in_child(
     plugin: &Plugin,
     parameters: &[f64],
-    cohesion: Option<&Loaded>,
+    cohesion: Option<&LoadedLaw>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
     if !child::enabled() {
@@ -86,8 +88,8 @@ pub fn certify_in_child(
             name.clone_into(&mut begun);
         }
         let line = message.get_mut("line").map(serde_json::Value::take);
-        if let Some(Ok(line)) = line.map(serde_json::from_value::<Line>) {
-            lines.push(line);
+        if let Some(Ok(result)) = line.map(serde_json::from_value::<CheckResult>) {
+            lines.push(result);
         }
     }
     if output.end == End::Done && lines.is_empty() {
@@ -104,17 +106,17 @@ pub fn certify_in_child(
         return Err(untested(why));
     }
     if let End::Early(why) = output.end {
-        // No check had begun: it is not the law that ended it.
+        // No check had begun, so that the law did not end the process.
         if begun.is_empty() {
             return Err(untested(why));
         }
         let text = format!("{why}, while `{begun}` was tested; nothing after it was");
-        lines.push(Line::judged(RETURNS, false, f64::INFINITY, text));
+        lines.push(CheckResult::failed(RETURNS, f64::INFINITY, text));
     }
     Ok(Certificate::of(plugin, lines))
 }
 
-/// In the child process: certifies the requested law, which may be linked into the program.
+/// Certifies the requested law in the child process; it may be linked into the program.
 ///
 /// # Errors
 /// The request cannot be read.
@@ -124,7 +126,7 @@ pub fn certify_requested(built_in: &BuiltInLaws) -> Result<(), String> {
         serde_json::from_value(requests).map_err(|e| e.to_string())?;
     let mut report = |event: CertifyProgress<'_>| match event {
         CertifyProgress::Begins(name) => child::send_message(&json!({ "begins": name })),
-        CertifyProgress::Line(line) => child::send_message(&json!({ "line": line })),
+        CertifyProgress::Ends(result) => child::send_message(&json!({ "line": result })),
     };
     let certified = request.open(built_in).and_then(|law| {
         let partner = partner.map(|p| p.open(built_in)).transpose()?;
@@ -134,7 +136,7 @@ pub fn certify_requested(built_in: &BuiltInLaws) -> Result<(), String> {
             &law.parameters,
             partner.as_ref(),
             &path,
-            &border::CHECKS,
+            &plugin_interface::CHECKS,
             &mut report,
         )
     });

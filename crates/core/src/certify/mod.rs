@@ -5,8 +5,8 @@
 //! applicable, with the number that decided.
 
 mod bond;
-mod border;
 mod child;
+mod plugin_interface;
 mod rig;
 mod spring;
 mod static_memory;
@@ -16,7 +16,7 @@ mod transport;
 pub use child::{CERTIFY_IN_CHILD, certify_in_child, certify_requested};
 
 use crate::laws::kind::CheckSet;
-use crate::laws::{LawError, Loaded, Plugin, SearchPath};
+use crate::laws::{LawError, LoadedLaw, Plugin, SearchPath};
 use rig::Rig;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -34,7 +34,7 @@ pub enum CheckOutcome {
 
 /// Result of one check, a line of the certificate.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Line {
+pub struct CheckResult {
     /// Name of the check.
     pub check: String,
     /// Whether the law has the property.
@@ -46,7 +46,7 @@ pub struct Line {
     pub text: String,
 }
 
-impl Line {
+impl CheckResult {
     fn judged(check: &str, kept: bool, number: f64, text: impl Into<String>) -> Self {
         let outcome = if kept {
             CheckOutcome::Pass
@@ -76,8 +76,16 @@ impl Line {
         }
     }
 
-    fn failed(check: &str, e: &LawError) -> Self {
-        Self::judged(check, false, f64::INFINITY, e.to_string())
+    fn passed(check: &str, number: f64, text: impl Into<String>) -> Self {
+        Self::judged(check, true, number, text)
+    }
+
+    fn failed(check: &str, number: f64, text: impl Into<String>) -> Self {
+        Self::judged(check, false, number, text)
+    }
+
+    fn error(check: &str, e: &LawError) -> Self {
+        Self::failed(check, f64::INFINITY, e.to_string())
     }
 }
 
@@ -89,36 +97,36 @@ fn null_is_infinite<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 enum CertifyProgress<'a> {
     /// A check begins.
     Begins(&'a str),
-    /// A check gave this line.
-    Line(&'a Line),
+    /// A check gave this result.
+    Ends(&'a CheckResult),
 }
 
-/// The lines of a certificate while it is written.
+/// A certificate while it is written: the results so far.
 struct CertificateWriter<'a> {
-    lines: Vec<Line>,
-    /// Partner of the law under test, added to the text of each line.
+    results: Vec<CheckResult>,
+    /// Partner of the law under test, added to the text of each result.
     partner: String,
     report: &'a mut dyn FnMut(CertifyProgress<'_>),
 }
 
-/// A check; errors of the law are turned into a failed line by the caller.
-type Check = fn(&mut Rig) -> Result<Line, LawError>;
+/// A check; errors of the law are turned into a failed result by the caller.
+type Check = fn(&mut Rig) -> Result<CheckResult, LawError>;
 
 impl CertificateWriter<'_> {
     /// Runs checks, each regardless of the result of the previous one.
     fn run(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
         for (name, check) in checks {
             (self.report)(CertifyProgress::Begins(name));
-            let line = check(rig).unwrap_or_else(|e| Line::failed(name, &e));
-            self.write(line);
+            let result = check(rig).unwrap_or_else(|e| CheckResult::error(name, &e));
+            self.write(result);
         }
     }
 
-    fn write(&mut self, line: Line) {
-        let text = format!("{}{}", line.text, self.partner);
-        let line = Line { text, ..line };
-        (self.report)(CertifyProgress::Line(&line));
-        self.lines.push(line);
+    fn write(&mut self, result: CheckResult) {
+        let text = format!("{}{}", result.text, self.partner);
+        let result = CheckResult { text, ..result };
+        (self.report)(CertifyProgress::Ends(&result));
+        self.results.push(result);
     }
 }
 
@@ -136,7 +144,7 @@ pub struct Certificate {
     /// Path of the library.
     pub library: String,
     /// Results of the checks.
-    pub lines: Vec<Line>,
+    pub lines: Vec<CheckResult>,
 }
 
 impl Certificate {
@@ -156,7 +164,7 @@ impl Certificate {
 pub fn certify(
     plugin: &Plugin,
     parameters: &[f64],
-    cohesion: Option<&Loaded>,
+    cohesion: Option<&LoadedLaw>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
     certify_with_progress(
@@ -164,7 +172,7 @@ pub fn certify(
         parameters,
         cohesion,
         path,
-        &border::CHECKS,
+        &plugin_interface::CHECKS,
         &mut |_| {},
     )
 }
@@ -177,40 +185,44 @@ pub fn certify(
 pub fn certify_parameters(
     plugin: &Plugin,
     parameters: &[f64],
-    cohesion: Option<&Loaded>,
+    cohesion: Option<&LoadedLaw>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
-    let checks = &border::OF_PARAMETERS;
+    let checks = &plugin_interface::OF_PARAMETERS;
     certify_with_progress(plugin, parameters, cohesion, path, checks, &mut |_| {})
 }
 
 fn certify_with_progress(
     plugin: &Plugin,
     parameters: &[f64],
-    cohesion: Option<&Loaded>,
+    cohesion: Option<&LoadedLaw>,
     path: &SearchPath,
-    border: &[(&str, Check)],
+    interface_checks: &[(&str, Check)],
     report: &mut dyn FnMut(CertifyProgress<'_>),
 ) -> Result<Certificate, LawError> {
-    const SCALE: &str = "runs on the bench";
+    const RUNS: &str = "runs on the bench";
     plugin.validate(parameters)?;
     let mut writer = CertificateWriter {
-        lines: Vec::new(),
+        results: Vec::new(),
         partner: String::new(),
         report,
     };
     let rigs = Rig::all(plugin, parameters, cohesion, path)?;
     for (k, mut rig) in rigs.into_iter().enumerate() {
-        if k == 0 && border.len() == border::CHECKS.len() {
-            writer.run(&mut rig, &[border::FIRST]);
-            if writer.lines.iter().any(|l| l.outcome == CheckOutcome::Fail) {
+        if k == 0 && interface_checks.len() == plugin_interface::CHECKS.len() {
+            writer.run(&mut rig, &[plugin_interface::FIRST]);
+            if writer
+                .results
+                .iter()
+                .any(|l| l.outcome == CheckOutcome::Fail)
+            {
                 break;
             }
         }
         writer.partner = rig.partner().to_owned();
-        (writer.report)(CertifyProgress::Begins(SCALE));
+        (writer.report)(CertifyProgress::Begins(RUNS));
         match (rig.find_scale(), plugin.kind.spec().certificate.checks) {
-            (Err(e), _) => writer.write(Line::failed(SCALE, &e)),
+            (Err(e), _) => writer.write(CheckResult::error(RUNS, &e)),
             (Ok(()), CheckSet::Bond) if rig.opens() => writer.run(&mut rig, &bond::CHECKS),
             (Ok(()), checks) => writer.run(&mut rig, surface::checks(checks)),
         }
@@ -219,14 +231,14 @@ fn certify_with_progress(
         }
         if k == 0 {
             writer.partner.clear();
-            writer.run(&mut rig, border);
+            writer.run(&mut rig, interface_checks);
         }
     }
-    Ok(Certificate::of(plugin, writer.lines))
+    Ok(Certificate::of(plugin, writer.results))
 }
 
 impl Certificate {
-    fn of(plugin: &Plugin, lines: Vec<Line>) -> Self {
+    fn of(plugin: &Plugin, lines: Vec<CheckResult>) -> Self {
         Self {
             kind: plugin.kind.to_string(),
             name: plugin.name.clone(),

@@ -1,7 +1,7 @@
 //! A law with its partners on the bench, and the law's characteristic opening.
 
-use crate::laws::bench::{Answer, Bench, Motion};
-use crate::laws::{Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use crate::laws::bench::{Bench, BenchMotion, BenchOutputs};
+use crate::laws::{Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use rand::{RngExt, SeedableRng};
 
 /// Reduced radius of the contacts on the bench (m); the area is pi r^2 in 3D.
@@ -27,8 +27,8 @@ pub struct Rig {
 }
 
 /// Finds a law by its name, with default parameters.
-fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawError> {
-    Ok(Loaded::with_defaults(path.find(kind, name)?))
+fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<LoadedLaw, LawError> {
+    Ok(LoadedLaw::with_defaults(path.find(kind, name)?))
 }
 
 impl Rig {
@@ -37,11 +37,11 @@ impl Rig {
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
-        cohesion: Option<&Loaded>,
+        cohesion: Option<&LoadedLaw>,
         path: &SearchPath,
     ) -> Result<Vec<Self>, LawError> {
-        let own = Loaded::new(plugin.clone(), parameters.to_vec());
-        let mut laws: Vec<(String, Vec<Loaded>)> = Vec::new();
+        let own = LoadedLaw::new(plugin.clone(), parameters.to_vec());
+        let mut laws: Vec<(String, Vec<LoadedLaw>)> = Vec::new();
         for set in plugin.kind.spec().certificate.partners {
             let mut slots = vec![own.clone()];
             let mut partner = String::new();
@@ -101,17 +101,17 @@ impl Rig {
     }
 
     /// Returns the law under test.
-    pub fn tested(&self) -> &Loaded {
+    pub fn tested(&self) -> &LoadedLaw {
         self.law.law(self.kind).unwrap_or(self.law.contact())
     }
 
     /// Returns a second bench with the laws of this one.
-    pub fn another(&self) -> Bench {
-        self.strict().lenient()
+    pub fn second_bench(&self) -> Bench {
+        self.strict_bench().lenient()
     }
 
     /// Returns a bench that reports values out of range as errors, as in a run.
-    pub fn strict(&self) -> Bench {
+    pub fn strict_bench(&self) -> Bench {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 
@@ -143,8 +143,9 @@ impl Rig {
                 let answer = self.bench.step_one(&mut state, &pull(*u, angle), 1.0)?;
                 answers.push((*u, answer));
             }
-            let first =
-                |test: &dyn Fn(&Answer) -> bool| answers.iter().find(|a| test(&a.1)).map(|a| a.0);
+            let first = |test: &dyn Fn(&BenchOutputs) -> bool| {
+                answers.iter().find(|a| test(&a.1)).map(|a| a.0)
+            };
             stored = stored.or(first(&|a| a.stored >= 1.0));
             if let Some(onset) = first(&|a| a.damage > 0.0) {
                 self.onset = onset;
@@ -159,7 +160,7 @@ impl Rig {
     /// Returns a random walk of `steps` openings, normal and tangential, up to 3 times the onset,
     /// in steps of up to `share` times the onset; for a law without opening these are gaps and
     /// slips.
-    pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<Motion> {
+    pub fn random_walk(&self, seed: u64, steps: usize, share: f64) -> Vec<BenchMotion> {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let reach = 3.0 * self.onset;
         let mut at = [0.0; 3];
@@ -177,19 +178,19 @@ impl Rig {
                         *x += 0.1 * share * self.onset / RADIUS * rng.random_range(-1.0..1.0);
                     }
                 }
-                Motion {
+                BenchMotion {
                     opening: at,
                     rotation: turn,
                     gap: at[0],
                     pressure: if at[0] <= 0.0 { PRESSURE } else { 0.0 },
-                    ..Motion::default()
+                    ..BenchMotion::default()
                 }
             })
             .collect()
     }
 
     /// Returns a vector (normal, two tangents) in tangential axes that are rotated, in 2D reversed.
-    pub fn turned(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
+    pub fn in_rotated_axes(&self, [n, t1, t2]: [f64; 3]) -> [f64; 3] {
         if self.dimension == 2 {
             [n, -t1, 0.0]
         } else {
@@ -198,7 +199,11 @@ impl Rig {
     }
 
     /// Drives one new contact along motions, each over a step of `h` (s).
-    pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<Vec<Answer>, LawError> {
+    pub fn drive(
+        &mut self,
+        motions: &[BenchMotion],
+        h: f64,
+    ) -> Result<Vec<BenchOutputs>, LawError> {
         let mut state = self.bench.fresh();
         let step = |motion| self.bench.step_one(&mut state, motion, h);
         motions.iter().map(step).collect()
@@ -206,11 +211,11 @@ impl Rig {
 }
 
 /// Returns a motion that ends at an opening of length `u` (m) at an angle from the normal (rad).
-pub fn pull(u: f64, angle: f64) -> Motion {
+pub fn pull(u: f64, angle: f64) -> BenchMotion {
     let opening = [u * angle.cos(), u * angle.sin(), 0.0];
-    Motion {
+    BenchMotion {
         opening,
         gap: opening[0],
-        ..Motion::default()
+        ..BenchMotion::default()
     }
 }

@@ -1,7 +1,7 @@
 //! Check of laws that are springs.
 
 use super::rig::{RADIUS, Rig};
-use super::{Check, Line};
+use super::{Check, CheckResult};
 use crate::laws::LawError;
 use crate::laws::bench::spring::SpringAnswer;
 
@@ -15,8 +15,8 @@ const CHANGE: f64 = 1e-4;
 
 /// Checks that the stiffness is the slope of the force, and that there is no force without overlap:
 /// with a wrong slope a step converges to a wrong force.
-fn slope(rig: &mut Rig) -> Result<Line, LawError> {
-    let mut bench = rig.strict();
+fn slope(rig: &mut Rig) -> Result<CheckResult, LawError> {
+    let mut bench = rig.strict_bench();
     let mut at = |overlap: f64| -> Result<SpringAnswer, LawError> {
         Ok(bench.spring(overlap)?.unwrap_or_default())
     };
@@ -33,7 +33,7 @@ fn slope(rig: &mut Rig) -> Result<Line, LawError> {
         worst = worst.max((slope - here.stiffness).abs() / scale);
         worst = worst.max(at(0.0)?.force / here.force.max(f64::MIN_POSITIVE));
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "spring",
         worst,
         1e-3,

@@ -1,38 +1,38 @@
 //! Checks that a law keeps no data in the static memory of its library, where concurrent calls
 //! would overwrite it.
 
-use super::Line;
-use super::border::run_batch;
+use super::CheckResult;
+use super::plugin_interface::run_batch;
 use super::rig::Rig;
 use crate::laws::LawError;
-use crate::laws::static_memory::{StaticMemory, Unseen};
+use crate::laws::static_memory::{StaticMemory, UninspectableMemory};
 
 const CHECK: &str = "static memory";
 
-/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a
-/// buffer that grows on demand and is kept changes its address.
+/// Number of contacts per batch in each round. Each round has a larger batch than all before, so
+/// that a buffer that grows on demand and is kept changes its address.
 const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
 
 /// Compares the static memory before and after calls with other numbers, parameters and batch
 /// sizes. Data that change in the first round only are initialised at first use; data that change
 /// in each round are kept between calls.
-pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
+pub fn static_memory(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let plugin = rig.tested().plugin.clone();
     let memory = match StaticMemory::of(&plugin) {
         Ok(memory) => memory,
-        Err(Unseen::BuiltIn) => {
-            return Ok(Line::skip(
+        Err(UninspectableMemory::BuiltIn) => {
+            return Ok(CheckResult::skip(
                 CHECK,
                 "the law is part of the program: the library with the same code is tested instead",
             ));
         }
-        Err(Unseen::TooLarge(bytes)) => {
+        Err(UninspectableMemory::TooLarge(bytes)) => {
             let text = "bytes of writable static memory in its library, too many to be compared: a law must not keep data between calls; \
                         make tables `const` and work arrays local to the call";
-            return Ok(Line::judged(CHECK, false, bytes as f64, text));
+            return Ok(CheckResult::failed(CHECK, bytes as f64, text));
         }
-        Err(Unseen::System) => {
-            return Ok(Line::skip(
+        Err(UninspectableMemory::System) => {
+            return Ok(CheckResult::skip(
                 CHECK,
                 "the static memory of a library cannot be located on this system",
             ));
@@ -46,7 +46,7 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     // Validates the parameters like a run.
     plugin.validate(&rig.tested().parameters)?;
     let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
-        return Ok(Line::skip(
+        return Ok(CheckResult::skip(
             CHECK,
             "the static memory of a library cannot be read on this system",
         ));
@@ -62,7 +62,7 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
          persistent data as an internal variable"
     };
     let number = if still { 0 } else { once.max(again) };
-    Ok(Line::judged(CHECK, still, number as f64, text))
+    Ok(CheckResult::judged(CHECK, still, number as f64, text))
 }
 
 /// Makes every call of the law with the numbers, parameters and batch sizes of this round. Errors
@@ -72,8 +72,10 @@ fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let plugin = &rig.tested().plugin;
     let other = other_parameters(rig, round);
     for n in sizes {
-        let walks: Vec<_> = (0..37).map(|k| rig.walk(seed + k, 12, 0.3)).collect();
-        let _ = run_batch(&mut rig.another(), &walks, *n, 0);
+        let walks: Vec<_> = (0..37)
+            .map(|k| rig.random_walk(seed + k, 12, 0.3))
+            .collect();
+        let _ = run_batch(&mut rig.second_bench(), &walks, *n, 0);
         if plugin.validate(&other).is_ok() {
             let _ = run_batch(&mut rig.with_parameters(&other), &walks, *n, 1);
         }

@@ -1,9 +1,9 @@
 //! Checks of laws without opening: contact, attraction, wear.
 
 use super::rig::{PRESSURE, Rig};
-use super::{Check, Line, transport};
+use super::{Check, CheckResult, transport};
 use crate::laws::LawError;
-use crate::laws::bench::{Answer, Motion};
+use crate::laws::bench::{BenchMotion, BenchOutputs};
 use crate::laws::kind::CheckSet;
 
 /// Returns the checks of a set, with their names.
@@ -23,10 +23,10 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
 /// Checks that friction, strengths, rolling friction and wear are not negative and that
 /// restitution is between 0 and 1 along the normal and between -1 and 1 along the tangent, so that
 /// no step creates energy or mass.
-fn signs(rig: &mut Rig) -> Result<Line, LawError> {
+fn signs(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
-        let motions = rig.walk(seed, 200, 0.3);
+        let motions = rig.random_walk(seed, 200, 0.3);
         let answers = rig.drive(&motions, 1e-3)?;
         for a in answers {
             let [normal, tangential] = a.restitution;
@@ -36,7 +36,7 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
             worst = worst.max(-least).max(normal - 1.0).max(tangential - 1.0);
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "dissipation",
         worst,
         0.0,
@@ -45,17 +45,17 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Checks that rotating the tangential axes changes nothing.
-pub fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
-    let motions = rig.walk(7, 200, 0.1);
-    let turned = motions.iter().map(|m| Motion {
-        opening: rig.turned(m.opening),
+pub fn objectivity(rig: &mut Rig) -> Result<CheckResult, LawError> {
+    let motions = rig.random_walk(7, 200, 0.1);
+    let turned = motions.iter().map(|m| BenchMotion {
+        opening: rig.in_rotated_axes(m.opening),
         ..*m
     });
-    let turned: Vec<Motion> = turned.collect();
+    let turned: Vec<BenchMotion> = turned.collect();
     let plain = rig.drive(&motions, 1e-3)?;
     let other = rig.drive(&turned, 1e-3)?;
     let off = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
-    let numbers = |a: &Answer| {
+    let numbers = |a: &BenchOutputs| {
         let single = [a.mu, a.worn];
         single
             .into_iter()
@@ -71,7 +71,7 @@ pub fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
         .flat_map(|(a, b)| numbers(a).into_iter().zip(numbers(b)))
         .map(|(x, y)| off(x, y))
         .fold(0.0, f64::max);
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "objectivity",
         worst,
         1e-6,
@@ -80,14 +80,14 @@ pub fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Checks that the wear volume of a slide does not depend on the number of steps.
-fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
+fn convergence(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut volumes = Vec::new();
     for n in [10u32, 100, 1000] {
-        let motions: Vec<Motion> = (1..=n)
-            .map(|k| Motion {
+        let motions: Vec<BenchMotion> = (1..=n)
+            .map(|k| BenchMotion {
                 opening: [0.0, 1e-3 * f64::from(k) / f64::from(n), 0.0],
                 pressure: PRESSURE,
-                ..Motion::default()
+                ..BenchMotion::default()
             })
             .collect();
         let answers = rig.drive(&motions, 1e-2 / f64::from(n))?;
@@ -95,7 +95,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     }
     let scale = volumes[2].abs().max(f64::MIN_POSITIVE);
     let worst = (volumes[0] - volumes[2]).abs() / scale;
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "convergence",
         worst,
         1e-6,

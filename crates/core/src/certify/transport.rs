@@ -2,9 +2,9 @@
 //! continuous.
 
 use super::rig::{PRESSURE, RADIUS, Rig};
-use super::{Check, Line, surface};
+use super::{Check, CheckResult, surface};
 use crate::laws::LawError;
-use crate::laws::bench::{Motion, ROOM};
+use crate::laws::bench::{BenchMotion, ROOM_TEMPERATURE};
 
 /// The checks.
 pub const CHECKS: [(&str, Check); 4] = [
@@ -15,8 +15,8 @@ pub const CHECKS: [(&str, Check); 4] = [
 ];
 
 /// Walks of gap, slip and load with temperatures from 1 K to 3000 K.
-fn walks(rig: &Rig, seed: u64) -> Vec<Motion> {
-    let mut walk = rig.walk(seed, 200, 0.3);
+fn walks(rig: &Rig, seed: u64) -> Vec<BenchMotion> {
+    let mut walk = rig.random_walk(seed, 200, 0.3);
     for (k, motion) in walk.iter_mut().enumerate() {
         let share = |n: u32| f64::from((k as u32 * n + seed as u32) % 97) / 96.0;
         motion.temperatures = [1.0 + 2999.0 * share(37), 1.0 + 2999.0 * share(59)];
@@ -26,14 +26,14 @@ fn walks(rig: &Rig, seed: u64) -> Vec<Motion> {
 }
 
 /// Checks that heat and current do not flow uphill.
-fn sign(rig: &mut Rig) -> Result<Line, LawError> {
+fn sign(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
         let answers = rig.drive(&walks(rig, seed), 1e-3)?;
         let least = answers.iter().flat_map(|a| a.conductance);
         worst = least.fold(worst, |w, g| w.max(-g));
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "sign",
         worst,
         0.0,
@@ -42,13 +42,13 @@ fn sign(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Checks that exchanging the bodies changes nothing, so that what leaves one arrives in the other.
-fn symmetry(rig: &mut Rig) -> Result<Line, LawError> {
+fn symmetry(rig: &mut Rig) -> Result<CheckResult, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
         let motions = walks(rig, seed);
-        let turned: Vec<Motion> = motions
+        let turned: Vec<BenchMotion> = motions
             .iter()
-            .map(|m| Motion {
+            .map(|m| BenchMotion {
                 temperatures: [m.temperatures[1], m.temperatures[0]],
                 ..*m
             })
@@ -61,7 +61,7 @@ fn symmetry(rig: &mut Rig) -> Result<Line, LawError> {
             }
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "symmetry",
         worst,
         1e-12,
@@ -76,10 +76,10 @@ const MOST: [f64; 2] = [1e9, 3000.0];
 const PATHS: [&str; 5] = ["load", "gap", "damage", "temperature", "slip"];
 
 /// Returns the motion and the damage of a contact at the fraction `x` of a path.
-fn on_path(path: &str, x: f64) -> (Motion, f64) {
-    let mut motion = Motion {
+fn on_path(path: &str, x: f64) -> (BenchMotion, f64) {
+    let mut motion = BenchMotion {
         pressure: PRESSURE,
-        ..Motion::default()
+        ..BenchMotion::default()
     };
     let mut damage = 1.0;
     match path {
@@ -89,7 +89,7 @@ fn on_path(path: &str, x: f64) -> (Motion, f64) {
             motion.pressure = PRESSURE * (1.0 - 2.0 * x).max(0.0);
         }
         "damage" => damage = x,
-        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM],
+        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM_TEMPERATURE],
         _ => motion.opening[1] = 1e-3 * x,
     }
     (motion, damage)
@@ -97,7 +97,7 @@ fn on_path(path: &str, x: f64) -> (Motion, f64) {
 
 /// Checks that conductances have no jumps: a solver that follows a contact as it closes would not
 /// settle.
-fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
+fn continuity(rig: &mut Rig) -> Result<CheckResult, LawError> {
     const POINTS: u32 = 200;
     const HALVINGS: u32 = 40;
     let (mut worst, mut place) = (0.0f64, "load");
@@ -132,7 +132,7 @@ fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
             }
         }
     }
-    Ok(Line::below(
+    Ok(CheckResult::below(
         "continuity",
         worst,
         1e-3,

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 /// A broken bond.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Break {
-    /// Key of its contact at that time.
+    /// Key of the bond's contact at that time.
     pub key: Key,
     /// Bodies: candidate, antagonist.
     pub bodies: [u32; 2],
     /// Index of the interface law.
     pub law: u16,
-    /// Position of its contact (m): the candidate's centre plus the lever arm, at q_m of the step.
+    /// Position of the contact (m): the candidate's centre plus the lever arm, at q_m of the step.
     /// The third component is zero in the plane.
     pub place: [f64; 3],
     /// Normal opening at failure, and norm of the tangential one (m).
@@ -21,26 +21,27 @@ pub struct Break {
     pub rotation: [f64; 2],
     /// Area (m^2; m in 2D).
     pub area: f64,
-    /// Energy still stored if it broke because its contact moved out of range, 0 where damage broke
-    /// it (J; J/m in 2D).
+    /// Energy still stored when the contact moved out of range, 0 where damage broke the bond (J;
+    /// J/m in 2D).
     pub torn: f64,
-    /// Whether damage broke it; otherwise its contact moved out of range, or a body was removed.
+    /// Whether damage broke the bond; otherwise its contact moved out of range, or a body was
+    /// removed.
     pub damaged: bool,
-    /// Damage at the start of the step in which it broke.
+    /// Damage at the start of the step in which the bond broke.
     pub damage_before: f64,
     /// Energy history.
-    pub life: Life,
+    pub energies: BondEnergies,
 }
 
 /// Energy history of a bond since its formation (J; J/m in 2D): the work done on it equals stored
 /// energy plus fracture energy plus viscous dissipation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Life {
+pub struct BondEnergies {
     /// Work done on the bond by normal opening, by sliding, and by rotation.
     pub work: [f64; 3],
     /// Fracture energy released by damage, less [`Self::given`].
     pub fracture: f64,
-    /// Energy of its first opening, where it began at its gap: given without work.
+    /// Energy of an opening that was there when the bond formed, and took no work.
     pub given: f64,
     /// Dissipated by damping.
     pub viscous: f64,
@@ -49,7 +50,7 @@ pub struct Life {
     pub friction: f64,
 }
 
-impl Life {
+impl BondEnergies {
     /// Returns the fraction of rotation in the work of opening, sliding and rotation; recovered
     /// work does not count.
     pub fn turning(&self) -> f64 {
@@ -73,15 +74,15 @@ impl Life {
 /// Energy dissipated at one contact in one step (J; J/m in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactDissipation {
-    /// By friction.
+    /// Energy dissipated by friction.
     pub friction: f64,
-    /// By impact.
+    /// Energy dissipated by the impact.
     pub impact: f64,
-    /// Against the strength of cohesion without opening.
+    /// Work against the strength of a cohesion without opening.
     pub adhesion: f64,
-    /// Released by damage.
+    /// Fracture energy released by damage.
     pub fracture: f64,
-    /// By damping of the bond.
+    /// Energy dissipated by damping of the bond.
     pub viscous: f64,
     /// Work of removing a penetration, negative: see `solver.correction`.
     pub correction: f64,
@@ -96,7 +97,7 @@ impl ContactDissipation {
 
 /// Wear at one contact in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loss {
+pub struct ContactWear {
     /// Index of the contact in [`super::Network::contacts`].
     pub contact: u32,
     /// Volume (m^3; m^3/m in 2D).
@@ -107,7 +108,8 @@ pub struct Loss {
 mod tests {
     use super::*;
 
-    /// Powers of two, so that each part is seen in the sum; the correction is no dissipation.
+    /// The terms are powers of two, so that the sum shows each of them; the correction is no
+    /// dissipation.
     #[test]
     fn a_contact_dissipates_the_sum_of_its_parts() {
         let all = ContactDissipation {

@@ -8,7 +8,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
 impl<S: Space> Network<S> {
-    /// Whether it is a network of these shapes and bodies, with memory like that of `built`.
+    /// Returns whether this is a network of these shapes and bodies, with memory like that of
+    /// `built`.
     pub(crate) fn fits(&self, built: &Self, shapes: &Shapes<S>, bodies: &Bodies<S>) -> bool {
         let below = |two: &[u32; 2]| two.iter().all(|b| (*b as usize) < bodies.len());
         let law = |law: u16| usize::from(law) < self.memory.len();
@@ -40,7 +41,7 @@ impl<S: Space> Network<S> {
             && self.seen_at.iter().all(VectorLike::is_finite)
     }
 
-    /// Whether a contact is one of these shapes.
+    /// Returns whether a contact is between contactors of these shapes.
     fn has(&self, c: &Contact<S>, shapes: &Shapes<S>) -> bool {
         let bodies =
             [c.key.candidate, c.key.antagonist].map(|side| ShapeIndex::of(side).body(shapes));
@@ -56,7 +57,7 @@ impl<S: Space> Network<S> {
 }
 
 impl<S: Space> Memory<S> {
-    /// Whether all columns have the slots of the bonds, and are those of the same laws.
+    /// Returns whether all columns have one value per slot, and are the columns of the same laws.
     fn fits(&self, built: &Self) -> bool {
         let slots = self.bonds.len();
         let rotations = if self.rotates { slots } else { 0 };

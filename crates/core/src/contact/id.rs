@@ -1,5 +1,5 @@
 //! Names of contacts that do not depend on the order of bodies in memory: identities of the bodies,
-//! numbers of their contactors, and the feature in contact.
+//! numbers of their contactors, and the touched feature.
 //!
 //! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a
 //! step, and is compared often. A [`ContactId`] names the same contact in another listing of the
@@ -36,8 +36,7 @@ pub struct ContactorId {
     pub number: u32,
 }
 
-/// The name of a contact: both contactors, in their own order, and the feature that is touched, 0
-/// between balls.
+/// Name of a contact: both contactors in ascending order, and the touched feature, 0 between balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactId {
     /// The contactors, the smaller first; either may be the candidate of detection.
@@ -95,7 +94,7 @@ impl ContactNames {
         ])
     }
 
-    /// The name of the contact of a key; `None` where the scene has no such contactors.
+    /// Returns the name of the contact with a key; `None` where the scene has no such contactors.
     pub fn id<S: Space>(&self, key: &Key) -> Option<ContactId> {
         let sides = self.sides(key)?;
         if sides[0] <= sides[1] {
@@ -114,7 +113,7 @@ impl ContactNames {
         Some(ContactId { sides, feature })
     }
 
-    /// All contacts of a network by their names, as places in [`Network::contacts`].
+    /// Returns all contacts of a network by name, as indices in [`Network::contacts`].
     pub fn places<S: Space>(&self, network: &Network<S>) -> BTreeMap<ContactId, usize> {
         let contacts = network.contacts.iter().enumerate();
         contacts
@@ -122,8 +121,8 @@ impl ContactNames {
             .collect()
     }
 
-    /// Pairs of contacts of two networks that have one name, in the order of the names. `other` are
-    /// the names of the second scene.
+    /// Returns the pairs of contacts of two networks that have the same name, in the order of the
+    /// names. `other` names the contacts of the second network.
     pub fn matched<'a, S: Space>(
         &self,
         network: &'a Network<S>,
@@ -149,8 +148,8 @@ mod tests {
     use crate::step::Simulation;
     use nalgebra::Vector2;
 
-    /// Disks of the bodies 0, 1 and 0 again, and a surface of the body 2; listed the other way
-    /// round contacts have the same names.
+    /// Contacts of disks of the bodies 0, 1 and 0 and a surface of the body 2 have the same names
+    /// when bodies and shapes are listed in reverse order.
     #[test]
     fn names_do_not_depend_on_the_order_of_the_shapes() {
         let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
@@ -183,8 +182,8 @@ mod tests {
         }
     }
 
-    /// Three disks in a row in the order 0, 1, 2, and in another scene in the order 2, 1, 0 of the
-    /// same bodies: both contacts have partners; in a scene without the last disk one has.
+    /// Three disks in a row have the order 0, 1, 2 in one scene, and 2, 1, 0 in another: both
+    /// contacts have partners. In a scene without the last disk one contact has a partner.
     #[test]
     fn contacts_of_one_name_are_matched() {
         let scene = |order: &[u32]| {

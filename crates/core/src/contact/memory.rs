@@ -1,6 +1,6 @@
 //! Memory of bonded contacts: opening, damage, and the laws' internal variables.
 
-use super::events::Life;
+use super::events::BondEnergies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub struct Bond<S: Space> {
     /// Stored energy (J; J/m in 2D).
     pub energy: f64,
     /// Energy history.
-    pub life: Life,
+    pub energies: BondEnergies,
 }
 
 impl<S: Space> Bond<S> {
@@ -49,24 +49,25 @@ impl<S: Space> Bond<S> {
     }
 }
 
-/// How far bonds opened or slid in a step, over all steps of all bonds while they were intact.
+/// How far intact bonds opened or slid per step, over all steps and bonds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Slides {
+pub struct SlideStatistics {
     /// Number of steps of bonds.
     pub steps: u64,
-    /// Sum of the slides (m).
+    /// Sum of the displacements (m).
     pub sum: f64,
-    /// Largest slide (m).
+    /// Largest displacement (m).
     pub largest: f64,
-    /// Sum of the slides, each times the energy that damage released in the step (J m; J in 2D).
+    /// Sum of the displacements, each times the energy that damage released in the step (J m; J in
+    /// 2D).
     pub by_released: f64,
-    /// Sum of these energies (J; J/m in 2D).
+    /// Sum of the released energies (J; J/m in 2D).
     pub released: f64,
 }
 
-impl Slides {
-    /// Adds a step of a bond: its slide (m), and the energy that damage released in it (J; J/m in
-    /// 2D).
+impl SlideStatistics {
+    /// Adds one step of a bond: its displacement (m), and the energy that damage released (J; J/m
+    /// in 2D).
     #[inline]
     pub fn add(&mut self, slide: f64, released: f64) {
         self.steps += 1;
@@ -76,12 +77,12 @@ impl Slides {
         self.released += released;
     }
 
-    /// Mean slide (m).
+    /// Returns the mean displacement (m).
     pub fn mean(&self) -> Option<f64> {
         (self.steps > 0).then(|| self.sum / self.steps as f64)
     }
 
-    /// Mean slide in which energy was released, weighted by that energy (m).
+    /// Returns the mean displacement weighted by released energy (m).
     pub fn mean_by_released(&self) -> Option<f64> {
         (self.released > 0.0).then(|| self.by_released / self.released)
     }
@@ -120,7 +121,7 @@ pub struct Memory<S: Space> {
     /// Number of bonds broken so far.
     pub broken: u64,
     /// How far bonds opened or slid in a step.
-    pub slides: Slides,
+    pub slides: SlideStatistics,
     free: Vec<u32>,
 }
 
@@ -176,7 +177,7 @@ impl<S: Space> Memory<S> {
         self.made += 1;
     }
 
-    /// The slots that are not in use.
+    /// Returns the slots that are not in use.
     pub(super) fn free_slots(&self) -> &[u32] {
         &self.free
     }
@@ -213,7 +214,7 @@ mod tests {
     /// Steps of 1, 2 and 6 m that release 3, 0 and 1 J: 3 m on average, and (3 + 6)/4 m by energy.
     #[test]
     fn slides_have_a_mean_by_steps_and_one_by_energy() {
-        let mut slides = Slides::default();
+        let mut slides = SlideStatistics::default();
         slides.add(2.0, 0.0);
         assert_eq!(
             (slides.mean(), slides.mean_by_released()),
@@ -226,10 +227,10 @@ mod tests {
             (Some(3.0), Some(2.25))
         );
         assert_eq!((slides.steps, slides.largest), (3, 6.0));
-        assert_eq!(Slides::default().mean(), None);
+        assert_eq!(SlideStatistics::default().mean(), None);
     }
 
-    /// A slot that is not in use is the next one that is given, with a new bond.
+    /// A released slot is the next one that is allocated, with a new bond.
     #[test]
     fn slots_are_used_again() {
         let mut network =

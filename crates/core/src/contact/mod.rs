@@ -9,10 +9,10 @@ pub mod spring;
 pub mod step_size;
 pub mod thermal;
 
-pub use events::{Break, ContactDissipation, Life, Loss};
+pub use events::{BondEnergies, Break, ContactDissipation, ContactWear};
 pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
-pub use memory::{Bond, BondState, Memory, Slides};
-pub use network::{Acts, Contact, Key, Network, ShapeIndex};
+pub use memory::{Bond, BondState, Memory, SlideStatistics};
+pub use network::{ActionPoint, Contact, Key, Network, ShapeIndex};
 pub use spring::Spring;
 pub use step_size::{Occurrence, StepSizeDiagnostics};
 pub use thermal::{ContactHeat, ContactTemperature, HeatSide, MaterialPair};

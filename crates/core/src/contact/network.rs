@@ -1,6 +1,6 @@
 //! Contacts of the current step, and the state carried over from the previous one.
 
-use super::events::{Break, ContactDissipation, Loss};
+use super::events::{Break, ContactDissipation, ContactWear};
 use super::memory::{BondState, Memory};
 use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
@@ -108,19 +108,19 @@ impl ShapeIndex {
     }
 }
 
-/// Where the impulse of a contact acts. One place for both bodies, so that it gives them no angular
-/// momentum: where there is a gap, or an overlap, their surfaces are not at one place.
+/// Where the impulse of a contact acts. The impulse acts at one point for both bodies, even where a
+/// gap or an overlap separates their surfaces, so that it gives them no angular momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Acts {
-    /// On either surface: of rigid bodies that touch within the step, and of two surfaces that
-    /// deform, which take up forces at their nodes only.
+pub enum ActionPoint {
+    /// Either surface: for rigid bodies that touch within the step, and for two surfaces that
+    /// deform, whose forces act at their nodes.
     #[default]
     Surfaces,
-    /// In the middle between the surfaces.
+    /// The middle between the surfaces.
     Middle,
-    /// On the surface of the candidate, which deforms.
+    /// The surface of the candidate, which deforms.
     Candidate,
-    /// On the surface of the antagonist, which deforms.
+    /// The surface of the antagonist, which deforms.
     Antagonist,
 }
 
@@ -148,8 +148,8 @@ pub struct Contact<S: Space> {
     pub normal: S::Vector,
     /// Vectors from each body's centre to its surface at the contact (m).
     pub arms: [S::Vector; 2],
-    /// Where its impulse acts, see [`Self::levers`].
-    pub acts: Acts,
+    /// Point at which the impulse acts, see [`Self::levers`].
+    pub action_point: ActionPoint,
     /// Reduced radius r1 r2/(r1 + r2) (m).
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
@@ -161,25 +161,25 @@ pub struct Contact<S: Space> {
     pub formed_at: f64,
     /// Uninterrupted time under a compressive impulse (s).
     pub compression_time: f64,
-    /// Whether it closes within this step, too fast for detection at the start of the step: its gap
-    /// and normal are those at the time of closing, and its impact belongs to this step.
+    /// Whether the contact closes within this step, too fast for detection at the start of the
+    /// step: gap and normal are those at the time of closing, and the impact belongs to this step.
     pub closing: bool,
     /// For a closing contact: whether an earlier impact of the same step changes the motion from
-    /// which it was predicted. It is then only kept from closing, without restitution, and rebounds
-    /// in the next step.
+    /// which it was predicted. The contact is then only kept from closing, without restitution, and
+    /// rebounds in the next step.
     pub later: bool,
-    /// Whether it was beyond the alert distance at the start of the step: only the unilateral
-    /// constraint acts on it, no bond, no cohesion, no wear.
+    /// Whether the contact was beyond the alert distance at the start of the step: only the
+    /// unilateral constraint acts on it, no bond, no cohesion, no wear.
     pub beyond: bool,
     /// Whether friction was at its bound in the last solve (slip).
     pub slides: bool,
     /// Energy dissipated by friction since the contact formed (J).
     pub friction_work: f64,
-    /// Spring, where its law is compliant.
+    /// State of the spring, where the law of the contact is compliant.
     pub spring: Spring<S>,
 }
 
-/// Where two bodies touch.
+/// Geometry of a contact between two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactGeometry<S: Space> {
     /// Gap (m), positive when open.
@@ -220,26 +220,27 @@ impl<S: Space> Contact<S> {
         }
     }
 
-    /// Vectors from each body's centre to where the impulse acts (m).
+    /// Returns the vectors from each body's centre to where the impulse acts (m).
     #[inline]
     pub fn levers(&self) -> [S::Vector; 2] {
         let [i, j] = self.arms;
         let across = |share: f64| self.normal * (share * self.gap);
-        match self.acts {
-            Acts::Surfaces => [i, j],
-            Acts::Middle => [i - across(0.5), j + across(0.5)],
-            Acts::Candidate => [i, j + across(1.0)],
-            Acts::Antagonist => [i - across(1.0), j],
+        match self.action_point {
+            ActionPoint::Surfaces => [i, j],
+            ActionPoint::Middle => [i - across(0.5), j + across(0.5)],
+            ActionPoint::Candidate => [i, j + across(1.0)],
+            ActionPoint::Antagonist => [i - across(1.0), j],
         }
     }
 
-    /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
+    /// Returns whether the contact is within the alert distance or bonded, or was predicted and has
+    /// an impulse.
     pub fn counts(&self) -> bool {
         !self.beyond || self.impulse != S::Vector::zero()
     }
 
-    /// Velocity of the candidate relative to the antagonist, at the current velocities of rigid
-    /// bodies (m/s).
+    /// Returns the velocity of the candidate relative to the antagonist, at the current velocities
+    /// of rigid bodies (m/s).
     #[inline]
     pub fn relative_velocity(&self, bodies: &Bodies<S>) -> S::Vector {
         let [i, j] = self.bodies.map(|b| b as usize);
@@ -249,7 +250,8 @@ impl<S: Space> Contact<S> {
             - S::spin_velocity(&bodies.spin[j], &levers[1])
     }
 
-    /// Mass along the normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
+    /// Returns the mass along the normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot
+    /// move.
     pub fn effective_mass(&self, bodies: &Bodies<S>) -> f64 {
         let (n, levers) = (&self.normal, self.levers());
         let mobility = |side: usize| {
@@ -296,7 +298,7 @@ pub struct Network<S: Space> {
     pub dissipation: Option<Vec<ContactDissipation>>,
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
-    pub losses: Option<Vec<Loss>>,
+    pub losses: Option<Vec<ContactWear>>,
     /// Temperatures and conductances of the contacts in the last step; `None` where no heat is
     /// computed.
     #[serde(skip)]
@@ -310,8 +312,7 @@ pub struct Network<S: Space> {
     pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
-    /// By how much the largest growth of a body (m) has changed distances since the neighbour list
-    /// was built.
+    /// Change of distances by the largest growth of a body since the neighbour list was built (m).
     pub grown: f64,
     /// Number of rebuilds of the neighbour list.
     pub rebuilds: u64,
@@ -339,9 +340,9 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
     pairs.serialize(to)
 }
 
-/// Approximate time to evaluate the energy of a contact's spring (ns).
+/// Approximate time to compute the energy of a contact's spring (ns).
 const ENERGY: f64 = 3.0;
-/// Approximate time to decide whether a contact counts (ns).
+/// Approximate time to decide whether a contact is counted (ns).
 const COUNT: f64 = 2.0;
 
 impl<S: Space> Network<S> {
@@ -401,8 +402,8 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// Returns the number of contacts: those within the alert distance or bonded, and of the
-    /// predicted ones those with an impulse.
+    /// Returns the number of contacts: those within the alert distance or bonded, and predicted
+    /// contacts with an impulse.
     pub fn contact_count(&self, parallel: bool) -> usize {
         let contacts = &self.contacts;
         count(parallel, contacts.len(), COUNT, |k| contacts[k].counts())
@@ -431,7 +432,7 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// The gap of a contact (m), less the rest gap of its bond while that is intact.
+    /// Returns the gap of a contact (m), less the rest gap of its bond while that is intact.
     pub fn open_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap)
@@ -460,7 +461,7 @@ impl<S: Space> Network<S> {
             torn: 0.0,
             damaged: bond.damage >= 1.0,
             damage_before,
-            life: bond.life,
+            energies: bond.energies,
         });
     }
 
@@ -492,8 +493,8 @@ impl<S: Space> Network<S> {
         (self.bonds_broken() as f64 + intact) / made as f64
     }
 
-    /// The gap of the spring of a compliant contact (m), without the part filled by an intact bond.
-    /// An overlap at which a bond formed stays in the spring.
+    /// Returns the gap of the spring of a compliant contact (m), without the part filled by an
+    /// intact bond. An overlap at which a bond formed stays in the spring.
     pub fn spring_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap.max(0.0))
@@ -522,7 +523,7 @@ impl<S: Space> Network<S> {
 mod tests {
     use super::*;
 
-    /// The kind of each side is encoded in its number; a pair is both sides without the feature.
+    /// The number of a contactor encodes its kind; two contactors without the feature name a pair.
     #[test]
     fn a_key_contains_the_kinds_of_its_sides() {
         let (piece, surface) = (Key::PIECE | 3, Key::SURFACE | 4);

@@ -46,7 +46,7 @@ impl Occurrence {
 /// Relative speed of a contact (m/s), or a bound on it where a surface deforms: its body has the
 /// velocity of its origin alone.
 fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
-    /// Speed of any point of a surface over that of its origin, at most.
+    /// Largest assumed ratio of the speed of any point of a surface to that of its origin.
     const ELSEWHERE: f64 = 100.0;
     let at = |side: usize| {
         let b = contact.bodies[side] as usize;
@@ -83,8 +83,8 @@ pub struct StepSizeDiagnostics {
     pub deepest: f64,
     /// First occurrence.
     pub first_late: Option<Occurrence>,
-    /// Number of contacts first found as deep, of bodies that do not move that far in a step: they
-    /// sank into each other, or met from behind a surface.
+    /// Number of contacts first found at such a depth although the bodies do not move that far in a
+    /// step: they sank into each other, or met from behind a surface.
     pub sunk: u64,
     /// Deepest of these penetrations, as a fraction of the radius.
     pub deepest_sunk: f64,
@@ -105,17 +105,17 @@ pub struct StepSizeDiagnostics {
     pub unwatched_steps: u64,
     /// First occurrence.
     pub first_unwatched: Option<Occurrence>,
-    /// Start of the last such step (s).
+    /// Start of the last step in which this happened (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
     /// Number of times that a sliding body hit the edge of a neighbour of its support, which was no
     /// higher than the overlaps in the scene.
     pub edges: u64,
-    /// The highest of them (m).
+    /// Height of the highest such edge (m).
     pub highest_edge: f64,
-    /// Number of convex pieces at the last of them.
+    /// Number of convex pieces in the scene when a body last hit such an edge.
     pub pieces: u64,
-    /// First occurrence.
+    /// First occurrence of such an impact.
     pub first_edge: Option<Occurrence>,
     /// First occurrence of a displacement lost to rounding.
     pub motion_lost: Option<Occurrence>,
@@ -310,8 +310,8 @@ mod tests {
         bodies
     }
 
-    /// Numbers of contacts that are found late and of those that sank, after a contact of 2e-8 m
-    /// between grains of 1e-6 m was found within a second.
+    /// Returns the numbers of contacts found late and of contacts that sank, after a contact with a
+    /// penetration of 2e-8 m between grains of 1e-6 m was found within a second.
     fn late_and_sunk(bodies: &Bodies<Dim2>) -> (u64, u64) {
         let mut found = StepSizeDiagnostics::default();
         let contact = contact(2e-8, 1e-6);
@@ -319,8 +319,8 @@ mod tests {
         (found.late, found.sunk)
     }
 
-    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is not due
-    /// to speed, one of 2 % of the grain is.
+    /// Two surfaces share a facet of 1e-9 m on grains of 1e-6 m: an overlap of twice that length is
+    /// not due to speed, an overlap of 2 % of the grain is.
     #[test]
     fn late_contacts_are_measured_by_their_bodies() {
         let mut bodies = grains(2);
@@ -345,7 +345,7 @@ mod tests {
         }
     }
 
-    /// The limits of speed of a point of a system are those of a body. Of a surface the speed is
+    /// The limits of speed of a point of a system are those of a body. The speed of a surface is
     /// known at its origin only; elsewhere it may be a hundred times as large.
     #[test]
     fn contactors_of_systems_sink_too() {
@@ -376,7 +376,8 @@ mod tests {
         }
     }
 
-    /// A step that is examined twice counts once, and the warning names only what happened.
+    /// A step that is examined twice counts once, and the warning names only the events that
+    /// happened.
     #[test]
     fn unwatched_steps_are_counted_once() {
         let bodies = grains(1);

@@ -3,27 +3,27 @@
 use crate::bodies::Nodes;
 use std::sync::Arc;
 
-/// Where the heat of a contact enters a body.
+/// Nodes at which the heat of a contact enters a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeatSide {
-    /// Nowhere: the body is insulated.
+    /// The body is insulated.
     #[default]
     Insulated,
-    /// At a node.
+    /// Heat enters at a node.
     Node(u32),
-    /// At a point between nodes of a mesh: index in [`ContactHeat::between`].
+    /// Heat enters at a point between nodes of a mesh: index in [`ContactHeat::between`].
     Between(u32),
 }
 
-/// Properties of a pair of materials in contact, the first of the candidate and the second of the
-/// antagonist.
+/// Properties of a pair of materials in contact; the first is the candidate's, the second the
+/// antagonist's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPair {
     /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2
     /// (ohm m).
     pub material: [f64; 2],
-    /// Share of the heat that enters the first, and its weight in the temperature of the contact,
-    /// by effusivities: e1/(e1 + e2).
+    /// Share of the heat that enters the first material, and its weight in the temperature of the
+    /// contact: e1/(e1 + e2) with the effusivities e.
     pub share: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct MaterialPair {
 pub struct ContactTemperature {
     /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
     pub temperature: [f64; 3],
-    /// Where heat enters the candidate and the antagonist.
+    /// Nodes at which heat enters the candidate and the antagonist.
     pub sides: [HeatSide; 2],
     /// Index of its materials in [`ContactHeat::pairs`].
     pub pair: u32,
@@ -51,7 +51,7 @@ pub struct ContactHeat {
     pub conductance: Vec<[f64; 2]>,
     /// Points of meshes to which [`HeatSide::Between`] refers, as sums of nodes with a temperature.
     pub between: Vec<Nodes>,
-    /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
+    /// Heat put in over the step (J; J/m in 2D): by dissipation, and by current.
     pub source: Vec<f64>,
     /// Whether heat or current flows in this step, so that laws compute conductances.
     pub conducts: bool,
@@ -60,7 +60,8 @@ pub struct ContactHeat {
 }
 
 impl ContactHeat {
-    /// The nodes of a side with their weights, whose sum is 1; no nodes if the side is insulated.
+    /// Returns the nodes of a side with their weights, whose sum is 1; no nodes if the side is
+    /// insulated.
     pub fn terms(&self, side: HeatSide) -> impl Iterator<Item = (usize, f64)> + '_ {
         let node = match side {
             HeatSide::Node(node) => Some((node as usize, 1.0)),
@@ -75,8 +76,8 @@ impl ContactHeat {
             .chain(of_mesh.map(|(node, weight)| (node as usize, weight)))
     }
 
-    /// Temperature of a side (K), where `of` gives the temperature of a node (K); `None` if the
-    /// side is insulated.
+    /// Returns the temperature of a side (K), where `of` gives the temperature of a node (K);
+    /// `None` if the side is insulated.
     pub fn temperature_of(&self, side: HeatSide, of: impl Fn(usize) -> f64) -> Option<f64> {
         match side {
             HeatSide::Insulated => None,

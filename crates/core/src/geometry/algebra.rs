@@ -18,14 +18,14 @@ pub fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// A column of vectors of either dimension, read in three components.
+/// A column of vectors of either dimension, read as three components.
 #[derive(Clone, Copy, Debug)]
 pub enum Vectors<'a> {
-    /// Along the third axis: angular velocities and moments in the plane.
+    /// Vectors along the third axis: angular velocities and moments in the plane.
     Depth(&'a [Vector1<f64>]),
-    /// In the plane of the first two axes.
+    /// Vectors in the plane of the first two axes.
     Plane(&'a [Vector2<f64>]),
-    /// In space.
+    /// Vectors in space.
     Space(&'a [Vector3<f64>]),
 }
 
@@ -39,12 +39,12 @@ impl Vectors<'_> {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether the column is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One of them; panics beyond their number.
+    /// Returns the vector at an index; panics beyond the end.
     #[inline]
     pub fn at(&self, place: usize) -> [f64; 3] {
         match self {
@@ -54,7 +54,7 @@ impl Vectors<'_> {
         }
     }
 
-    /// All of them, in order.
+    /// Iterates over all vectors, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + Clone + '_ {
         (0..self.len()).map(|place| self.at(place))
     }
@@ -171,7 +171,7 @@ vector_like!(Vector3<f64>, 3, Space);
 pub trait MatrixLike:
     Copy + Debug + Send + Sync + PartialEq + Add<Output = Self> + Sub<Output = Self> + 'static
 {
-    /// Type of the vectors it acts on.
+    /// Type of the vectors that a matrix multiplies.
     type V: VectorLike;
     /// Returns a diagonal matrix.
     fn diagonal(d: &Self::V) -> Self;

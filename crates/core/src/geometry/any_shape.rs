@@ -25,7 +25,7 @@ impl AnySurface {
         }
     }
 
-    /// The surface in dimension `S`; `None` if it has the other.
+    /// Returns the surface in dimension `S`; `None` if it has the other dimension.
     pub fn into_dimension<S: Space>(self) -> Option<Box<dyn Surface<S>>> {
         match self {
             Self::Plane(surface) => same(surface),
@@ -44,7 +44,7 @@ pub enum AnyPart {
 }
 
 impl AnyPart {
-    /// Centre of mass (m).
+    /// Returns the centre of mass (m).
     pub fn centre(&self) -> [f64; 3] {
         match self {
             Self::Plane(part) => part.centre.padded(),
@@ -52,7 +52,7 @@ impl AnyPart {
         }
     }
 
-    /// Volume including the rounding (m^3; in 2D area times unit depth).
+    /// Returns the volume including the rounding (m^3; in 2D area times unit depth).
     pub fn volume(&self) -> f64 {
         match self {
             Self::Plane(part) => part.volume,
@@ -70,7 +70,7 @@ impl AnyPart {
         self
     }
 
-    /// The part in dimension `S`; `None` if it has the other.
+    /// Returns the part in dimension `S`; `None` if it has the other dimension.
     pub fn into_dimension<S: Space>(self) -> Option<ConvexPart<S>> {
         match self {
             Self::Plane(part) => same(part),
@@ -79,7 +79,7 @@ impl AnyPart {
     }
 }
 
-/// The value under another name of its type; `None` if that is another type.
+/// Returns the value as another type that names the same type; `None` if the types differ.
 pub(crate) fn same<T: 'static, U: 'static>(value: T) -> Option<U> {
     let mut value = Some(value);
     let value: &mut dyn Any = &mut value;

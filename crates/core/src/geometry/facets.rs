@@ -144,7 +144,7 @@ pub fn closest_points_within(
             g.corners.iter().any(over)
         };
         if (inside || length <= tiny) && around(f.part).any(rises) {
-            // At or below the bottom of a crease: behind the planes of all its sides.
+            // The centre is at or below the bottom of a crease, behind the planes of all its sides.
             out.extend(around(f.part).map(|g| {
                 let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
                 ClosestPoint {
@@ -240,7 +240,7 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
 pub struct Ridge {
     /// Ends (m), in the direction of the side of its first facet.
     pub ends: [V; 2],
-    /// Their names.
+    /// Names of the ends.
     pub names: [u64; 2],
     /// The first facet.
     pub facet: u32,

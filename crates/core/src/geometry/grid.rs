@@ -11,7 +11,7 @@ use super::space::VectorLike;
 use crate::threads;
 use std::ops::Range;
 
-/// Balls per task.
+/// Number of balls per task.
 const CHUNK: usize = 1024;
 /// Approximate time for a ball (ns).
 const COST: f64 = 300.0;
@@ -72,11 +72,11 @@ pub fn pairs<V: VectorLike>(
 /// A cell with many balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DenseCell {
-    /// One of them.
+    /// Index of a ball in the cell.
     pub ball: u32,
-    /// Number of balls
+    /// Number of balls in the cell.
     pub count: usize,
-    /// within a cell of this size (m).
+    /// Size of the cell (m).
     pub size: f64,
 }
 
@@ -171,7 +171,7 @@ impl<V: VectorLike> Levels<V> {
         if grid.crowd() <= CROWDED {
             return one(grid);
         }
-        // From large to small, as far as there are balls.
+        // The levels go from large to small balls, as far as there are balls.
         let class = |radius: f64| {
             let ratio = width(widest) / width(radius);
             // The exponent is monotonic in the ratio: a lower level contains no larger ball.

@@ -1,7 +1,7 @@
 //! A rough surface in 3D: heights on a regular grid, solid below.
 
 use super::facets::{self, Facet};
-use super::recede::{Recede, Shares, Vertex};
+use super::recede::{Recede, Vertex, VertexShares};
 use super::shape::{ClosestPoint, Fan, Surface};
 use super::space::Dim3;
 use nalgebra::Vector3;
@@ -211,7 +211,7 @@ impl Recede<Dim3> for HeightField {
         tributary.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn shares(&self, closest_point: &V) -> Shares {
+    fn shares(&self, closest_point: &V) -> VertexShares {
         // The cell, and the position in it.
         let place = |axis: usize| {
             let x = closest_point[axis] / self.spacing[axis];

@@ -1,12 +1,12 @@
-//! The geometry of a contact, of several contacts at once.
+//! The geometry of contacts, evaluated for several contacts at once.
 
 use super::algebra::{MatrixLike, VectorLike};
 use super::space::{Dim2, Dim3};
 use crate::lanes::{Lane, LaneArray, LaneMatrix, LaneVector, Square};
 use std::fmt::Debug;
 
-/// A dimension of space, see [`Space`](super::space::Space), with vectors of which each component
-/// is that of several contacts.
+/// A dimension of space, see [`Space`](super::space::Space), with vectors in which each component
+/// holds the values of several contacts.
 pub trait LaneSpace: Copy + Debug + 'static {
     /// A velocity or an impulse.
     type V<L: Lane>: LaneVector<L>;
@@ -17,23 +17,24 @@ pub trait LaneSpace: Copy + Debug + 'static {
     /// An inertia tensor.
     type I<L: Lane>: LaneMatrix<L, V = Self::T<L>>;
 
-    /// The tangential part of a vector, given with its normal component.
+    /// Returns the tangential part of a vector, given with its normal component.
     fn across<L: Lane>(n: &Self::V<L>, v: &Self::V<L>, normal: L) -> Self::T<L>;
     /// The vector of a normal and a tangential part.
     fn joined<L: Lane>(n: &Self::V<L>, normal: L, t: &Self::T<L>) -> Self::V<L>;
-    /// omega x n as a tangential part.
+    /// Returns omega x n as a tangential part.
     fn rolled<L: Lane>(spin: &Self::T<L>, n: &Self::V<L>) -> Self::T<L>;
-    /// n x p_t as a spin.
+    /// Returns n x p_t as a spin.
     fn twisted<L: Lane>(n: &Self::V<L>, t: &Self::T<L>) -> Self::T<L>;
-    /// omega x arm.
+    /// Returns omega x arm.
     fn turning_velocity<L: Lane>(spin: &Self::T<L>, arm: &Self::V<L>) -> Self::V<L>;
-    /// arm x force.
+    /// Returns arm x force.
     fn moment_of<L: Lane>(arm: &Self::V<L>, force: &Self::V<L>) -> Self::T<L>;
-    /// Two tangents that form a right-handed frame with `n`; in 2D one is enough, which is implied.
+    /// Returns two tangents that form a right-handed frame with `n`; in 2D one, the second is not
+    /// used.
     fn frame<L: Lane>(n: &Self::V<L>) -> [Self::V<L>; 2];
     /// The components of a tangential part along [`Self::frame`].
     fn frame_components<L: Lane>(tangents: &[Self::V<L>; 2], t: &Self::T<L>) -> [L; 2];
-    /// A tangential part from its components.
+    /// Returns a tangential part from its components.
     fn from_frame<L: Lane>(tangents: &[Self::V<L>; 2], t: [L; 2]) -> Self::T<L>;
 }
 
@@ -145,7 +146,7 @@ pub(crate) fn matrix_lanes_of<L: Lane, M: LaneMatrix<L>>(m: &impl MatrixLike) ->
     M::from_fn(|i, j| L::all(m.entry(i, j)))
 }
 
-/// The vector of one contact.
+/// Returns the vector of one contact.
 #[inline(always)]
 pub(crate) fn vector_of<V: VectorLike>(lanes: &impl LaneVector<f64>) -> V {
     let mut out = V::zero();

@@ -11,25 +11,25 @@ use rstar::{AABB, RTree};
 use std::collections::HashMap;
 
 type V = Vector3<f64>;
-pub(super) type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+pub(super) type TriangleBox = GeomWithData<Rectangle<[f64; 3]>, u32>;
 
 /// Triangles with shared corners, anticlockwise seen from the open side.
 #[derive(Debug)]
 pub struct Mesh {
     pub(super) points: Vec<V>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) tree: RTree<Placed>,
-    /// The triangles on the other side of the edges of each, from its first corner on.
+    pub(super) tree: RTree<TriangleBox>,
+    /// Triangles adjacent to each triangle at its edges, starting at its first corner.
     beside: Vec<[Option<u32>; 3]>,
-    /// Whether its points move.
+    /// Whether the points move.
     pub(super) deforms: bool,
-    /// Whether it encloses a grain.
+    /// Whether the surface encloses a grain.
     closed: bool,
-    /// Wear, if it can recede.
+    /// Wear data, if the surface can recede.
     pub(super) worn: Option<MeshWear>,
 }
 
-/// Share of an edge of a grain within which a place is at its end.
+/// Fraction of an edge of a grain within which a position counts as its end.
 const AT_CORNER: f64 = 1e-11;
 
 /// Reason why triangles do not form a surface.
@@ -38,7 +38,7 @@ pub enum MeshError {
     /// No triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// More triangles than names can distinguish.
+    /// The mesh has more triangles than names can distinguish.
     #[error(
         "the mesh has {0} triangles, more than the limit of {MAX_TRIANGLES}; use a coarser one"
     )]
@@ -63,11 +63,11 @@ pub enum MeshError {
 pub const MAX_TRIANGLES: usize = 1 << 28;
 
 /// Bounding boxes of the triangles.
-fn boxes(points: &[V], triangles: &[[u32; 3]]) -> RTree<Placed> {
+fn boxes(points: &[V], triangles: &[[u32; 3]]) -> RTree<TriangleBox> {
     let placed = triangles.iter().enumerate().map(|(k, t)| {
         let corners = t.map(|c| <[f64; 3]>::from(points[c as usize]));
         let bounds = AABB::from_points(&corners);
-        Placed::new(Rectangle::from_aabb(bounds), k as u32)
+        TriangleBox::new(Rectangle::from_aabb(bounds), k as u32)
     });
     RTree::bulk_load(placed.collect())
 }
@@ -139,14 +139,14 @@ impl Mesh {
         })
     }
 
-    /// Lets it recede along z, if all of its triangles face up, or all down.
+    /// Permits the surface to recede along z, if all of its triangles face up, or all down.
     #[must_use]
     pub fn with_wear(mut self) -> Self {
         self.worn = MeshWear::new(&self.points, &self.triangles);
         self
     }
 
-    /// Builds the bounding boxes of the triangles where these are now.
+    /// Builds the bounding boxes of the triangles at their current positions.
     pub(super) fn build_boxes(&mut self) {
         self.tree = boxes(&self.points, &self.triangles);
     }
@@ -161,8 +161,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Returns the facets at a vertex on the border, of which one is known; `None` for a vertex
-    /// inside.
+    /// Returns the facets at a vertex on the border, given one of them; `None` for a vertex inside.
     fn around(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
         let (mut found, mut next, mut border) = (vec![known], 0, false);
         while next < found.len() {
@@ -199,7 +198,7 @@ impl Surface<Dim3> for Mesh {
     fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
-        // Grains may stand on each other with corners in line.
+        // Grains may stand on each other with their corners aligned.
         let at_corner = if self.closed { AT_CORNER } else { 0.0 };
         facets::closest_points_within(&near, centre, reach, at_corner, out);
     }
@@ -332,7 +331,7 @@ mod tests {
 
     #[test]
     fn a_ball_touches_faces_edges_and_corners_once() {
-        // Above a face, including its diagonal seam.
+        // The centre is above a face, or above its diagonal seam.
         for at in [[0.3, 0.1, 1.2], [0.25, 0.25, 1.2], [-0.5, 0.5, 1.2]] {
             let t = closest_points(at, 0.5);
             assert_eq!(t.len(), 1, "{t:?}");

@@ -1,7 +1,7 @@
 //! Shapes, distances and the neighbour search.
 pub mod algebra;
 pub mod any_shape;
-mod boxes;
+mod box_tree;
 mod cells;
 pub mod convex;
 pub mod crossing;

@@ -29,7 +29,7 @@
 //! Appl. Mech. Eng. 193 (2004) 601 (facets in space); T. Cichosz and M. Bischoff, Comput. Methods
 //! Appl. Mech. Eng. 200 (2011) 1317 (facets that are covered in part).
 
-use super::overlap::{Along, integrate, shape_functions, signed_size};
+use super::overlap::{TangentialPoint, integrate, shape_functions, signed_size};
 
 /// Negligible fraction of a facet, for its covered part, the part covered twice, and the distance
 /// of the point from the other surface.
@@ -55,7 +55,7 @@ pub struct Star {
 #[derive(Clone, Debug, Default)]
 struct StarFacet {
     /// D corners.
-    corners: [Along; 3],
+    corners: [TangentialPoint; 3],
     count: usize,
     /// Index of the point among them.
     point: usize,
@@ -64,8 +64,8 @@ struct StarFacet {
     /// Size of the covered part, and the integrals over it of the coordinates, of their squares,
     /// and of their product.
     covered: f64,
-    first: Along,
-    squares: Along,
+    first: TangentialPoint,
+    squares: TangentialPoint,
     product: f64,
     /// Integrals over the covered part for vertices of the other surface.
     vertices: Vec<VertexIntegral>,
@@ -81,7 +81,7 @@ struct VertexIntegral {
     /// Integral of the shape function.
     plain: f64,
     /// Integrals of its products with the coordinates.
-    moments: Along,
+    moments: TangentialPoint,
     /// Integral of its product with the shape function of the point.
     with_point: f64,
 }
@@ -89,7 +89,7 @@ struct VertexIntegral {
 /// The vertices of another surface that a point faces, in increasing order; weights and shares each
 /// sum to 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Faced {
+pub struct FacedVertices {
     /// Weights of the mean position.
     pub weights: Vec<(u32, f64)>,
     /// Fractions of the worn volume; none is negative.
@@ -116,7 +116,7 @@ fn normalised(mut all: Vec<(u32, f64)>) -> Option<Vec<(u32, f64)>> {
 }
 
 /// Returns the range of corners along an axis (m).
-fn range(corners: &[Along], axis: usize) -> [f64; 2] {
+fn range(corners: &[TangentialPoint], axis: usize) -> [f64; 2] {
     let along = corners.iter().map(|c| c[axis]);
     along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [low.min(x), high.max(x)]
@@ -124,12 +124,12 @@ fn range(corners: &[Along], axis: usize) -> [f64; 2] {
 }
 
 impl StarFacet {
-    fn corners(&self) -> &[Along] {
+    fn corners(&self) -> &[TangentialPoint] {
         &self.corners[..self.count]
     }
 
     /// Adds the integrals over the overlap with a facet of the other surface; returns its size.
-    fn add_overlap(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
+    fn add_overlap(&mut self, vertices: &[u32], at: &[TangentialPoint]) -> f64 {
         let own = self.corners;
         let (mut covered, mut parts) = (0.0, [VertexIntegral::default(); 3]);
         integrate(&own[..self.count], at, |t, weight| {
@@ -158,7 +158,7 @@ impl StarFacet {
     }
 
     /// Returns b and c of the dual function; `None` if no length or area is covered.
-    fn dual(&self) -> Option<(Along, f64)> {
+    fn dual(&self) -> Option<(TangentialPoint, f64)> {
         if self.covered <= ROUNDING * self.size {
             return None;
         }
@@ -186,10 +186,10 @@ impl Star {
     /// the point among them. Facets that do not face a surface of positive facets are left out;
     /// `None` if no facet remains.
     pub fn new(
-        facets: impl IntoIterator<Item = ([Along; 3], usize)>,
+        facets: impl IntoIterator<Item = ([TangentialPoint; 3], usize)>,
         count: usize,
     ) -> Option<Self> {
-        let facet = |(corners, point): ([Along; 3], usize)| {
+        let facet = |(corners, point): ([TangentialPoint; 3], usize)| {
             let size = -signed_size(&corners[..count]);
             (size > 0.0).then(|| StarFacet {
                 corners,
@@ -205,8 +205,8 @@ impl Star {
     }
 
     /// Returns whether a facet of the other surface may overlap those at the point.
-    pub fn is_near(&self, at: &[Along]) -> bool {
-        let meets = |own: &[Along]| {
+    pub fn is_near(&self, at: &[TangentialPoint]) -> bool {
+        let meets = |own: &[TangentialPoint]| {
             (0..2).all(|axis| {
                 let [from, to] = range(own, axis);
                 let [low, high] = range(at, axis);
@@ -218,7 +218,7 @@ impl Star {
 
     /// Adds a facet of the other surface, by its D vertices and their coordinates; returns whether
     /// it covers a part of a facet at the point.
-    pub fn add_facet(&mut self, vertices: &[u32], at: &[Along]) -> bool {
+    pub fn add_facet(&mut self, vertices: &[u32], at: &[TangentialPoint]) -> bool {
         let mut covers = false;
         for facet in &mut self.facets {
             covers |= facet.add_overlap(vertices, at) > ROUNDING * facet.size;
@@ -230,14 +230,14 @@ impl Star {
 
     /// Returns the vertices of the other surface that the point faces; `None` if it faces two
     /// layers of the surface, or is beyond its border.
-    pub fn faced(&self) -> Option<Faced> {
+    pub fn faced(&self) -> Option<FacedVertices> {
         self.faced_in_part().filter(|_| self.covered)
     }
 
     /// Returns the vertices of the other surface that the point or the facets at it face. Beyond
     /// the border of the surface the covered parts of the facets count, down to about half of one
     /// facet.
-    pub fn faced_in_part(&self) -> Option<Faced> {
+    pub fn faced_in_part(&self) -> Option<FacedVertices> {
         let twice = |f: &StarFacet| f.covered > (1.0 + ROUNDING) * f.size;
         if self.facets.iter().any(twice) {
             return None;
@@ -262,7 +262,7 @@ impl Star {
             .iter_mut()
             .for_each(|(_, share)| *share = share.max(0.0));
         let shares = normalised(shares)?;
-        Some(Faced { weights, shares })
+        Some(FacedVertices { weights, shares })
     }
 }
 

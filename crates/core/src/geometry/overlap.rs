@@ -1,21 +1,21 @@
 //! Quadrature over the overlap of two segments of a line, or of two triangles of a plane, exact for
 //! quadratic functions.
 
-/// A place in the coordinates along a contact (m); in the plane, where that is a line, the second
-/// is zero.
-pub type Along = [f64; 2];
+/// A position in the coordinates along a contact (m); in the plane, where that is a line, the
+/// second coordinate is zero.
+pub type TangentialPoint = [f64; 2];
 
 /// Maximum number of corners of the overlap of two triangles; clipping by a side adds one.
 const CORNERS: usize = 9;
 
-/// Twice the area of a triangle, positive where its corners are anticlockwise (m^2).
-fn twice_area(a: Along, b: Along, c: Along) -> f64 {
+/// Returns twice the area of a triangle, positive where its corners are anticlockwise (m^2).
+fn twice_area(a: TangentialPoint, b: TangentialPoint, c: TangentialPoint) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Length of a segment (m), positive where it goes up, or area of a triangle (m^2), positive where
-/// it is anticlockwise.
-pub fn signed_size(corners: &[Along]) -> f64 {
+/// Returns the length of a segment (m), positive where it goes up, or the area of a triangle (m^2),
+/// positive where it is anticlockwise.
+pub fn signed_size(corners: &[TangentialPoint]) -> f64 {
     match corners {
         [a, b] => b[0] - a[0],
         [a, b, c] => 0.5 * twice_area(*a, *b, *c),
@@ -23,9 +23,9 @@ pub fn signed_size(corners: &[Along]) -> f64 {
     }
 }
 
-/// The shape functions of a segment or triangle at a place; those of the third corner are zero on a
-/// segment.
-pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
+/// Returns the shape functions of a segment or triangle at a position; that of the third corner is
+/// zero on a segment.
+pub fn shape_functions(corners: &[TangentialPoint], at: TangentialPoint) -> [f64; 3] {
     match corners {
         [a, b] => {
             let s = (at[0] - a[0]) / (b[0] - a[0]);
@@ -40,9 +40,13 @@ pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
     }
 }
 
-/// Calls a function with places and weights (m or m^2) whose sum over a quadratic function is its
-/// integral over the overlap of two segments or two triangles of any orientations.
-pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64)) {
+/// Calls a function with positions and weights (m or m^2) whose sum over a quadratic function is
+/// its integral over the overlap of two segments or two triangles of any orientations.
+pub fn integrate(
+    one: &[TangentialPoint],
+    other: &[TangentialPoint],
+    mut call: impl FnMut(TangentialPoint, f64),
+) {
     match (one, other) {
         ([a, b], [c, d]) => {
             let from = a[0].min(b[0]).max(c[0].min(d[0]));
@@ -57,7 +61,8 @@ pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64
         }
         ([a, b, c], [d, e, f]) => {
             let (polygon, count) = common([*a, *b, *c], [*d, *e, *f]);
-            let middle = |p: Along, q: Along| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+            let middle =
+                |p: TangentialPoint, q: TangentialPoint| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
             for k in 2..count {
                 let [p, q, r] = [polygon[0], polygon[k - 1], polygon[k]];
                 let third = 0.5 * twice_area(p, q, r).abs() / 3.0;
@@ -72,11 +77,14 @@ pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64
     }
 }
 
-/// The convex polygon that two triangles have in common, and the number of its corners.
+/// Returns the convex polygon that two triangles have in common, and the number of its corners.
 ///
 /// Source: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974)
 /// 32.
-fn common(one: [Along; 3], other: [Along; 3]) -> ([Along; CORNERS], usize) {
+fn common(
+    one: [TangentialPoint; 3],
+    other: [TangentialPoint; 3],
+) -> ([TangentialPoint; CORNERS], usize) {
     let [a, b, c] = one;
     let sides = match twice_area(a, b, c) > 0.0 {
         true => [[a, b], [b, c], [c, a]],
@@ -113,7 +121,7 @@ mod tests {
     use super::*;
 
     /// Returns the integrals of 1, x and y^2 over the overlap.
-    fn integrals(one: &[Along], other: &[Along]) -> [f64; 3] {
+    fn integrals(one: &[TangentialPoint], other: &[TangentialPoint]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         integrate(one, other, |at, weight| {
             sum[0] += weight;

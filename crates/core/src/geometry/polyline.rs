@@ -1,22 +1,23 @@
 //! The profile of a first body in 2D: a chain of segments, solid on its right-hand side.
 
-use super::boxes::{Boxes, Window};
-use super::recede::{Recede, Shares, Vertex};
+use super::box_tree::{BoundingBox, BoxTree};
+use super::recede::{Recede, Vertex, VertexShares};
 use super::shape::{ClosestPoint, Corner, Fan, Surface, at_vertex};
 use super::space::Dim2;
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Distance from a vertex, relative to its segment, up to which it is one of rounding.
+/// Distance from a vertex, relative to its segment, that counts as rounding.
 const AT_VERTEX: f64 = 1e-9;
 
-/// How far below the line of the last segment of a surface that deforms a point beyond its end may
-/// be and still lie in it, as a fraction of the segment: more than loads press it in. What is lower
-/// is beside the surface.
+/// Depth below the line of the last segment of a deformable surface at which a point beyond its end
+/// still counts as inside, as a fraction of the segment: larger than the penetration by loads. A
+/// deeper point is beside the surface.
 const BELOW: f64 = 0.25;
 
-/// Points of a closed chain are one if they are closer than this share of the search distance.
+/// Points of a closed chain count as one if they are closer than this fraction of the search
+/// distance.
 const SEAM: f64 = 1e-9;
 
 /// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it
@@ -30,13 +31,13 @@ const MARGIN: f64 = 0.25;
 pub struct Polyline {
     points: Vec<V>,
     period: Option<f64>,
-    /// Whether it is closed: its last point is its first.
+    /// Whether the chain is closed: its last point is its first.
     closed: bool,
-    boxes: Boxes,
+    boxes: BoxTree,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<ProfileWear>,
-    /// Where the points were when the boxes were built, and the margin of these (m); `None` unless
-    /// the profile deforms.
+    /// Positions of the points when the boxes were built, and the margin of the boxes (m); `None`
+    /// unless the profile deforms.
     deformed: Option<(Vec<V>, f64)>,
 }
 
@@ -130,7 +131,7 @@ impl Polyline {
             points,
             period,
             closed,
-            boxes: Boxes::default(),
+            boxes: BoxTree::default(),
             worn: None,
             deformed: None,
         };
@@ -141,7 +142,7 @@ impl Polyline {
     /// Builds the bounding boxes of the segments, with a margin along each axis (m).
     fn index(&mut self, margin: [f64; 2]) {
         let margin = V::from(margin);
-        let of = |ends: &[V]| Window {
+        let of = |ends: &[V]| BoundingBox {
             low: ends[0].inf(&ends[1]) - margin,
             high: ends[0].sup(&ends[1]) + margin,
         };
@@ -150,13 +151,13 @@ impl Polyline {
 
     /// Calls `each` with the segments whose boxes meet a window, and their shifts along x (m),
     /// until it returns false.
-    fn visit(&self, window: &Window, mut each: impl FnMut(usize, f64) -> bool) {
+    fn visit(&self, bounds: &BoundingBox, mut each: impl FnMut(usize, f64) -> bool) {
         let Some(period) = self.period else {
-            self.boxes.visit(window, &mut |k| each(k, 0.0));
+            self.boxes.visit(bounds, &mut |k| each(k, 0.0));
             return;
         };
         for shift in [-period, 0.0, period] {
-            let image = window.shifted(-shift);
+            let image = bounds.shifted(-shift);
             if !self.boxes.visit(&image, &mut |k| each(k, shift)) {
                 return;
             }
@@ -209,7 +210,7 @@ impl Surface<Dim2> for Polyline {
     fn closest_points(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (c, shift) = self.wrapped(centre);
         let start = out.len();
-        self.visit(&Window::around(&c, reach), |segment, image| {
+        self.visit(&BoundingBox::around(&c, reach), |segment, image| {
             let k = segment as u32;
             let [a, b] = self.segment(segment, image);
             let along = b - a;
@@ -246,8 +247,8 @@ impl Surface<Dim2> for Polyline {
             let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
             let length = from.norm();
             if length < reach && nearest {
-                // At the vertex itself, and behind one that is no valley, a direction from the
-                // vertex means nothing.
+                // At the vertex itself, and behind a vertex that is not a valley, the direction
+                // from the vertex is meaningless.
                 let of = |v: V| V::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
                 let level = from.dot(&mean) >= -BELOW * along.norm();
@@ -290,7 +291,7 @@ impl Surface<Dim2> for Polyline {
     fn near(&self, centre: &V, reach: f64) -> bool {
         let (c, _) = self.wrapped(centre);
         let mut any = false;
-        self.visit(&Window::around(&c, reach), |_, _| {
+        self.visit(&BoundingBox::around(&c, reach), |_, _| {
             any = true;
             false
         });
@@ -301,12 +302,12 @@ impl Surface<Dim2> for Polyline {
         // The chain's images are one period to each side.
         let middle = (low + high) * 0.5;
         let (_, shift) = self.wrapped(&middle);
-        let window = Window {
+        let bounds = BoundingBox {
             low: V::new(low.x - shift, low.y),
             high: V::new(high.x - shift, high.y),
         };
         let first = out.len();
-        self.visit(&window, |k, image| {
+        self.visit(&bounds, |k, image| {
             let [a, b] = self.segment(k, image);
             let at = b + V::new(shift, 0.0);
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
@@ -340,7 +341,7 @@ impl Surface<Dim2> for Polyline {
 
     fn fan(&self, at: &V, within: f64, out: &mut Fan<V>) {
         let (c, _) = self.wrapped(at);
-        self.visit(&Window::around(&c, within), |k, image| {
+        self.visit(&BoundingBox::around(&c, within), |k, image| {
             let [a, b] = self.segment(k, image);
             let along = b - a;
             let length = along.norm();
@@ -461,7 +462,7 @@ impl Recede<Dim2> for Polyline {
         })
     }
 
-    fn shares(&self, closest_point: &V) -> Shares {
+    fn shares(&self, closest_point: &V) -> VertexShares {
         let (closest_point, _) = self.wrapped(closest_point);
         let (n, to) = (self.segments(), self.direction());
         let passed = self

@@ -21,7 +21,7 @@ pub struct Vertex<V> {
 }
 
 /// Up to three vertices and the fraction of a volume that each takes; the fractions add up to 1.
-pub type Shares = [(usize, f64); 3];
+pub type VertexShares = [(usize, f64); 3];
 
 /// A surface whose vertices recede along the last axis of its frame.
 pub trait Recede<S: Space> {
@@ -33,7 +33,7 @@ pub trait Recede<S: Space> {
     }
     /// Returns the vertices around a point of the surface, with the linear shape functions of its
     /// segment or triangle.
-    fn shares(&self, closest_point: &S::Vector) -> Shares;
+    fn shares(&self, closest_point: &S::Vector) -> VertexShares;
     /// Moves the given vertices to their depths (m) below their initial positions. Returns the
     /// largest displacement (m).
     fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64;

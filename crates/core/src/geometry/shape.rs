@@ -24,7 +24,7 @@ pub struct Ball<S: Space> {
 }
 
 /// Share of its area that a vertex has at least in a contact: sizes are positive.
-const LEAST_SHARE: f64 = 1e-6;
+const MIN_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
     /// Returns half of the thickness (m): the radius, or for a point of a surface half of its
@@ -59,7 +59,7 @@ impl<S: Space> Ball<S> {
         if self.area == S::Vector::zero() {
             return self.contact_radius(lengths);
         }
-        let least = LEAST_SHARE * self.area.norm();
+        let least = MIN_SHARE * self.area.norm();
         point_radius(S::D, least.max(-self.area.dot(normal)))
     }
 }
@@ -73,8 +73,8 @@ pub fn point_radius(dimension: usize, area: f64) -> f64 {
     }
 }
 
-/// Size of the contact of two balls of these radii (m), which are not both zero: half their
-/// harmonic mean; of a point its size.
+/// Returns the size of the contact of two balls of these radii (m), which are not both zero: half
+/// their harmonic mean; for a point (radius zero) its size.
 pub fn reduced_radius(radii: [f64; 2], sizes: [f64; 2]) -> f64 {
     match radii {
         [0.0, _] => sizes[0],
@@ -120,10 +120,10 @@ pub struct Fan<V> {
 /// A facet of a surface that deforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingFacet {
-    /// Its D vertices, by their places in [`Surface::moving_vertices`]: outside is where they are
-    /// anticlockwise, in the plane on their left.
+    /// D vertices of the facet, as indices into [`Surface::moving_vertices`]. Seen from outside
+    /// they are counter-clockwise; in 2D the outside is on their left.
     pub vertices: [u32; 3],
-    /// The facets on the other side of its edges, in the plane before and after it.
+    /// The facets beyond its edges; in 2D the facets before and after it.
     pub beside: [Option<u32>; 3],
 }
 
@@ -175,8 +175,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn is_hollow(&self) -> bool {
         false
     }
-    /// Returns how much farther from a hollow surface the second of two places is than the first
-    /// (m).
+    /// Returns by how much the second of two positions is farther from a hollow surface than the
+    /// first (m).
     fn distance_gained(&self, _from: &S::Vector, _to: &S::Vector) -> f64 {
         0.0
     }
@@ -188,7 +188,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<S>> {
         None
     }
-    /// Takes new places of its vertices (m), all of them in their order, of a surface that deforms;
+    /// Sets new positions of the vertices of a surface that deforms (m), all in their order; does
     /// nothing for others.
     fn move_vertices(&mut self, _vertices: &[S::Vector]) {}
     /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows
@@ -243,9 +243,9 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
         nearest.filter(|touch| touch.distance < 0.0)
     }
-    /// Returns whether it deforms. Flat sides and balls then touch every vertex within reach: the
-    /// nearest one is so until it is loaded, and with a contact on that alone the load would go
-    /// from one vertex to the next and back in each step.
+    /// Returns whether the surface deforms. Flat sides and balls then touch every vertex within
+    /// reach: a vertex is the nearest one only until it is loaded, and if only the nearest one were
+    /// in contact, the load would alternate between vertices in each step.
     fn deforms(&self) -> bool {
         !self.moving_vertices().is_empty()
     }
@@ -265,7 +265,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     }
 }
 
-/// A vertex as the nearest point to a ball in front of it, where it is within `reach` (m).
+/// Returns a vertex as the nearest point to a ball in front of it, where it is within `reach` (m).
 pub(super) fn at_vertex<V: VectorLike>(
     vertex: V,
     outward: &V,

@@ -115,11 +115,13 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     fn ball_radius(volume: f64) -> f64 {
         (volume / Self::ball_volume(1.0)).powf(1.0 / Self::D as f64)
     }
-    /// Moment of inertia of a homogeneous ball divided by m r^2: 1/2 for a disk, 2/5 for a sphere.
+    /// Returns the moment of inertia of a homogeneous ball divided by m r^2: 1/2 for a disk, 2/5
+    /// for a sphere.
     const BALL_INERTIA: f64;
 }
 
-/// Components of an angular velocity or a moment about world axes; in 2D about the third alone.
+/// Returns the components of an angular velocity or a moment about world axes; in 2D only the third
+/// is nonzero.
 pub fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
     match spin.padded() {
         [about_depth, ..] if S::D == 2 => [0.0, 0.0, about_depth],
@@ -127,13 +129,13 @@ pub fn about_axes<S: Space>(spin: &S::Spin) -> [f64; 3] {
     }
 }
 
-/// The angular velocity or moment with these components about world axes; in 2D that about the
-/// third.
+/// Returns the angular velocity or moment with these components about world axes; in 2D that about
+/// the third.
 pub fn spin_about<S: Space>(axes: &[f64; 3]) -> S::Spin {
     S::Spin::from_slice(&axes[3 - S::Spin::N..])
 }
 
-/// The volume of a ball in a space of so many dimensions; see [`Space::ball_volume`].
+/// Returns the volume of a ball in a space of this dimension; see [`Space::ball_volume`].
 pub fn ball_volume(dimension: usize, radius: f64) -> f64 {
     match dimension {
         2 => Dim2::ball_volume(radius),
@@ -436,8 +438,8 @@ impl Space for Dim3 {
     }
 }
 
-/// The rotation by a rotation vector (rad). Rotations of a step are small: sine and cosine by
-/// series that are exact to round-off there.
+/// Returns the rotation by a rotation vector (rad). Rotations of a step are small: sine and cosine
+/// use series that are exact to round-off there.
 #[inline]
 fn from_scaled_axis(angle: &Vector3<f64>) -> nalgebra::UnitQuaternion<f64> {
     /// Squared half angle below which the next terms are below round-off.

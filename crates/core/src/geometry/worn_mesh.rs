@@ -3,13 +3,13 @@
 
 use super::facets;
 use super::mesh::Mesh;
-use super::recede::{Recede, Shares, Vertex};
+use super::recede::{Recede, Vertex, VertexShares};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// Cosine of the angle to z from which on a triangle is vertical.
+/// Cosine of the angle to z below which a triangle counts as vertical.
 const VERTICAL: f64 = 1e-9;
 
 /// Heights without wear, and depths along z (m).
@@ -34,7 +34,7 @@ impl MeshWear {
         })
     }
 
-    /// Takes the places of points without wear, and lowers them by their depths.
+    /// Updates the positions of points without wear, and lowers them by their depths.
     pub(super) fn lower(&mut self, points: &mut [V]) {
         for (k, point) in points.iter_mut().enumerate() {
             self.first[k] = point.z;
@@ -87,7 +87,7 @@ impl Recede<Dim3> for Mesh {
         tributary.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn shares(&self, closest_point: &V) -> Shares {
+    fn shares(&self, closest_point: &V) -> VertexShares {
         let mut best = (f64::INFINITY, u32::MAX, [0.0; 3]);
         let place: [f64; 3] = (*closest_point).into();
         for (found, apart) in self.tree.nearest_neighbor_iter_with_distance_2(place) {
@@ -137,8 +137,8 @@ mod tests {
     use super::*;
     use crate::geometry::shape::Surface;
 
-    /// Triangles of a plate of 5 by 4 points of unequal spacing, with heights, that faces up or
-    /// down.
+    /// Returns triangles of a plate of 5 by 4 points of unequal spacing, with heights, that faces
+    /// up or down.
     fn plate(up: bool) -> (Vec<V>, Vec<[u32; 3]>) {
         let point = |k: u32| {
             let (x, y) = (f64::from(k % 5), f64::from(k / 5));
@@ -159,7 +159,7 @@ mod tests {
         Mesh::new(points, triangles).unwrap().with_wear()
     }
 
-    /// Volume between the triangles and z = 0, negative where they face down.
+    /// Returns the volume between the triangles and z = 0, negative where they face down.
     fn volume(mesh: &Mesh) -> f64 {
         let prism = |t: &Vec<V>| {
             let area = 0.5 * (t[1] - t[0]).cross(&(t[2] - t[0])).z;
@@ -219,14 +219,14 @@ mod tests {
         mesh.move_vertices(&moved);
         assert_eq!(mesh.points[7], moved[7] - V::new(0.0, 0.0, 0.4));
         assert_eq!(mesh.points[8], moved[8]);
-        // Wear is measured from where the surface would be without it.
+        // Wear is measured from the unworn position of the surface.
         mesh.recede(&[0.5; 20], &[7]);
         assert_eq!(mesh.points[7], moved[7] - V::new(0.0, 0.0, 0.5));
         mesh.move_vertices(&plate(true).0);
         for (a, b) in mesh.vertices().iter().zip(&first) {
             assert_eq!(a.at, b.at);
         }
-        // Contacts are found where it is now.
+        // Contacts are found at the current position of the surface.
         let mut out = Vec::new();
         let at = mesh.points[7] + V::new(0.0, 0.0, 1e-3);
         mesh.closest_points(&at, 0.01, &mut out);

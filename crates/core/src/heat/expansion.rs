@@ -5,8 +5,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::Range;
 
-/// alpha (T - T_0) by the coefficient (1/K) and the difference of temperature (K); no body shrinks
-/// to less than a tenth.
+/// Returns alpha (T - T_0) from the coefficient (1/K) and the difference of temperature (K),
+/// limited so that no body shrinks to less than a tenth.
 pub fn free_strain(coefficient: f64, difference: f64) -> f64 {
     (coefficient * difference).max(-0.9)
 }
@@ -16,9 +16,9 @@ pub fn free_strain(coefficient: f64, difference: f64) -> f64 {
 struct ShapeAtRest<C, V> {
     core: C,
     offset: V,
-    /// Radius of a ball; rounding, bound and size of a piece (m).
+    /// Radius of a ball; or rounding, bounding radius and size of a piece (m).
     lengths: [f64; 3],
-    /// Whether it is all of its body, whose length is then its radius.
+    /// Whether the shape is its whole body, whose length is then its radius.
     whole: bool,
 }
 
@@ -31,7 +31,7 @@ pub struct ExpandingSystem {
     pub nodes: Range<usize>,
     /// Coefficient of linear expansion alpha (1/K).
     pub coefficient: f64,
-    /// Temperature T_0 at which it is without free strain (K).
+    /// Temperature T_0 at which the body has no free strain (K).
     pub reference: f64,
 }
 
@@ -42,13 +42,13 @@ pub struct ExpandingSystem {
 /// lambda = 1 + alpha (T - T_0)
 /// ```
 ///
-/// times those of the case, with the coefficient of linear expansion alpha and the temperature at
-/// the start T_0. Mass and inertia stay.
+/// those of the case times this stretch, with the coefficient of linear expansion alpha and the
+/// temperature at the start T_0. Mass and inertia do not change.
 #[derive(Clone, Debug)]
 pub struct Expansion<S: Space> {
-    /// Coefficient of linear expansion alpha of each body (1/K); 0 for one that does not expand.
+    /// Coefficient of linear expansion alpha of each body (1/K); 0 for a body that does not expand.
     pub coefficient: Vec<f64>,
-    /// Temperature T_0 at which each has the size of the case (K).
+    /// Temperature T_0 at which each body has the size of the case (K).
     pub reference: Vec<f64>,
     /// Bodies of finite elements that expand.
     pub systems: Vec<ExpandingSystem>,
@@ -58,7 +58,7 @@ pub struct Expansion<S: Space> {
 
 impl<S: Space> Expansion<S> {
     /// Creates the expansion of rigid bodies with these coefficients (1/K) and lengths (m), whose
-    /// shapes are now those at the temperatures `reference` (K), and of systems.
+    /// current shapes are those at the temperatures `reference` (K), and of systems.
     pub fn new(
         coefficient: Vec<f64>,
         reference: Vec<f64>,
@@ -87,13 +87,13 @@ impl<S: Space> Expansion<S> {
         }
     }
 
-    /// Lambda of a body at a temperature (K).
+    /// Returns lambda of a body at a temperature (K).
     pub fn stretch(&self, body: usize, temperature: f64) -> f64 {
         1.0 + free_strain(self.coefficient[body], temperature - self.reference[body])
     }
 
-    /// Scales all shapes by the stretches of their bodies, and sets the length of bodies that are
-    /// one ball to its radius; returns the largest change of a distance from a centre (m).
+    /// Scales all shapes by the stretches of their bodies, and sets the length of bodies that are a
+    /// single ball to its radius; returns the largest change of a distance from a centre (m).
     pub fn apply(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
         let mut most = 0.0f64;
         for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {

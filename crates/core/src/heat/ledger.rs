@@ -8,27 +8,29 @@ use serde::{Deserialize, Serialize};
 /// dissipated + joule + imposed + surroundings - expansion = stored + fixed + pending + residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeatLedger {
-    /// Put in by mechanical dissipation: the shares that the case gives of the entries of
+    /// Heat from mechanical dissipation: the shares that the case gives of the entries of
     /// [`crate::energy::Energy`].
     pub dissipated: f64,
-    /// Put in by electric current.
+    /// Heat from electric current.
     pub joule: f64,
-    /// Put in by the heat flows that the case imposes on bodies.
+    /// Heat flows that the case imposes on bodies.
     pub imposed: f64,
-    /// Taken in from surroundings.
+    /// Heat from surroundings.
     pub surroundings: f64,
-    /// Turned into work by thermal expansion.
+    /// Heat converted to work by thermal expansion.
     pub expansion: f64,
-    /// Stored in grains and first bodies.
+    /// Heat stored in grains and first bodies.
     pub stored: f64,
-    /// Received by bodies of fixed temperature, and dissipated at contacts of two insulated bodies.
+    /// Heat received by bodies of fixed temperature, and dissipated at contacts of two insulated
+    /// bodies.
     pub fixed: f64,
-    /// Put in, but not yet part of a step of the heat, where one spans several of the mechanics.
+    /// Heat that is not yet part of a step of the heat, where one spans several steps of the
+    /// mechanics.
     pub pending: f64,
     /// Residual of the balance.
     pub residual: f64,
-    /// Largest heat put in, stored, received by a first body, or passed through all contacts in one
-    /// step, so far.
+    /// Largest heat supplied, stored, received by a first body, or exchanged through all contacts
+    /// in one step, so far.
     pub scale: f64,
 }
 
@@ -61,7 +63,7 @@ impl HeatLedger {
         self.scale = all.fold(self.scale, |m, x| m.max(x.abs()));
     }
 
-    /// The residual over the largest heat so far; 0 where none flowed.
+    /// Returns the residual over the largest heat so far; 0 where none flowed.
     pub fn relative_residual(&self) -> f64 {
         if self.scale > 0.0 {
             self.residual.abs() / self.scale
@@ -70,7 +72,7 @@ impl HeatLedger {
         }
     }
 
-    /// Every entry: name, description, value (J; J/m in 2D).
+    /// Returns every entry: name, description, value (J; J/m in 2D).
     pub fn entries(&self) -> [LedgerEntry; 9] {
         entries!(self, scale;
             dissipated: "heat that mechanical dissipation put in",

@@ -11,12 +11,12 @@ pub struct ThermalMaterial {
     pub heat_capacity: f64,
     /// Density rho without inertia scaling (kg/m^3).
     pub density: f64,
-    /// Electrical resistivity (ohm m), where it is given.
+    /// Electrical resistivity (ohm m); `None` if not given.
     pub resistivity: Option<f64>,
 }
 
 impl ThermalMaterial {
-    /// Returns it as a conductor of heat.
+    /// Returns the material as a conductor of heat.
     pub fn conductor(&self) -> Conductor {
         Conductor {
             conductivity: self.conductivity,
@@ -24,8 +24,8 @@ impl ThermalMaterial {
         }
     }
 
-    /// Thermal conductivity of a pair, 2 k1 k2/(k1 + k2) (W/(m K)): that of two equal halves in
-    /// series.
+    /// Returns the thermal conductivity of a pair, 2 k1 k2/(k1 + k2) (W/(m K)): that of two equal
+    /// halves in series.
     pub fn pair_conductivity(&self, other: &Self) -> f64 {
         let [a, b] = [self.conductivity, other.conductivity];
         if a + b > 0.0 {
@@ -35,7 +35,8 @@ impl ThermalMaterial {
         }
     }
 
-    /// Electrical resistivity of a pair, (rho1 + rho2)/2 (ohm m); 0 where one has none.
+    /// Returns the electrical resistivity of a pair, (rho1 + rho2)/2 (ohm m); 0 where one of them
+    /// is not given.
     pub fn pair_resistivity(&self, other: &Self) -> f64 {
         match (self.resistivity, other.resistivity) {
             (Some(a), Some(b)) => 0.5 * (a + b),

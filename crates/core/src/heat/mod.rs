@@ -2,8 +2,8 @@
 //! steps.
 //!
 //! Nodes with a temperature represent bodies, or pieces of a body's surface with a half-space below
-//! each. Contacts connect them by the conductances of transport laws, and supply the heat that the
-//! energy ledger counts as dissipated at the contact in the step:
+//! each. Contacts connect them by the conductances of transport laws, and are sources of the heat
+//! that the energy ledger counts as dissipated at the contact in the step:
 //!
 //! ```text
 //! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i
@@ -12,7 +12,7 @@
 //! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of
 //! depth; `fretwork-math` solves it, implicitly in time. Electric potentials follow from the
 //! electrical conductances of the same contacts, and Joule's heat of each contact is added to its
-//! sources. Laws are given the temperatures at the start of the step.
+//! sources. Laws receive the temperatures at the start of the step.
 
 pub mod circuit;
 pub mod expansion;
@@ -29,6 +29,6 @@ pub use fretwork_math::diffusion::{
 };
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
-pub use model::{BodyNodes, Heat, HeatShares, Imposed, Partition};
+pub use model::{BodyNodes, Heat, HeatShares, ImposedHeatFlow, Partition};
 pub use pieces::{PieceAxis, Pieces};
 pub use state::HeatState;

@@ -10,26 +10,26 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays
-/// elsewhere (new surfaces, sound, plastic work that is stored).
+/// Share of each kind of dissipated energy that becomes heat at its contact; the rest remains
+/// elsewhere (new surfaces, sound, stored plastic work).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatShares {
-    /// Of friction.
+    /// Share of the friction.
     pub friction: f64,
-    /// Of impacts.
+    /// Share of the impacts.
     pub impact: f64,
-    /// Of the damping of bonds and compliant contacts.
+    /// Share of the damping of bonds and compliant contacts.
     pub viscous: f64,
-    /// Of the work against cohesion without an opening.
+    /// Share of the work against cohesion without an opening.
     pub adhesion: f64,
-    /// Of the energy that damage releases: its plastic part. That of bonds torn out of reach stays
-    /// elsewhere.
+    /// Share of the energy that damage releases: its plastic part. The energy of bonds whose
+    /// contact moved out of range is not included.
     pub fracture: f64,
 }
 
 impl Default for HeatShares {
-    /// All dissipation except fracture, which creates surfaces.
+    /// Returns shares of 1 for all dissipation except fracture, which creates surfaces.
     fn default() -> Self {
         Self {
             friction: 1.0,
@@ -42,7 +42,7 @@ impl Default for HeatShares {
 }
 
 impl HeatShares {
-    /// Heat of the energies dissipated at a contact (J).
+    /// Returns the heat from the energies dissipated at a contact (J).
     #[inline]
     pub fn heat(&self, dissipated: &ContactDissipation) -> f64 {
         self.friction * dissipated.friction
@@ -53,27 +53,27 @@ impl HeatShares {
     }
 }
 
-/// How the heat of a contact is split between its two sides.
+/// Split of the heat of a contact between its two sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partition {
-    /// In proportion to the effusivities e = sqrt(k rho c), so that two half-spaces keep one
-    /// surface temperature.
+    /// The heat is split in proportion to the effusivities e = sqrt(k rho c), so that two
+    /// half-spaces keep one surface temperature.
     #[default]
     Effusivity,
-    /// Half to each.
+    /// Half of the heat goes to each side.
     Half,
 }
 
 /// The nodes of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyNodes {
-    /// None: no heat enters it.
+    /// No nodes: no heat enters the body.
     Insulated,
-    /// One.
+    /// One node.
     One(u32),
-    /// One for each piece of its surface, from a first one on.
+    /// One node for each piece of the surface, starting at this one.
     Pieces(u32, Pieces),
-    /// The nodes of its mesh of finite elements, from a first one to before an end.
+    /// The nodes of a mesh of finite elements, from the first to before the second.
     Mesh(u32, u32),
 }
 
@@ -88,8 +88,8 @@ impl BodyNodes {
         }
     }
 
-    /// The node at a place in the axes of the body (m); `None` for a mesh, where a place is between
-    /// several.
+    /// Returns the node at a position in the axes of the body (m); `None` for a mesh, where a
+    /// position is between several nodes.
     #[inline]
     pub fn at<S: Space>(&self, place: impl FnOnce() -> S::Vector) -> Option<u32> {
         match self {
@@ -102,8 +102,9 @@ impl BodyNodes {
 
 /// A heat flow from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Imposed {
-    /// The body with which it ends where that is removed; `None` for finite elements, which stay.
+pub struct ImposedHeatFlow {
+    /// Returns the body whose removal isolates the node; `None` for finite elements, which are not
+    /// removed.
     pub body: Option<u32>,
     /// The node.
     pub node: u32,
@@ -122,16 +123,16 @@ pub struct Heat {
     pub material: Vec<u16>,
     /// Nodes of each body.
     pub nodes: Vec<BodyNodes>,
-    /// Half-spaces between which heat flows sideways.
+    /// Half-spaces between which heat flows tangentially.
     pub columns: Vec<Columns>,
     /// Conductances of finite elements between nodes (W/K; W/(m K) in 2D).
     pub elements: Vec<Edge>,
-    /// First bodies that heat flows into, with their nodes: driven ones in their order, then those
-    /// of finite elements.
+    /// First bodies that exchange heat, with their nodes: driven ones in their order, then those of
+    /// finite elements.
     pub first_bodies: Vec<(String, Range<usize>)>,
     /// Heat flows imposed from outside.
-    pub imposed: Vec<Imposed>,
-    /// Temperature of bodies without node that touch none with a node (K).
+    pub imposed: Vec<ImposedHeatFlow>,
+    /// Temperature of bodies without nodes whose contacts have none either (K).
     pub initial: f64,
     /// Shares of dissipation that become heat.
     pub shares: HeatShares,
@@ -139,28 +140,28 @@ pub struct Heat {
     pub partition: Partition,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
-    /// Thermal time over mechanical time: in a step of h heat flows for `clock` h, while the
-    /// frictional heat stays the same.
+    /// Ratio of thermal to mechanical time: in a step of h heat flows for `clock` h, while the
+    /// frictional heat does not change.
     pub clock: f64,
-    /// Steps of the mechanics per step of the heat.
+    /// Number of steps of the mechanics per step of the heat.
     pub every: u64,
-    /// Time at which heat begins to flow and to be put in (s); temperatures stay until then.
+    /// Time from which heat flows and is supplied (s); temperatures are constant before it.
     pub start: f64,
-    /// Hardness (Pa) that gives the area on which sliding contacts are warmer than their bodies;
-    /// none for no flash temperatures.
+    /// Hardness (Pa), which gives the area on which sliding contacts are warmer than their bodies;
+    /// `None` for no flash temperatures.
     pub flash: Option<f64>,
     /// The electric circuit.
     pub circuit: Option<Circuit>,
 }
 
 impl Heat {
-    /// Properties of the material of a body.
+    /// Returns the properties of the material of a body.
     #[inline]
     pub fn material_of(&self, body: u32) -> &ThermalMaterial {
         &self.materials[usize::from(self.material[body as usize])]
     }
 
-    /// All pairs of materials, by the index of the first and then of the second.
+    /// Returns all pairs of materials, by the index of the first and then of the second.
     pub fn pairs(materials: &[ThermalMaterial]) -> Arc<[MaterialPair]> {
         let of = |a: &ThermalMaterial, b: &ThermalMaterial| MaterialPair {
             material: [a.pair_conductivity(b), a.pair_resistivity(b)],
@@ -171,7 +172,7 @@ impl Heat {
             .collect()
     }
 
-    /// Index in [`Self::pairs`] of the materials of two bodies.
+    /// Returns the index in [`Self::pairs`] of the materials of two bodies.
     #[inline]
     pub fn pair(&self, bodies: [u32; 2]) -> usize {
         let [a, b] = bodies;
@@ -179,8 +180,8 @@ impl Heat {
         of(a) * self.materials.len() + of(b)
     }
 
-    /// Share of the heat of a contact that its first body takes, by the index of its materials in
-    /// [`Self::pairs`].
+    /// Returns the share of the heat of a contact that its first body takes, by the index of its
+    /// materials in [`Self::pairs`].
     #[inline]
     pub fn share(&self, pair: usize) -> f64 {
         match self.partition {
@@ -189,12 +190,12 @@ impl Heat {
         }
     }
 
-    /// Rise of temperature (K) of the spots where two bodies really touch above that of the bodies,
-    /// under a force (N; N/m in 2D) at a sliding speed `v` (m/s) with a friction power (W; W/m in
-    /// 2D). The real area is force over hardness; in 3D it is one circle, in 2D one band, and moves
-    /// at half of the speed over each of the bodies. The two rises that all of the heat would give
-    /// in either body alone add up as resistances in parallel (H. Blok, Proc. Inst. Mech. Eng. 2
-    /// (1937) 222-235).
+    /// Returns the rise of temperature (K) of the contact spots of two bodies above that of the
+    /// bodies, under a force (N; N/m in 2D) at a sliding speed `v` (m/s) with a friction power (W;
+    /// W/m in 2D). The real area is force over hardness; in 3D it is one circle, in 2D one band,
+    /// and moves at half of the speed over each of the bodies. The rises that all of the heat would
+    /// cause in either body alone combine like resistances in parallel (H. Blok, Proc. Inst. Mech.
+    /// Eng. 2 (1937) 222-235).
     pub fn flash_rise<S: Space>(&self, bodies: [u32; 2], force: f64, v: f64, power: f64) -> f64 {
         let Some(hardness) = self.flash else {
             return 0.0;

@@ -9,13 +9,13 @@ use fretwork_math::diffusion::{ColumnAxis, Columns};
 pub struct PieceAxis {
     /// The axis of the body, 0 is x.
     pub axis: usize,
-    /// Where the first strip begins, in the axes of the body (m).
+    /// Start of the first strip, in the axes of the body (m).
     pub low: f64,
     /// Length of all strips (m).
     pub length: f64,
-    /// Their number.
+    /// Number of strips.
     pub count: u32,
-    /// Whether they go round: a place beyond the last is in the first again.
+    /// Whether the strips are periodic: a position beyond the last is in the first again.
     pub periodic: bool,
 }
 
@@ -46,14 +46,14 @@ impl Pieces {
         self.axes.iter().map(|a| a.count).product()
     }
 
-    /// Area of each (m^2; in 2D length times unit depth).
+    /// Returns the area of each piece (m^2; in 2D length times unit depth).
     pub fn area(&self) -> f64 {
         let each = self.axes.iter();
         each.map(|a| a.length / f64::from(a.count)).product()
     }
 
-    /// Their half-spaces, as neighbours, from a first node on, of a material of this diffusivity
-    /// (m^2/s).
+    /// Returns the half-spaces below the pieces and their neighbours, starting at a first node, for
+    /// a material of this diffusivity (m^2/s).
     pub fn columns(&self, first: u32, diffusivity: f64) -> Columns {
         let axis = |a: &PieceAxis| ColumnAxis {
             count: a.count,
@@ -75,7 +75,7 @@ impl Pieces {
         })
     }
 
-    /// Middle of a piece along each of its axes (m), in the axes of the body.
+    /// Returns the middle of a piece along each of its axes (m), in the axes of the body.
     pub fn middle(&self, piece: u32) -> Vec<f64> {
         let mut left = piece;
         let mut out: Vec<f64> = self

@@ -11,28 +11,28 @@ use std::ops::Range;
 pub struct HeatState {
     /// The nodes.
     pub nodes: Vec<Node>,
-    /// Heat put into each node since the last step of the heat (J; J/m in 2D).
+    /// Heat supplied to each node since the last step of the heat (J; J/m in 2D).
     pub(crate) pending: Vec<f64>,
     /// Thermal time since the last step of the heat (s).
     pub(crate) pending_time: f64,
-    /// Steps of the mechanics since then.
+    /// Number of steps of the mechanics since the last step of the heat.
     pub(crate) pending_steps: u64,
     /// The account.
     pub ledger: HeatLedger,
-    /// Heat that went into each of [`super::Heat::first_bodies`] since the start (J; J/m in 2D): by
-    /// its contacts, not by its surroundings.
+    /// Heat that entered each of [`super::Heat::first_bodies`] since the start (J; J/m in 2D):
+    /// through its contacts, not from its surroundings.
     pub received: Vec<f64>,
     /// Size of each body over that of the case; empty where none expands.
     pub stretch: Vec<f64>,
-    /// Temperature of each node that its body has expanded to (K); empty where no body of finite
+    /// Temperature of each node to which its body has expanded (K); empty where no body of finite
     /// elements expands.
     pub expanded: Vec<f64>,
-    /// The circuit in the last step, where there is one.
+    /// State of the circuit in the last step, if there is one.
     pub circuit: CircuitState,
 }
 
 impl HeatState {
-    /// Nodes at the start, for so many first bodies.
+    /// Creates the state of these nodes at the start, for a number of first bodies.
     pub fn new(nodes: Vec<Node>, first_bodies: usize) -> Self {
         Self {
             pending: vec![0.0; nodes.len()],
@@ -42,8 +42,8 @@ impl HeatState {
         }
     }
 
-    /// Mean temperature of some nodes (K): by their capacities where they have one; `None` of no
-    /// node.
+    /// Returns the mean temperature of some nodes (K), weighted by capacity where they have one;
+    /// `None` without nodes.
     pub fn mean_temperature(&self, nodes: Range<usize>) -> Option<f64> {
         let nodes = self.nodes.get(nodes)?;
         if let [node] = nodes {
@@ -54,7 +54,7 @@ impl HeatState {
             let weight = match &node.store {
                 Store::Lumped(capacity) => *capacity,
                 Store::HalfSpace(_) => 1.0,
-                // A held part of a mesh, unless all of it is held.
+                // A held part of a mesh counts only if all of the mesh is held.
                 Store::Fixed => 1e-300,
             };
             sum += weight * node.temperature;
@@ -63,7 +63,7 @@ impl HeatState {
         (!nodes.is_empty()).then(|| sum / weights)
     }
 
-    /// Whether it is a later state of the same nodes.
+    /// Returns whether this is a later state of the same nodes.
     pub(crate) fn fits(&self, first: &Self) -> bool {
         let nodes = self.nodes.iter().zip(&first.nodes);
         let lengths = |s: &Self| {
@@ -78,8 +78,8 @@ impl HeatState {
         lengths(self) == lengths(first) && nodes.into_iter().all(|(a, b)| a.fits(b))
     }
 
-    /// Number of steps of the mechanics, this one included, in which bodies reach the size of their
-    /// temperature.
+    /// Returns the number of steps of the mechanics, including this one, in which bodies reach the
+    /// size that belongs to their temperature.
     pub(crate) fn parts(&self, every: u64) -> f64 {
         every.saturating_sub(self.pending_steps).max(1) as f64
     }
@@ -97,8 +97,8 @@ mod tests {
     use super::*;
     use fretwork_math::diffusion::Node;
 
-    /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where
-    /// there is nothing else.
+    /// The mean is weighted by capacity; nodes of fixed temperature, whose capacity is unbounded,
+    /// count only where there are no others.
     #[test]
     fn the_mean_temperature_is_that_of_the_heat_that_is_stored() {
         let lumped = |t, c| Node::new(t, Store::Lumped(c));

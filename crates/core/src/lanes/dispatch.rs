@@ -1,4 +1,4 @@
-//! The choice of vector instructions at run time, and functions that are compiled for each.
+//! Choice of vector instructions at run time, and functions that are compiled for each set.
 
 use super::Lane;
 
@@ -11,30 +11,30 @@ pub(crate) trait Wide {
 
 /// Vector instructions of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instructions {
-    /// 256 bits.
+pub(crate) enum InstructionSet {
+    /// AVX2, 256 bits.
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// 256 bits, with twice as many registers. Fused multiplication and
-    /// addition, which comes with it, is not formed from separate operations.
+    /// AVX-512VL, 256 bits, with twice as many registers. Separate multiplications and additions
+    /// are not fused.
     #[cfg(target_arch = "x86_64")]
     Avx512,
-    /// 128 bits.
+    /// NEON, 128 bits.
     #[cfg(target_arch = "aarch64")]
     Neon,
 }
 
 #[cfg(target_arch = "x86_64")]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
     use crate::lanes::wide::Lanes;
     use std::arch::x86_64::__m256d;
 
-    impl Instructions {
-        /// The instructions that this machine has, the best last.
+    impl InstructionSet {
+        /// Returns the instructions that this machine has, the best last.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             let avx2 = is_x86_feature_detected!("avx2");
-            // With the features that `avx512` implies.
+            // `avx512` implies these features.
             let avx512 = is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")
@@ -48,7 +48,7 @@ mod compiled {
         /// Runs the code compiled for these instructions.
         ///
         /// # Safety
-        /// The machine has them.
+        /// The machine must have these instructions.
         #[inline(always)]
         pub unsafe fn run(self, what: impl Wide) {
             // SAFETY: guaranteed by the caller.
@@ -74,11 +74,11 @@ mod compiled {
 
 #[cfg(target_arch = "aarch64")]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
     use crate::lanes::{neon::Pairs, wide::Lanes};
 
-    impl Instructions {
-        /// The instructions that this machine has.
+    impl InstructionSet {
+        /// Returns the instructions that this machine has.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             std::iter::once(Self::Neon)
         }
@@ -86,7 +86,7 @@ mod compiled {
         /// Runs the code compiled for these instructions.
         ///
         /// # Safety
-        /// The machine has them.
+        /// The machine must have these instructions.
         #[inline(always)]
         pub unsafe fn run(self, what: impl Wide) {
             what.run::<Lanes<Pairs, 1>, Lanes<Pairs, 2>>();
@@ -96,10 +96,10 @@ mod compiled {
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod compiled {
-    use super::{Instructions, Wide};
+    use super::{InstructionSet, Wide};
 
-    impl Instructions {
-        /// None that are known.
+    impl InstructionSet {
+        /// Returns no instructions, since none are known here.
         pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
             std::iter::empty()
         }
@@ -112,11 +112,11 @@ mod compiled {
     }
 }
 
-/// Prefetches a memory location that is read soon.
+/// Prefetches a memory location that will be read soon.
 #[inline(always)]
 pub(crate) fn prefetch<T>(what: *const T) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: a hint, which reads nothing.
+    // SAFETY: the instruction is a hint, which reads nothing.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         _mm_prefetch::<_MM_HINT_T0>(what.cast());

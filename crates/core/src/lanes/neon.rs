@@ -9,20 +9,20 @@ pub struct Pairs([float64x2_t; 2]);
 
 #[inline(always)]
 fn bits_of(x: float64x2_t) -> uint64x2_t {
-    // SAFETY: NEON is there.
+    // SAFETY: the architecture has NEON.
     unsafe { vreinterpretq_u64_f64(x) }
 }
 
 #[inline(always)]
 fn of_bits(x: uint64x2_t) -> float64x2_t {
-    // SAFETY: NEON is there.
+    // SAFETY: the architecture has NEON.
     unsafe { vreinterpretq_f64_u64(x) }
 }
 
-/// `yes` where a comparison holds, `no` elsewhere.
+/// Returns `yes` where a comparison holds, `no` elsewhere.
 #[inline(always)]
 fn select(mask: uint64x2_t, yes: float64x2_t, no: float64x2_t) -> float64x2_t {
-    // SAFETY: NEON is there.
+    // SAFETY: the architecture has NEON.
     unsafe { vbslq_f64(mask, yes, no) }
 }
 
@@ -30,7 +30,7 @@ macro_rules! by_two {
     ($($name:ident: |$a:ident, $b:ident| $of:expr;)+) => {$(
         #[inline(always)]
         fn $name(self, with: Self) -> Self {
-            // SAFETY: NEON is there.
+            // SAFETY: the architecture has NEON.
             let of = |$a: float64x2_t, $b: float64x2_t| unsafe { $of };
             Self([of(self.0[0], with.0[0]), of(self.0[1], with.0[1])])
         }
@@ -43,7 +43,8 @@ impl Four for Pairs {
         sub: |a, b| vsubq_f64(a, b);
         mul: |a, b| vmulq_f64(a, b);
         div: |a, b| vdivq_f64(a, b);
-        // Not `vmaxq_f64` and `vminq_f64`, which treat NaN and signed zeros differently.
+        // `vmaxq_f64` and `vminq_f64` are not used, since they treat NaN and signed zeros
+        // differently.
         greatest: |a, b| select(vcgtq_f64(a, b), a, b);
         least: |a, b| select(vcgtq_f64(b, a), a, b);
         above: |a, b| of_bits(vcgtq_f64(a, b));
@@ -54,7 +55,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     fn all(x: f64) -> Self {
-        // SAFETY: NEON is there.
+        // SAFETY: the architecture has NEON.
         Self([unsafe { vdupq_n_f64(x) }; 2])
     }
     #[inline(always)]
@@ -63,12 +64,12 @@ impl Four for Pairs {
     }
     #[inline(always)]
     fn load(from: &[f64; 4]) -> Self {
-        // SAFETY: four numbers.
+        // SAFETY: the array has four numbers.
         unsafe { Self([vld1q_f64(from.as_ptr()), vld1q_f64(from.as_ptr().add(2))]) }
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; 4]) {
-        // SAFETY: four numbers.
+        // SAFETY: the array has four numbers.
         unsafe {
             vst1q_f64(to.as_mut_ptr(), self.0[0]);
             vst1q_f64(to.as_mut_ptr().add(2), self.0[1]);
@@ -76,7 +77,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // SAFETY: NEON is there.
+        // SAFETY: the architecture has NEON.
         Self(self.0.map(|x| unsafe { vsqrtq_f64(x) }))
     }
     #[inline(always)]
@@ -85,7 +86,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     fn bits(self) -> i32 {
-        // SAFETY: NEON is there.
+        // SAFETY: the architecture has NEON.
         let [a, b] = self.0.map(|x| unsafe {
             let ones = vshrq_n_u64::<63>(bits_of(x));
             vgetq_lane_u64::<0>(ones) | vgetq_lane_u64::<1>(ones) << 1
@@ -114,7 +115,7 @@ impl Four for Pairs {
     }
     #[inline(always)]
     fn rows([a, b, c, d]: [Self; 4]) -> [Self; 4] {
-        // SAFETY: NEON is there.
+        // SAFETY: the architecture has NEON.
         unsafe {
             let low = |k: usize| [vzip1q_f64(a.0[k], b.0[k]), vzip1q_f64(c.0[k], d.0[k])];
             let high = |k: usize| [vzip2q_f64(a.0[k], b.0[k]), vzip2q_f64(c.0[k], d.0[k])];

@@ -1,4 +1,4 @@
-//! One contact: a number is a lane.
+//! The lane of one contact is a number.
 
 use super::{Lane, Mask, Record, SUMS};
 use std::hint::select_unpredictable;
@@ -59,7 +59,7 @@ impl Lane for f64 {
     fn at_most(self, other: Self) -> bool {
         self <= other
     }
-    /// Both are computed, because branches of contacts would be mispredicted too often.
+    /// Both values are computed, because branches of contacts would be mispredicted too often.
     #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         select_unpredictable(mask, yes, no)
@@ -76,12 +76,12 @@ impl Lane for f64 {
 
     #[inline(always)]
     unsafe fn gather<T: Record>(from: *mut T) -> T::With<f64> {
-        // SAFETY: guaranteed by the caller; with single numbers it is the record itself.
+        // SAFETY: the caller guarantees validity; with single numbers `With` is the record itself.
         unsafe { from.cast::<T::With<f64>>().read() }
     }
     #[inline(always)]
     unsafe fn scatter<T: Record>(to: *mut T, value: &T::With<f64>) {
-        // SAFETY: guaranteed by the caller; with single numbers it is the record itself.
+        // SAFETY: the caller guarantees validity; with single numbers `With` is the record itself.
         unsafe { to.cast::<T::With<f64>>().write(*value) }
     }
     #[inline(always)]

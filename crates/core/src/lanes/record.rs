@@ -1,34 +1,35 @@
-//! Records in memory, each of one contact, that are read and written in columns: a number of each
-//! in a lane.
+//! Records in memory, one per contact, that are read and written in columns: one number of each
+//! record per lane.
 
 use super::Lane;
 use std::marker::PhantomData;
 use std::ops::Deref;
 
-/// A structure of numbers alone, which may be those of several contacts.
+/// A structure that consists of numbers only, which may be those of several contacts.
 ///
-/// Structures with an even number of numbers that are read in columns are aligned to 16 bytes, so
-/// that no pair of numbers lies in two cache lines.
+/// Structures with an even number of entries that are read in columns are aligned to 16 bytes, so
+/// that no pair of numbers spans two cache lines.
 ///
 /// # Safety
-/// `Self` consists of `f64` alone, and `With<L>` of as many `L`, in the same order (`repr(C)`).
+/// `Self` must consist of `f64` only, and `With<L>` of as many `L`, in the same order (`repr(C)`).
 pub unsafe trait Record: Copy {
-    /// The structure with a lane in the place of each number.
+    /// The structure with a lane in place of each number.
     type With<L: Lane>: Copy;
     /// Number of numbers.
     const COUNT: usize = size_of::<Self>() / size_of::<f64>();
 }
 
-// SAFETY: one number.
+// SAFETY: the structure is one number.
 unsafe impl Record for f64 {
     type With<L: Lane> = L;
 }
 
-/// Implements [`Record`] for a structure over a dimension (`Space`, which is in scope) and a lane.
+/// Implements [`Record`] for a structure over a dimension (`Space`, which must be in scope) and a
+/// lane.
 macro_rules! record {
     ($name:ident) => {
-        // SAFETY: the structure is `repr(C)` and has fields of the type of its lane, or records of
-        // it.
+        // SAFETY: the structure is `repr(C)`, and its fields have the type of its lane or are
+        // records of it.
         unsafe impl<S: Space> $crate::lanes::Record for $name<S, f64> {
             type With<L: $crate::lanes::Lane> = $name<S, L>;
         }
@@ -36,7 +37,7 @@ macro_rules! record {
 }
 pub(crate) use record;
 
-/// Structures of several contacts, at any places in memory, of which records are read.
+/// Structures of several contacts, anywhere in memory, from which records are read.
 pub(crate) struct Batch<'a, T, L: Lane>(L::Each<*mut T>, PhantomData<&'a T>);
 
 impl<T, L: Lane> Clone for Batch<'_, T, L> {
@@ -47,10 +48,10 @@ impl<T, L: Lane> Clone for Batch<'_, T, L> {
 impl<T, L: Lane> Copy for Batch<'_, T, L> {}
 
 impl<'a, T, L: Lane> Batch<'a, T, L> {
-    /// A part of each structure; see [`part`].
+    /// Returns a part of each structure; see [`part`].
     ///
     /// # Safety
-    /// `of` gives a field of its structure.
+    /// `of` must give a field of its structure.
     #[inline(always)]
     pub unsafe fn part<P>(&self, of: impl Fn(*mut T) -> *mut P) -> Batch<'a, P, L> {
         Batch(L::map(self.0, of), PhantomData)
@@ -67,7 +68,7 @@ impl<'a, T, L: Lane> Batch<'a, T, L> {
 }
 
 impl<'a, T> Batch<'a, T, f64> {
-    /// One structure.
+    /// Returns a batch of one structure.
     #[inline(always)]
     pub fn one(of: &'a T) -> Self {
         Self(std::ptr::from_ref(of).cast_mut(), PhantomData)
@@ -87,17 +88,17 @@ impl<'a, T, L: Lane> Deref for BatchMut<'a, T, L> {
 
 impl<'a, T, L: Lane> BatchMut<'a, T, L> {
     /// # Safety
-    /// The structures are valid, and nobody else uses them, while the batch is used; those of
-    /// several lanes may be the same if it does not matter what is written there.
+    /// The structures must be valid, and nobody else may use them, while the batch is used; several
+    /// lanes may share one if it does not matter what is written there.
     #[inline(always)]
     pub unsafe fn new(each: L::Each<*mut T>) -> Self {
         Self(Batch(each, PhantomData), PhantomData)
     }
 
-    /// A part of each structure; see [`part_mut`].
+    /// Returns a part of each structure; see [`part_mut`].
     ///
     /// # Safety
-    /// `of` gives a field of its structure.
+    /// `of` must give a field of its structure.
     #[inline(always)]
     pub unsafe fn part_mut<P>(&mut self, of: impl Fn(*mut T) -> *mut P) -> BatchMut<'_, P, L> {
         BatchMut(Batch(L::map(self.0.0, of), PhantomData), PhantomData)
@@ -112,7 +113,7 @@ impl<'a, T, L: Lane> BatchMut<'a, T, L> {
         unsafe { L::scatter(self.0.0, value) }
     }
 
-    /// Writes those of the lanes of a mask.
+    /// Writes the values in the lanes of a mask.
     #[inline(always)]
     pub fn write_where(&mut self, mask: L::Mask, value: &T::With<L>)
     where
@@ -124,7 +125,7 @@ impl<'a, T, L: Lane> BatchMut<'a, T, L> {
 }
 
 impl<'a, T> BatchMut<'a, T, f64> {
-    /// One structure.
+    /// Returns a batch of one structure.
     #[inline(always)]
     pub fn one(of: &'a mut T) -> Self {
         let of: *mut T = of;
@@ -132,17 +133,17 @@ impl<'a, T> BatchMut<'a, T, f64> {
     }
 }
 
-/// A field of each structure of a batch, to be read.
+/// Gives a field of each structure of a batch, for reading.
 macro_rules! part {
     ($batch:expr, $($field:tt)+) => {
-        // SAFETY: a field.
+        // SAFETY: the macro names a field.
         unsafe { $batch.part(|x| &raw mut (*x).$($field)+) }
     };
 }
-/// A field of each structure of a batch.
+/// Gives a field of each structure of a batch, for writing.
 macro_rules! part_mut {
     ($batch:expr, $($field:tt)+) => {
-        // SAFETY: a field.
+        // SAFETY: the macro names a field.
         unsafe { $batch.part_mut(|x| &raw mut (*x).$($field)+) }
     };
 }

@@ -1,8 +1,8 @@
-//! Operations on several numbers give the bits of those on one.
+//! Operations on several numbers give the same bits as on one.
 
-use super::{Instructions, Lane, Mask, Wide};
+use super::{InstructionSet, Lane, Mask, Wide};
 
-/// Numbers of all kinds.
+/// Numbers of all kinds: zeros, subnormal numbers, infinities, NaN.
 const NUMBERS: [f64; 12] = [
     0.0,
     -0.0,
@@ -18,7 +18,7 @@ const NUMBERS: [f64; 12] = [
     3.7e-9,
 ];
 
-/// The results of all operations on two numbers in each lane.
+/// Returns the results of all operations on two numbers in each lane.
 fn results<L: Lane>(a: L, b: L) -> Vec<L> {
     let choose = |mask: L::Mask| L::select(mask, L::all(1.0), L::all(2.0));
     vec![
@@ -43,11 +43,11 @@ fn results<L: Lane>(a: L, b: L) -> Vec<L> {
     ]
 }
 
-/// A number of each lane.
+/// Returns the number of each lane.
 fn numbers<L: Lane>(of: impl Fn(usize) -> f64) -> L {
     let numbers: Vec<f64> = (0..L::WIDTH).map(of).collect();
     let each = L::each(|k| (&raw const numbers[k]).cast_mut());
-    // SAFETY: numbers.
+    // SAFETY: the addresses are those of numbers.
     unsafe { L::gather(each) }
 }
 
@@ -55,7 +55,7 @@ fn numbers<L: Lane>(of: impl Fn(usize) -> f64) -> L {
 fn lane<L: Lane>(x: L, k: usize) -> f64 {
     let mut out = vec![0.0; L::WIDTH];
     let first = out.as_mut_ptr();
-    // SAFETY: as many numbers as lanes.
+    // SAFETY: there are as many numbers as lanes.
     unsafe { L::scatter(L::each(|k| first.add(k)), &x) };
     out[k]
 }
@@ -93,8 +93,8 @@ impl Wide for Compare {
 
 #[test]
 fn all_widths_compute_the_same() {
-    for with in Instructions::of_this_machine() {
-        // SAFETY: the machine has them.
+    for with in InstructionSet::of_this_machine() {
+        // SAFETY: the machine has these instructions.
         unsafe { with.run(Compare) };
     }
 }

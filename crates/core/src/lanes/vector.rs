@@ -4,7 +4,7 @@ use super::{Lane, Mask};
 use std::fmt::Debug;
 use std::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
-/// A vector of which each component is that of several contacts.
+/// A vector in which each component holds the values of several contacts.
 pub trait LaneVector<L: Lane>:
     Copy
     + Debug
@@ -20,7 +20,7 @@ pub trait LaneVector<L: Lane>:
 {
     /// Number of components.
     const N: usize;
-    /// The vector with these components.
+    /// Returns the vector with these components.
     fn from_fn(component: impl FnMut(usize) -> L) -> Self;
     /// The zero vector.
     #[inline(always)]
@@ -53,18 +53,18 @@ pub trait LaneVector<L: Lane>:
         }
         let squared = self.dot(&self);
         let inside = squared.at_most(bound * bound);
-        // Of one contact, whose branch saves a division and a root.
+        // For one contact a branch saves a division and a root.
         if L::WIDTH == 1 && inside.all() {
             return self;
         }
         Self::select(inside, self, self * (bound / squared.sqrt()))
     }
-    /// The product of each component.
+    /// Returns the product by components.
     #[inline(always)]
     fn scaled_by(&self, other: &Self) -> Self {
         Self::from_fn(|k| self[k] * other[k])
     }
-    /// `yes` in the lanes of a mask, `no` elsewhere.
+    /// Returns `yes` in the lanes of a mask, `no` elsewhere.
     #[inline(always)]
     fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
         Self::from_fn(|k| L::select(mask, yes[k], no[k]))
@@ -73,9 +73,9 @@ pub trait LaneVector<L: Lane>:
 
 /// A square matrix of lanes.
 pub trait LaneMatrix<L: Lane>: Copy + Debug + Send + Sync + 'static {
-    /// Type of the vectors that it acts on.
+    /// Type of the vectors that the matrix multiplies.
     type V: LaneVector<L>;
-    /// The matrix with these entries, by row and column.
+    /// Returns the matrix with these entries, by row and column.
     fn from_fn(entry: impl FnMut(usize, usize) -> L) -> Self;
     /// The matrix of zeros.
     #[inline(always)]

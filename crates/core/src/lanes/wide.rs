@@ -1,4 +1,4 @@
-//! Several contacts: four in each of `U` groups of vector registers.
+//! Lanes of several contacts: four in each of `U` groups of vector registers.
 
 use super::{Lane, Mask, Record, SUMS};
 use std::mem::MaybeUninit;
@@ -8,11 +8,11 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub(super) trait Four: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// Returns four copies of a number.
     fn all(x: f64) -> Self;
-    /// Four numbers.
+    /// Creates the register from four numbers.
     fn new(x: [f64; 4]) -> Self;
-    /// Four numbers in memory.
+    /// Reads four numbers from memory.
     fn load(from: &[f64; 4]) -> Self;
-    /// Writes them to memory.
+    /// Writes the numbers to memory.
     fn store(self, to: &mut [f64; 4]);
     fn add(self, with: Self) -> Self;
     fn sub(self, with: Self) -> Self;
@@ -26,34 +26,34 @@ pub(super) trait Four: Copy + std::fmt::Debug + Send + Sync + 'static {
     fn and(self, with: Self) -> Self;
     fn or(self, with: Self) -> Self;
     fn xor(self, with: Self) -> Self;
-    /// `yes` where a comparison holds, `no` elsewhere.
+    /// Returns `yes` where a comparison holds, `no` elsewhere.
     fn select(mask: Self, yes: Self, no: Self) -> Self;
-    /// A bit for each number where a comparison holds.
+    /// Returns a bit for each number where a comparison holds.
     fn bits(self) -> i32;
-    /// Columns of four numbers from each of four places.
+    /// Reads columns of four numbers from each of four places.
     ///
     /// # Safety
-    /// There are four numbers.
+    /// There must be four numbers at each place.
     unsafe fn load_columns(from: [*mut f64; 4]) -> [Self; 4];
-    /// Columns of two numbers from each of four places.
+    /// Reads columns of two numbers from each of four places.
     ///
     /// # Safety
-    /// There are two numbers.
+    /// There must be two numbers at each place.
     unsafe fn load_pairs(from: [*mut f64; 4]) -> [Self; 2];
-    /// Rows of four columns.
+    /// Transposes four columns to rows.
     fn rows(columns: [Self; 4]) -> [Self; 4];
     /// Writes two columns to four places.
     ///
     /// # Safety
-    /// There are two numbers.
+    /// There must be two numbers at each place.
     unsafe fn store_pairs(to: [*mut f64; 4], columns: [Self; 2]);
 }
 
-/// One number of each of `4 U` contacts.
+/// A number for each of `4 U` contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes<F, const U: usize>([F; U]);
 
-/// A condition on each of them.
+/// A condition for each of these contacts.
 #[derive(Clone, Copy)]
 pub struct Conditions<F, const U: usize>([F; U]);
 
@@ -127,7 +127,7 @@ macro_rules! by_fours {
     };
     ($count:expr, $do:ident $with:tt, $($at:literal)+) => {
         const { assert!($count < 48) };
-        // Not a loop, so that what is read needs no place in memory.
+        // This is not a loop, so that the values stay in registers.
         $(if $at + 4 <= $count {
             by_fours!(call $do $at $with);
         })+
@@ -203,8 +203,8 @@ unsafe fn numbers<T>([a, b, c, d]: &[*mut T; 4], at: usize) -> [*mut f64; 4] {
     }
 }
 
-/// Writes four columns, from the `at`-th on, of a group of contacts: the records whose bits are
-/// set.
+/// Writes four columns, starting at column `at`, for a group of contacts: to the records whose bits
+/// are set.
 ///
 /// # Safety
 /// The written records and `from`, which has `U` groups, have as many numbers.
@@ -357,7 +357,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
                 _ => {}
             }
         }
-        // SAFETY: all its numbers were written.
+        // SAFETY: all numbers of the record were written.
         unsafe { out.assume_init() }
     }
 
@@ -409,7 +409,7 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
 /// Writes the records whose bits are set.
 ///
 /// # Safety
-/// The records are valid, and nobody else accesses them.
+/// The records must be valid, and nobody else may access them.
 #[inline(always)]
 unsafe fn scatter<F: Four, T: Record, const U: usize>(
     to: [[*mut T; 4]; U],

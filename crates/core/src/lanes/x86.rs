@@ -1,7 +1,7 @@
 //! Four numbers in a register of AVX.
 //!
-//! All functions are inlined into those that are compiled for AVX2 or AVX-512 (`dispatch`), which
-//! alone use lanes of them.
+//! All functions are inlined into functions that are compiled for AVX2 or AVX-512 (`dispatch`); no
+//! other code uses these lanes.
 
 use super::wide::Four;
 use std::arch::x86_64::*;
@@ -22,7 +22,7 @@ impl Four for __m256d {
         sub: _mm256_sub_pd;
         mul: _mm256_mul_pd;
         div: _mm256_div_pd;
-        // Both give the second number where they are equal or one is NaN.
+        // Maximum and minimum give the second number where the numbers are equal or one is NaN.
         greatest: _mm256_max_pd;
         least: _mm256_min_pd;
         above: _mm256_cmp_pd::<_CMP_GT_OQ>;
@@ -43,12 +43,12 @@ impl Four for __m256d {
     }
     #[inline(always)]
     fn load(from: &[f64; 4]) -> Self {
-        // SAFETY: four numbers; callers are compiled for AVX.
+        // SAFETY: the array has four numbers; callers are compiled for AVX.
         unsafe { _mm256_loadu_pd(from.as_ptr()) }
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; 4]) {
-        // SAFETY: four numbers; callers are compiled for AVX.
+        // SAFETY: the array has four numbers; callers are compiled for AVX.
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self) }
     }
     #[inline(always)]
@@ -68,8 +68,8 @@ impl Four for __m256d {
     }
     #[inline(always)]
     unsafe fn load_columns(from: [*mut f64; 4]) -> [Self; 4] {
-        // Loads by halves, which needs fewer moves between the halves of a register.
-        // SAFETY: guaranteed by the caller.
+        // Loading by halves needs fewer moves between the halves of a register. SAFETY: guaranteed
+        // by the caller.
         unsafe {
             let [p, q, r, s] = from;
             let [a, b] = Self::load_pairs(from);

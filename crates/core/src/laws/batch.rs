@@ -1,12 +1,12 @@
-//! A batch of contacts: its columns, the calls of laws with them, and the checks of what these
-//! return.
+//! A batch of contacts: its columns, the calls of laws with these columns, and checks of the
+//! returned values.
 
 use super::bond_step::BondStep;
 use super::columns::BatchColumns;
 use super::error::LawError;
 use super::function::Call;
 use super::guarded::{self, Guarded};
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::library::Plugin;
 use super::range::{ColumnRange, Largest, settle};
 use super::step_info::StepInfo;
@@ -15,33 +15,33 @@ use crate::geometry::space::Space;
 use crate::threads::map_tasks;
 use std::sync::{Mutex, PoisonError};
 
-/// Contacts of a batch: few enough that its columns stay in a cache. It does not depend on the
-/// number of threads.
+/// Number of contacts in a batch, small enough that its columns stay in a cache. The number does
+/// not depend on the number of threads.
 pub(super) const BATCH: usize = 512;
 
-/// Batches that are evaluated before what they give is stored, per thread.
+/// Number of batches per thread that are evaluated before their results are stored.
 const TASKS_PER_THREAD: usize = 4;
 
-/// The working memory of a batch; nothing in it outlasts the batch.
+/// Working memory of a batch; nothing in it outlasts the batch.
 #[derive(Debug, Default)]
 pub(super) struct LawBatch {
     pub columns: BatchColumns,
-    /// Gaps less what intact bonds fill, as contacts and as springs see them (m).
+    /// Gaps less the part that an intact bond fills, as contacts and springs see them (m).
     pub open_gap: Vec<f64>,
     pub spring_gap: Vec<f64>,
-    /// Places in the memory of the interface.
+    /// Slots of the contacts in the memory of the interface.
     pub slots: Vec<u32>,
     pub bond_step: BondStep,
     /// The reference for rounding errors of outputs.
     pub largest: Largest,
-    /// Which checks are made on law calls.
+    /// Checks made on law calls.
     pub checks: CallChecks,
 }
 
 /// Checks made on the outputs of law calls.
 #[derive(Debug, Default)]
 pub(super) enum CallChecks {
-    /// Errors for values that are not finite or out of range, and for writes just beyond a column.
+    /// Values that are not finite or out of range, and writes just beyond a column, are errors.
     #[default]
     Run,
     /// The checks of `Run` without that of ranges, which certification makes itself.
@@ -56,7 +56,7 @@ impl LawBatch {
     /// Calls a function of a law with the columns, and checks what it wrote.
     pub fn run(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: Call,
@@ -67,14 +67,15 @@ impl LawBatch {
         let called = columns.with_batch(loaded, info, degradation, |batch| match checks {
             CallChecks::Guarded(guarded) => {
                 let (parameters, variables) = (loaded.parameters.len(), loaded.variables());
-                // SAFETY: as below, and copies of the columns are as long as they.
+                // SAFETY: columns of the batch have `n` values or are null and live in `self`, and
+                // so do their copies.
                 let (called, what) =
                     unsafe { guarded.call(batch, parameters, variables, |b| plugin.call(call, b)) };
                 wrong = what;
                 called
             }
             CallChecks::Repeated => {
-                // SAFETY: as below.
+                // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
                 let (called, what) =
                     unsafe { guarded::repeat(batch, loaded.variables(), |b| plugin.call(call, b)) };
                 wrong = what;
@@ -84,7 +85,7 @@ impl LawBatch {
             _ => unsafe { plugin.call(call, batch) },
         });
         if let Some(what) = wrong {
-            return Err(LawError::Trespass {
+            return Err(LawError::ContractViolation {
                 kind: plugin.kind,
                 name: plugin.name.clone(),
                 call,
@@ -106,7 +107,7 @@ impl LawBatch {
     /// Sets the outputs to zero, then calls a function of a law as [`Self::run`] does.
     pub fn run_afresh(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: Call,
@@ -116,10 +117,10 @@ impl LawBatch {
         self.run(loaded, info, degradation, call)
     }
 
-    /// Checks that all that a call wrote is finite and in its range.
+    /// Checks that all values that a call wrote are finite and in their range.
     fn check_outputs(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         plugin: &Plugin,
         call: Call,
     ) -> Result<(), LawError> {
@@ -159,8 +160,8 @@ impl LawBatch {
     }
 }
 
-/// Adds the interface and the contact, one of the members, to an error of a law; a result for all
-/// contacts belongs to none of them.
+/// Adds the interface, and the contact if there is one, to an error of a law; `members` gives the
+/// contacts of the batch.
 pub(super) fn locate<S: Space>(
     law: &Interface,
     network: &Network<S>,
@@ -176,12 +177,12 @@ pub(super) fn locate<S: Space>(
     }
 }
 
-/// Working memory for as many batches as are evaluated at the same time.
+/// Working memory for batches that are evaluated at the same time.
 #[derive(Debug, Default)]
 pub(super) struct BatchPool(Mutex<Vec<LawBatch>>);
 
 impl BatchPool {
-    /// Lends out the memory of a batch.
+    /// Lends the memory of a batch to a function.
     pub fn with<R>(&self, of: impl FnOnce(&mut LawBatch) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let free = lock().pop();
@@ -191,16 +192,16 @@ impl BatchPool {
         result
     }
 
-    /// Evaluates batches, on several threads if `divide` (the plugin interface allows calls on any
-    /// thread, in any order): `of` reads what they share, and `take` stores what it gives, in the
-    /// order of the batches, some of them at a time while they are in a cache. What a batch gives
-    /// does not depend on what others store.
+    /// Evaluates batches, on several threads if `divide`; the plugin interface allows calls on any
+    /// thread and in any order. `of` evaluates a batch, and reads shared data only. `take` stores
+    /// the results in the order of the batches, a few batches at a time while they are in a cache.
+    /// The result of a batch does not depend on what is stored for others.
     ///
-    /// Rounding errors are judged by the largest values of all batches: one that has a value out of
-    /// range by those known so far is evaluated again when all are known.
+    /// Rounding errors are compared with the largest values of all batches: a batch with a value
+    /// out of range by the values known so far is evaluated again when all are known.
     ///
     /// # Errors
-    /// The error of the first batch that has one.
+    /// Returns the error of the first batch that has one.
     pub fn evaluate<X: Sync, T: Send, R: Send>(
         &self,
         divide: bool,
@@ -258,8 +259,8 @@ mod tests {
     use crate::laws::kind::{Kind, Output};
     use crate::laws::outputs::Range;
 
-    /// A value below zero by round-off of the largest one, which is in another batch, on any number
-    /// of threads.
+    /// A value is below zero by round-off of the largest value, which is in another batch. The
+    /// result does not depend on the number of threads.
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
         let check = |(): &(), batch: &mut LawBatch, column: &mut Vec<f64>| {

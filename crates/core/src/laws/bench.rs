@@ -9,14 +9,14 @@ use super::batch::{CallChecks, LawBatch};
 use super::bond_step::BondStep;
 use super::error::LawError;
 use super::function::Call;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::kind::Kind;
 use super::step_info::StepInfo;
 use serde::Serialize;
 
 /// State of a contact on the bench.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct State {
+pub struct BenchState {
     /// Time (s).
     pub time: f64,
     /// Opening (n, t1, t2) (m).
@@ -31,9 +31,9 @@ pub struct State {
     pub variables: Vec<f64>,
 }
 
-/// Prescribed motion over a step, and the temperatures of the bodies.
+/// Prescribed motion in a step, and the temperatures of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct BenchMotion {
     /// Opening at its end (m).
     pub opening: [f64; 3],
     /// Rotation at its end (rad).
@@ -47,27 +47,27 @@ pub struct Motion {
 }
 
 /// Temperature of bodies for which none is given (K): 20 degrees Celsius.
-pub const ROOM: f64 = 293.15;
+pub const ROOM_TEMPERATURE: f64 = 293.15;
 /// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair on the bench:
 /// steel.
 pub const STEEL: [f64; 2] = [50.0, 2e-7];
 
-impl Default for Motion {
-    /// At rest, closed, without a load, at room temperature.
+impl Default for BenchMotion {
+    /// The contact is at rest, closed, without a load, at room temperature.
     fn default() -> Self {
         Self {
             opening: [0.0; 3],
             rotation: [0.0; 3],
             gap: 0.0,
             pressure: 0.0,
-            temperatures: [ROOM; 2],
+            temperatures: [ROOM_TEMPERATURE; 2],
         }
     }
 }
 
 /// Outputs of the laws at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Answer {
+pub struct BenchOutputs {
     /// Traction (Pa); a positive normal part pulls together.
     pub traction: [f64; 3],
     /// Moment over the area (N m/m^2).
@@ -106,7 +106,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A bench for contacts of a reduced radius (m) and the area that goes with it.
+    /// Creates a bench for contacts of a reduced radius (m) and of the area that the interface
+    /// derives from it.
     pub fn new(law: Interface, dimension: u32, radius: f64) -> Self {
         let area = law.area.area(dimension as usize, radius);
         Self {
@@ -120,15 +121,15 @@ impl Bench {
         }
     }
 
-    /// Contacts of this area (m^2; m in 2D) instead of the one that goes with the radius.
+    /// Gives the contacts this area (m^2; m in 2D) instead of the one derived from the radius.
     #[must_use]
     pub fn of_area(mut self, area: f64) -> Self {
         self.area = area;
         self
     }
 
-    /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm
-    /// m); of steel by default.
+    /// Gives the pair this thermal conductivity (W/(m K)) and electrical resistivity (ohm m); the
+    /// default is steel.
     #[must_use]
     pub fn of_material(mut self, material: [f64; 2]) -> Self {
         self.material = material;
@@ -168,14 +169,14 @@ impl Bench {
         &self.declared_damage
     }
 
-    /// Area of its contacts (m^2).
+    /// Returns the area of the contacts (m^2).
     pub fn area(&self) -> f64 {
         self.area
     }
 
     /// Returns the state of a new contact: an intact bond if the cohesion law has an opening.
-    pub fn fresh(&self) -> State {
-        State {
+    pub fn fresh(&self) -> BenchState {
+        BenchState {
             time: 0.0,
             opening: [0.0; 3],
             rotation: [0.0; 3],
@@ -191,11 +192,11 @@ impl Bench {
     /// The law's error, with the index of the contact.
     pub fn step(
         &mut self,
-        states: &mut [State],
-        motions: &[Motion],
+        states: &mut [BenchState],
+        motions: &[BenchMotion],
         h: f64,
-    ) -> Result<Vec<Answer>, LawError> {
-        let mut answers = vec![Answer::default(); states.len()];
+    ) -> Result<Vec<BenchOutputs>, LawError> {
+        let mut answers = vec![BenchOutputs::default(); states.len()];
         let info = StepInfo {
             dimension: self.dimension,
             time: states.first().map_or(0.0, |s| s.time),
@@ -231,16 +232,16 @@ impl Bench {
     /// The law's error.
     pub fn step_one(
         &mut self,
-        state: &mut State,
-        motion: &Motion,
+        state: &mut BenchState,
+        motion: &BenchMotion,
         h: f64,
-    ) -> Result<Answer, LawError> {
+    ) -> Result<BenchOutputs, LawError> {
         let (states, motions) = (std::slice::from_mut(state), std::slice::from_ref(motion));
         Ok(self.step(states, motions, h)?[0])
     }
 
     /// Fills the input columns of the laws with the openings at the start or the end of the step.
-    fn fill(&mut self, states: &[State], motions: &[Motion], info: &StepInfo, end: bool) {
+    fn fill(&mut self, states: &[BenchState], motions: &[BenchMotion], info: &StepInfo, end: bool) {
         let c = &mut self.batch.columns;
         c.clear();
         c.n = states.len();
@@ -290,7 +291,7 @@ impl Bench {
         c.size_outputs();
     }
 
-    fn keep(&self, states: &mut [State]) {
+    fn keep(&self, states: &mut [BenchState]) {
         for (v, column) in self.batch.columns.state_next.iter().enumerate() {
             for (state, value) in states.iter_mut().zip(column) {
                 state.variables[v] = *value;
@@ -300,10 +301,10 @@ impl Bench {
 
     fn contact(
         &mut self,
-        states: &[State],
-        motions: &[Motion],
+        states: &[BenchState],
+        motions: &[BenchMotion],
         info: &StepInfo,
-        answers: &mut [Answer],
+        answers: &mut [BenchOutputs],
     ) -> Result<(), LawError> {
         self.fill(states, motions, info, false);
         let contact = self.law.contact().clone();
@@ -320,8 +321,8 @@ impl Bench {
 
     fn update_damage(
         &mut self,
-        states: &mut [State],
-        motions: &[Motion],
+        states: &mut [BenchState],
+        motions: &[BenchMotion],
         info: &StepInfo,
     ) -> Result<BondStep, LawError> {
         let mut bond_step = BondStep::default();
@@ -337,11 +338,11 @@ impl Bench {
 
     fn cohesion(
         &mut self,
-        states: &[State],
-        motions: &[Motion],
+        states: &[BenchState],
+        motions: &[BenchMotion],
         info: &StepInfo,
         bond_step: &BondStep,
-        answers: &mut [Answer],
+        answers: &mut [BenchOutputs],
     ) -> Result<(), LawError> {
         let Some(cohesion) = self.law.cohesion().cloned() else {
             return Ok(());
@@ -380,17 +381,17 @@ impl Bench {
     /// Evaluates the laws that act on every contact, and wear.
     fn end(
         &mut self,
-        states: &mut [State],
-        motions: &[Motion],
+        states: &mut [BenchState],
+        motions: &[BenchMotion],
         info: &StepInfo,
         damage: &[f64],
-        answers: &mut [Answer],
+        answers: &mut [BenchOutputs],
     ) -> Result<(), LawError> {
         let on_contacts = self.law.loaded().filter(|l| !self.law.acts_on_bonds(l));
-        let acting: Vec<Loaded> = on_contacts.cloned().collect();
+        let acting: Vec<LoadedLaw> = on_contacts.cloned().collect();
         for loaded in acting {
-            // Laws whose answers are taken at the start of a step move their variables; the others
-            // see the slip.
+            // Laws whose outputs are used at the start of a step update their variables here; the
+            // others receive the slip.
             let answers_first = loaded.plugin.kind.spec().functions.contains(&Call::Prepare);
             if answers_first && loaded.variables() == 0 {
                 continue;
@@ -417,8 +418,14 @@ impl Bench {
         Ok(())
     }
 
-    /// Damage, slip and friction work at the end of a step.
-    fn slide(&mut self, motions: &[Motion], info: &StepInfo, damage: &[f64], answers: &[Answer]) {
+    /// Computes damage, slip and friction work at the end of a step.
+    fn slide(
+        &mut self,
+        motions: &[BenchMotion],
+        info: &StepInfo,
+        damage: &[f64],
+        answers: &[BenchOutputs],
+    ) {
         let c = &mut self.batch.columns;
         c.damage.copy_from_slice(damage);
         for (k, answer) in answers.iter().enumerate() {

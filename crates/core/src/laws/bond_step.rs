@@ -1,8 +1,8 @@
-//! What laws give for bonds at the end of a step.
+//! Outputs of the laws for bonds at the end of a step.
 
 use super::interface::Interface;
 
-/// What laws give for the bonds of a batch at their new openings, in the order of the members.
+/// Outputs of the laws for the bonds of a batch at their new openings, in the order of the members.
 #[derive(Debug, Default)]
 pub(super) struct BondStep {
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
@@ -12,7 +12,7 @@ pub(super) struct BondStep {
 }
 
 impl BondStep {
-    /// Energy per area stored at the new opening and damage (J/m^2).
+    /// Returns the energy per area stored at the new opening and damage (J/m^2).
     pub fn stored(&self, law: &Interface, k: usize) -> f64 {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let share = if law.damages() {
@@ -24,7 +24,7 @@ impl BondStep {
     }
 }
 
-/// (1 - D)^m.
+/// Returns (1 - D)^m.
 pub(super) fn degradation_factor(damage: f64, m: f64) -> f64 {
     let intact = 1.0 - damage;
     if m == 1.0 {

@@ -7,28 +7,28 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{BondAfter, MotionSource, Source, store_states};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::{MomentStep, SolvedStep, Totals, Velocities};
 use crate::contact::{Bond, Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::chunk_size;
 
-/// About what the laws of a bond take (ns).
+/// Approximate time of the laws of a bond (ns).
 const BOND: f64 = 100.0;
 
 /// A bond at the end of a step.
 struct BondEnd<S: Space> {
     opening: (f64, S::Tangent),
     rotation: S::Spin,
-    /// Work done on it by opening, by sliding and by rotation (J).
+    /// Work done on the bond by opening, by sliding and by rotation (J).
     work: [f64; 3],
-    /// Work that its impulse did (J).
+    /// Work of the bond's impulse (J).
     given: f64,
-    /// Part of it dissipated by damping and by the time scheme (J); `None` where it follows from
-    /// the stored energy, see [`crate::solve::Elastic::lost`].
+    /// Part of that work dissipated by damping and by the time scheme (J); `None` where it follows
+    /// from the stored energy, see [`crate::solve::Elastic::lost`].
     lost: Option<f64>,
-    /// Dissipated by friction against sliding and against rotation (J).
+    /// Energy dissipated by friction against sliding and against rotation (J).
     friction: [f64; 2],
     /// Length of the change of the opening (m).
     slide: f64,
@@ -38,22 +38,22 @@ struct BondEnd<S: Space> {
     damage: f64,
 }
 
-/// The bonds of an interface, and what their contacts do.
+/// The bonds of an interface, and the motion of their contacts.
 struct BondOpenings<'a, S: Space> {
     source: Source<'a, S>,
     motion: MotionSource<'a, S>,
-    /// Places of the moments of contacts, where the step is solved and bonds resist rotation.
+    /// Index of the moment of each contact, where the step is solved and bonds resist rotation.
     moment_places: &'a [u32],
 }
 
 impl<S: Space> BondOpenings<'_, S> {
-    /// The laws that act on bonds.
-    fn laws(&self) -> Vec<&Loaded> {
+    /// Returns the laws that act on bonds.
+    fn laws(&self) -> Vec<&LoadedLaw> {
         let law = self.source.law;
         law.cohesion().into_iter().chain(law.damage()).collect()
     }
 
-    /// What a contact that resists rotation did.
+    /// Returns the moment and spin of a contact that resists rotation.
     fn moment(&self, at: usize) -> Option<&MomentStep<S>> {
         match &self.motion {
             MotionSource::Continued(_) => None,
@@ -61,7 +61,7 @@ impl<S: Space> BondOpenings<'_, S> {
         }
     }
 
-    /// The spin of a contact that resists rotation, averaged over the step (rad/s).
+    /// Returns the spin of a contact that resists rotation, averaged over the step (rad/s).
     fn spin(&self, at: usize) -> Option<S::Spin> {
         match &self.motion {
             MotionSource::Continued(before) => before.turning.get(at).copied(),
@@ -69,7 +69,8 @@ impl<S: Space> BondOpenings<'_, S> {
         }
     }
 
-    /// The bond of a contact at the end of the step, with the damage at its start, for laws.
+    /// Returns the bond of a contact at the end of the step, with the damage at its start, as laws
+    /// receive it.
     #[inline]
     fn after(
         &self,
@@ -97,8 +98,8 @@ impl<S: Space> BondOpenings<'_, S> {
         }
     }
 
-    /// The bond of a contact at the end of a solved step. Work of the bond's impulse that is not
-    /// stored is damping.
+    /// Returns the bond of a contact at the end of a solved step. Work of the bond's impulse that
+    /// is not stored is damping.
     #[inline]
     fn end(
         &self,
@@ -155,7 +156,7 @@ impl LawEvaluator {
     ) -> Result<(), LawError> {
         self.place_moments(index, network, step);
         let moment_places = &self.moment_places;
-        let laws: Vec<&Loaded> = law.cohesion().into_iter().chain(law.damage()).collect();
+        let laws: Vec<&LoadedLaw> = law.cohesion().into_iter().chain(law.damage()).collect();
         let members = &self.members[index].bonded;
         let divide = self.divides(members.len(), BOND);
         let batches = members.chunks(chunk_size(BATCH)).collect();
@@ -186,7 +187,7 @@ impl LawEvaluator {
     }
 
     /// Returns the largest increase from the damage used in the step's impulses to the damage that
-    /// the resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the
+    /// the resulting openings give; [`LawEvaluator::adopt_trial_damage`] uses the latter in the
     /// next solve. Contacts are as at the last [`Self::select`].
     ///
     /// # Errors
@@ -256,8 +257,8 @@ impl LawEvaluator {
 }
 
 impl LawBatch {
-    /// The increase from the damage used in a step to the one that laws give for the bonds of a
-    /// batch if the motion at the start of the step goes on through it, by the place in memory.
+    /// Returns by how much damage would increase, if the motion at the start of the step continued
+    /// through it, over the damage used in the step, by slot.
     pub(super) fn predict_damage<S: Space>(
         &mut self,
         source: &Source<'_, S>,
@@ -272,8 +273,8 @@ impl LawBatch {
         self.try_damage(&opening, members)
     }
 
-    /// The increase from the damage used in a step to the one that laws give for the bonds of a
-    /// batch, by the place in memory. Damage does not decrease within a step either, so that an
+    /// Returns by how much the damage that the laws give for the bonds of a batch exceeds the
+    /// damage used in a step, by slot. Damage does not decrease within a step either, so that the
     /// iteration is monotonic and ends.
     fn try_damage<S: Space>(
         &mut self,
@@ -292,7 +293,7 @@ impl LawBatch {
     }
 
     /// Computes the damage of the bonds of a batch at their openings at the end of the step; `each`
-    /// is given the contact, its normal and its bond before and after.
+    /// receives the contact, its normal, and its bond before and after the step.
     fn open_bonds<S: Space>(
         &mut self,
         opening: &BondOpenings<'_, S>,
@@ -325,8 +326,8 @@ impl LawBatch {
         updated.map_err(|e| locate(law, network, members, e))
     }
 
-    /// Computes damage at the current openings as the maximum of the cohesion law's and the damage
-    /// law's value.
+    /// Computes damage at the current openings as the larger of the values of the cohesion law and
+    /// of the damage law.
     pub(super) fn update_damage(
         &mut self,
         law: &Interface,
@@ -359,7 +360,7 @@ impl LawBatch {
             self.columns.out.damage.fill(0.0);
         }
         if let Some(damage) = law.damage() {
-            // The damage law sees what the undamaged bond would carry and store.
+            // The damage law receives traction and energy of the undamaged bond.
             self.columns.expose_intact();
             self.run(damage, info, m, Call::Commit)?;
             raise(&mut bond_step.damage, &self.columns.out.damage);
@@ -395,13 +396,13 @@ fn store_bonds<S: Space>(
         let memory = &mut network.memory[index];
         let bond = &mut memory.bonds[slot];
         (bond.opening_n, bond.opening_t) = end.opening;
-        bond.life.work[0] -= end.work[0];
-        bond.life.work[1] -= end.work[1];
-        bond.life.friction += end.friction[0];
+        bond.energies.work[0] -= end.work[0];
+        bond.energies.work[1] -= end.work[1];
+        bond.energies.friction += end.friction[0];
         if memory.rotates {
             memory.rotations[slot] = end.rotation;
-            bond.life.work[2] -= end.work[2];
-            bond.life.friction -= end.friction[1];
+            bond.energies.work[2] -= end.work[2];
+            bond.energies.friction -= end.friction[1];
         }
         let mut damage = end.damage;
         if !predicted {
@@ -419,7 +420,7 @@ fn store_bonds<S: Space>(
             let ratio = share(bond.step_damage) / share(bond.damage);
             (bond.energy * ratio, intact * share(bond.step_damage))
         };
-        // Where the loss is known by itself, a wrong energy of the law appears in the residual.
+        // Where the loss is computed separately, a wrong energy of the law appears in the residual.
         let viscous = end.lost.unwrap_or(-end.given - (stop - start));
         let kept = if damage >= 1.0 {
             0.0
@@ -429,8 +430,8 @@ fn store_bonds<S: Space>(
         let fracture = (bond.energy - start) + (stop - kept);
         totals.viscous += viscous;
         totals.fracture += fracture;
-        bond.life.viscous += viscous;
-        bond.life.fracture += fracture;
+        bond.energies.viscous += viscous;
+        bond.energies.fracture += fracture;
         if let Some(dissipation) = &mut network.dissipation {
             dissipation[*at].viscous += viscous;
             dissipation[*at].fracture += fracture;

@@ -1,5 +1,5 @@
-//! Laws linked into the program, which needs no libraries for them. The program passes their tables
-//! to the core, which refers to no law by name.
+//! Laws linked into the program, which need no libraries. The program passes their tables to the
+//! core, which refers to no law by name.
 
 use super::error::LawError;
 use super::kind::Kind;
@@ -31,8 +31,8 @@ impl std::fmt::Debug for BuiltInLaws {
 }
 
 impl BuiltInLaws {
-    /// Laws of a program: the statics `TABLE` that `plugin_table!` of the crate `fretwork-law`
-    /// makes. Those whose kind or name cannot be read are left out.
+    /// Returns the laws of a program from the statics `TABLE` that `plugin_table!` of the crate
+    /// `fretwork-law` makes. Laws whose kind or name cannot be read are left out.
     pub fn new(laws: impl IntoIterator<Item = &'static LinkedLaw>) -> Self {
         let known = laws.into_iter().filter_map(|law| {
             // SAFETY: the name of a linked law is NUL-terminated static text.
@@ -46,7 +46,7 @@ impl BuiltInLaws {
         Self(known.collect())
     }
 
-    /// These laws, then others; of two of one kind and name the first is found.
+    /// Appends further laws; of two laws of the same kind and name the first is used.
     #[must_use]
     pub fn and(&self, others: &Self) -> Self {
         Self(self.0.iter().chain(others.0.iter()).cloned().collect())
@@ -57,8 +57,8 @@ impl BuiltInLaws {
         self.0.iter().map(|e| (e.kind, e.name.as_str()))
     }
 
-    /// Returns the law of this kind and name if it is linked in. Its path and SHA-256 are those of
-    /// the program.
+    /// Returns the law of this kind and name if it is linked in, with the path and SHA-256 of the
+    /// program.
     pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
         let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
         Some(executable().and_then(|(path, sha256)| {

@@ -18,7 +18,7 @@ impl Plugin {
             return None;
         }
         let function = self.table.fracture_energy?;
-        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        // SAFETY: only the type changes, to one that may unwind.
         let function = unsafe {
             std::mem::transmute::<
                 unsafe extern "C" fn(*const f64, f64) -> f64,
@@ -36,7 +36,7 @@ impl Plugin {
     /// Checks parameter values against the schema and with the law's own `validate` function.
     ///
     /// # Errors
-    /// A sentence that names the parameter.
+    /// Returns a sentence that names the parameter.
     pub fn validate(&self, values: &[f64]) -> Result<(), LawError> {
         let refuse = |reason: String| LawError::Parameters {
             kind: self.kind,
@@ -63,7 +63,7 @@ impl Plugin {
         };
         let mut buffer = [0 as c_char; MESSAGE];
         let mut message = message_over(&mut buffer);
-        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        // SAFETY: only the type changes, to one that may unwind.
         let validate = unsafe {
             std::mem::transmute::<
                 unsafe extern "C" fn(*const f64, *mut abi::FwMessage) -> i32,
@@ -88,7 +88,7 @@ impl Plugin {
     /// The law's message, with the index of the contact in the batch.
     ///
     /// # Safety
-    /// The columns of the batch that the law uses hold `batch.n` values and outlive the call.
+    /// The columns of the batch that the law uses must hold `batch.n` values and outlive the call.
     pub unsafe fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
         let function = match call {
             Call::Initialise => self.table.initialise,
@@ -101,7 +101,7 @@ impl Plugin {
         };
         let mut buffer = [0 as c_char; MESSAGE];
         let mut message = message_over(&mut buffer);
-        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        // SAFETY: only the type changes, to one that may unwind.
         let function = unsafe {
             std::mem::transmute::<
                 unsafe extern "C" fn(*const abi::FwBatch, *mut abi::FwMessage) -> i32,
@@ -110,7 +110,7 @@ impl Plugin {
         };
         let disturbed = &self.disturbed.calling;
         let status = outside::call(self.label, call as usize, disturbed, || {
-            // SAFETY: by the contract of this function.
+            // SAFETY: the caller keeps the contract of this function.
             unsafe { function(batch, &mut message) }
         });
         if status == abi::STATUS_OK {

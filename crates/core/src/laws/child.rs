@@ -1,8 +1,8 @@
 //! Runs the program as its own child process, to try operations that may hang or terminate the
 //! process.
 //!
-//! Only the command-line program does so, after [`enable`]; other users of the library are not
-//! affected.
+//! Only the command-line program starts children, after [`enable`]; other users of the library are
+//! not affected.
 
 use crate::program;
 use serde::{Deserialize, Serialize};
@@ -22,8 +22,8 @@ struct Helper {
 
 static HELPER: OnceLock<Helper> = OnceLock::new();
 
-/// Declares that the [program](crate::program) of this process has the command line, which may be
-/// run as a child.
+/// Declares that the [program](crate::program) of this process has the command line, so that it may
+/// be run as a child.
 pub fn enable(limit: Option<Duration>) {
     if program::command().is_ok() {
         let _ = HELPER.set(Helper { limit });
@@ -38,21 +38,21 @@ pub fn enabled() -> bool {
 /// How a child process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It completed the whole request.
+    /// The process completed the whole request.
     Done,
-    /// It ended early, for the given reason.
+    /// The process ended early, for this reason.
     Early(String),
-    /// It ended early since the system refused it memory, which is no failure of what was tried: in
-    /// a sentence.
+    /// The process ended early because the system refused it memory, which is no failure of the
+    /// tried operation; the sentence says so.
     NoMemory(String),
 }
 
 /// Output of a child process.
 #[derive(Debug)]
 pub struct ChildOutput {
-    /// Its messages in order.
+    /// Messages of the child in order.
     pub messages: Vec<Value>,
-    /// How it ended.
+    /// How the child process ended.
     pub end: End,
 }
 
@@ -63,7 +63,7 @@ struct Question {
     question: Value,
 }
 
-/// In the child process: the token of the request.
+/// Token of the request, in the child process.
 static TOKEN: OnceLock<u64> = OnceLock::new();
 
 /// Returns the prefix of answer lines, which separates them from anything a law prints. The token
@@ -78,7 +78,7 @@ fn new_token() -> u64 {
     std::hash::RandomState::new().hash_one(std::process::id())
 }
 
-/// In the child process: sends one message.
+/// Sends one message from the child process.
 pub fn send_message(message: &Value) {
     let mark = mark(TOKEN.get().copied().unwrap_or_default());
     let mut out = std::io::stdout().lock();
@@ -87,15 +87,15 @@ pub fn send_message(message: &Value) {
     let _ = out.flush();
 }
 
-/// In the child process: reports that the request is complete.
+/// Reports, from the child process, that the request is complete.
 pub fn send_done() {
     send_message(&json!("done"));
 }
 
-/// In the child process: reads the request.
+/// Reads the request, in the child process.
 ///
 /// # Errors
-/// It cannot be read.
+/// The request cannot be read.
 pub fn read_request() -> Result<Value, String> {
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
@@ -214,16 +214,16 @@ fn read_error_output(mut err: impl Read) -> String {
     String::from_utf8_lossy(&all).trim().to_owned()
 }
 
-/// How the program begins the sentence that memory ran out.
+/// First words of the program's message that memory ran out.
 pub const NO_MEMORY: &str = "memory ran out";
 
-/// The sentence of a process that had no memory: the program's own, or that of the standard
+/// Returns the message of a process that had no memory: the program's own, or that of the standard
 /// library.
 fn no_memory(said: &str) -> Option<String> {
     let sentence = said.lines().find_map(|l| {
         let own = l.strip_prefix("error: ").unwrap_or(l);
         let ours = own.starts_with(NO_MEMORY);
-        // An allocator that is not the program's: of a law that has one of its own.
+        // A law may have its own allocator, which reports through the standard library.
         let of_library = own.starts_with("memory allocation of ") && own.ends_with(" failed");
         match (ours, of_library) {
             (true, _) => Some(own.to_owned()),
@@ -231,7 +231,7 @@ fn no_memory(said: &str) -> Option<String> {
             _ => None,
         }
     })?;
-    // What was saved is of no interest to the parent.
+    // The parent does not report what the child saved.
     let rest = sentence.split_once("; nothing was being recorded");
     Some(rest.map_or(sentence.clone(), |(sentence, _)| sentence.to_owned()))
 }
@@ -241,7 +241,7 @@ fn describe_exit(status: ExitStatus, said: &str) -> String {
     // The program's own message names the law and the call.
     let sentence = said.lines().rev().find_map(|l| l.strip_prefix("error: "));
     if let Some(sentence) = sentence {
-        // What was saved is of no interest to the parent.
+        // The parent does not report what the child saved.
         return sentence.split("; ").next().unwrap_or(sentence).to_owned();
     }
     #[cfg(unix)]
@@ -261,7 +261,7 @@ fn describe_exit(status: ExitStatus, said: &str) -> String {
 mod tests {
     use super::*;
 
-    /// All of it where it is short, the last 4096 bytes where it is long.
+    /// The end of a message is read: all of a short one, the last 4096 bytes of a long one.
     #[test]
     fn the_end_of_an_error_is_read() {
         assert_eq!(read_error_output(&b" it failed\n"[..]), "it failed");

@@ -1,7 +1,7 @@
-//! The columns of a batch: collected from the network, passed to plugins, read back.
+//! The columns of a batch: they are collected from the network, passed to plugins, and read back.
 
 use super::function::Call;
-use super::interface::Loaded;
+use super::interface::LoadedLaw;
 use super::kind::Kind;
 pub use super::outputs::{Outputs, Triple};
 use super::step_info::StepInfo;
@@ -42,19 +42,20 @@ pub struct BatchColumns {
     pub compression_time: Vec<f64>,
     /// Rotation of the bond (rad); empty unless the cohesion law resists rotation.
     pub rotation: Triple,
-    /// Undamaged moment over the area (N m/m^2); as `rotation`.
+    /// Undamaged moment over the area (N m/m^2); empty unless the cohesion law resists rotation.
     pub intact_moment: Triple,
     /// Overlap (m); empty unless the contact law is compliant.
     pub overlap: Vec<f64>,
-    /// Effective mass along the normal (kg); as `overlap`.
+    /// Effective mass along the normal (kg); empty unless the contact law is compliant.
     pub effective_mass: Vec<f64>,
-    /// Force of the tangential spring (N), along t1 and t2; as `overlap`.
+    /// Force of the tangential spring (N), along t1 and t2; empty unless the contact law is
+    /// compliant.
     pub spring: [Vec<f64>; 2],
     /// Force of the tangential spring at the start of the step (N), for commit.
     pub spring_before: [Vec<f64>; 2],
     /// Temperatures of contact, candidate and antagonist (K); empty where no heat is computed.
     pub temperature: [Vec<f64>; 3],
-    /// Thermal conductivity of the pair (W/(m K)); as `temperature`.
+    /// Thermal conductivity of the pair (W/(m K)); empty where no heat is computed.
     pub conductivity: Vec<f64>,
     /// Electrical resistivity of the pair (ohm m); empty where no current flows.
     pub resistivity: Vec<f64>,
@@ -90,14 +91,14 @@ fn overrun(column: &mut Vec<f64>) -> bool {
         .any(|p| unsafe { p.assume_init_read() }.to_bits() != CANARY)
 }
 
-/// Sizes a column, of which all values are to be set.
+/// Sizes a column whose values are all set afterwards.
 fn fit(column: &mut Vec<f64>, n: usize) {
     if column.len() != n {
         column.resize(n, 0.0);
     }
 }
 
-/// Which columns a batch has, beside those of every batch.
+/// Columns of a batch beyond those that every batch has.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contents {
     /// Columns along t2, in three dimensions.
@@ -106,7 +107,7 @@ pub(super) struct Contents {
     pub rotates: bool,
     /// Columns of compliant contacts.
     pub compliant: bool,
-    /// Springs at the start of the step, beside those at its end.
+    /// Springs at the start of the step, in addition to those at its end.
     pub after: bool,
     /// Temperatures and conductivities.
     pub heat: bool,
@@ -114,7 +115,7 @@ pub(super) struct Contents {
     pub current: bool,
 }
 
-/// Turns columns into the pointers of a batch: null for columns that are not in use.
+/// Converts columns to the pointers of a batch: null for columns that are not in use.
 struct Pointers {
     /// Number of contacts.
     n: usize,
@@ -195,8 +196,8 @@ impl BatchColumns {
         self.state_next.clear();
     }
 
-    /// Sizes the inputs that a gather sets for `n` contacts, and empties the others; internal
-    /// variables and outputs have their own.
+    /// Sizes the inputs that a gather sets for `n` contacts, and empties the others. Internal
+    /// variables and outputs are sized separately.
     pub(super) fn begin(&mut self, n: usize, contents: Contents) {
         self.n = n;
         let count = |used: bool| if used { n } else { 0 };
@@ -237,7 +238,7 @@ impl BatchColumns {
         given.into_iter().chain(intact).for_each(Vec::clear);
     }
 
-    /// Fills the columns of heat from those of the contacts, of which these are members.
+    /// Fills the columns of heat for the members from the data of all contacts.
     pub(super) fn take_heat(&mut self, thermal: &ContactHeat, members: &[usize]) {
         for (k, at) in members.iter().enumerate() {
             let seen = &thermal.temperatures[*at];
@@ -275,8 +276,9 @@ impl BatchColumns {
         }
     }
 
-    /// Applies a change to each output column, given the number of its values: those of compliant
-    /// contacts have some only where the law is one, and those of transport where heat is computed.
+    /// Applies a change to each output column, given the number of its values: columns of compliant
+    /// contacts are empty unless the law is compliant, and columns of transport unless heat is
+    /// computed.
     fn each_output(&mut self, change: impl Fn(&mut Vec<f64>, usize)) {
         self.out.every().for_each(|column| change(column, self.n));
         let n = self.overlap.len();
@@ -285,13 +287,13 @@ impl BatchColumns {
         self.out.transport().for_each(|column| change(column, n));
     }
 
-    /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`]
-    /// follows.
+    /// Sizes the outputs. Values of earlier calls are cleared only where [`Self::clear_outputs`]
+    /// does not follow.
     pub(super) fn fit_outputs(&mut self) {
         self.each_output(fit);
     }
 
-    /// Sets to zero what a call of a law writes.
+    /// Sets the columns that a call of a law writes to zero.
     pub(super) fn clear_outputs(&mut self, kind: Kind, call: Call) {
         for output in (kind.spec().outputs)(&mut self.out, call) {
             output.values.fill(0.0);
@@ -309,7 +311,7 @@ impl BatchColumns {
     /// Runs `call` with the batch of these columns.
     pub fn with_batch<R>(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LoadedLaw,
         info: &StepInfo,
         degradation: f64,
         call: impl FnOnce(&FwBatch) -> R,
@@ -446,7 +448,8 @@ impl BatchColumns {
 mod tests {
     use super::*;
 
-    /// A call finds its outputs at zero, whatever was there before; those of other calls are left.
+    /// A call finds its outputs at zero, whatever their values were before; outputs of other calls
+    /// are kept.
     #[test]
     fn what_a_call_writes_is_cleared() {
         for kind in Kind::BUILT_IN {

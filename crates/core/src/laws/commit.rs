@@ -6,7 +6,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{MotionSource, Source, store_states};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::kind::{Domain, Kind};
 use super::outputs::Outputs;
 use super::slot::SlotCommit;
@@ -18,11 +18,11 @@ use crate::threads::{chunk_size, fill, map_chunks_mut, map_chunks_of_two, worth_
 
 /// Contacts of a task; sums are formed per chunk and added in order.
 const CHUNK: usize = 1024;
-/// About what it takes to store the impulse of a contact (ns).
+/// Approximate time to store the impulse of a contact (ns).
 const COMMIT: f64 = 15.0;
-/// About what it takes to find the slip of a contact (ns).
+/// Approximate time to compute the slip of a contact (ns).
 const SLIDE: f64 = 5.0;
-/// About what a law takes for a contact (ns).
+/// Approximate time of a law per contact (ns).
 const COMMIT_LAW: f64 = 40.0;
 
 impl LawEvaluator {
@@ -53,7 +53,7 @@ impl LawEvaluator {
         Ok(totals)
     }
 
-    /// Calls the laws of an interface that act on contacts, and has the host take their answers.
+    /// Calls the laws of an interface that act on contacts, and stores their outputs.
     fn commit_slots<S: Space>(
         &mut self,
         index: usize,
@@ -66,17 +66,17 @@ impl LawEvaluator {
         let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
         // A law without internal variables is called only where heat or current flows.
         let conducts = network.thermal.as_ref().map(|t| t.conducts);
-        let idle = |l: &&Loaded| {
+        let idle = |l: &&LoadedLaw| {
             let remembers = l.variables() > 0 && conducts.is_some();
             l.plugin.kind == Kind::TRANSPORT && !remembers && conducts != Some(true)
         };
-        let slots: Vec<&Loaded> = slots
+        let slots: Vec<&LoadedLaw> = slots
             .filter(|l| (sees_slip(l) || l.variables() > 0) && !idle(l))
             .collect();
-        let all = |l: &&Loaded| l.plugin.kind.spec().domain == Domain::All;
+        let all = |l: &&LoadedLaw| l.plugin.kind.spec().domain == Domain::All;
         let (of_all, of_near): (Vec<_>, Vec<_>) = slots.into_iter().partition(all);
         let members = std::mem::take(&mut self.members[index]);
-        // Laws of the same contacts share the columns.
+        // Laws that act on the same contacts share the columns.
         let groups = if members.beyond.is_empty() {
             vec![(&members.all[..], [of_all, of_near].concat())]
         } else {
@@ -193,24 +193,24 @@ impl LawEvaluator {
 struct SlotGroup<'a> {
     law: &'a Interface,
     index: usize,
-    slots: &'a [&'a Loaded],
+    slots: &'a [&'a LoadedLaw],
     members: &'a [usize],
 }
 
-/// Whether a law is given slip and friction work: the host does not take its answers at the start
-/// of a step.
-fn sees_slip(law: &Loaded) -> bool {
+/// Returns whether a law receives slip and friction work: its outputs are not used at the start of
+/// a step.
+fn sees_slip(law: &LoadedLaw) -> bool {
     !law.plugin.kind.spec().functions.contains(&Call::Prepare)
 }
 
-/// Whether a law is given friction work that is not negative: where the velocity turns within a
-/// step, friction gives work back, and later steps owe it to the law.
-fn is_paid(law: &Loaded) -> bool {
+/// Returns whether a law receives friction work that is not negative: where the velocity reverses
+/// within a step, friction gives work back, which is deducted from the work of later steps.
+fn is_paid(law: &LoadedLaw) -> bool {
     law.plugin.kind == Kind::WEAR
 }
 
-/// Slip (m) and friction work (J) of a contact over the step, the latter negative where friction
-/// gave back.
+/// Returns slip (m) and friction work (J) of a contact over the step; the work is negative where
+/// friction gave energy back.
 #[inline]
 fn slide<S: Space>(network: &Network<S>, step: &SolvedStep<'_, S>, at: usize) -> (f64, f64) {
     let contact_step = &step.contacts[at];
@@ -224,8 +224,8 @@ fn slide<S: Space>(network: &Network<S>, step: &SolvedStep<'_, S>, at: usize) ->
     }
 }
 
-/// The friction work of contacts less what their pairs owe, and not negative: the rest they owe to
-/// later steps.
+/// Returns the friction work of contacts less the deferred negative work of their pairs. It is not
+/// negative: the remainder is deferred to later steps.
 fn pay_debts<S: Space>(
     slides: &[(f64, f64)],
     network: &Network<S>,
@@ -238,7 +238,7 @@ fn pay_debts<S: Space>(
     history.negative_friction_work.not_negative(works)
 }
 
-/// Stores the impulses of the contacts, and adds up what they dissipated.
+/// Stores the impulses of the contacts, and adds up the dissipated energies.
 fn commit_contacts<S: Space>(
     network: &mut Network<S>,
     step: &SolvedStep<'_, S>,
@@ -280,8 +280,8 @@ fn commit_contacts<S: Space>(
     parts.iter().for_each(|part| totals.add(part));
 }
 
-/// Stores the impulse of a contact, adds its energies to the totals, and returns what it
-/// dissipated.
+/// Stores the impulse of a contact, adds its energies to the totals, and returns the dissipated
+/// energy.
 fn book_contact<S: Space>(
     contact: &mut Contact<S>,
     k: usize,
@@ -306,8 +306,8 @@ fn book_contact<S: Space>(
     dissipated
 }
 
-/// Stores the impulse and the spring of a compliant contact; returns what it dissipated, and the
-/// rest of the work done on it, which its spring took.
+/// Stores the impulse and the spring of a compliant contact. Returns the dissipated energy, and the
+/// rest of the work, which the spring stored.
 fn commit_spring<S: Space>(
     contact: &mut Contact<S>,
     contact_step: &ContactStep<S>,
@@ -328,7 +328,7 @@ fn commit_spring<S: Space>(
     (dissipated, work - friction - viscous - step.adhesion)
 }
 
-/// Stores the impulse of a rigid contact; returns what it dissipated.
+/// Stores the impulse of a rigid contact; returns the dissipated energy.
 #[inline]
 fn commit_contact<S: Space>(
     contact: &mut Contact<S>,
@@ -362,7 +362,7 @@ fn commit_contact<S: Space>(
     }
 }
 
-/// Stores the moments of the contacts that resist rotation, and adds up their friction.
+/// Stores the moments of the contacts that resist rotation, and adds up their work of friction.
 fn commit_moments<S: Space>(
     network: &mut Network<S>,
     moment_steps: &[MomentStep<S>],

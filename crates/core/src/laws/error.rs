@@ -2,7 +2,7 @@
 
 use super::function::Call;
 use super::kind::Kind;
-use super::names::{VARIABLE, name_is_valid};
+use super::names::{PATH_VARIABLE, name_is_valid};
 use super::outputs::Range;
 use std::path::PathBuf;
 
@@ -17,15 +17,15 @@ pub enum LawError {
         /// The problem and its remedy.
         reason: String,
     },
-    /// The library was opened, and others came with it than its file says.
+    /// Opening the library loaded other libraries than its file names.
     #[error("cannot use the plugin {}: {reason}", path.display())]
-    Unexamined {
+    UnexpectedLibraries {
         /// The library.
         path: PathBuf,
         /// The problem and its remedy.
         reason: String,
     },
-    /// The law could not be tested, for a reason that is not the law's.
+    /// The law could not be tested, for a reason outside the law.
     #[error("the {kind} law `{name}` could not be tested: {reason}")]
     Untested {
         /// Kind.
@@ -37,7 +37,7 @@ pub enum LawError {
     },
     /// The library does not have the SHA-256 that is pinned.
     #[error("the plugin {} has the SHA-256 {sha256}, not {pin} as pinned; get the library that the case was made with, or pin this one if you trust it", path.display())]
-    Pinned {
+    HashMismatch {
         /// The library.
         path: PathBuf,
         /// Expected SHA-256.
@@ -46,7 +46,7 @@ pub enum LawError {
         sha256: String,
     },
     /// No law of this name is on the search path.
-    #[error("there is no {kind} law named `{name}` (available: {available}; looked in {looked}); {}", advice(name, nearest.as_deref()))]
+    #[error("there is no {kind} law named `{name}` (available: {available}; looked in {searched}); {}", advice(name, nearest.as_deref()))]
     Unknown {
         /// Requested kind.
         kind: Kind,
@@ -55,7 +55,7 @@ pub enum LawError {
         /// Available laws.
         available: String,
         /// Folders searched.
-        looked: String,
+        searched: String,
         /// The most similar name.
         nearest: Option<String>,
     },
@@ -71,14 +71,14 @@ pub enum LawError {
     },
     /// The laws of an interface are incompatible.
     #[error("{reason}")]
-    Pairing {
-        /// Why.
+    Incompatible {
+        /// Reason.
         reason: String,
     },
     /// A kind that cannot be registered.
     #[error("{reason}")]
     Kind {
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A call failed.
@@ -94,7 +94,7 @@ pub enum LawError {
         contact: Option<usize>,
         /// The law's message.
         reason: String,
-        /// Whether it asks for a smaller time step (`FW_REDUCE_STEP`).
+        /// Whether the law asks for a smaller time step (`FW_REDUCE_STEP`).
         smaller_step: bool,
     },
     /// A function of the law wrote beyond the end of a column.
@@ -143,10 +143,10 @@ pub enum LawError {
         /// Accepted range.
         range: Range,
     },
-    /// A function of the law wrote to memory it must not write, or returned different results for
+    /// A function of the law wrote to memory outside its outputs, or returned different results for
     /// equal inputs.
     #[error("the {kind} law `{name}` {what} in {call:?}; fix the law before using it again")]
-    Trespass {
+    ContractViolation {
         /// Kind.
         kind: Kind,
         /// Name.
@@ -177,14 +177,14 @@ impl LawError {
             | Self::Overrun { kind, name, .. }
             | Self::NotFinite { kind, name, .. }
             | Self::OutOfRange { kind, name, .. }
-            | Self::Trespass { kind, name, .. }
+            | Self::ContractViolation { kind, name, .. }
             | Self::Untested { kind, name, .. } => Some((*kind, name)),
             Self::At { source, .. } => source.law(),
             Self::Unusable { .. }
-            | Self::Unexamined { .. }
-            | Self::Pinned { .. }
+            | Self::UnexpectedLibraries { .. }
+            | Self::HashMismatch { .. }
             | Self::Unknown { .. }
-            | Self::Pairing { .. }
+            | Self::Incompatible { .. }
             | Self::Kind { .. } => None,
         }
     }
@@ -215,7 +215,8 @@ impl LawError {
         }
     }
 
-    /// Whether an output was out of its range, also as the source of the error of an interface.
+    /// Returns whether an output was out of its range, also where this is the source of the error
+    /// of an interface.
     pub(super) fn out_of_range(&self) -> bool {
         match self {
             Self::At { source, .. } => source.out_of_range(),
@@ -242,7 +243,7 @@ fn advice(name: &str, nearest: Option<&str>) -> String {
         }
         None => format!(
             "name the folder of its library with --plugin-path or in {}",
-            VARIABLE
+            PATH_VARIABLE
         ),
     }
 }

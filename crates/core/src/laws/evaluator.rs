@@ -1,5 +1,5 @@
-//! Evaluation of the laws in a step: which contacts they act on, in batches on one or several
-//! threads.
+//! Evaluation of the laws in a step: selects the contacts on which they act, in batches on one or
+//! several threads.
 
 use super::batch::{BATCH, BatchPool};
 use super::gather::{AHEAD, prefetch_bond};
@@ -8,14 +8,14 @@ use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::threads::{chunk_size, map_chunks, worth_dividing};
 
-/// Contacts of a task that looks to which interface they belong.
+/// Number of contacts of a task that selects the contacts of each interface.
 const CHUNK: usize = 4096;
-/// About what that takes for each (ns).
+/// Approximate time to select a contact (ns).
 const SELECT: f64 = 10.0;
 
-/// How many times more work than for a plain loop makes dividing batches pay: an interface is
-/// evaluated in several regions, between which one thread stores. On scenes of 5,000 to 6,000
-/// contacts, which are below it, two threads were slower than one.
+/// Factor on the work above which dividing batches among threads pays, relative to a plain loop: an
+/// interface is evaluated in several regions, between which one thread stores. On scenes of 5,000
+/// to 6,000 contacts, which are below this limit, two threads were slower than one.
 const OVERHEAD: f64 = 8.0;
 
 /// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a
@@ -30,8 +30,7 @@ pub struct LawEvaluator {
     /// Contacts of the last solve that close within the step and were kept from closing although
     /// their law has restitution.
     pub(crate) held_back: Vec<usize>,
-    /// Place of the moments of each contact in the step, while bonds that resist rotation are
-    /// committed.
+    /// Index of the moments of each contact, while bonds that resist rotation are committed.
     pub(super) moment_places: Vec<u32>,
     /// Slip (m) and friction work (J) of contacts.
     pub(super) slides: Vec<(f64, f64)>,
@@ -42,20 +41,20 @@ pub struct LawEvaluator {
 /// The contacts of an interface, as places in the network in ascending order.
 #[derive(Debug, Default)]
 pub(super) struct Members {
-    /// All.
+    /// All contacts.
     pub all: Vec<usize>,
     /// Contacts with an intact bond, where the interface makes bonds.
     pub bonded: Vec<usize>,
-    /// The others, where the interface makes bonds.
+    /// Contacts without an intact bond, where the interface makes bonds.
     pub loose: Vec<usize>,
-    /// Contacts within the alert distance or held by a bond, if these are not all.
+    /// Contacts within the alert distance or held by a bond, if there are others.
     near: Vec<usize>,
-    /// The others.
+    /// Contacts beyond the alert distance and held by no bond.
     pub beyond: Vec<usize>,
 }
 
 impl Members {
-    /// Contacts within the alert distance or held by a bond.
+    /// Returns the contacts within the alert distance or held by a bond.
     pub fn near(&self) -> &[usize] {
         if self.beyond.is_empty() {
             &self.all
@@ -76,8 +75,8 @@ impl Members {
 }
 
 impl LawEvaluator {
-    /// Finds the contacts of each interface. It comes before the other calls of a step, until whose
-    /// end the contacts and their bonds stay.
+    /// Finds the contacts of each interface. This is the first call of a step; contacts and bonds
+    /// must not change until the end of the step.
     pub fn select<S: Space>(&mut self, laws: &[Interface], network: &Network<S>) {
         self.members.resize_with(laws.len(), Members::default);
         for list in self.members.iter_mut().flat_map(Members::lists) {
@@ -113,14 +112,14 @@ impl LawEvaluator {
         }
     }
 
-    /// The contacts of the step that are beyond the alert distance and held by no bond, as places
-    /// in the network.
+    /// Returns the contacts of the step that are beyond the alert distance and held by no bond, as
+    /// indices in the network.
     pub(crate) fn beyond(&self) -> impl Iterator<Item = usize> {
         self.members.iter().flat_map(|m| m.beyond.iter().copied())
     }
 
-    /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds,
-    /// among threads.
+    /// Returns whether to divide batches of contacts among threads, given the time per contact
+    /// `each` (ns).
     pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
         contacts > chunk_size(BATCH) && worth_dividing(self.parallel, contacts, each / OVERHEAD)
     }

@@ -1,10 +1,10 @@
-//! Control of floating point: how a thread rounds, and what it makes of subnormal numbers. It
-//! belongs to the caller of a law, and by the conventions of the C ABI comes back as it was; a law
-//! that does not keep to them would change every later number of a run.
+//! Floating-point control: rounding mode and treatment of subnormal numbers of a thread. The C ABI
+//! requires a function to restore it before it returns; a law that does not do so would change
+//! every later number of a run.
 
-/// Control of floating point of this thread.
+/// Floating-point control of this thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FloatControl(registers::Control);
+pub(super) struct FloatControl(registers::ControlWords);
 
 impl FloatControl {
     /// The control in force now.
@@ -13,7 +13,7 @@ impl FloatControl {
         Self(registers::read())
     }
 
-    /// Makes it as it was; returns whether it had changed.
+    /// Restores the control; returns whether it had changed.
     #[inline]
     pub fn restore(self) -> bool {
         let changed = registers::read() != self.0;
@@ -28,17 +28,17 @@ impl FloatControl {
 mod registers {
     use std::arch::asm;
 
-    /// MXCSR without its flags of what has happened, and the control word of the x87, which long
-    /// double of C uses.
-    pub type Control = (u32, u16);
+    /// MXCSR without its exception flags, and the control word of the x87 unit, which `long double`
+    /// in C uses.
+    pub type ControlWords = (u32, u16);
 
-    /// Bits of MXCSR that say what has happened.
+    /// Exception flags of MXCSR.
     const FLAGS: u32 = 0x3f;
 
     #[inline]
-    pub fn read() -> Control {
+    pub fn read() -> ControlWords {
         let (mut mxcsr, mut x87) = (0u32, 0u16);
-        // SAFETY: both store to places of their size, and change no register.
+        // SAFETY: both instructions store to places of their size, and change no register.
         unsafe {
             asm!(
                 "stmxcsr [{}]", "fnstcw [{}]", in(reg) &raw mut mxcsr, in(reg) &raw mut x87,
@@ -49,9 +49,9 @@ mod registers {
     }
 
     #[cold]
-    pub fn write((mxcsr, x87): Control) {
-        // SAFETY: they load what was stored: valid control words, that the code around was compiled
-        // for.
+    pub fn write((mxcsr, x87): ControlWords) {
+        // SAFETY: the loaded values are valid control words, for which the surrounding code was
+        // compiled.
         unsafe {
             asm!(
                 "fnclex", "ldmxcsr [{}]", "fldcw [{}]", in(reg) &raw const mxcsr, in(reg) &raw const x87,
@@ -65,20 +65,21 @@ mod registers {
 mod registers {
     use std::arch::asm;
 
-    /// FPCR; what has happened is in another register.
-    pub type Control = u64;
+    /// FPCR; exception flags are in another register.
+    pub type ControlWords = u64;
 
     #[inline]
-    pub fn read() -> Control {
+    pub fn read() -> ControlWords {
         let control: u64;
-        // SAFETY: it reads a register that every thread may read.
+        // SAFETY: the instruction reads a register that every thread may read.
         unsafe { asm!("mrs {}, fpcr", out(reg) control, options(nomem, nostack, preserves_flags)) };
         control
     }
 
     #[cold]
-    pub fn write(control: Control) {
-        // SAFETY: the value was read from the register, and the code around was compiled for it.
+    pub fn write(control: ControlWords) {
+        // SAFETY: the value was read from the register, and the surrounding code was compiled for
+        // it.
         unsafe { asm!("msr fpcr, {}", in(reg) control, options(nostack, preserves_flags)) };
     }
 }
@@ -86,11 +87,11 @@ mod registers {
 /// On other processors the control register is not known.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod registers {
-    pub type Control = ();
+    pub type ControlWords = ();
 
-    pub fn read() -> Control {}
+    pub fn read() -> ControlWords {}
 
-    pub fn write((): Control) {}
+    pub fn write((): ControlWords) {}
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]
@@ -99,7 +100,7 @@ mod tests {
     use std::arch::asm;
     use std::hint::black_box;
 
-    /// Rounds upward, flushes subnormals, and has the x87 compute in single precision.
+    /// Rounds upward, flushes subnormals to zero, and sets the x87 unit to single precision.
     fn disturb() {
         let (mxcsr, x87) = (0x1f80_u32 | 0x4000 | 0x8040, 0x007f_u16);
         // SAFETY: valid control words; the test restores them.

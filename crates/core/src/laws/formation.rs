@@ -6,21 +6,21 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{Source, store_states};
 use super::history::LawHistory;
-use super::interface::{BondOpening, Interface, Loaded};
+use super::interface::{BondOpening, Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::threads::{chunk_size, map_chunks, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
-/// About what it takes to look whether a contact is new (ns).
+/// Approximate time to check whether a contact is new (ns).
 const LOOK: f64 = 4.0;
 
 impl LawEvaluator {
-    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's
-    /// bond rule, and by compression time (healing).
+    /// Allocates internal variables of contacts and forms bonds: by the case's bond rule, and by
+    /// compression time (healing).
     ///
     /// # Errors
     /// The law's error in `initialise`.
@@ -62,9 +62,9 @@ impl LawEvaluator {
                 let near = law.bonds_within.is_none_or(|most| contact.gap <= most);
                 let may = !intact && !contact.vertex_contact && !contact.beyond && near;
                 let bonds = may && (due || healed);
-                // The rest position of a new bond: a tension-only bond starts without tension over
-                // its gap; one that also pushes yields until the gap is closed. Penetration is
-                // included in both, so that a bond is formed without stress.
+                // The rest position of a new bond: a bond in tension only starts without tension
+                // over its gap; one that also pushes yields until the gap is closed. Penetration is
+                // included in both cases, so that a bond is formed without stress.
                 let open = law.bond_opening == BondOpening::Gap && contact.gap > 0.0;
                 let filled = if law.tension_only() && !open {
                     contact.gap
@@ -103,8 +103,8 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// The contacts of each interface that may become bonds, and those without memory that have
-    /// internal variables.
+    /// Returns, for each interface, the contacts that may become bonds, and the contacts without
+    /// memory that need internal variables.
     fn find_concerned<S: Space>(
         &self,
         laws: &[Interface],
@@ -112,34 +112,34 @@ impl LawEvaluator {
         network: &Network<S>,
     ) -> Vec<Vec<usize>> {
         #[derive(Clone, Copy, PartialEq)]
-        enum Concerned {
+        enum InitialisedContacts {
             None,
             New,
             All,
         }
         let both = laws.iter().zip(due);
-        let of_laws: Vec<Concerned> = both
+        let of_laws: Vec<InitialisedContacts> = both
             .map(|(law, due)| {
                 if *due || law.healing.is_some() {
-                    Concerned::All
+                    InitialisedContacts::All
                 } else if law.variables_of_contacts() > 0 {
-                    Concerned::New
+                    InitialisedContacts::New
                 } else {
-                    Concerned::None
+                    InitialisedContacts::None
                 }
             })
             .collect();
         let mut concerned = vec![Vec::new(); laws.len()];
-        if of_laws.iter().all(|law| *law == Concerned::None) {
+        if of_laws.iter().all(|law| *law == InitialisedContacts::None) {
             return concerned;
         }
         let divide = worth_dividing(self.parallel, network.contacts.len(), LOOK);
         let parts = map_chunks(divide, &network.contacts, CHUNK, |first, contacts| {
             let contacts = contacts.iter().zip(first..);
             let found = contacts.filter(|(contact, _)| match of_laws[contact.law as usize] {
-                Concerned::None => false,
-                Concerned::New => contact.memory().is_none(),
-                Concerned::All => true,
+                InitialisedContacts::None => false,
+                InitialisedContacts::New => contact.memory().is_none(),
+                InitialisedContacts::All => true,
             });
             let found = found.map(|(contact, k)| (contact.law as usize, k));
             found.collect::<Vec<_>>()
@@ -164,7 +164,7 @@ impl LawEvaluator {
         let Some(cohesion) = law.cohesion().filter(|_| !stretched.is_empty()) else {
             return Ok(());
         };
-        let still = Velocities::still(&network.contacts);
+        let still = Velocities::at_rest(&network.contacts);
         let batches = stretched.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source::new(law, index, network, info);
@@ -182,8 +182,8 @@ impl LawEvaluator {
                 };
                 let bond = &mut network.memory[index].bonds[slot];
                 bond.energy = energy * bond.area;
-                bond.life.given += bond.energy;
-                bond.life.fracture -= bond.energy;
+                bond.energies.given += bond.energy;
+                bond.energies.fracture -= bond.energy;
                 network.torn_energy -= bond.energy;
             }
         };
@@ -205,8 +205,8 @@ impl LawEvaluator {
         if new.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
-        let still = Velocities::still(&network.contacts);
-        let laws: Vec<&Loaded> = law.loaded().collect();
+        let still = Velocities::at_rest(&network.contacts);
+        let laws: Vec<&LoadedLaw> = law.loaded().collect();
         let batches = new.chunks(chunk_size(BATCH)).collect();
         let of = |network: &_, batch: &mut LawBatch, members: &mut &[usize]| {
             let source = Source::new(law, index, network, info);

@@ -2,7 +2,7 @@
 
 use super::batch::LawBatch;
 use super::columns::Contents;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::step_info::StepInfo;
 use super::step_result::{SolvedStep, Velocities};
 use crate::contact::{Bond, Contact, Memory, Network};
@@ -34,19 +34,19 @@ impl<'a, S: Space> Source<'a, S> {
     }
 }
 
-/// What contacts do in a step.
+/// Source of the motion of contacts in a step.
 #[derive(Debug)]
 pub(super) enum MotionSource<'a, S: Space> {
-    /// The motion at the start of the step goes on through it, under the impulses and springs of
-    /// the last step: what is known of the load before the step is solved. Contacts that begin in
-    /// this step carry nothing yet.
+    /// The motion at the start of the step continues through it, with the impulses and springs of
+    /// the last step, as an estimate of the load before the step is solved. Contacts that are new
+    /// in this step carry no load.
     Continued(&'a Velocities<S>),
-    /// The motion that the solver found.
+    /// The motion computed by the solver.
     Solved(&'a SolvedStep<'a, S>),
 }
 
 impl<S: Space> MotionSource<'_, S> {
-    /// Theta-averaged relative velocity of a contact (m/s).
+    /// Returns the theta-averaged relative velocity of a contact (m/s).
     #[inline]
     pub fn average(&self, at: usize) -> S::Vector {
         match self {
@@ -55,7 +55,7 @@ impl<S: Space> MotionSource<'_, S> {
         }
     }
 
-    /// What laws are given of a contact at the end of the step.
+    /// Returns the values that laws receive for a contact at the end of the step.
     #[inline]
     pub fn after(&self, at: usize, contact: &Contact<S>, bond: BondAfter<S>) -> Values<S> {
         let mut values = Values {
@@ -88,7 +88,7 @@ impl<S: Space> MotionSource<'_, S> {
     }
 }
 
-/// A bond at the end of a step; without one zero but for the damage.
+/// A bond at the end of a step; without a bond all values are zero, except the damage.
 #[derive(Debug)]
 pub(super) struct BondAfter<S: Space> {
     pub opening: (f64, S::Tangent),
@@ -97,7 +97,7 @@ pub(super) struct BondAfter<S: Space> {
 }
 
 impl<S: Space> BondAfter<S> {
-    /// The bond of a contact as it is.
+    /// Returns the bond of a contact in its current state.
     #[inline]
     pub fn of(bond: Option<&Bond<S>>, rotation: S::Spin) -> Self {
         match bond {
@@ -115,7 +115,7 @@ impl<S: Space> BondAfter<S> {
     }
 }
 
-/// What the columns show of a contact, beside its geometry and its age.
+/// Values of a contact in the columns, in addition to geometry and age.
 #[derive(Debug)]
 pub(super) struct Values<S: Space> {
     pub velocity: S::Vector,
@@ -129,10 +129,11 @@ pub(super) struct Values<S: Space> {
     pub spring_before: S::Tangent,
 }
 
-/// Contacts ahead of which a bond is prefetched: bonds are in the order in which they formed.
+/// Number of contacts by which the prefetch of bonds is ahead: bonds are stored in the order in
+/// which they formed.
 pub(super) const AHEAD: usize = 8;
 
-/// Prefetches what laws see of the bond of a contact.
+/// Prefetches the data of a contact's bond that laws read.
 #[inline(always)]
 pub(super) fn prefetch_bond<S: Space>(memory: &Memory<S>, contact: &Contact<S>) {
     #[cfg(target_arch = "x86_64")]
@@ -146,14 +147,14 @@ pub(super) fn prefetch_bond<S: Space>(memory: &Memory<S>, contact: &Contact<S>) 
 }
 
 impl LawBatch {
-    /// Fills the columns with the state at the start of the step: the damage is that of the step's
-    /// impulses.
+    /// Fills the columns with the state at the start of the step: the damage is the one used in the
+    /// step's impulses.
     pub(super) fn gather_before<S: Space>(
         &mut self,
         source: &Source<'_, S>,
         members: &[usize],
         before: &Velocities<S>,
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
     ) {
         let compliant = source.law.compliant();
         self.fill(
@@ -182,14 +183,14 @@ impl LawBatch {
         );
     }
 
-    /// Fills the columns with the state at the end of the step: u_th, the step's impulses; bonds
-    /// are as the network has them.
+    /// Fills the columns with the state at the end of the step: u_th and the impulses of the step,
+    /// with the bonds of the network.
     pub(super) fn gather_after<S: Space>(
         &mut self,
         source: &Source<'_, S>,
         members: &[usize],
         motion: &MotionSource<'_, S>,
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
     ) {
         self.fill(
             source,
@@ -200,14 +201,14 @@ impl LawBatch {
         );
     }
 
-    /// Fills the columns with what `of` gives of each member, its bond and the bond's rotation at
-    /// the start of the step, and the internal variables of some laws.
+    /// Fills the columns with the values that `of` gives for each member, its bond and the rotation
+    /// of its bond at the start of the step, and with the internal variables of some laws.
     #[inline]
     pub(super) fn fill<S: Space>(
         &mut self,
         source: &Source<'_, S>,
         members: &[usize],
-        laws: &[&Loaded],
+        laws: &[&LoadedLaw],
         after: bool,
         mut of: impl FnMut(usize, &Contact<S>, Option<&Bond<S>>, S::Spin) -> Values<S>,
     ) {
@@ -333,8 +334,8 @@ impl LawBatch {
         }
     }
 
-    /// The new internal variables of some laws, one column after the other.
-    pub(super) fn new_states(&self, laws: &[&Loaded]) -> Vec<f64> {
+    /// Returns the new internal variables of some laws, one column after the other.
+    pub(super) fn new_states(&self, laws: &[&LoadedLaw]) -> Vec<f64> {
         let count: usize = laws.iter().map(|l| l.variables()).sum();
         let mut states = Vec::with_capacity(count * self.columns.n);
         for loaded in laws {
@@ -352,7 +353,7 @@ impl LawBatch {
 pub(super) fn store_states<S: Space>(
     network: &mut Network<S>,
     index: usize,
-    laws: &[&Loaded],
+    laws: &[&LoadedLaw],
     members: &[usize],
     states: &[f64],
 ) {

@@ -1,6 +1,6 @@
-//! Calls laws on a copy of the batch in guarded memory: wide marks between the columns, and a
-//! comparison of the inputs afterwards, detect every invalid write. Too slow for a run; used for
-//! certification.
+//! Calls laws on a copy of the batch in guarded memory: guard values between the columns, and a
+//! comparison of the inputs afterwards, detect every invalid write. This is too slow for a run, and
+//! is used for certification.
 
 use fretwork_abi::FwBatch;
 use std::time::{Duration, Instant};
@@ -43,7 +43,7 @@ impl Guarded {
     /// violation.
     ///
     /// # Safety
-    /// The batch satisfies the ABI, for a law with these numbers of parameters and variables.
+    /// The batch must satisfy the ABI, for a law with these numbers of parameters and variables.
     pub unsafe fn call<R>(
         &mut self,
         batch: &FwBatch,
@@ -52,7 +52,7 @@ impl Guarded {
         mut call: impl FnMut(&FwBatch) -> R,
     ) -> (R, Option<String>) {
         let mut inside = *batch;
-        // SAFETY: by the contract of this function.
+        // SAFETY: the caller keeps the contract of this function.
         let (state, next) = unsafe { self.lay_out(&mut inside, parameters, variables) };
         let (tables, whole) = ((state.clone(), next.clone()), bytes(&inside));
         let answer = call(&inside);
@@ -62,7 +62,7 @@ impl Guarded {
         }
         let first = self.words.clone();
         for column in self.columns.iter().filter(|c| !c.home.is_null()) {
-            // SAFETY: an output column of the host, as long as it was copied from.
+            // SAFETY: this is an output column of the host, with the length of its copy.
             unsafe {
                 let from = self.words.as_ptr().add(column.start).cast::<f64>();
                 std::ptr::copy_nonoverlapping(from, column.home, column.len);
@@ -92,9 +92,9 @@ impl Guarded {
         self.columns.clear();
         self.words.clear();
         self.words.resize(END, MARK);
-        // Where each column of the batch was put, in this order; none for null.
+        // Position of the copy of each column, in this order; `None` for null.
         let (mut of_batch, mut of_state, mut of_next) = (Vec::new(), Vec::new(), Vec::new());
-        // SAFETY: columns of the host, of `n` values or null.
+        // SAFETY: columns of the host have `n` values or are null.
         unsafe {
             of_batch.push(self.put("parameters", batch.parameters, parameters, false));
             for (name, column) in inputs(batch) {
@@ -116,11 +116,11 @@ impl Guarded {
         }
         self.words.resize(self.words.len() + END, MARK);
         self.before.clone_from(&self.words);
-        // The memory does not move any more. All addresses are of one pointer by which the law may
-        // write, to the marks too: that it does is what is looked for.
+        // The memory is not reallocated any more. All addresses derive from one pointer, through
+        // which the law may also write to the guard values: such writes are to be detected.
         let words: *mut f64 = self.words.as_mut_ptr().cast();
         let address = |start: Option<usize>| match start {
-            // SAFETY: within the words.
+            // SAFETY: the position is within the words.
             Some(start) => unsafe { words.add(start) },
             None => std::ptr::null_mut(),
         };
@@ -147,7 +147,7 @@ impl Guarded {
         (state, next)
     }
 
-    /// Copies a column in, followed by guard values; returns where it is among the words, none for
+    /// Copies a column, followed by guard values; returns its position among the words, `None` for
     /// null.
     unsafe fn put(
         &mut self,
@@ -160,7 +160,7 @@ impl Guarded {
             return None;
         }
         let start = self.words.len();
-        // SAFETY: by the contract of the caller.
+        // SAFETY: the caller keeps the contract of this function.
         let values = unsafe { std::slice::from_raw_parts(column, len) };
         self.words.extend(values.iter().map(|x| x.to_bits()));
         self.words.resize(start + len + GAP, MARK);
@@ -213,25 +213,25 @@ impl Guarded {
 /// whether any later one differs.
 ///
 /// # Safety
-/// The batch satisfies the ABI, for a law with this number of variables.
+/// The batch must satisfy the ABI, for a law with this number of variables.
 pub(super) unsafe fn repeat<R>(
     batch: &FwBatch,
     variables: usize,
     mut call: impl FnMut(&FwBatch) -> R,
 ) -> (R, Option<String>) {
-    /// Several scheduler time slices on a busy processor.
+    /// Duration of the repetitions: several time slices of the scheduler on a busy processor.
     const WHILE: Duration = Duration::from_millis(25);
     const TIMES: u32 = 2000;
     let mut copy = *batch;
     let mut columns: Vec<*mut f64> = outputs(&mut copy).into_iter().map(|o| *o.1).collect();
     if !batch.state_next.is_null() {
-        // SAFETY: one column per variable.
+        // SAFETY: there is one column per variable.
         columns.extend((0..variables).map(|v| unsafe { *batch.state_next.add(v) }));
     }
     columns.retain(|c| !c.is_null());
     let bits = |columns: &[*mut f64]| -> Vec<u64> {
         let all = columns.iter().flat_map(|c| {
-            // SAFETY: an output column of `n` values.
+            // SAFETY: an output column has `n` values.
             unsafe { std::slice::from_raw_parts(*c, batch.n) }
         });
         all.map(|x| x.to_bits()).collect()
@@ -245,7 +245,7 @@ pub(super) unsafe fn repeat<R>(
         times += 1;
         for (column, values) in columns.iter().zip(before.chunks(batch.n.max(1))) {
             for (k, value) in values.iter().enumerate() {
-                // SAFETY: as above.
+                // SAFETY: an output column has `n` values.
                 unsafe { *column.add(k) = f64::from_bits(*value) };
             }
         }
@@ -261,7 +261,7 @@ pub(super) unsafe fn repeat<R>(
 /// Returns the bytes of the batch, for comparison.
 fn bytes(batch: &FwBatch) -> Vec<u8> {
     let start = std::ptr::from_ref(batch).cast::<u8>();
-    // SAFETY: a struct of numbers and addresses without padding.
+    // SAFETY: the struct has numbers and addresses without padding.
     unsafe { std::slice::from_raw_parts(start, size_of::<FwBatch>()) }.to_vec()
 }
 

@@ -1,4 +1,4 @@
-//! What laws have to know of earlier steps, beyond what contacts remember.
+//! State of the laws from earlier steps that is not stored with contacts.
 
 use super::range::Largest;
 use crate::contact::Contact;
@@ -6,7 +6,7 @@ use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What laws have to know of earlier steps, beyond what contacts remember.
+/// State of the laws from earlier steps that is not stored with contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LawHistory {
     /// Negative friction work of pairs, deferred to later steps of the wear laws (J).
@@ -18,7 +18,7 @@ pub struct LawHistory {
 }
 
 impl LawHistory {
-    /// Whether it is one of so many interfaces.
+    /// Returns whether the state belongs to this number of interfaces.
     pub(crate) fn fits(&self, interfaces: usize) -> bool {
         self.bonded.len() <= interfaces
     }
@@ -33,8 +33,8 @@ impl LawHistory {
     }
 }
 
-/// Negative work by pair, in their order: contacts come in the same order, so that both are gone
-/// through together.
+/// Negative work by pair, in ascending order. Contacts are in the same order, so that both lists
+/// are traversed together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<Pair, f64>", into = "BTreeMap<Pair, f64>")]
 pub(super) struct DeferredWork(Vec<(Pair, f64)>);
@@ -54,8 +54,8 @@ impl From<DeferredWork> for BTreeMap<Pair, f64> {
 }
 
 impl DeferredWork {
-    /// Returns the work of contacts, given by pair in ascending order, with what was deferred for
-    /// their pairs. What is negative becomes zero and is deferred.
+    /// Returns the work of contacts, given by pair in ascending order, plus the deferred work of
+    /// their pairs. A negative sum becomes zero and is deferred.
     pub fn not_negative(&mut self, works: impl Iterator<Item = (Pair, f64)>) -> Vec<f64> {
         let before = std::mem::take(&mut self.0);
         let mut before = before.into_iter().peekable();
@@ -93,7 +93,7 @@ mod tests {
             done(&[((1, 2), -3.0), ((1, 2), 5.0), ((4, 1), -1.0)]),
             [0.0, 2.0, 0.0]
         );
-        // It stays deferred while the pair is apart.
+        // The work stays deferred while the pair is apart.
         assert_eq!(
             done(&[((0, 9), -1.0), ((1, 2), 1.0), ((5, 1), -2.0)]),
             [0.0, 1.0, 0.0]
@@ -111,7 +111,8 @@ mod tests {
         assert_eq!(deferred.0, [((0, 9), -1.0), ((4, 1), -0.5)]);
     }
 
-    /// Only (0, 2) of the pairs (0, 1) to (0, 6) touches: six are more than twice one, two are not.
+    /// Of the pairs (0, 1) to (0, 6) only (0, 2) touches: six deferred entries are more than twice
+    /// the number of contacts, two are not.
     #[test]
     fn work_of_separated_pairs_is_dropped_once_they_are_many() {
         let contact = contact([0, 2]);

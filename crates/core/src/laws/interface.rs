@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// A plugin with the values of its parameters, in the order of its schema.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedLaw {
     /// The plugin.
     pub plugin: Arc<Plugin>,
     /// Values, one per parameter.
@@ -21,8 +21,8 @@ pub struct Loaded {
     pub first_variable: usize,
 }
 
-impl Loaded {
-    /// A plugin with these values of its parameters, in the order of its schema.
+impl LoadedLaw {
+    /// Creates a law with these values of its parameters, in the order of its schema.
     pub fn new(plugin: Plugin, parameters: Vec<f64>) -> Self {
         Self {
             plugin: Arc::new(plugin),
@@ -31,7 +31,7 @@ impl Loaded {
         }
     }
 
-    /// A plugin with the defaults of its parameters.
+    /// Creates a law with the defaults of its parameters.
     pub fn with_defaults(plugin: Plugin) -> Self {
         let parameters = plugin.parameters.iter().map(|p| p.default).collect();
         Self::new(plugin, parameters)
@@ -47,7 +47,7 @@ impl Loaded {
         self.plugin.flags & flag != 0
     }
 
-    /// Returns whether it reads temperatures, or says what heat flows.
+    /// Returns whether the law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
         self.plugin.kind == Kind::TRANSPORT || self.has(FLAG_TEMPERATURE)
     }
@@ -68,17 +68,18 @@ pub enum BondRule {
 /// Opening at which a bond begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BondOpening {
-    /// Zero: cement fills the gap, and the bodies cannot come nearer while the bond holds.
+    /// The opening is zero: cement fills the gap, and the bodies cannot approach while the bond
+    /// holds.
     #[default]
     Filled,
-    /// The gap, where there is one: the bond pulls from the start, with the energy of this opening,
-    /// and the bodies are free to close it. LMGC90's cohesive laws do so.
+    /// The opening is the gap, if it is positive: the bond pulls from the start, with the energy of
+    /// this opening, and the bodies are free to close it, as with the cohesive laws of LMGC90.
     Gap,
 }
 
 /// Area on which tractions act, from the radius r of a contact, r1 r2/(r1 + r2) of two balls:
-/// `factor` r times unit depth in 2D, `factor` pi r^2 in 3D. Points of surfaces that deform and
-/// facing sides and faces have the r whose area is theirs, see
+/// `factor` r times unit depth in 2D, `factor` pi r^2 in 3D. For points of surfaces that deform and
+/// for facing sides and faces, r follows from their area, see
 /// [`crate::geometry::shape::point_radius`]. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
@@ -111,7 +112,7 @@ pub struct Interface {
     pub name: String,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Largest gap at which a bond is made (m); the alert distance without one.
+    /// Largest gap at which a bond is made (m); `None` for the alert distance.
     pub bonds_within: Option<f64>,
     /// Opening at which a bond begins.
     pub bond_opening: BondOpening,
@@ -120,9 +121,9 @@ pub struct Interface {
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
-    /// One law a kind, sorted by kind; a contact law first.
-    slots: Vec<Loaded>,
-    /// What the cohesion law has, by flags.
+    /// Laws, at most one of each kind, sorted by kind; the contact law comes first.
+    slots: Vec<LoadedLaw>,
+    /// Flags of the cohesion law.
     cohesion_flags: u64,
 }
 
@@ -131,10 +132,10 @@ impl Interface {
     /// the laws make bonds, no healing, and the default area.
     ///
     /// # Errors
-    /// No contact law, two laws of one kind, or slots that do not fit together.
+    /// There is no contact law, two laws have the same kind, or slots do not fit together.
     pub fn new(
         name: impl Into<String>,
-        laws: impl IntoIterator<Item = Loaded>,
+        laws: impl IntoIterator<Item = LoadedLaw>,
     ) -> Result<Self, LawError> {
         let mut law = Self {
             name: name.into(),
@@ -150,22 +151,22 @@ impl Interface {
         Ok(law)
     }
 
-    /// Returns the interface with another law, in the place of that of its kind where there is one.
+    /// Returns the interface with another law, which replaces the law of its kind if there is one.
     ///
     /// # Errors
-    /// Slots that do not fit together.
-    pub fn with(mut self, law: Loaded) -> Result<Self, LawError> {
+    /// The slots do not fit together.
+    pub fn with(mut self, law: LoadedLaw) -> Result<Self, LawError> {
         self.slots.retain(|l| l.plugin.kind != law.plugin.kind);
         self.slots.push(law);
         self.arrange()?;
         Ok(self)
     }
 
-    /// Returns the interface without the laws that a test refuses.
+    /// Returns the interface with only the laws that `keep` accepts.
     ///
     /// # Errors
-    /// No contact law is left, or slots that do not fit together.
-    pub fn retain(mut self, keep: impl FnMut(&Loaded) -> bool) -> Result<Self, LawError> {
+    /// No contact law is left, or the slots do not fit together.
+    pub fn retain(mut self, keep: impl FnMut(&LoadedLaw) -> bool) -> Result<Self, LawError> {
         self.slots.retain(keep);
         self.arrange()?;
         Ok(self)
@@ -174,7 +175,7 @@ impl Interface {
     /// Returns the interface with another rule for when bonds are made, and a healing time (s).
     ///
     /// # Errors
-    /// Healing without a cohesion law that forms bonds in contact.
+    /// Healing needs a cohesion law that forms bonds in contact.
     pub fn with_bonds(mut self, bonds: BondRule, healing: Option<f64>) -> Result<Self, LawError> {
         (self.bonds, self.healing) = (bonds, healing);
         self.check()?;
@@ -195,7 +196,7 @@ impl Interface {
             _ => Some(format!("interface `{}` has no contact law", self.name)),
         };
         if let Some(reason) = reason {
-            return Err(LawError::Pairing { reason });
+            return Err(LawError::Incompatible { reason });
         }
         let mut next = 0;
         for loaded in &mut self.slots {
@@ -211,7 +212,7 @@ impl Interface {
         if let (Some(_), Some(cohesion)) = (self.healing, self.cohesion())
             && !(cohesion.has(FLAG_OPENING) && cohesion.has(FLAG_FORMS))
         {
-            return Err(LawError::Pairing {
+            return Err(LawError::Incompatible {
                 reason: format!(
                     "the cohesion law `{}` of interface `{}` forms no bonds in contact; drop `healing` or choose another cohesion",
                     cohesion.plugin.name, self.name
@@ -223,45 +224,45 @@ impl Interface {
     }
 
     /// The law of a kind.
-    pub fn law(&self, kind: Kind) -> Option<&Loaded> {
+    pub fn law(&self, kind: Kind) -> Option<&LoadedLaw> {
         self.slots.iter().find(|l| l.plugin.kind == kind)
     }
 
     /// The contact law.
-    pub fn contact(&self) -> &Loaded {
+    pub fn contact(&self) -> &LoadedLaw {
         // `arrange` refuses an interface whose first slot is not a contact law.
         &self.slots[0]
     }
 
-    /// Traction against opening.
-    pub fn cohesion(&self) -> Option<&Loaded> {
+    /// Returns the cohesion law: traction against opening.
+    pub fn cohesion(&self) -> Option<&LoadedLaw> {
         self.law(Kind::COHESION)
     }
 
-    /// Growth of damage.
-    pub fn damage(&self) -> Option<&Loaded> {
+    /// Returns the damage law.
+    pub fn damage(&self) -> Option<&LoadedLaw> {
         self.law(Kind::DAMAGE)
     }
 
-    /// What is removed.
-    pub fn wear(&self) -> Option<&Loaded> {
+    /// Returns the wear law.
+    pub fn wear(&self) -> Option<&LoadedLaw> {
         self.law(Kind::WEAR)
     }
 
-    /// The parameters of the law of a kind, in the order of its schema.
+    /// Returns the parameters of the law of a kind, in the order of its schema.
     pub fn parameters_mut(&mut self, kind: Kind) -> Option<&mut Vec<f64>> {
         let mut slots = self.slots.iter_mut();
         let found = slots.find(|l| l.plugin.kind == kind);
         found.map(|l| &mut l.parameters)
     }
 
-    /// The laws, in the order in which they are evaluated.
-    pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
+    /// Iterates over the laws, in the order in which they are evaluated.
+    pub fn loaded(&self) -> impl Iterator<Item = &LoadedLaw> {
         self.slots.iter()
     }
 
     /// Whether a law acts on intact bonds; else on contacts.
-    pub fn acts_on_bonds(&self, law: &Loaded) -> bool {
+    pub fn acts_on_bonds(&self, law: &LoadedLaw) -> bool {
         match law.plugin.kind.spec().domain {
             Domain::Bonds => true,
             Domain::ByOpening => law.has(FLAG_OPENING),
@@ -271,14 +272,14 @@ impl Interface {
 
     /// Returns the number of internal variables over all slots.
     pub fn variables(&self) -> usize {
-        self.loaded().map(Loaded::variables).sum()
+        self.loaded().map(LoadedLaw::variables).sum()
     }
 
     /// Returns the number of internal variables of the laws that act on every contact, bonded or
     /// not.
     pub fn variables_of_contacts(&self) -> usize {
         let on_contacts = self.loaded().filter(|l| !self.acts_on_bonds(l));
-        on_contacts.map(Loaded::variables).sum()
+        on_contacts.map(LoadedLaw::variables).sum()
     }
 
     /// Iterates over the columns of the internal variables of bonds.
@@ -325,13 +326,13 @@ impl Interface {
         self.cohesion_flags & FLAG_TENSION_ONLY != 0
     }
 
-    /// Returns whether a law reads temperatures, or says what heat flows.
+    /// Returns whether a law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
-        self.loaded().any(Loaded::reads_temperatures)
+        self.loaded().any(LoadedLaw::reads_temperatures)
     }
 
-    /// What carries heat and current.
-    pub fn transport(&self) -> Option<&Loaded> {
+    /// Returns the transport law: conductances for heat and current.
+    pub fn transport(&self) -> Option<&LoadedLaw> {
         self.law(Kind::TRANSPORT)
     }
 
@@ -351,8 +352,8 @@ mod tests {
     use super::*;
     use crate::laws::sample_laws::{bond, growing, interface, sticky};
 
-    /// Laws of 0, 1 and 1 variables, given in another order: the columns of each begin where those
-    /// of the law before it end.
+    /// Laws of 0, 1 and 1 variables are given in another order: the columns of each law begin after
+    /// those of the law before it.
     #[test]
     fn variables_of_laws_follow_each_other() {
         let law = interface([growing(), sticky()]);

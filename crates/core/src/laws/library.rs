@@ -7,8 +7,8 @@ use super::kind::Kind;
 use super::linked::{LawCode, LibraryOpening};
 use super::loading::{self, Library};
 use super::names::name_is_valid;
-use super::outside::{self, Disturbed};
-use super::plugin_table::{Field, fields, read_table, text};
+use super::outside::{self, DisturbedState};
+use super::plugin_table::{LawField, fields, read_table, text};
 use super::watch;
 use fretwork_abi as abi;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// The codes of kinds in words: those of the plugin interface, and those registered beside them.
+/// Describes the codes of kinds: those of the plugin interface, and registered ones.
 fn known_codes() -> String {
     let more = Kind::all()
         .into_iter()
@@ -33,7 +33,7 @@ pub struct Plugin {
     pub kind: Kind,
     /// Name used in cases.
     pub name: String,
-    /// Its own version.
+    /// Version of the law.
     pub version: String,
     /// One-line description.
     pub doc: String,
@@ -44,9 +44,9 @@ pub struct Plugin {
     /// Exponent m of psi = (1 - D)^m psi_0.
     pub degradation: f64,
     /// Schema of the parameters.
-    pub parameters: Vec<Field>,
+    pub parameters: Vec<LawField>,
     /// Schema of the internal variables.
-    pub variables: Vec<Field>,
+    pub variables: Vec<LawField>,
     /// File of the library, or of the program for a built-in law.
     pub path: PathBuf,
     /// SHA-256 of that file, in hexadecimal; with [links](Self::links), of the list of all sums.
@@ -57,21 +57,21 @@ pub struct Plugin {
     pub built_in: bool,
     pub(super) table: abi::FwPlugin,
     pub(super) label: watch::Label,
-    /// Shared by all clones.
-    pub(super) disturbed: Arc<Disturbed>,
+    /// Records, shared by all clones, of what the law changed.
+    pub(super) disturbed: Arc<DisturbedState>,
 }
 
 // SAFETY: the table is read only, and the ABI requires every function to be callable from any
 // thread at any time (pure, no globals).
 unsafe impl Send for Plugin {}
-// SAFETY: as above.
+// SAFETY: the reasons for `Send` apply.
 unsafe impl Sync for Plugin {}
 
 impl Plugin {
     /// Opens a library and performs all checks possible before the first call.
     ///
     /// # Errors
-    /// A sentence that names the file and the problem.
+    /// Returns a sentence that names the file and the problem.
     pub fn open(path: &Path) -> Result<Self, LawError> {
         Self::open_pinned(path, None)
     }
@@ -80,7 +80,7 @@ impl Plugin {
     /// runs.
     ///
     /// # Errors
-    /// Those of [`Self::open`], and [`LawError::Pinned`].
+    /// Returns the errors of [`Self::open`], and [`LawError::HashMismatch`].
     pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),
@@ -90,7 +90,7 @@ impl Plugin {
         let code = read()?;
         let sha256 = code.sha256.clone();
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
-            return Err(LawError::Pinned {
+            return Err(LawError::HashMismatch {
                 path: path.to_owned(),
                 pin: pin.to_owned(),
                 sha256,
@@ -102,7 +102,7 @@ impl Plugin {
             return Err(refuse(loading::CHANGED.to_owned()));
         }
         let loading = watch::label(format!("the plugin {}", path.display()));
-        let disturbed = Disturbed::default();
+        let disturbed = DisturbedState::default();
         // A name without a folder would be searched for where the system has its libraries.
         let absolute = std::path::absolute(path).map_err(|e| refuse(e.to_string()))?;
         let opening = LibraryOpening::begin();
@@ -114,8 +114,8 @@ impl Plugin {
                     with_cause(&e)
                 ))
             })?;
-            // SAFETY: the ABI defines the type of this symbol, of which it is known in addition
-            // that it may unwind; a library with another type violates it.
+            // SAFETY: the ABI defines the type of this symbol; only the permission to unwind is
+            // added. A library with another type violates the ABI.
             let table = unsafe {
                 let entry = library
                     .get::<EntryFunction>(abi::ENTRY_SYMBOL)
@@ -127,17 +127,19 @@ impl Plugin {
                     })?;
                 entry()
             };
-            // Never unloaded: threads may be running its code or hold its thread-local data.
+            // The library stays loaded: threads may run its code or hold its thread-local data.
             std::mem::forget(library);
             Ok(table)
         };
         let table = outside::keep_folder(|| {
             outside::call(loading, watch::LOADING, &disturbed.loading, load)
         })?;
-        opening.check(path).map_err(|reason| LawError::Unexamined {
-            path: path.to_owned(),
-            reason,
-        })?;
+        opening
+            .check(path)
+            .map_err(|reason| LawError::UnexpectedLibraries {
+                path: path.to_owned(),
+                reason,
+            })?;
         // SAFETY: the ABI guarantees a complete static table.
         let mut plugin = unsafe { Self::from_table(table, path, &sha256, false) }?;
         plugin.disturbed = Arc::new(disturbed);
@@ -194,7 +196,7 @@ impl Plugin {
             // SAFETY: count and array belong to one table.
             parameters: unsafe { fields(table.parameters, table.n_parameters, "parameter") }
                 .map_err(&refuse)?,
-            // SAFETY: as above.
+            // SAFETY: count and array belong to one table.
             variables: unsafe { fields(table.variables, table.n_variables, "variable") }
                 .map_err(&refuse)?,
             path: path.to_owned(),
@@ -271,8 +273,8 @@ impl Plugin {
         function.is_some()
     }
 
-    /// When the law left another control of floating point (rounding, subnormal numbers) to its
-    /// caller, which puts its own back: while its library was loaded, or in a call.
+    /// Returns whether the law changed the floating-point control (rounding, subnormal numbers),
+    /// which the caller restores: while its library was loaded, or in a call.
     pub fn disturbs_floating_point(&self) -> Option<&'static str> {
         if self.disturbed.calling.load(Ordering::Relaxed) {
             return Some("in a call");
@@ -295,7 +297,7 @@ impl Plugin {
 /// The entry of a library, which may unwind.
 type EntryFunction = unsafe extern "C-unwind" fn() -> *const abi::FwPlugin;
 
-/// An error with what the system says of it.
+/// Formats an error with the cause that the system gives.
 fn with_cause(error: &dyn std::error::Error) -> String {
     let text = error.to_string();
     match error.source() {
@@ -307,19 +309,19 @@ fn with_cause(error: &dyn std::error::Error) -> String {
 #[cfg(unix)]
 unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
     use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-    // SAFETY: see the caller.
+    // SAFETY: the caller opens the library under the conditions of `open`.
     unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL).map(Into::into) }
 }
 
 #[cfg(not(unix))]
 unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
-    // SAFETY: see the caller.
+    // SAFETY: the caller opens the library under the conditions of `open`.
     unsafe { libloading::Library::new(path) }
 }
 
-/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is
-/// unchanged. The trial checks that opening returns, and brings no other libraries than were
-/// examined; other errors are reported later, when the parent opens it.
+/// Opens the requested libraries one by one in the child process, each only if its SHA-256 is
+/// unchanged. The trial checks that opening returns, and that it loads only the examined libraries;
+/// the parent reports other errors when it opens the library.
 ///
 /// # Errors
 /// The request cannot be read.
@@ -329,9 +331,9 @@ pub fn try_libraries() -> Result<(), String> {
     for library in libraries {
         send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
-                Err(LawError::Pinned { .. }) => json!(loading::CHANGED),
-                // Its code does not get into the process that requested the trial.
-                Err(LawError::Unexamined { reason, .. }) => json!(reason),
+                Err(LawError::HashMismatch { .. }) => json!(loading::CHANGED),
+                // The code of the library is not loaded into the process that requested the trial.
+                Err(LawError::UnexpectedLibraries { reason, .. }) => json!(reason),
                 _ => Value::Null,
             },
         );

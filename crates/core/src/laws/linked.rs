@@ -1,14 +1,13 @@
-//! Libraries that a law's library links to: the dynamic linker runs their code with that of the
-//! law. Those of the system are taken for granted, as the linker finds them in its own folders;
-//! those that are found beside the law or through the environment are as much part of the law as
-//! its own file.
+//! Libraries to which a law's library links: the dynamic linker runs their code when it loads the
+//! law. Libraries of the system, found in the linker's own folders, are trusted. Libraries that are
+//! found beside the law or through the environment are part of the law, like its own file.
 //!
-//! Read from ELF files (Linux); elsewhere none are known. What a law opens by itself (`dlopen`) is
-//! not known either.
+//! The links are read from ELF files (Linux); on other systems none are known. Libraries that a law
+//! opens itself (`dlopen`) are not known either.
 //!
-//! What is read says what the linker will do, but not quite: where it would look in folders that
-//! depend on the machine, a law is refused before it is opened, and after it the [libraries that
-//! came](Opening) are compared with those that were read.
+//! What is read predicts only approximately what the linker does. A law for which the linker would
+//! search folders that depend on the machine is refused before it is opened; after opening, the
+//! [loaded libraries](Opening) are compared with those that were read.
 
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -16,9 +15,9 @@ use std::path::{Path, PathBuf};
 /// The code of a law.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct LawCode {
-    /// SHA-256 of the library; with others that it links to, of the list of all their sums.
+    /// SHA-256 of the library, or, if it links to others, of the list of all sums.
     pub sha256: String,
-    /// These others: path and SHA-256.
+    /// The linked libraries: path and SHA-256.
     pub links: Vec<(PathBuf, String)>,
 }
 
@@ -26,7 +25,8 @@ impl LawCode {
     /// Reads the code of a library.
     ///
     /// # Errors
-    /// A sentence: a file cannot be read, or what the library links to depends on the machine.
+    /// Returns a sentence: a file cannot be read, or the links of the library depend on the
+    /// machine.
     pub fn of(library: &Path) -> Result<Self, String> {
         let unread =
             |e: std::io::Error| format!("it, or a library that it links to, cannot be read ({e})");
@@ -43,8 +43,8 @@ impl LawCode {
         let mut all = Sha256::new();
         all.update(&own);
         for (path, sum) in &links {
-            // The name by which it is linked, not the folder, so that a copy of all has the same
-            // sum.
+            // The list has the linked name, not the folder, so that a copy of all files has the
+            // same sum.
             let name = path.file_name().unwrap_or_default();
             all.update([b"\n", sum.as_bytes(), b" ", name.as_encoded_bytes()].concat());
         }
@@ -55,19 +55,19 @@ impl LawCode {
     }
 }
 
-/// SHA-256 of a file.
+/// Returns the SHA-256 of a file.
 fn sum(path: &Path) -> std::io::Result<String> {
     Ok(hex(&Sha256::digest(std::fs::read(path)?)))
 }
 
-/// The libraries that a library links to, directly or not, and that are found neither in the
-/// program nor by the system alone.
+/// Returns the libraries to which a library links, directly or not, and that are found neither in
+/// the program nor by the system alone.
 ///
 /// # Errors
 /// A sentence: where the linker looks depends on the machine.
 pub(super) fn libraries(library: &Path) -> Result<Vec<PathBuf>, String> {
     #[cfg(target_os = "linux")]
-    let found = linux::Walk::of(library).map(|walk| walk.found);
+    let found = linux::LinkPlan::of(library).map(|plan| plan.found);
     #[cfg(not(target_os = "linux"))]
     let found = {
         let _ = library;
@@ -83,7 +83,7 @@ pub(super) struct LibraryOpening {
 }
 
 impl LibraryOpening {
-    /// Notes them.
+    /// Records the libraries that are loaded now.
     pub fn begin() -> Self {
         Self {
             #[cfg(target_os = "linux")]
@@ -91,14 +91,14 @@ impl LibraryOpening {
         }
     }
 
-    /// Whether those that are there now are those that were read from the files of the law.
+    /// Checks that the libraries loaded since are those that were read from the files of the law.
     ///
     /// # Errors
-    /// A sentence: one that was read is not there, or another one came from where the law has its
-    /// libraries looked for.
+    /// Returns a sentence: a library that was read is not loaded, or another one was loaded from
+    /// the folders that the law names.
     pub fn check(self, library: &Path) -> Result<(), String> {
         #[cfg(target_os = "linux")]
-        linux::Walk::of(library)?.check(&self.before, &linux::loaded())?;
+        linux::LinkPlan::of(library)?.check(&self.before, &linux::loaded())?;
         let _ = library;
         Ok(())
     }
@@ -113,18 +113,19 @@ mod linux {
     use std::path::{Path, PathBuf};
     use std::sync::OnceLock;
 
-    /// What the linker will do with a library, as its file and those that it links to say.
+    /// Prediction of what the linker will do with a library, from its file and the files to which
+    /// it links.
     #[derive(Debug, Default)]
-    pub struct Walk {
-        /// The libraries that it will find in folders of the law's.
+    pub struct LinkPlan {
+        /// Libraries that the linker will find in folders that the law names.
         pub found: Vec<PathBuf>,
-        /// These folders.
+        /// Folders that the law names.
         folders: BTreeSet<PathBuf>,
-        /// The names that it will look for.
+        /// Names for which the linker will search.
         names: BTreeSet<Vec<u8>>,
     }
 
-    /// Folders that only the administrator writes to, and that the linker searches by itself.
+    /// Folders that only the administrator can change, and that the linker searches by default.
     const OF_SYSTEM: [&str; 6] = [
         "/lib",
         "/lib32",
@@ -135,30 +136,31 @@ mod linux {
     ];
 
     /// Sub-folders in which the linker prefers variants for some processors; the names of
-    /// [`VARIANTS`] also within each other.
+    /// [`VARIANTS`] may also be nested.
     const PREFERRED: &str = "glibc-hwcaps";
     const VARIANTS: [&str; 6] = [
         "tls", "x86_64", "haswell", "xeon_phi", "avx512_1", "aarch64",
     ];
 
-    impl Walk {
-        /// Of a library that has not been opened.
+    impl LinkPlan {
+        /// Examines a library that has not been opened.
         pub fn of(library: &Path) -> Result<Self, String> {
             Self::beside(library, program())
         }
 
-        /// Examines what a library links to, where these names are loaded already.
+        /// Examines the links of a library, given the names that are loaded already.
         fn beside(library: &Path, loaded: &BTreeSet<Vec<u8>>) -> Result<Self, String> {
             let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-            let mut walk = Self::default();
-            // By where they are: folders such as `$ORIGIN/../lib` name one file in many ways.
+            let mut plan = Self::default();
+            // Libraries are compared by their place: folders such as `$ORIGIN/../lib` give one file
+            // many names.
             let mut seen = BTreeSet::new();
-            // Each with the folders that those which link to it add (RPATH).
+            // Each library has the folders (RPATH) of the libraries that link to it.
             let mut left = vec![(library.to_owned(), Vec::<PathBuf>::new())];
             while let Some((path, above)) = left.pop() {
                 let Some(needs) = std::fs::read(&path)
                     .ok()
-                    .and_then(|bytes| Needs::read(&bytes))
+                    .and_then(|bytes| DynamicSection::read(&bytes))
                 else {
                     continue;
                 };
@@ -170,7 +172,7 @@ mod linux {
                     None => Ok(Vec::new()),
                 };
                 let mut inherited = above.clone();
-                // Where there is a RUNPATH the linker does not look at an RPATH.
+                // The linker ignores RPATH where there is a RUNPATH.
                 if needs.runpath.is_none() {
                     inherited = [list(&needs.rpath)?, above].concat();
                 }
@@ -182,7 +184,7 @@ mod linux {
                     if loaded.contains(name) {
                         continue;
                     }
-                    walk.names.insert(name.clone());
+                    plan.names.insert(name.clone());
                     let name = Path::new(OsStr::from_bytes(name));
                     let file = if name.components().count() > 1 {
                         Some(name.to_owned()).filter(|p| p.is_file())
@@ -197,17 +199,17 @@ mod linux {
                         && seen
                             .insert(std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone()))
                     {
-                        walk.found.push(file.clone());
+                        plan.found.push(file.clone());
                         left.push((file, inherited.clone()));
                     }
                 }
-                walk.folders.extend(search);
+                plan.folders.extend(search);
             }
-            walk.found.sort();
-            Ok(walk)
+            plan.found.sort();
+            Ok(plan)
         }
 
-        /// Compares it with the libraries of the process before and after.
+        /// Compares the prediction with the libraries of the process before and after opening.
         pub fn check(&self, before: &[PathBuf], now: &[PathBuf]) -> Result<(), String> {
             let there: BTreeSet<_> = now.iter().filter_map(|p| place(p)).collect();
             let missing = |p: &&PathBuf| place(p).is_none_or(|place| !there.contains(&place));
@@ -246,7 +248,7 @@ mod linux {
         }
     }
 
-    /// Where a file lies: device and number.
+    /// Returns the place of a file: device and number.
     fn place(path: &Path) -> Option<(u64, u64)> {
         std::fs::metadata(path).ok().map(|m| (m.dev(), m.ino()))
     }
@@ -258,9 +260,9 @@ mod linux {
         )
     }
 
-    /// A variant of a library in a folder that the linker may prefer.
+    /// Returns the variant of a library in a folder that the linker may prefer.
     fn variant(folder: &Path, name: &Path) -> Option<PathBuf> {
-        // Those of the system are its own.
+        // Variants in folders of the system belong to the system.
         if OF_SYSTEM.iter().any(|f| folder.starts_with(f)) {
             return None;
         }
@@ -283,8 +285,8 @@ mod linux {
         })
     }
 
-    /// Whether the linker takes a file: it passes over libraries of other machines, and fails at
-    /// what is none.
+    /// Returns whether the linker accepts a file: it skips libraries of other machines, and fails
+    /// at files that are no libraries.
     fn fits(path: &Path) -> bool {
         use std::io::Read;
         let head = |path: &Path| {
@@ -299,8 +301,8 @@ mod linux {
         }
     }
 
-    /// The folders of a list; an empty entry is the current one, and `$ORIGIN` the folder of the
-    /// library. The error is another word that the linker would put something in the place of.
+    /// Returns the folders of a list; an empty entry is the current folder, and `$ORIGIN` the
+    /// folder of the library. The error is another word that the linker would replace.
     fn folders(list: &[u8], origin: &Path) -> Result<Vec<PathBuf>, &'static str> {
         if list.is_empty() {
             return Ok(Vec::new());
@@ -324,9 +326,9 @@ mod linux {
         entries.map(folder).collect()
     }
 
-    /// Names of the libraries that came with the program, which the linker does not load again.
-    /// Taken once, before the first law is opened: those that laws bring are parts of each law that
-    /// links to them.
+    /// Returns the names of the libraries that were loaded with the program, which the linker does
+    /// not load again. The list is made once, before the first law is opened: libraries that a law
+    /// loads are part of each law that links to them.
     fn program() -> &'static BTreeSet<Vec<u8>> {
         static NAMES: OnceLock<BTreeSet<Vec<u8>>> = OnceLock::new();
         NAMES.get_or_init(|| names(&loaded()))
@@ -337,7 +339,7 @@ mod linux {
         names.map(|n| n.as_bytes().to_vec()).collect()
     }
 
-    /// The libraries of this process.
+    /// Returns the libraries of this process.
     pub fn loaded() -> Vec<PathBuf> {
         unsafe extern "C" fn visit(
             info: *mut libc::dl_phdr_info,
@@ -347,7 +349,7 @@ mod linux {
             // SAFETY: the linker passes a valid record and the pointer given to it.
             let (info, paths) = unsafe { (&*info, &mut *paths.cast::<Vec<PathBuf>>()) };
             if !info.dlpi_name.is_null() {
-                // SAFETY: a string of the linker, which ends with a zero.
+                // SAFETY: the string of the linker ends with a zero.
                 let path = unsafe { CStr::from_ptr(info.dlpi_name) }.to_bytes();
                 paths.push(PathBuf::from(OsStr::from_bytes(path)));
             }
@@ -359,16 +361,17 @@ mod linux {
         paths
     }
 
-    /// What the dynamic section of an ELF file says of the libraries that it needs.
+    /// Content of the dynamic section of an ELF file about the libraries that it needs.
     #[derive(Debug, Default)]
-    struct Needs {
+    struct DynamicSection {
         names: Vec<Vec<u8>>,
         rpath: Option<Vec<u8>>,
         runpath: Option<Vec<u8>>,
     }
 
-    impl Needs {
-        /// Reads the bytes of a 64-bit little-endian file; `None` if it is another file or damaged.
+    impl DynamicSection {
+        /// Reads the bytes of a 64-bit little-endian file; `None` if the file has another format or
+        /// is damaged.
         fn read(bytes: &[u8]) -> Option<Self> {
             const LOAD: u64 = 1;
             const DYNAMIC: u64 = 2;
@@ -396,7 +399,7 @@ mod linux {
                 at += 16;
             }
             let text_at = entries.iter().find(|e| e.0 == 5)?.1;
-            // An address in memory; where in the file it is, the segments say.
+            // The address is in memory; the segments give the offset in the file.
             let in_file = headers.iter().filter(is(LOAD)).find_map(|at| {
                 let (offset, address, length) =
                     (size(at + 8, 8)?, size(at + 16, 8)?, size(at + 32, 8)?);
@@ -425,8 +428,8 @@ mod linux {
     mod tests {
         use super::*;
 
-        /// The libraries of the program are among those of the process, and the C library is one of
-        /// them where it is no part of the program.
+        /// The libraries of the program are among those of the process; the C library is one of
+        /// them, unless it is linked statically.
         #[test]
         fn libraries_of_the_program_are_known() {
             let now = names(&loaded());
@@ -448,23 +451,23 @@ mod linux {
             }
         }
 
-        /// This test links to the library of C, which its process has: it is no part of a law that
-        /// links to it. Where the process has it not, it is looked for.
+        /// This test links to the C library, which its process has loaded: it is not part of a law
+        /// that links to it. In a process without it the linker searches for it.
         #[test]
         fn needs_are_read_from_a_program() {
             let own = std::env::current_exe().unwrap();
             let bytes = std::fs::read(&own).unwrap();
-            let needs = Needs::read(&bytes).unwrap();
+            let needs = DynamicSection::read(&bytes).unwrap();
             let libc = needs.names.iter().find(|n| n.starts_with(b"libc."));
             let libc = libc.unwrap_or_else(|| panic!("{needs:?}"));
             let process = names(&loaded());
             assert!(process.contains(libc), "{process:?}");
-            let with = Walk::beside(&own, &process).unwrap();
+            let with = LinkPlan::beside(&own, &process).unwrap();
             assert!(with.found.is_empty() && !with.names.contains(libc));
-            let without = Walk::beside(&own, &BTreeSet::new()).unwrap();
+            let without = LinkPlan::beside(&own, &BTreeSet::new()).unwrap();
             assert!(without.names.contains(libc), "{without:?}");
             for length in [0, 5, 40, 100, 1000] {
-                assert!(Needs::read(&bytes[..length]).is_none());
+                assert!(DynamicSection::read(&bytes[..length]).is_none());
             }
         }
 
@@ -484,7 +487,7 @@ mod linux {
             std::fs::remove_dir_all(&folder).unwrap();
         }
 
-        /// What came is compared with what was read.
+        /// Loaded libraries are compared with those that were read.
         #[test]
         fn libraries_that_came_are_those_that_were_read() {
             let folder = std::env::temp_dir().join(format!("fretwork-came-{}", std::process::id()));
@@ -493,7 +496,7 @@ mod linux {
             let [read, variant] = [&folder, &inner].map(|f| f.join("libx.so"));
             std::fs::write(&read, "read").unwrap();
             std::fs::write(&variant, "variant").unwrap();
-            let walk = Walk {
+            let plan = LinkPlan {
                 found: vec![read.clone()],
                 folders: [folder.clone()].into(),
                 names: [b"libx.so".to_vec()].into(),
@@ -502,10 +505,10 @@ mod linux {
                 let owned = |list: &[&PathBuf]| -> Vec<PathBuf> {
                     list.iter().map(|p| (*p).clone()).collect()
                 };
-                walk.check(&owned(before), &owned(now))
+                plan.check(&owned(before), &owned(now))
             };
             assert_eq!(said(&[], &[&read]), Ok(()));
-            // Another law brought it.
+            // Another law loaded it.
             assert_eq!(said(&[&read], &[&read]), Ok(()));
             let other = said(&[], &[&variant]).unwrap_err();
             assert!(other.contains("did not load that file") && other.contains("inner"));

@@ -1,7 +1,7 @@
-//! How laws are named, and the folders of their libraries.
+//! Names of laws, and the folders of their libraries.
 
 /// Environment variable with additional folders.
-pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
+pub const PATH_VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
 
 /// Returns whether a law's name consists of a-z, 0-9, `-` and `_` and begins with a letter or
 /// digit.

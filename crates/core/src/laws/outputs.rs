@@ -1,12 +1,11 @@
-//! The columns that laws write, and what is accepted in them.
+//! The columns that laws write, and their accepted ranges.
 
 use std::fmt;
 
 /// Vectors in the local frame, one column per component.
 pub type Triple = [Vec<f64>; 3];
 
-/// Declares the columns in groups of one size: single ones, then those with one column per
-/// component.
+/// Declares the columns in groups of one size: single columns, then columns per component.
 macro_rules! columns {
     ($($(#[$about:meta])* $group:ident {
         $($(#[$doc:meta])* $column:ident,)* $(; $($triple:ident,)*)?
@@ -35,7 +34,7 @@ macro_rules! columns {
 }
 
 columns! {
-    /// Iterates over the columns of every call.
+    /// Iterates over the columns that every batch has.
     every {
         friction, restitution_n, restitution_t, tension_strength, shear_cohesion, rolling,
         spinning, stiffness_n, stiffness_t, damping_n, damping_t, energy, damage, volume,
@@ -45,7 +44,7 @@ columns! {
     /// Iterates over the columns of compliant contacts.
     springs {
         contact_stiffness_n, contact_stiffness_t, contact_unloading_t,
-        /// Energy that the tangential spring of a contact holds, where the law reports it (J);
+        /// Energy stored in the tangential spring of a contact, where the law reports it (J);
         /// `out_energy` of contact laws.
         contact_energy_t,
         contact_damping_n, contact_damping_t,
@@ -58,11 +57,11 @@ columns! {
 /// A column that a call of a law writes.
 #[derive(Debug)]
 pub struct Output<'a> {
-    /// Its name in the plugin interface.
+    /// Name in the plugin interface.
     pub name: &'static str,
-    /// One value a contact.
+    /// One value per contact.
     pub values: &'a mut Vec<f64>,
-    /// What is accepted; any finite value without it.
+    /// Accepted range; `None` for any finite value.
     pub range: Option<Range>,
 }
 
@@ -89,11 +88,11 @@ impl<'a> Output<'a> {
 /// Accepted range of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
+    /// Values that are not negative: strengths, stiffnesses, damping, volumes, lengths.
     NotNegative,
-    /// From 0 to 1: damage, normal restitution.
+    /// Values from 0 to 1: damage, normal restitution.
     Share,
-    /// From -1 to 1: tangential restitution.
+    /// Values from -1 to 1: tangential restitution.
     Signed,
 }
 

@@ -1,21 +1,21 @@
-//! A call into the code of a law: watched, with the state of the thread and the process kept, and
-//! with an end for whatever would unwind out of it.
+//! A call into the code of a law: it is timed by the watchdog, the state of thread and process is
+//! restored after it, and nothing unwinds out of it.
 
 use super::float_control::FloatControl;
 use super::watch::{self, Label};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What laws did to the state of their callers, which was put back.
+/// Records of what laws changed in the state of their callers, which was restored.
 #[derive(Debug, Default)]
-pub(super) struct Disturbed {
-    /// Control of floating point, while the library was loaded.
+pub(super) struct DisturbedState {
+    /// The floating-point control changed while the library was loaded.
     pub loading: AtomicBool,
-    /// Control of floating point, in a call.
+    /// The floating-point control changed in a call.
     pub calling: AtomicBool,
 }
 
-/// Calls a law's function, by its index in [`watch`]. `f` calls it as one that may unwind: an
-/// exception, or the end of its thread (`pthread_exit`), ends the program here, before it passes
+/// Calls a law's function, by its index in [`watch`]. `f` calls it as a function that may unwind:
+/// an exception, or the end of its thread (`pthread_exit`), ends the program here, before it passes
 /// through frames of Rust.
 #[inline]
 pub(super) fn call<R>(
@@ -34,8 +34,8 @@ pub(super) fn call<R>(
     answer
 }
 
-/// Runs what loads code; the folder of the process, to which paths are relative, is afterwards what
-/// it was.
+/// Runs a function that loads code, and restores the current folder of the process, to which paths
+/// are relative.
 pub(super) fn keep_folder<R>(f: impl FnOnce() -> R) -> R {
     let before = std::env::current_dir();
     let answer = f();

@@ -7,7 +7,7 @@ use std::ptr;
 
 /// A parameter or an internal variable.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct LawField {
     /// Name.
     pub name: String,
     /// SI unit.
@@ -27,7 +27,7 @@ pub struct Field {
 /// Copies the fields of the table known to both versions of the ABI.
 ///
 /// # Safety
-/// A static table that begins with its size and version.
+/// The table must be static and begin with its size and version.
 pub(super) unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, String> {
     // SAFETY: size and version come first in every version of the table.
     let (size, major) = unsafe {
@@ -62,7 +62,7 @@ pub(super) unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPl
 /// Copies a text of the table.
 ///
 /// # Safety
-/// Null, or static NUL-terminated text.
+/// The pointer must be null, or point to static NUL-terminated text.
 pub(super) unsafe fn text(pointer: *const c_char) -> Result<String, String> {
     if pointer.is_null() {
         return Err("is null".into());
@@ -77,12 +77,12 @@ pub(super) unsafe fn text(pointer: *const c_char) -> Result<String, String> {
 /// Copies and checks a list of parameters or variables.
 ///
 /// # Safety
-/// Null, or a static array of `n` fields.
+/// The pointer must be null, or point to a static array of `n` fields.
 pub(super) unsafe fn fields(
     first: *const abi::FwField,
     n: usize,
     what: &str,
-) -> Result<Vec<Field>, String> {
+) -> Result<Vec<LawField>, String> {
     const MAX_FIELDS: usize = 256;
     if n > MAX_FIELDS {
         return Err(format!(
@@ -109,7 +109,7 @@ pub(super) unsafe fn fields(
             if !f.default.is_finite() || f.minimum.is_nan() || f.maximum.is_nan() {
                 return Err(format!("its {what} `{name}` has a default that is not finite or a range that is not a number"));
             }
-            Ok(Field {
+            Ok(LawField {
                 unit: read(f.unit)?,
                 doc: read(f.doc)?,
                 name,

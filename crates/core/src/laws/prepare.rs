@@ -7,7 +7,7 @@ use super::evaluator::LawEvaluator;
 use super::function::Call;
 use super::gather::{Source, contact_area};
 use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::outputs::Outputs;
 use super::spring::SpringForm;
 use super::step_info::StepInfo;
@@ -18,14 +18,14 @@ use crate::solve::MomentForm;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::threads::{chunk_size, map_chunks_mut, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to apply friction to a contact (ns).
+/// Approximate time to apply friction to a contact (ns).
 const APPLY: f64 = 10.0;
-/// About what laws that vary take for a contact (ns).
+/// Approximate time per contact of laws that vary between contacts (ns).
 const PREPARE: f64 = 80.0;
-/// Distance of a traction from stiffness times opening, as a share of it, up to which the two are
-/// equal but for rounding.
+/// Relative difference between a traction and stiffness times opening up to which the two are equal
+/// except for rounding.
 const LINEAR: f64 = 1e-9;
 
 /// Friction and restitution of one contact.
@@ -55,15 +55,15 @@ impl Friction {
         }
     }
 
-    /// Whether it acts against rotation.
+    /// Returns whether the friction acts against rotation.
     #[inline]
     fn rotates(&self) -> bool {
         self.rolling > 0.0 || self.spinning > 0.0
     }
 }
 
-/// Contacts of a batch, and the forms and springs of all contacts from the first of them to the
-/// last, which no other batch has.
+/// Contacts of a batch, and the range of forms and springs from the first to the last of them,
+/// which no other batch uses.
 struct Task<'a, S: Space> {
     members: &'a [usize],
     first: usize,
@@ -98,33 +98,33 @@ fn tasks<'a, S: Space>(
     task.collect()
 }
 
-/// What the laws of an interface are called for.
+/// Functions for which the laws of an interface are called.
 struct Request<'a, S: Space> {
     law: &'a Interface,
     index: usize,
     info: &'a StepInfo,
     before: &'a Velocities<S>,
     contact: ContactRequest,
-    cohesion: Option<&'a Loaded>,
+    cohesion: Option<&'a LoadedLaw>,
     /// Whether the damage at the middle of the step is predicted.
     predicts: bool,
 }
 
-/// Where friction and restitution come from.
+/// Source of friction and restitution.
 enum ContactRequest {
-    /// They are in the forms.
+    /// The forms have them already.
     Done,
-    /// One answer for all contacts.
+    /// All contacts have the same values.
     Constant(Friction),
     /// The contact law.
     Each,
 }
 
-/// What a batch gives beside forms and springs.
+/// Results of a batch, in addition to forms and springs.
 struct Prepared<S: Space> {
     moments: Vec<MomentForm<S>>,
     held_back: Vec<usize>,
-    /// Predicted damage by the place in memory.
+    /// Predicted damage by slot.
     predicted: Vec<(u32, f64)>,
 }
 
@@ -132,9 +132,9 @@ impl LawEvaluator {
     /// Completes the geometric forms of the contacts with the outputs of the laws. Contacts are as
     /// at the last [`Self::select`].
     ///
-    /// If `predicts`, the impulses of every intact bond are those of the mean of its damage and of
-    /// the damage that the law gives for the opening which the motion at the start of the step
-    /// leads to.
+    /// If `predicts`, the impulses of every intact bond use the mean of its damage and of the
+    /// damage that the law gives for the opening to which the motion at the start of the step
+    /// leads.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -152,7 +152,7 @@ impl LawEvaluator {
         moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
         moments.clear();
-        // Where all contacts are springs, all are set below.
+        // Where all contacts are springs, all forms are set below.
         if !laws.iter().all(Interface::compliant) || springs.len() != forms.len() {
             springs.clear();
         }
@@ -165,8 +165,8 @@ impl LawEvaluator {
             if members.all.is_empty() {
                 continue;
             }
-            // Cohesion with an opening acts on intact bonds. Without one it acts on every contact,
-            // but not on those that are there for their speed.
+            // Cohesion with an opening acts on intact bonds. Without an opening it acts on every
+            // contact, except those predicted because of their speed.
             let (cohesive, others) = match law.opens() {
                 true => (&members.bonded[..], &members.loose[..]),
                 false => (members.near(), &members.beyond[..]),
@@ -181,7 +181,7 @@ impl LawEvaluator {
                 predicts: predicts && law.opens() && law.damages(),
             };
             if law.constant_contact() {
-                // One answer for all contacts, and then cohesion adds to it.
+                // Friction is the same for all contacts, then cohesion adds to it.
                 let friction = self.constant_friction(law, info, history)?;
                 request.contact = if law.rotates() || friction.rotates() {
                     ContactRequest::Constant(friction)
@@ -218,7 +218,7 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Friction and restitution of a law that gives the same for all contacts.
+    /// Returns friction and restitution of a law that gives the same values for all contacts.
     fn constant_friction(
         &self,
         law: &Interface,
@@ -284,7 +284,7 @@ fn apply_constant<S: Space>(
 }
 
 impl<S: Space> Request<'_, S> {
-    /// Whether there is nothing to ask for.
+    /// Returns whether no law has to be called.
     fn idle(&self) -> bool {
         matches!(self.contact, ContactRequest::Done) && self.cohesion.is_none()
     }
@@ -320,7 +320,7 @@ impl LawBatch {
                 *damage = 0.5 * (bond.damage + (bond.step_damage + *damage));
             }
         }
-        let mut acting: Vec<&Loaded> = Vec::with_capacity(2);
+        let mut acting: Vec<&LoadedLaw> = Vec::with_capacity(2);
         if let ContactRequest::Each = request.contact {
             acting.push(law.contact());
         }
@@ -358,7 +358,7 @@ impl LawBatch {
         Ok(prepared)
     }
 
-    /// Applies what the cohesion law gave to the forms of a batch.
+    /// Applies the outputs of the cohesion law to the forms of a batch.
     fn apply_cohesions<S: Space>(
         &self,
         request: &Request<'_, S>,
@@ -382,7 +382,7 @@ impl LawBatch {
         }
     }
 
-    /// Applies what the contact law gave, or the same to all, to the forms of a batch.
+    /// Applies the outputs of the contact law, or constant values, to the forms of a batch.
     fn apply_contact<S: Space>(
         &self,
         request: &Request<'_, S>,
@@ -434,7 +434,7 @@ impl LawBatch {
         }
     }
 
-    /// The spring of a member, as its law gave it.
+    /// Returns the spring of a member from the outputs of its law.
     fn spring<S: Space>(&self, k: usize, contact: &Contact<S>) -> SpringForm<S> {
         let (columns, out) = (&self.columns, &self.columns.out);
         let [force_n, t1, t2] = &out.contact_force;
@@ -552,8 +552,8 @@ fn apply_friction<S: Space>(
                 form.shift_n = f64::INFINITY;
             }
         } else if un < 0.0 {
-            // Restitution takes the place of the gap and of its correction. Where the surface bends
-            // towards the body, it leaves no slower than along that.
+            // Restitution replaces the gap and its correction. Where the surface bends towards the
+            // body, the body does not leave more slowly than along the surface.
             let of_gap = if gap > 0.0 {
                 gap
             } else {

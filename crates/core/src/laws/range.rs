@@ -1,4 +1,5 @@
-//! Checks that what laws write is in its range, where physics or the plugin interface defines one.
+//! Checks that the outputs of laws are in their ranges, where physics or the plugin interface
+//! defines one.
 
 use super::kind::Kind;
 use super::outputs::{Output, Range};
@@ -20,7 +21,7 @@ impl Range {
     }
 
     /// Returns the first value outside the range by more than rounding, and clamps the others to
-    /// it. Almost always the range of the column shows that there is none.
+    /// the range. In most cases the extreme values of the column show that all values are inside.
     fn settle(self, column: &mut [f64], found: &ColumnRange, largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
             *largest = largest.max(found.most);
@@ -43,8 +44,8 @@ impl Range {
 pub(super) struct ColumnRange {
     /// Whether all values are finite.
     pub finite: bool,
-    /// Least value; infinity of an empty column. As the largest, it has a meaning if all values are
-    /// finite.
+    /// Smallest value; infinity for an empty column. Meaningful only if all values are finite, as
+    /// is the largest.
     least: f64,
     /// Largest value.
     most: f64,
@@ -61,7 +62,7 @@ impl ColumnRange {
         let mut see = |values: &[f64]| {
             let places = lanes.0.iter_mut().zip(&mut lanes.1).zip(&mut lanes.2);
             for (((other, least), most), x) in places.zip(values) {
-                // Zero for all but infinities and NaN, which make it NaN.
+                // The product is zero except for infinities and NaN, which make `other` NaN.
                 *other += x * 0.0;
                 *least = if *x < *least { *x } else { *least };
                 *most = if *x > *most { *x } else { *most };
@@ -96,7 +97,7 @@ impl Largest {
         values
     }
 
-    /// Takes over the larger values of another.
+    /// Takes the larger value of the two for each column.
     pub fn raise(&mut self, other: &Self) {
         for (code, theirs) in &other.0 {
             for (ours, theirs) in self.of(*code, theirs.len()).iter_mut().zip(theirs) {
@@ -114,9 +115,9 @@ pub(super) struct Outside {
     pub range: Range,
 }
 
-/// The first column in which a call gave a value that cannot be; values beyond an end by round-off
-/// are put on it. Values are finite. Tractions, moments and stored energies may have any sign; that
-/// damage falls is no error, as the host holds it up.
+/// Returns the first output of a call outside its range; values beyond a bound by round-off are set
+/// to the bound. Values must be finite. Tractions, moments and stored energies may have any sign. A
+/// decrease of damage is no error, since the host keeps damage from decreasing.
 pub(super) fn settle(
     outputs: &mut [Output<'_>],
     ranges: &[ColumnRange],
@@ -177,7 +178,8 @@ mod tests {
         assert_eq!(settle(Range::NotNegative, &[0.0, -1e-300]), Some(1));
     }
 
-    /// A strength times (1 - D), where D exceeds 1 by one unit in the last place.
+    /// A strength times (1 - D) is slightly negative where D exceeds 1 by one unit in the last
+    /// place.
     #[test]
     fn what_round_off_leaves_below_zero_is_zero() {
         let left = 1e6 * (1.0 - (1.0 + f64::EPSILON));
@@ -185,7 +187,7 @@ mod tests {
         let mut column = vec![1e6, left, 0.5];
         assert_eq!(settle(Range::NotNegative, &mut column, &mut 0.0), None);
         assert_eq!(column, [1e6, 0.0, 0.5]);
-        // A single bond: its own earlier value is the reference.
+        // The reference for a single bond is its own earlier value.
         let mut largest = 0.0;
         for (value, found) in [(1e6, None), (left, None), (-1e-3, Some(0))] {
             let mut column = vec![value];

@@ -1,5 +1,5 @@
-//! Friction at a velocity of sliding other than that at the start of the step, by another call of
-//! the contact law.
+//! Friction at a sliding velocity other than that at the start of the step, by another call of the
+//! contact law.
 
 use super::batch::{LawBatch, locate};
 use super::error::LawError;
@@ -9,34 +9,33 @@ use super::gather::Source;
 use super::trial::{LawStep, TrialRequest};
 use crate::geometry::space::Space;
 
-/// About what the two calls take for a contact (ns).
+/// Approximate time per contact of the two calls (ns).
 const EACH: f64 = 120.0;
 
-/// Velocities of sliding at which a law is tried for whether it depends on them (m/s).
+/// Sliding velocities at which a law is tried to find whether it depends on them (m/s).
 const TRIED: [f64; 7] = [0.0, 1e-9, 1e-6, 1e-3, 3e-2, 1.0, 1e2];
 
-/// Contacts of an interface on which that is tried, at most, spread over all of them: it may depend
-/// on what a contact has, its state or the size of its bodies.
+/// Largest number of contacts of an interface on which dependence on velocity is tried, spread over
+/// all of them: it may depend on the state of a contact or the size of its bodies.
 const SAMPLE: usize = 16;
 
-/// Relative change of the velocity from which a slope follows, and of friction by it that is more
-/// than rounding.
+/// Relative change of the velocity for the slope of friction, and relative change of friction that
+/// is more than rounding.
 const NEARBY: f64 = 1e-4;
 const ROUNDING: f64 = 1e-13;
 
-/// Friction of a contact at a velocity of sliding.
+/// Friction of a contact at a sliding velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionAt {
-    /// mu.
+    /// Friction coefficient mu.
     pub mu: f64,
-    /// Its derivative by the velocity (s/m).
+    /// Derivative of mu by the velocity (s/m).
     pub slope: f64,
 }
 
 impl LawEvaluator {
-    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on some
-    /// of their contacts, with the contacts that they have in the step. An error at a velocity that
-    /// is tried is none of the run's.
+    /// Finds the interfaces whose friction depends on the sliding velocity, by trials on some of
+    /// their contacts in the state of the step. An error at a trial velocity is not reported.
     pub fn rate_dependent<S: Space>(
         &mut self,
         step: &mut LawStep<'_, S>,
@@ -76,7 +75,7 @@ impl LawEvaluator {
         found
     }
 
-    /// Friction of contacts of an interface, each at a tangential velocity.
+    /// Returns the friction of contacts of an interface, each at a tangential velocity.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -105,8 +104,8 @@ impl LawEvaluator {
 }
 
 impl LawBatch {
-    /// Friction at the velocities in the columns, and its slope from another call at velocities a
-    /// little above.
+    /// Returns friction at the velocities in the columns, and its slope from another call at
+    /// slightly larger velocities.
     fn friction_and_slope<S: Space>(
         &mut self,
         source: &Source<'_, S>,

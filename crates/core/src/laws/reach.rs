@@ -10,27 +10,27 @@ use super::interface::Interface;
 use super::trial::{LawStep, TrialRequest};
 use crate::geometry::space::Space;
 
-/// About what a call takes for a contact (ns).
+/// Approximate time of a call per contact (ns).
 const EACH: f64 = 80.0;
 
 impl Interface {
-    /// Whether its cohesion law has no opening: an attraction as a function of the gap.
+    /// Returns whether the cohesion law has no opening: an attraction as a function of the gap.
     pub fn attracts(&self) -> bool {
         self.cohesion().is_some() && !self.opens()
     }
 }
 
 impl LawEvaluator {
-    /// The contacts that an attraction acts on, of each interface that has one.
+    /// Returns the contacts on which an attraction acts, for each interface that has one.
     pub fn attracted(&self, laws: &[Interface]) -> Vec<(usize, Vec<usize>)> {
         let all = laws.iter().enumerate().filter(|(_, law)| law.attracts());
         let all = all.map(|(index, _)| (index, self.members[index].near().to_vec()));
         all.filter(|(_, members)| !members.is_empty()).collect()
     }
 
-    /// Attraction (N; N/m in 2D) of contacts of an interface, each at a gap (m); contacts may be
-    /// given several times. A contact that touches has what its law makes of that, a neck or a
-    /// bridge.
+    /// Returns the attraction (N; N/m in 2D) of contacts of an interface, each at a gap (m); a
+    /// contact may occur several times. A contact that touches keeps the internal variables of its
+    /// law, such as a neck or a bridge.
     ///
     /// # Errors
     /// The law's error, with the contact.

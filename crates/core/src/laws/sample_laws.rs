@@ -1,6 +1,6 @@
-//! Laws of unit tests: simple enough that what they give is known in closed form.
+//! Laws for unit tests, simple enough that their outputs are known in closed form.
 
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::library::Plugin;
 use crate::contact::Contact;
 use crate::contact::network::{ContactGeometry, Key};
@@ -12,15 +12,15 @@ use fretwork_law::{
 use nalgebra::Vector2;
 use std::path::Path;
 
-/// The law of a table of the wrapper, with the defaults of its parameters.
-fn loaded(table: *const abi::FwPlugin) -> Loaded {
+/// Loads the law of a table, with the defaults of its parameters.
+fn loaded(table: *const abi::FwPlugin) -> LoadedLaw {
     // SAFETY: a static table of the wrapper.
     let plugin = unsafe { Plugin::from_table(table, Path::new("a test"), "", true) };
-    Loaded::with_defaults(plugin.unwrap())
+    LoadedLaw::with_defaults(plugin.unwrap())
 }
 
-/// Declares a law: its parameters, what else the plugin table says of it, and the function that
-/// loads it with the defaults of its parameters.
+/// Declares a law: its parameters, further entries of its plugin table, and the function that loads
+/// it with the defaults of its parameters.
 macro_rules! sample {
     (
         $(#[$doc:meta])*
@@ -39,7 +39,7 @@ macro_rules! sample {
         }
 
         $(#[$doc])*
-        pub(crate) fn $name() -> Loaded {
+        pub(crate) fn $name() -> LoadedLaw {
             plugin_table!($kind $law);
             loaded(TABLE.table())
         }
@@ -82,8 +82,7 @@ impl ContactLaw for LinearSpring {
 }
 
 sample! {
-    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension
-    /// only.
+    /// Bond of stiffness k over the area against opening, sliding and rotation, in tension only.
     bond: cohesion LinearBond {
         k: "Pa/m" = 2.0, 0.0, 1e30, "stiffness";
     } {
@@ -113,8 +112,8 @@ impl CohesionLaw for LinearBond {
 }
 
 sample! {
-    /// Sticks without a bond: a shear cohesion, and no attraction. It has a variable, which it
-    /// leaves as it is.
+    /// Shear cohesion without a bond and without attraction, with an internal variable that does
+    /// not change.
     sticky: cohesion Sticky {
         strength: "Pa" = 3.0, 0.0, 1e30, "shear cohesion";
     } {
@@ -133,7 +132,8 @@ impl CohesionLaw for Sticky {
 }
 
 sample! {
-    /// Conducts 1 W/K for each second that the contact has had, which it counts itself.
+    /// Conductance of 1 W/K for each second of the contact's age, which the law counts in an
+    /// internal variable.
     growing: transport Growing {
         per_time: "W/K/s" = 1.0, 0.0, 1e30, "conductance per time";
     } {
@@ -152,7 +152,7 @@ impl TransportLaw for Growing {
 }
 
 sample! {
-    /// Conducts 3 W/K, and remembers nothing.
+    /// Conductance of 3 W/K without internal variables.
     constant: transport Constant {
         conductance: "W/K" = 3.0, 0.0, 1e30, "conductance";
     } {}
@@ -167,13 +167,14 @@ impl TransportLaw for Constant {
     }
 }
 
-/// An interface of friction and other laws.
-pub(crate) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
+/// Creates an interface of friction and other laws.
+pub(crate) fn interface(laws: impl IntoIterator<Item = LoadedLaw>) -> Interface {
     let laws = std::iter::once(coulomb()).chain(laws);
     Interface::new("test", laws).unwrap()
 }
 
-/// A closed contact of two bodies by the first interface, along y, without lever arms.
+/// Creates a closed contact along y between two bodies, with the first interface and without lever
+/// arms.
 pub(crate) fn contact(bodies: [u32; 2]) -> Contact<Dim2> {
     let [candidate, antagonist] = bodies;
     let key = Key {

@@ -4,11 +4,11 @@ use super::built_in::BuiltInLaws;
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
-pub use super::names::{VARIABLE, name_is_valid};
+pub use super::names::{PATH_VARIABLE, name_is_valid};
 use super::{loading, trust};
 use std::path::{Path, PathBuf};
 
-/// Folders in which plugins are looked for, in order.
+/// Folders in which plugins are searched, in order.
 #[derive(Clone, Debug)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
@@ -20,10 +20,10 @@ pub struct SearchPath {
 
 /// Location of a law.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
-    /// In a library.
+pub enum LawLocation {
+    /// A library, which contains the law.
     Library(PathBuf),
-    /// In the program itself.
+    /// The program itself.
     BuiltIn,
 }
 
@@ -44,7 +44,7 @@ impl SearchPath {
         let mut folders = beside_program();
         let beside = folders.len();
         folders.extend_from_slice(extra);
-        if let Some(value) = std::env::var_os(VARIABLE) {
+        if let Some(value) = std::env::var_os(PATH_VARIABLE) {
             folders.extend(std::env::split_paths(&value).filter(|p| !p.as_os_str().is_empty()));
         }
         Self {
@@ -82,7 +82,7 @@ impl SearchPath {
     /// its library. A library therefore cannot replace a built-in law.
     ///
     /// # Errors
-    /// No such law (with the most similar name), or an unusable library.
+    /// There is no such law (the error gives the most similar name), or its library is unusable.
     pub fn find(&self, kind: Kind, name: &str) -> Result<Plugin, LawError> {
         self.find_pinned(kind, name, None)
     }
@@ -90,7 +90,8 @@ impl SearchPath {
     /// Finds a law as [`Self::find`] does, in a library with a required SHA-256 (in hexadecimal).
     ///
     /// # Errors
-    /// Those of [`Self::find`]; and a different SHA-256, before any code of the library runs.
+    /// Returns the errors of [`Self::find`], and an error for a different SHA-256 before any code
+    /// of the library runs.
     pub fn find_pinned(
         &self,
         kind: Kind,
@@ -98,8 +99,8 @@ impl SearchPath {
         pin: Option<&str>,
     ) -> Result<Plugin, LawError> {
         let path = match self.place(kind, name) {
-            Some(Place::Library(path)) => path,
-            Some(Place::BuiltIn) => return self.linked_in(kind, name, pin),
+            Some(LawLocation::Library(path)) => path,
+            Some(LawLocation::BuiltIn) => return self.linked_in(kind, name, pin),
             None => return Err(self.unknown(kind, name)),
         };
         let plugin = self.open_pinned(&path, pin)?;
@@ -114,22 +115,22 @@ impl SearchPath {
     }
 
     /// Returns the location of the law of this kind and name, without opening it.
-    fn place(&self, kind: Kind, name: &str) -> Option<Place> {
+    fn place(&self, kind: Kind, name: &str) -> Option<LawLocation> {
         if !name_is_valid(name) {
             return None;
         }
         if self.built_in.names().any(|law| law == (kind, name)) {
-            return Some(Place::BuiltIn);
+            return Some(LawLocation::BuiltIn);
         }
         let mut files = self.folders.iter().map(|f| f.join(file_name(kind, name)));
-        files.find(|p| p.is_file()).map(Place::Library)
+        files.find(|p| p.is_file()).map(LawLocation::Library)
     }
 
     fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
         let found = self.built_in.open(kind, name);
         let plugin = found.unwrap_or_else(|| Err(self.unknown(kind, name)))?;
         match pin.filter(|p| !p.eq_ignore_ascii_case(&plugin.sha256)) {
-            Some(pin) => Err(LawError::Pinned {
+            Some(pin) => Err(LawError::HashMismatch {
                 path: plugin.path,
                 pin: pin.to_owned(),
                 sha256: plugin.sha256,
@@ -141,21 +142,29 @@ impl SearchPath {
     /// Opens a law listed by [`SearchPath::laws`].
     ///
     /// # Errors
-    /// The reason why it cannot be used.
-    pub fn open_law(&self, kind: Kind, name: &str, place: &Place) -> Result<Plugin, LawError> {
+    /// Returns the reason why the law cannot be used.
+    pub fn open_law(
+        &self,
+        kind: Kind,
+        name: &str,
+        place: &LawLocation,
+    ) -> Result<Plugin, LawError> {
         match place {
-            Place::Library(path) => self.open(path),
-            Place::BuiltIn => self.linked_in(kind, name, None),
+            LawLocation::Library(path) => self.open(path),
+            LawLocation::BuiltIn => self.linked_in(kind, name, None),
         }
     }
 
     /// Tries the libraries of several laws in one child process before they are opened one by one.
     /// Missing or untrusted laws are skipped; opening them reports the error.
-    pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
+    pub fn test_loading<'a>(
+        &self,
+        laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>,
+    ) {
         let mut libraries = Vec::new();
         for (kind, name, pin) in laws {
-            if let Some(Place::Library(path)) = self.place(kind, name)
-                && self.doubt(&path).is_none()
+            if let Some(LawLocation::Library(path)) = self.place(kind, name)
+                && self.reason_to_distrust(&path).is_none()
             {
                 libraries.push((path, pin));
             }
@@ -163,10 +172,11 @@ impl SearchPath {
         loading::try_loading(&libraries);
     }
 
-    /// Returns whether a law belongs to the program itself, so that whoever can change it can
-    /// change the program.
-    pub fn is_own(&self, plugin: &Plugin) -> bool {
-        plugin.built_in || (self.own(&plugin.path) && self.doubt(&plugin.path).is_none())
+    /// Returns whether a law belongs to the program itself: whoever can change the law can then
+    /// change the program anyway.
+    pub fn belongs_to_program(&self, plugin: &Plugin) -> bool {
+        plugin.built_in
+            || (self.own(&plugin.path) && self.reason_to_distrust(&plugin.path).is_none())
     }
 
     fn own(&self, library: &Path) -> bool {
@@ -174,44 +184,44 @@ impl SearchPath {
         folder.is_some_and(|p| self.folders[..self.beside].iter().any(|f| f == p))
     }
 
-    /// Returns why a library should not be opened, if there is a reason.
-    fn doubt(&self, library: &Path) -> Option<String> {
+    /// Returns the reason why a library should not be opened, if there is one.
+    fn reason_to_distrust(&self, library: &Path) -> Option<String> {
         if self.trusting {
             None
         } else if self.own(library) {
-            trust::doubt_beside_program(library)
+            trust::reason_to_distrust_beside_program(library)
         } else {
-            trust::doubt(library)
+            trust::reason_to_distrust(library)
         }
     }
 
     /// Opens a library, unless others may write to it or to its folder.
     ///
     /// # Errors
-    /// Why it is not opened, or cannot be used.
+    /// Returns the reason why the library is not opened, or cannot be used.
     pub fn open(&self, path: &Path) -> Result<Plugin, LawError> {
         self.open_pinned(path, None)
     }
 
     fn open_pinned(&self, path: &Path, pin: Option<&str>) -> Result<Plugin, LawError> {
-        if let Some(reason) = self.doubt(path) {
+        if let Some(reason) = self.reason_to_distrust(path) {
             let path = path.to_owned();
             return Err(LawError::Unusable { path, reason });
         }
         Plugin::open_pinned(path, pin)
     }
 
-    /// Lists all laws by the names under which they are found, unopened and sorted: libraries by
-    /// their file names (with `_` as `-`), and built-in laws.
-    pub fn laws(&self) -> Vec<(Kind, String, Place)> {
-        let mut out: Vec<(Kind, String, Place)> = Vec::new();
-        let mut add = |kind: Kind, name: String, place: Place| {
+    /// Lists all laws by the names under which they are found, sorted and without opening them:
+    /// libraries by their file names (with `_` as `-`), and built-in laws.
+    pub fn laws(&self) -> Vec<(Kind, String, LawLocation)> {
+        let mut out: Vec<(Kind, String, LawLocation)> = Vec::new();
+        let mut add = |kind: Kind, name: String, place: LawLocation| {
             if !out.iter().any(|(k, n, _)| *k == kind && *n == name) {
                 out.push((kind, name, place));
             }
         };
         for (kind, name) in self.built_in.names() {
-            add(kind, name.to_owned(), Place::BuiltIn);
+            add(kind, name.to_owned(), LawLocation::BuiltIn);
         }
         for folder in &self.folders {
             let Ok(entries) = std::fs::read_dir(folder) else {
@@ -221,7 +231,7 @@ impl SearchPath {
                 if let Some((kind, name)) = parse(&path)
                     && path.is_file()
                 {
-                    add(kind, name, Place::Library(path));
+                    add(kind, name, LawLocation::Library(path));
                 }
             }
         }
@@ -232,14 +242,14 @@ impl SearchPath {
     /// Lists the laws that are libraries.
     pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
         let libraries = self.laws().into_iter().filter_map(|law| match law {
-            (kind, name, Place::Library(path)) => Some((kind, name, path)),
+            (kind, name, LawLocation::Library(path)) => Some((kind, name, path)),
             _ => None,
         });
         libraries.collect()
     }
 
     /// Describes where laws are searched for, in order.
-    pub fn looked(&self) -> String {
+    pub fn searched(&self) -> String {
         let built_in = self
             .built_in
             .names()
@@ -276,7 +286,7 @@ impl SearchPath {
             kind,
             name: name.into(),
             available,
-            looked: self.looked(),
+            searched: self.searched(),
             nearest,
         }
     }
@@ -291,13 +301,13 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
         .strip_prefix("fretwork_")?;
     Kind::all().into_iter().find_map(|kind| {
         let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
-        // File names of laws contain no dash; cargo's names with a hash do.
+        // File names of laws contain no dash; the names that cargo gives with a hash do.
         (name_is_valid(name) && !name.contains('-')).then(|| (kind, name.replace('_', "-")))
     })
 }
 
-/// Returns the folders that belong to the program: its own, and the one that an installation has
-/// for laws.
+/// Returns the folders that belong to the program: the folder of its file, and the folder for laws
+/// of an installation.
 fn beside_program() -> Vec<PathBuf> {
     let Ok(program) = crate::program::file() else {
         return Vec::new();

@@ -1,22 +1,22 @@
-//! What a kind of laws works on at the end of a step.
+//! Data of a kind's function at the end of a step.
 
-use super::interface::{Interface, Loaded};
+use super::interface::{Interface, LoadedLaw};
 use super::outputs::Outputs;
 use super::step_result::{SolvedStep, Totals};
 use crate::contact::Network;
 use crate::geometry::space::Space;
 
-/// The end of a step for one law of an interface that acts on contacts: what a
-/// [`CommitHook`](super::kind::CommitHook) works on, after the law was called.
+/// The end of a step for one law of an interface that acts on contacts: the argument of a
+/// [`CommitHook`](super::kind::CommitHook) after the law was called.
 #[derive(Debug)]
 pub struct SlotCommit<'a, S: Space> {
     /// The interface.
     pub interface: &'a Interface,
     /// The law, one of its slots.
-    pub law: &'a Loaded,
+    pub law: &'a LoadedLaw,
     /// All contacts.
     pub network: &'a mut Network<S>,
-    /// What each contact did, in the order of the network, and time and scheme.
+    /// Results of the solve for each contact, in the order of the network, with time and scheme.
     pub step: &'a SolvedStep<'a, S>,
     /// Energies and volumes of the step.
     pub totals: &'a mut Totals,
@@ -25,14 +25,13 @@ pub struct SlotCommit<'a, S: Space> {
 }
 
 impl<S: Space> SlotCommit<'_, S> {
-    /// Contacts that the law acts on, as places in the network; values of outputs are in their
+    /// Contacts on which the law acts, as indices in the network; values of outputs are in their
     /// order.
     pub fn contacts(&self) -> &[usize] {
         self.members
     }
 
-    /// What the law wrote: the columns that its kind names as outputs of a commit; the others are
-    /// empty.
+    /// Outputs of the law: the columns that its kind lists for a commit; the others are empty.
     pub fn outputs(&self) -> &Outputs {
         self.outputs
     }

@@ -24,39 +24,39 @@ pub struct SpringForm<S: Space> {
     pub gap: f64,
     /// Overlap d at which the law was evaluated (m).
     pub overlap: f64,
-    /// Normal force there (N).
+    /// Normal force at that overlap (N).
     pub force_n: f64,
-    /// Its slope k (N/m).
+    /// Slope k of the normal force (N/m).
     pub stiffness_n: f64,
     /// Normal damping d_n (N s/m).
     pub damping_n: f64,
     /// Tangential force T_0 at the start of the step, along the displacement of the candidate (N).
     pub force_t: S::Tangent,
-    /// Its slope k_t (N/m); 0 for a rigid tangential contact.
+    /// Slope k_t of the tangential force (N/m); 0 for a rigid tangential contact.
     pub stiffness_t: f64,
     /// Slope of the tangential force when it unloads (N/m): displacement beyond it is slip.
     pub unloading_t: f64,
-    /// Energy that the tangential force holds at the start of the step (J); 0 where that is
-    /// T_0^2/(2 unloading_t).
+    /// Energy stored by the tangential force at the start of the step (J); 0 where it is T_0^2/(2
+    /// unloading_t).
     pub energy_t: f64,
     /// Tangential damping d_t (N s/m).
     pub damping_t: f64,
 }
 
-/// What a compliant contact did in a step.
+/// Result of a compliant contact over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringStep<S: Space> {
     /// The spring at the end of the step.
     pub spring: Spring<S>,
-    /// Slip (m): what of the tangential displacement the spring did not take up.
+    /// Slip (m): the part of the tangential displacement that the spring does not store.
     pub slip: S::Tangent,
-    /// Dissipated by slip (J).
+    /// Energy dissipated by slip (J).
     pub friction: f64,
-    /// Dissipated by damping (J).
+    /// Energy dissipated by damping (J).
     pub viscous: f64,
     /// Work against an attraction that has no opening (J).
     pub adhesion: f64,
-    /// Tangential force of the spring at the end of the step before (N).
+    /// Tangential force of the spring at the end of the previous step (N).
     pub force_before: S::Tangent,
 }
 
@@ -72,8 +72,8 @@ impl<S: Space> SpringForm<S> {
         form.shift_n =
             (self.stiffness_n * (self.gap + self.overlap) - self.force_n + before_touch) / slope;
         form.compliance[0] = 1.0 / (h * slope);
-        // A spring that is found compressed begins with the impulse that it has at rest: sweeps
-        // over stiff springs of little mass are long in building it up.
+        // A spring that is found compressed begins with the impulse of its static force: sweeps
+        // over stiff springs of small mass build it up slowly.
         if self.gap < 0.0 && form.impulse == S::Vector::zero() {
             let at_rest = (-form.shift_n / form.compliance[0]).max(0.0);
             form.impulse = form.normal * at_rest;
@@ -85,11 +85,11 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// Reduces the tangential force to one that holds no more energy than is there: what the spring
-    /// held, and what friction of the contact has taken so far (J). A law that raises the force, or
-    /// keeps it while the spring grows softer, would make energy by friction.
+    /// Reduces the tangential force to one that holds no more energy (J) than the spring held, plus
+    /// what friction of the contact has dissipated so far. A law that raises the force, or keeps it
+    /// while the spring softens, would otherwise create energy by friction.
     pub fn limit_to(&mut self, energy: f64) {
-        /// Share of the energy that rounding may add, where the force turned with its pair.
+        /// Relative energy that rounding may add, where the force was rotated with its pair.
         const ROUNDING: f64 = 1e-9;
         let held = self.held();
         if held > energy * (1.0 + ROUNDING) {
@@ -107,7 +107,7 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// The slope of the tangential force when it unloads (N/m).
+    /// Returns the slope of the tangential force at unloading (N/m).
     fn unloading(&self) -> f64 {
         if self.unloading_t > 0.0 {
             self.unloading_t
@@ -126,7 +126,7 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// Returns the energy of the overlap at detection (J), for a spring that was there before the
+    /// Returns the energy of the overlap at detection (J), for a spring that existed before the
     /// first step.
     pub fn initial_energy(&self) -> f64 {
         let overlap = (-self.gap).max(0.0);
@@ -134,8 +134,8 @@ impl<S: Space> SpringForm<S> {
         self.energy(overlap, force.max(0.0))
     }
 
-    /// The energy at an overlap (J) under a force (N) that grows with a power of the overlap, as a
-    /// linear spring and Hertz' do: F d/(1 + k d/F).
+    /// Returns the energy at an overlap (J) under a force (N) that grows with a power of the
+    /// overlap, as for a linear spring and Hertz' spring: F d/(1 + k d/F).
     fn energy(&self, overlap: f64, force: f64) -> f64 {
         if force > 0.0 {
             force * overlap / (1.0 + self.stiffness_n * overlap / force)
@@ -145,7 +145,7 @@ impl<S: Space> SpringForm<S> {
     }
 
     /// Completes the step of the contact from its solution: relative velocities at the end of the
-    /// step and averaged over it (m/s), and the spring before.
+    /// step and averaged over it (m/s), and the spring before the step.
     pub fn complete(
         &self,
         form: &ContactForm<S>,
@@ -206,15 +206,15 @@ impl<S: Space> SpringForm<S> {
             };
         }
         let ut = S::tangential(n, end);
-        // Zero up to the residual where the contact sticks.
+        // The slip is zero up to the residual where the contact sticks.
         let slip = ut + form.shift_t + p * form.compliance[1];
         let stretch = ut - slip;
         let force = p * (-1.0 / h) - stretch * self.damping_t;
         let unloading = self.unloading();
         spring.force_t = force;
         let held = self.held();
-        // A law of another slope than that of unloading slips within the contact area: what that
-        // takes of the work shows in the energy which the law gives for the next step.
+        // A law whose slope differs from that of unloading slips within the contact area: the work
+        // of this slip shows in the energy that the law gives for the next step.
         spring.energy[1] = if self.stiffness_t == unloading && self.energy_t == 0.0 {
             self.tangential_energy(&force)
         } else {
@@ -225,7 +225,7 @@ impl<S: Space> SpringForm<S> {
         } else {
             S::Tangent::zero()
         };
-        // Where the law changed force or stiffness of the spring between two steps.
+        // The law changed force or stiffness of the spring between two steps.
         let changed = before.energy[1] - held;
         viscous += h * self.damping_t * stretch.dot(&stretch);
         SpringStep {
@@ -245,8 +245,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::{Vector1, Vector2};
 
-    /// A spring that has 4 N of normal force at an overlap of 0.2 m, with a slope of 20 N/m, and 3
-    /// N along.
+    /// A spring with a normal force of 4 N at an overlap of 0.2 m, a slope of 20 N/m, and a
+    /// tangential force of 3 N.
     fn form() -> SpringForm<Dim2> {
         SpringForm {
             gap: -0.2,
@@ -262,8 +262,8 @@ mod tests {
         }
     }
 
-    /// F d/(1 + k d/F) of a linear spring is F d/2; of Hertz' spring, F of d^1.5, it is F d/2.5.
-    /// Beyond the overlap at which the law was evaluated the force follows its slope.
+    /// F d/(1 + k d/F) is F d/2 for a linear spring and F d/2.5 for Hertz' spring (F proportional
+    /// to d^1.5). Beyond the overlap at which the law was evaluated the force follows its slope.
     #[test]
     fn a_spring_that_is_found_compressed_has_energy() {
         assert!((form().initial_energy() - 0.4).abs() < 1e-15);
@@ -281,7 +281,8 @@ mod tests {
         assert_eq!(apart.initial_energy(), 0.0);
     }
 
-    /// 3 N at 2 N/m hold 9/4 J, at the 9 N/m of unloading 1/2 J, and at no stiffness nothing.
+    /// A force of 3 N stores 9/4 J at 2 N/m, 1/2 J at 9 N/m (the slope of unloading), and no energy
+    /// at no stiffness.
     #[test]
     fn a_tangential_force_holds_its_square_over_twice_the_slope() {
         let held = |stiffness_t, unloading_t| {
@@ -298,7 +299,8 @@ mod tests {
         );
     }
 
-    /// A quarter of the energy is that of half the force. What rounding may add is left as it is.
+    /// Half the force has a quarter of the energy. A force that exceeds the limit by rounding is
+    /// kept.
     #[test]
     fn a_force_that_holds_too_much_is_reduced() {
         for energy_t in [0.0, 8.0] {
@@ -312,9 +314,9 @@ mod tests {
         }
     }
 
-    /// A gap of 0.1 m that closes by 0.15 m in a step of 0.5 s: the damper of 3 N s/m sees the
-    /// overlap of 0.05 m alone, for h d (0.05/h)^2. A spring that was there sees the whole
-    /// velocity. The energy is that of the overlap.
+    /// A gap of 0.1 m closes by 0.15 m in a step of 0.5 s. The damper of 3 N s/m acts over the
+    /// overlap of 0.05 m alone and dissipates h d (0.05/h)^2; for a spring that was in contact
+    /// before it acts over the whole displacement. The stored energy is that of the overlap.
     #[test]
     fn a_damper_acts_on_the_overlap() {
         let h = 0.5;

@@ -5,12 +5,12 @@ use super::library::Plugin;
 
 /// Reason why the static memory of a law cannot be inspected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unseen {
+pub enum UninspectableMemory {
     /// The law is part of the program, whose memory changes continually.
     BuiltIn,
-    /// It has this many bytes, more than are compared.
+    /// The static memory has this many bytes, more than are compared.
     TooLarge(usize),
-    /// Not supported on this system.
+    /// The operating system does not support the inspection.
     System,
 }
 
@@ -34,18 +34,19 @@ impl StaticMemory {
     ///
     /// # Errors
     /// It cannot be inspected.
-    pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
+    pub fn of(plugin: &Plugin) -> Result<Self, UninspectableMemory> {
         if plugin.built_in {
-            return Err(Unseen::BuiltIn);
+            return Err(UninspectableMemory::BuiltIn);
         }
-        let memory = std::fs::File::open("/proc/self/mem").map_err(|_| Unseen::System)?;
+        let memory =
+            std::fs::File::open("/proc/self/mem").map_err(|_| UninspectableMemory::System)?;
         let segments = elf::writable_segments(&functions(plugin));
         if segments.is_empty() {
-            return Err(Unseen::System);
+            return Err(UninspectableMemory::System);
         }
         let bytes: usize = segments.iter().map(|s| s.1).sum();
         if bytes > MAX_BYTES {
-            return Err(Unseen::TooLarge(bytes));
+            return Err(UninspectableMemory::TooLarge(bytes));
         }
         Ok(Self { memory, segments })
     }
@@ -72,11 +73,11 @@ impl StaticMemory {
     /// Locates the static memory of a law.
     ///
     /// # Errors
-    /// Always, on this system.
-    pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
+    /// It always fails on this system.
+    pub fn of(plugin: &Plugin) -> Result<Self, UninspectableMemory> {
         Err(match plugin.built_in {
-            true => Unseen::BuiltIn,
-            false => Unseen::System,
+            true => UninspectableMemory::BuiltIn,
+            false => UninspectableMemory::System,
         })
     }
 
@@ -99,7 +100,7 @@ fn functions(plugin: &Plugin) -> Vec<usize> {
 mod elf {
     use std::ffi::{c_int, c_void};
 
-    struct Search<'a> {
+    struct SegmentSearch<'a> {
         functions: &'a [usize],
         found: Vec<(u64, usize)>,
     }
@@ -107,7 +108,7 @@ mod elf {
     /// Returns address and length of the writable segments of the libraries that contain one of
     /// these functions.
     pub fn writable_segments(functions: &[usize]) -> Vec<(u64, usize)> {
-        let mut search = Search {
+        let mut search = SegmentSearch {
             functions,
             found: Vec::new(),
         };
@@ -122,7 +123,7 @@ mod elf {
         search: *mut c_void,
     ) -> c_int {
         // SAFETY: the linker passes a valid record and the pointer given to it.
-        let (info, search) = unsafe { (&*info, &mut *search.cast::<Search<'_>>()) };
+        let (info, search) = unsafe { (&*info, &mut *search.cast::<SegmentSearch<'_>>()) };
         if info.dlpi_phdr.is_null() {
             return 0;
         }
@@ -154,16 +155,19 @@ mod tests {
 
     static KEPT: AtomicU64 = AtomicU64::new(0);
 
-    /// What a law's library keeps in a static variable is seen: here the library is the program of
-    /// the tests.
+    /// A change of a static variable in a law's library is detected; here the library is the test
+    /// program.
     #[test]
     fn what_is_stored_in_a_static_variable_is_seen() {
         let mut plugin = (*bond().plugin).clone();
-        assert_eq!(StaticMemory::of(&plugin).err(), Some(Unseen::BuiltIn));
+        assert_eq!(
+            StaticMemory::of(&plugin).err(),
+            Some(UninspectableMemory::BuiltIn)
+        );
         plugin.built_in = false;
         let memory = StaticMemory::of(&plugin).unwrap();
         let holds = |value: u64| {
-            // Nothing else reads it, so that the compiler might leave it out.
+            // Nothing else reads the variable, so that the compiler might remove it.
             std::hint::black_box(&KEPT).store(value, Ordering::Relaxed);
             let bytes = memory.read().unwrap();
             bytes.windows(8).any(|word| *word == value.to_ne_bytes())

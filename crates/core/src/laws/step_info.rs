@@ -11,6 +11,6 @@ pub struct StepInfo {
     pub h: f64,
     /// Theta of the scheme.
     pub theta: f64,
-    /// Share of an overlap that is taken out in a step.
+    /// Share of an overlap that is removed in a step.
     pub correction: f64,
 }

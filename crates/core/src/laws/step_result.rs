@@ -1,4 +1,4 @@
-//! What the contacts did in a step, as the solver gives it to the laws, and the sums of their
+//! Results of a step for the contacts, as the solver gives them to the laws, and sums of their
 //! energies.
 
 use super::spring::SpringStep;
@@ -39,41 +39,41 @@ pub struct MomentStep<S: Space> {
     pub lost: f64,
 }
 
-/// What laws are given of a solved step.
+/// Results of a solved step, as laws receive them.
 #[derive(Debug)]
 pub struct SolvedStep<'a, S: Space> {
     /// Results of the contacts, in the network's order.
     pub contacts: &'a [ContactStep<S>],
-    /// What compliant contacts did, in the network's order; empty without a compliant law.
+    /// Results of compliant contacts, in the network's order; empty without a compliant law.
     pub springs: &'a [Option<SpringStep<S>>],
     /// Moments of the contacts that resist rotation.
     pub moments: &'a [MomentStep<S>],
     /// Time and scheme of the step.
     pub info: &'a StepInfo,
-    /// Whether the damage used in the impulses was a prediction, of which the damage at the end may
-    /// fall short.
+    /// Whether the damage used in the impulses was a prediction, which may exceed the damage at the
+    /// end.
     pub predicted: bool,
 }
 
 impl<S: Space> SolvedStep<'_, S> {
-    /// What a contact did, where it is compliant.
+    /// Returns the result of a contact, if it is compliant.
     pub fn spring(&self, contact: usize) -> Option<&SpringStep<S>> {
         self.springs.get(contact)?.as_ref()
     }
 }
 
-/// What is known of the contacts at the start of a step: relative velocities, one per contact.
+/// Relative velocities and overlaps of the contacts, as known at the start of a step.
 #[derive(Clone, Debug)]
 pub struct Velocities<S: Space> {
-    /// u^- (m/s).
+    /// Relative velocities u^- (m/s), one per contact.
     pub relative: Vec<S::Vector>,
     /// Relative spins (rad/s); empty unless a bond resists rotation.
     pub turning: Vec<S::Spin>,
     /// Estimates of the overlaps at the end of the step (m), one per contact; empty without a
     /// compliant law.
     pub overlap: Vec<f64>,
-    /// Effective masses along the normals (kg; kg/m in 2D), zero between immovable bodies; as
-    /// `overlap`.
+    /// Effective masses along the normals (kg; kg/m in 2D), zero between immovable bodies; empty
+    /// without a compliant law.
     pub effective_mass: Vec<f64>,
 }
 
@@ -89,8 +89,8 @@ impl<S: Space> Default for Velocities<S> {
 }
 
 impl<S: Space> Velocities<S> {
-    /// Contacts at rest, with the overlaps that they have.
-    pub(super) fn still(contacts: &[Contact<S>]) -> Self {
+    /// Returns the values of contacts at rest, with their current overlaps.
+    pub(super) fn at_rest(contacts: &[Contact<S>]) -> Self {
         Self {
             relative: vec![S::Vector::zero(); contacts.len()],
             turning: Vec::new(),
@@ -103,32 +103,32 @@ impl<S: Space> Velocities<S> {
 /// Energies and events of one step, summed over contacts (J, m^3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
-    /// Dissipated by friction.
+    /// Energy dissipated by friction.
     pub friction: f64,
-    /// The part of it that is of compliant contacts, whose springs hold energy.
+    /// Part of it dissipated in compliant contacts, whose springs store energy.
     pub friction_of_springs: f64,
-    /// Dissipated by impacts.
+    /// Energy dissipated by impacts.
     pub impact: f64,
-    /// Dissipated against tensile strength (cohesion without opening).
+    /// Energy dissipated against tensile strength (cohesion without opening).
     pub adhesion: f64,
-    /// Dissipated by damping of bonds and of compliant contacts.
+    /// Energy dissipated by damping of bonds and of compliant contacts.
     pub viscous: f64,
-    /// Work into the springs of compliant contacts, less what they dissipated.
+    /// Work done on the springs of compliant contacts, less the energy that they dissipated.
     pub springs: f64,
-    /// Work of the position correction, negative: it separates penetrating bodies.
+    /// Work of the position correction; it is negative, since it separates penetrating bodies.
     pub correction: f64,
     /// Fracture energy released by damage.
     pub fracture: f64,
     /// Number of bonds that broke.
     pub broken: u64,
-    /// Volume worn off first bodies.
+    /// Volume worn off bodies that are not grains.
     pub worn_first: f64,
     /// Volume worn in contacts between grains.
     pub worn_third: f64,
 }
 
 impl Totals {
-    /// Adds those of other contacts.
+    /// Adds the totals of other contacts.
     pub(super) fn add(&mut self, other: &Self) {
         self.friction += other.friction;
         self.friction_of_springs += other.friction_of_springs;

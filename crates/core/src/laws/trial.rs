@@ -1,5 +1,5 @@
-//! Calls of laws beside those of the step, with some of their inputs replaced: nothing is
-//! remembered of them.
+//! Calls of laws outside the sequence of a step, with some inputs replaced; their internal
+//! variables are discarded.
 
 use super::batch::{BATCH, LawBatch};
 use super::error::LawError;
@@ -13,12 +13,13 @@ use crate::geometry::space::Space;
 use crate::laws::StepInfo;
 use crate::threads::chunk_size;
 
-/// Where laws are called: the contacts of the step, and what is known of them at its start.
+/// Data with which laws are called: the contacts of the step, and what is known of them at its
+/// start.
 #[derive(Debug)]
 pub struct LawStep<'a, S: Space> {
     /// The interfaces.
     pub laws: &'a [Interface],
-    /// Memory of the checks.
+    /// Reference values for the checks.
     pub history: &'a mut LawHistory,
     /// The contacts.
     pub network: &'a mut Network<S>,
@@ -28,8 +29,7 @@ pub struct LawStep<'a, S: Space> {
     pub info: &'a StepInfo,
 }
 
-/// Contacts of one interface that a batch is evaluated at, each with a value that takes the place
-/// of an input.
+/// Contacts of one interface at which a law is evaluated, each with a value that replaces an input.
 pub(super) struct TrialRequest<'a, S: Space, T> {
     pub source: Source<'a, S>,
     pub before: &'a Velocities<S>,
@@ -38,8 +38,8 @@ pub(super) struct TrialRequest<'a, S: Space, T> {
 }
 
 impl LawEvaluator {
-    /// Evaluates a law of an interface at contacts with given values, by batches that are divided
-    /// among threads; a call takes about `each` (ns) for a contact.
+    /// Evaluates a law of an interface at contacts with given values, in batches that are divided
+    /// among threads; `each` is the time of a call per contact (ns).
     pub(super) fn evaluate_with<S: Space, T: Sync, R: Send>(
         &mut self,
         step: &mut LawStep<'_, S>,

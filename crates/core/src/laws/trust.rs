@@ -5,30 +5,35 @@
 use super::linked;
 use std::path::Path;
 
-/// Returns why a library should not be opened, if others can write to it, or to a folder or link on
-/// its path; or to a library that it links to.
+/// Returns why a library should not be opened, if others can write to it, to a folder or link on
+/// its path, or to a library to which it links.
 #[cfg(unix)]
-pub(super) fn doubt(library: &Path) -> Option<String> {
-    of_all(library, &[on_the_way::me()])
+pub(super) fn reason_to_distrust(library: &Path) -> Option<String> {
+    of_all(library, &[on_the_way::effective_user()])
 }
 
-/// Why a library in a folder of the program's is not trusted, if it is not: [`doubt`] with the
-/// owner of the folder trusted too, since who owns the program can change it.
+/// Returns why a library in a folder of the program is not trusted, if it is not:
+/// [`reason_to_distrust`] with the owner of the folder trusted too, since the owner of the program
+/// can change the program itself.
 #[cfg(unix)]
-pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust_beside_program(library: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
     let program = crate::program::file().and_then(std::fs::metadata);
-    let owners = [Some(on_the_way::me()), program.ok().map(|p| p.uid())];
+    let owners = [
+        Some(on_the_way::effective_user()),
+        program.ok().map(|p| p.uid()),
+    ];
     of_all(library, &owners.into_iter().flatten().collect::<Vec<_>>())
 }
 
 #[cfg(unix)]
 fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
-    let one = |path: &Path| on_the_way::doubt(path, owners, on_the_way::Place::of);
+    let one =
+        |path: &Path| on_the_way::reason_to_distrust(path, owners, on_the_way::FileStatus::of);
     one(library).or_else(|| {
         let links = match linked::libraries(library) {
             Ok(links) => links.into_iter(),
-            // Whatever is trusted, this is refused when it is opened.
+            // An error here is reported when the library is opened.
             Err(_) => return None,
         };
         let doubted = links.filter_map(|path| {
@@ -41,13 +46,13 @@ fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
 
 /// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
-pub(super) fn doubt_beside_program(_: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust_beside_program(_: &Path) -> Option<String> {
     None
 }
 
 /// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
-pub(super) fn doubt(_: &Path) -> Option<String> {
+pub(super) fn reason_to_distrust(_: &Path) -> Option<String> {
     None
 }
 
@@ -63,21 +68,21 @@ mod on_the_way {
     const ROOT: u32 = 0;
 
     /// Returns the effective user id.
-    pub fn me() -> u32 {
-        // SAFETY: it has no arguments and cannot fail.
+    pub fn effective_user() -> u32 {
+        // SAFETY: the function has no arguments and cannot fail.
         unsafe { libc::geteuid() }
     }
 
     /// Owner, permissions and target of a file, folder or link; links are not followed.
     #[derive(Clone, Debug)]
-    pub struct Place {
+    pub struct FileStatus {
         pub owner: u32,
         pub mode: u32,
         /// Target of a link.
         pub link: Option<PathBuf>,
     }
 
-    impl Place {
+    impl FileStatus {
         pub fn of(path: &Path) -> Option<Self> {
             let known = path.symlink_metadata().ok()?;
             let link = known.is_symlink().then(|| path.read_link().ok()).flatten();
@@ -101,11 +106,11 @@ mod on_the_way {
     }
 
     /// Follows a path from the root, link by link, and returns the first component that users other
-    /// than these owners, of whom the first is the user, and the administrator may change.
-    pub fn doubt(
+    /// than these owners and the administrator may change. The first owner is the user.
+    pub fn reason_to_distrust(
         library: &Path,
         owners: &[u32],
-        place: impl Fn(&Path) -> Option<Place>,
+        place: impl Fn(&Path) -> Option<FileStatus>,
     ) -> Option<String> {
         /// Maximum number of links; a circular path fails when it is opened.
         const LINKS: usize = 40;
@@ -128,7 +133,7 @@ mod on_the_way {
             if found.anybody_writes() && (end || !found.sticky()) {
                 return Some(open(&here, &found));
             }
-            // Others could add laws to a folder of laws, even if it is sticky.
+            // In a folder of laws, even a sticky one, others could add laws.
             let folder = here.parent().filter(|_| end);
             if let Some((path, folder)) = folder.and_then(|p| Some((p, place(p)?)))
                 && folder.anybody_writes()
@@ -152,7 +157,7 @@ mod on_the_way {
         None
     }
 
-    fn open(path: &Path, found: &Place) -> String {
+    fn open(path: &Path, found: &FileStatus) -> String {
         format!(
             "anybody may write to {} (mode {:04o}), so it may not be what you put there; take that right away (chmod o-w), or say \
              --trust-plugins if you know who writes there",
@@ -161,7 +166,7 @@ mod on_the_way {
         )
     }
 
-    fn foreign(path: &Path, found: &Place, me: u32) -> String {
+    fn foreign(path: &Path, found: &FileStatus, me: u32) -> String {
         format!(
             "{} belongs to user {}, who may change it, and you are user {me}; copy the library to a folder of your own, or say \
              --trust-plugins if you trust that user",
@@ -179,10 +184,10 @@ mod on_the_way {
 
         /// A tree of places: owner, mode, target of a link.
         fn doubt_in(places: &[(&str, u32, u32, &str)], library: &str) -> Option<String> {
-            let tree: BTreeMap<PathBuf, Place> = places
+            let tree: BTreeMap<PathBuf, FileStatus> = places
                 .iter()
                 .map(|(path, owner, mode, link)| {
-                    let place = Place {
+                    let place = FileStatus {
                         owner: *owner,
                         mode: *mode,
                         link: (!link.is_empty()).then(|| link.into()),
@@ -190,7 +195,7 @@ mod on_the_way {
                     (PathBuf::from(path), place)
                 })
                 .collect();
-            doubt(Path::new(library), &[ME], |p| tree.get(p).cloned())
+            reason_to_distrust(Path::new(library), &[ME], |p| tree.get(p).cloned())
         }
 
         const ROOTS: [(&str, u32, u32, &str); 2] = [("/", 0, 0o755, ""), ("/tmp", 0, 0o1777, "")];
@@ -234,7 +239,7 @@ mod on_the_way {
             let said = with(&below(0o777), "/tmp/a/b/law.so").unwrap();
             assert!(said.contains("write to /tmp/a (mode 0777)"), "{said}");
             assert_eq!(with(&below(0o1777), "/tmp/a/b/law.so"), None);
-            // The folder itself may not even be sticky: others could add laws beside this one.
+            // The folder itself must not even be sticky: others could add laws beside this one.
             let beside = [("/tmp/law.so", ME, 0o644, "")];
             for path in ["/tmp/law.so", "/tmp/../tmp/law.so"] {
                 assert!(with(&beside, path).unwrap().contains("/tmp (mode 1777)"));

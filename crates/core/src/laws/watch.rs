@@ -1,4 +1,4 @@
-//! A watchdog for plugin calls: native code that hangs cannot be stopped, but it can be reported.
+//! A watchdog for plugin calls: native code that hangs cannot be stopped, but can be reported.
 
 use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, mpsc};
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// The current call of a thread.
 struct Slot {
-    /// Counter of call begins and ends: odd during a call.
+    /// Counter of the starts and ends of calls; it is odd during a call.
     turns: AtomicU64,
     /// The law being called; never freed.
     who: AtomicPtr<String>,
@@ -45,12 +45,12 @@ const CALLS: [&str; 7] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// Guard for a call in progress. Dropped without [`Inside::leave`], something unwinds out of the
-/// call, and the program ends.
+/// Guard for a call in progress. If it is dropped without [`CallGuard::leave`], something unwinds
+/// out of the call, and the program ends.
 #[must_use]
-pub(super) struct Inside;
+pub(super) struct CallGuard;
 
-impl Inside {
+impl CallGuard {
     /// The call came back.
     #[inline]
     pub fn leave(self) {
@@ -59,7 +59,7 @@ impl Inside {
     }
 }
 
-impl Drop for Inside {
+impl Drop for CallGuard {
     fn drop(&mut self) {
         UNWOUND.store(true, Ordering::SeqCst);
         std::process::abort();
@@ -69,7 +69,8 @@ impl Drop for Inside {
 /// Whether the program ends because something unwound out of a law.
 static UNWOUND: AtomicBool = AtomicBool::new(false);
 
-/// Whether an exception, or the end of its thread, was about to pass from a law into its caller.
+/// Returns whether an exception or the end of its thread was about to pass from a law to its
+/// caller.
 pub fn was_unwound() -> bool {
     UNWOUND.load(Ordering::SeqCst)
 }
@@ -79,20 +80,20 @@ pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
 
-/// Indices of calls beside those of [`Call`](super::function::Call).
+/// Indices of calls that are not in [`Call`](super::function::Call).
 pub(super) const VALIDATE: usize = 4;
 pub(super) const LOADING: usize = 5;
 pub(super) const FRACTURE_ENERGY: usize = 6;
 
 /// Marks the start of a call, by its index in `CALLS`.
-pub(super) fn enter(label: Label, call: usize) -> Inside {
+pub(super) fn enter(label: Label, call: usize) -> CallGuard {
     MINE.with(|slot| {
         let text = std::ptr::from_ref(label.0).cast_mut();
         slot.who.store(text, Ordering::Relaxed);
         slot.call.store(call, Ordering::Relaxed);
         slot.turns.fetch_add(1, Ordering::Relaxed);
     });
-    Inside
+    CallGuard
 }
 
 impl Slot {
@@ -106,7 +107,8 @@ impl Slot {
     }
 }
 
-/// Whom this thread calls, and what, while a call goes on. It takes no lock and no memory.
+/// Returns the law and the function that this thread is calling, if any. It takes no lock and
+/// allocates no memory.
 pub fn inside() -> Option<(&'static str, &'static str)> {
     let mine = MINE.try_with(|slot| *slot).ok()?;
     let called = mine.turns.load(Ordering::Relaxed) % 2 == 1;
@@ -120,9 +122,9 @@ static RESCUES: Mutex<Vec<(u64, Rescue)>> = Mutex::new(Vec::new());
 
 /// Guard that keeps a rescue action registered.
 #[derive(Debug)]
-pub struct Ready(u64);
+pub struct RescueGuard(u64);
 
-impl Drop for Ready {
+impl Drop for RescueGuard {
     fn drop(&mut self) {
         let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
         rescues.retain(|(number, _)| *number != self.0);
@@ -131,26 +133,26 @@ impl Drop for Ready {
 
 /// Registers an action that saves a run when a law hangs. It runs on a thread of its own while the
 /// law is stuck, receives a description of the stuck call, and returns whether it saved something.
-pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
+pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> RescueGuard {
     static NUMBERS: AtomicU64 = AtomicU64::new(0);
     let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
     let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
     rescues.push((number, Box::new(save)));
-    Ready(number)
+    RescueGuard(number)
 }
 
-/// What was saved when the program ended early.
+/// Result of saving when the program ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Saved {
+pub enum RescueOutcome {
     /// All rows and a summary are on disk.
     All,
-    /// Not all could be written.
+    /// Some rows, or the summary, could not be written.
     Some,
     /// There was nothing to save.
     Nothing,
 }
 
-impl Saved {
+impl RescueOutcome {
     /// Describes the result in a sentence fragment.
     pub fn words(self) -> &'static str {
         match self {
@@ -161,12 +163,12 @@ impl Saved {
     }
 }
 
-/// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is
-/// not waited for longer.
+/// Time limit for the rescue actions: a stuck thread may hold a lock that they need, such as that
+/// of the allocator.
 pub const RESCUED_WITHIN: Duration = Duration::from_secs(10);
 
-/// Lets all rescues save what they can, beside a thread that is stuck or was stopped.
-pub fn save(who: &str) -> Saved {
+/// Runs all rescue actions, while another thread is stuck or was stopped.
+pub fn save(who: &str) -> RescueOutcome {
     let rescues = {
         let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
         std::mem::take(&mut *all)
@@ -176,25 +178,26 @@ pub fn save(who: &str) -> Saved {
         .into_iter()
         .filter_map(|(_, save)| save(who).then_some(()));
     match (count, saved.count()) {
-        (0, _) => Saved::Nothing,
-        (count, saved) if saved == count => Saved::All,
-        _ => Saved::Some,
+        (0, _) => RescueOutcome::Nothing,
+        (count, saved) if saved == count => RescueOutcome::All,
+        _ => RescueOutcome::Some,
     }
 }
 
-/// Whether no rescue is registered. It does not wait: a thread that was stopped may hold the list.
+/// Returns whether no rescue is registered. It does not wait, since a stopped thread may hold the
+/// list.
 pub fn nothing_to_save() -> bool {
     RESCUES.try_lock().is_ok_and(|rescues| rescues.is_empty())
 }
 
 /// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that
-/// exceeds the limit, and the result of the rescue actions.
+/// exceeds the limit, with the result of the rescue actions.
 ///
 /// # Errors
 /// The system cannot create a thread.
 pub fn watch(
     limit: Duration,
-    stuck: impl FnOnce(&str, Saved) + Send + 'static,
+    stuck: impl FnOnce(&str, RescueOutcome) + Send + 'static,
 ) -> std::io::Result<()> {
     let (call, calls) = mpsc::sync_channel::<String>(1);
     let (done, saved) = mpsc::sync_channel(1);
@@ -239,8 +242,10 @@ pub fn watch(
             "{label} has not come back from {at} for {:.1} s",
             limit.as_secs_f64()
         );
-        let saved = call.send(who.clone()).map_or(Saved::Some, |()| {
-            saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
+        let saved = call.send(who.clone()).map_or(RescueOutcome::Some, |()| {
+            saved
+                .recv_timeout(RESCUED_WITHIN)
+                .unwrap_or(RescueOutcome::Some)
         });
         stuck(&who, saved);
     };

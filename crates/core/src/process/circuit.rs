@@ -1,22 +1,22 @@
 //! The tribological circuit of a run: assignment of grains to first bodies, ejection zones, the
-//! mass ledger, and debris as it detaches.
+//! mass ledger, and debris when it detaches.
 
 use super::{Process, ProcessError};
 use crate::bodies::Bodies;
-use crate::code::{CodeError, decode, encode};
 use crate::contact::Network;
+use crate::encoding::{EncodingError, decode, encode};
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
-use crate::wear::ledger::{GrainPlace, Ledger};
-use crate::wear::ties::Ties;
+use crate::wear::bond_forest::BondForest;
+use crate::wear::ledger::{GrainPlace, MassLedger};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Fate of a grain in an ejection zone.
+/// What becomes of a grain in an ejection zone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum EjectedFate {
+pub enum EjectionOutcome {
     /// The grain stays ejected until it leaves the zone, and may return to the contact.
     Stays,
     /// The grain is lost, and removed from the scene, after this time in the zone (s).
@@ -33,11 +33,11 @@ pub struct Zone {
     pub low: [f64; 3],
     /// Highest corner (m); infinity in unbounded directions.
     pub high: [f64; 3],
-    /// The body that carries it; its corners are then in the frame of that body, which may move but
-    /// not rotate.
+    /// Body that carries the zone; the corners are then in the frame of that body, which may move
+    /// but not rotate.
     pub carrier: Option<u32>,
-    /// Fate of the grains in the zone.
-    pub fate: EjectedFate,
+    /// What becomes of the grains in the zone.
+    pub outcome: EjectionOutcome,
 }
 
 impl Zone {
@@ -59,7 +59,7 @@ impl Zone {
 
 /// Definition of a circuit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Spec {
+pub struct CircuitParameters {
     /// First bodies that grains can belong to: bodies with bonds to grains.
     pub bases: Vec<u32>,
     /// Indices of the interfaces whose bonds connect grains to first bodies.
@@ -73,18 +73,18 @@ pub struct Spec {
 /// Debris: grains that detached together.
 #[derive(Clone, Debug)]
 pub struct Debris {
-    /// Time at which it was detected (s).
+    /// Time at which the debris was detected (s).
     pub time: f64,
-    /// Identities of its grains.
+    /// Identities of the grains.
     pub grains: Vec<u64>,
     /// Mass (kg; kg/m in 2D).
     pub mass: f64,
     /// Centre of mass (m); the third component is zero in the plane.
     pub place: [f64; 3],
-    /// Index of the first body from which it detached.
+    /// Index of the first body from which the debris detached.
     pub base: u32,
     /// Fraction of sliding in the work on the bonds whose failure released it; see
-    /// [`crate::contact::Life::mode_mix`].
+    /// [`crate::contact::BondEnergies::mode_mix`].
     pub mode_mix: f64,
     /// Fracture energy of these bonds (J; J/m in 2D).
     pub energy: f64,
@@ -103,14 +103,14 @@ struct BrokenBond {
 /// The circuit of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GrainCircuit {
-    spec: Spec,
+    spec: CircuitParameters,
     /// Body indices of the grains.
     grains: Vec<u32>,
     /// Grain index of each body.
     number: Vec<Option<u32>>,
-    ties: Ties,
+    forest: BondForest,
     /// The mass ledger.
-    pub ledger: Ledger,
+    pub ledger: MassLedger,
     /// Time since which each grain has been in its zone (s).
     since: Vec<f64>,
     /// Bonds formed since the last update.
@@ -128,7 +128,7 @@ pub struct GrainCircuit {
 
 impl GrainCircuit {
     /// Creates the circuit from the current bonds.
-    pub fn new<S: Space>(spec: Spec, s: &Simulation<S>) -> Self {
+    pub fn new<S: Space>(spec: CircuitParameters, s: &Simulation<S>) -> Self {
         let grains: Vec<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
         let mut number = vec![None; s.state.bodies.len()];
         for (k, b) in grains.iter().enumerate() {
@@ -136,16 +136,16 @@ impl GrainCircuit {
         }
         let between = |b: &[u32; 2]| b.iter().all(|b| counts(*b, &number, &spec));
         let bonds = bonds(&s.state.network, &spec.interfaces).filter(between);
-        let ties = Ties::new(s.state.bodies.len(), &spec.bases, bonds);
+        let forest = BondForest::new(s.state.bodies.len(), &spec.bases, bonds);
         let masses = grains
             .iter()
             .map(|b| s.state.bodies.mass[*b as usize] / spec.scaling);
         let masses: Vec<f64> = masses.collect();
         let mut circuit = Self {
-            ledger: Ledger::new(masses.clone(), vec![GrainPlace::Contact; grains.len()]),
+            ledger: MassLedger::new(masses.clone(), vec![GrainPlace::Contact; grains.len()]),
             since: vec![s.state.time; grains.len()],
             number,
-            ties,
+            forest,
             grains,
             formed: Vec::new(),
             broken: Vec::new(),
@@ -159,7 +159,7 @@ impl GrainCircuit {
             // The first update removes it.
             *place = GrainPlace::Ejected(0);
         }
-        circuit.ledger = Ledger::new(masses, places);
+        circuit.ledger = MassLedger::new(masses, places);
         circuit
     }
 
@@ -175,7 +175,7 @@ impl GrainCircuit {
 
     /// Returns the number of grains connected to a first body.
     pub fn tied_to(&self, base: u32) -> usize {
-        let tied = |b: &&u32| self.ties.base(**b) == Some(base);
+        let tied = |b: &&u32| self.forest.base(**b) == Some(base);
         self.grains.iter().filter(tied).count()
     }
 
@@ -183,20 +183,20 @@ impl GrainCircuit {
     pub fn record_bonds<S: Space>(&mut self, s: &Simulation<S>) {
         let clock = Instant::now();
         let (number, spec) = (&self.number, &self.spec);
-        let ties = |bodies: &[u32; 2], law: u16| {
+        let connects = |bodies: &[u32; 2], law: u16| {
             spec.interfaces.contains(&law) && bodies.iter().all(|b| counts(*b, number, spec))
         };
         for (bodies, law) in &s.state.network.bonds_formed {
-            if ties(bodies, *law) {
+            if connects(bodies, *law) {
                 self.formed.push(*bodies);
             }
         }
         let breaks = s.state.network.bond_breaks.iter();
-        for b in breaks.filter(|b| ties(&b.bodies, b.law)) {
+        for b in breaks.filter(|b| connects(&b.bodies, b.law)) {
             let cut = BrokenBond {
                 bodies: b.bodies,
-                work: [b.life.work[0], b.life.work[1]],
-                fracture: b.life.fracture,
+                work: [b.energies.work[0], b.energies.work[1]],
+                fracture: b.energies.fracture,
             };
             self.broken.push(b.bodies);
             let is_grain = |b: &&u32| self.number[**b as usize].is_some();
@@ -214,7 +214,7 @@ impl GrainCircuit {
         let change = if self.formed.is_empty() && self.broken.is_empty() {
             Default::default()
         } else {
-            self.ties.change(&self.formed, &self.broken)
+            self.forest.change(&self.formed, &self.broken)
         };
         self.debris.clear();
         for (base, piece) in &change.loose {
@@ -249,7 +249,7 @@ impl GrainCircuit {
                 places.push(old);
                 continue;
             }
-            if let Some(base) = self.ties.base(*body) {
+            if let Some(base) = self.forest.base(*body) {
                 places.push(GrainPlace::Tied(base));
                 continue;
             }
@@ -264,9 +264,9 @@ impl GrainCircuit {
             if old != now {
                 self.since[k] = s.state.time;
             }
-            let lost = match self.spec.zones[zone].fate {
-                EjectedFate::Stays => false,
-                EjectedFate::LostAfter(time) => s.state.time - self.since[k] >= time,
+            let lost = match self.spec.zones[zone].outcome {
+                EjectionOutcome::Stays => false,
+                EjectionOutcome::LostAfter(time) => s.state.time - self.since[k] >= time,
             };
             places.push(if lost { GrainPlace::Lost } else { now });
         }
@@ -315,20 +315,20 @@ impl GrainCircuit {
     }
 }
 
-/// How often the ledger of a circuit is updated.
+/// Intervals at which the ledger of a circuit is updated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intervals {
-    /// Steps between two updates.
+    /// Number of steps between two updates.
     pub every: u64,
-    /// Further steps between updates, where rows of a table are to show the state at their step.
+    /// Further intervals (steps) at which rows of a table need the current state.
     pub rows: Option<u64>,
 }
 
-/// The circuit as a process: from its start on it records the bonds of every step, and removes lost
+/// The circuit as a process: once started it records the bonds of every step, and removes lost
 /// grains between steps.
 #[derive(Clone, Debug)]
 pub struct CircuitProcess {
-    spec: Spec,
+    spec: CircuitParameters,
     start: f64,
     intervals: Intervals,
     state: AccountState,
@@ -337,28 +337,28 @@ pub struct CircuitProcess {
 /// The part of a circuit that changes from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct AccountState {
-    /// None before it begins.
+    /// The circuit; `None` before its start.
     circuit: Option<GrainCircuit>,
-    /// Number of the last step whose bonds it recorded.
+    /// Number of the last step whose bonds were recorded.
     recorded: u64,
-    /// Number of the last step after which it was updated.
+    /// Number of the last step after which the circuit was updated.
     updated: u64,
 }
 
-/// No bond ties a grain to a first body of the circuit when it begins.
+/// No bond ties a grain to a first body of the circuit at its start.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no bond ties a grain to `{body}` when the circuit begins: let bonds be made before (circuit.start), let them reach it \
      (detection.alert, the places of grains), or leave it out of circuit.bases"
 )]
-pub struct NoBonds {
+pub struct BaseWithoutBonds {
     /// Name of the body.
     pub body: String,
 }
 
 impl CircuitProcess {
-    /// A circuit whose account begins after the first step that ends at a time (s) or later.
-    pub fn new(spec: Spec, start: f64, intervals: Intervals) -> Self {
+    /// Creates a circuit that starts after the first step that ends at this time (s) or later.
+    pub fn new(spec: CircuitParameters, start: f64, intervals: Intervals) -> Self {
         Self {
             spec,
             start,
@@ -367,27 +367,27 @@ impl CircuitProcess {
         }
     }
 
-    /// The circuit; none before it begins.
+    /// Returns the circuit; `None` before its start.
     pub fn circuit(&self) -> Option<&GrainCircuit> {
         self.state.circuit.as_ref()
     }
 
-    /// When the account begins (s).
+    /// Returns the start time (s).
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Whether it was brought up to date after so many steps.
+    /// Returns whether the circuit was updated after this number of steps.
     pub fn is_up_to_date(&self, steps: u64) -> bool {
         self.state.updated == steps
     }
 
-    fn begin<S: Space>(&mut self, s: &Simulation<S>) -> Result<(), NoBonds> {
+    fn begin<S: Space>(&mut self, s: &Simulation<S>) -> Result<(), BaseWithoutBonds> {
         let circuit = GrainCircuit::new(self.spec.clone(), s);
         let untied = |base: &&u32| circuit.tied_to(**base) == 0;
         if let Some(base) = circuit.bases().iter().find(untied) {
             let driven = s.state.bodies.driven.iter().find(|d| d.body == *base);
-            return Err(NoBonds {
+            return Err(BaseWithoutBonds {
                 body: driven.map_or(String::new(), |d| d.name.clone()),
             });
         }
@@ -435,11 +435,11 @@ impl<S: Space> Process<S> for CircuitProcess {
         true
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }
@@ -447,7 +447,7 @@ impl<S: Space> Process<S> for CircuitProcess {
 
 /// Returns whether bonds of a body count: those of grains and bases. Another first body is not
 /// debris, and connects no grain to a base.
-fn counts(body: u32, number: &[Option<u32>], spec: &Spec) -> bool {
+fn counts(body: u32, number: &[Option<u32>], spec: &CircuitParameters) -> bool {
     number[body as usize].is_some() || spec.bases.contains(&body)
 }
 

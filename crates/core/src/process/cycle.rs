@@ -1,21 +1,21 @@
-//! The cycles of a test, as a function of time alone.
+//! Cycles of a test, as a function of time only.
 
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// When cycles begin and end. Without a period everything after the start is one cycle.
+/// Start and length of the cycles. Without a length the whole time after the start is one cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleClock {
-    /// When the first begins (s).
+    /// Start of the first cycle (s).
     pub start: f64,
     /// Length of a cycle (s).
     pub period: Option<f64>,
 }
 
 impl CycleClock {
-    /// Cycles of a length (s) from `start` on. Without a length, the second half of the time from
-    /// `start` to `end` (s) is one cycle.
+    /// Creates cycles of a length (s) from `start` on. Without a length, the second half of the
+    /// time from `start` to `end` (s) is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         let start = if period.is_some() {
             start
@@ -37,7 +37,7 @@ impl CycleClock {
         }
     }
 
-    /// Share of its cycle that is done at a time; 1 at its end.
+    /// Returns the completed share of the cycle at a time; 1 at its end.
     pub fn share(&self, time: f64) -> f64 {
         let before = f64::from(self.number(time).saturating_sub(1));
         let cycles = |period: f64| (time - self.start) / period - before;
@@ -45,7 +45,7 @@ impl CycleClock {
         if share > 1.0 - 1e-6 { 1.0 } else { share }
     }
 
-    /// When a cycle begins and ends (s); `None` without cycles.
+    /// Returns start and end of a cycle (s); `None` without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
         let begun = self.start + f64::from(number.saturating_sub(1)) * self.period?;
         Some([begun, begun + self.period?])
@@ -55,9 +55,9 @@ impl CycleClock {
 /// The part that slides in a friction test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SlidingPart {
-    /// A rigid body, by its place among the driven bodies.
+    /// A rigid body, by its index among the driven bodies.
     Driven(usize),
-    /// A deformable body, by its index among the systems, and which of its holders moves it.
+    /// A deformable body, by its index among the systems, and the holder that moves it.
     System {
         /// Index of the system.
         system: usize,
@@ -66,20 +66,21 @@ pub enum SlidingPart {
     },
 }
 
-/// Force and sliding of a body that is rubbed, over a step.
+/// Force and sliding distance of a rubbed body, over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drive {
-    /// Tangential force that moves it (N; N/m in 2D).
+pub struct SlidingStep {
+    /// Tangential force that moves the body (N; N/m in 2D).
     pub force: f64,
-    /// Sliding over the step (m), signed.
+    /// Sliding distance over the step (m), signed.
     pub slide: f64,
-    /// Share of the step at which the force is this; 1/2 of a mean.
+    /// Fraction of the step at which the force has this value; 1/2 for a mean.
     pub at: f64,
 }
 
-impl Drive {
-    /// Work over the step (J; J/m in 2D) with the force at its middle, which lies between this and
-    /// that of the step before (N; N/m): the sum over a loop is its area.
+impl SlidingStep {
+    /// Returns the work over the step (J; J/m in 2D) with the force at its middle, which is
+    /// interpolated between this force and that of the previous step (N; N/m): the sum over a loop
+    /// is its area.
     pub fn work(&self, before: f64) -> f64 {
         if self.at == 0.5 {
             return self.force * self.slide;
@@ -100,12 +101,12 @@ pub struct SlidingBody {
 }
 
 impl SlidingBody {
-    /// Returns force and sliding of its drive in the last step; of a deformable body those of the
-    /// holder that moves it.
-    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> Drive {
+    /// Returns force and sliding distance of its drive in the last step; for a deformable body
+    /// those of the holder that moves it.
+    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> SlidingStep {
         let h = s.options.scheme.h;
         match self.part {
-            SlidingPart::Driven(place) => Drive {
+            SlidingPart::Driven(place) => SlidingStep {
                 force: -s.state.received[place].0[self.along] / h,
                 slide: h * step_velocity(s, place)[self.along],
                 at: 0.5,
@@ -113,7 +114,7 @@ impl SlidingBody {
             SlidingPart::System { system, holder } => {
                 let holders = s.state.systems.get(system).map(|s| s.holders());
                 let held = holders.as_ref().and_then(|h| h.get(holder));
-                held.map_or_else(Drive::default, |held| Drive {
+                held.map_or_else(SlidingStep::default, |held| SlidingStep {
                     force: held.force,
                     slide: h * held.velocity,
                     at: held.at,
@@ -122,8 +123,8 @@ impl SlidingBody {
         }
     }
 
-    /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in
-    /// compression.
+    /// Returns the normal force of its contacts, the mean over the last step (N; N/m in 2D),
+    /// positive in compression.
     pub fn normal_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
         let pushed = match self.part {
             SlidingPart::Driven(place) => s.state.received[place].0[self.normal],
@@ -135,7 +136,7 @@ impl SlidingBody {
         pushed * self.facing(s) / s.options.scheme.h
     }
 
-    /// The side on which its contacts push it along the normal axis: 1 or -1.
+    /// Returns the direction in which its contacts push it along the normal axis: 1 or -1.
     fn facing<S: Space>(&self, s: &Simulation<S>) -> f64 {
         let push: f64 = self
             .sides(s)
@@ -144,7 +145,7 @@ impl SlidingBody {
         if push < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Impulse, normal and sign on the body of each loaded contact that it has.
+    /// Returns impulse, normal and sign of each loaded contact of the body.
     fn sides<S: Space>(
         &self,
         s: &Simulation<S>,
@@ -172,7 +173,8 @@ impl SlidingBody {
     }
 }
 
-/// Velocity of a driven body over the last step, v_theta, by its place among them (m/s).
+/// Returns the velocity of a driven body over the last step, v_theta, by its index among them
+/// (m/s).
 pub fn step_velocity<S: Space>(s: &Simulation<S>, place: usize) -> S::Vector {
     let theta = s.options.scheme.theta;
     let now = s.state.bodies.velocity[s.state.bodies.driven[place].body as usize];

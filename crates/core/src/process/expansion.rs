@@ -1,16 +1,17 @@
-//! Thermal expansion in the step: surfaces that move on their bodies, and the work of that.
+//! Thermal expansion in the step: surfaces that move relative to their bodies, and the work of this
+//! motion.
 //!
-//! Over a step a body b that expands has a rate of strain e_b = (lambda'/lambda - 1)/h, with its
-//! size lambda at the start and at the end of the step. Its surface at an arm r from its centre
-//! moves by e_b r on it, so that at a contact
+//! Over a step a body b that expands has a rate of strain e_b = (lambda'/lambda - 1)/h, with the
+//! sizes lambda and lambda' at the start and at the end of the step. Its surface at an arm r from
+//! its centre moves by e_b r relative to it, so that at a contact
 //!
 //! ```text
 //! u_surface = u_bodies + w,   w = e_i r_i - e_j r_j
 //! ```
 //!
-//! Contacts work on bodies by sum p.u_bodies and take sum p.u_surface (see `step::surfaces`): the
-//! difference, -sum p.w, is the work of the expansion. It is an entry of the energy ledger, and is
-//! taken from the heat of the body that expands.
+//! Contacts do the work sum p.u_bodies on bodies and receive sum p.u_surface (see
+//! `step::surfaces`): the difference, -sum p.w, is the work of the expansion. It is an entry of the
+//! energy ledger, and is subtracted from the heat of the body that expands.
 //!
 //! For a body of finite elements, the free strain is set from the temperatures at the start of the
 //! step; the resulting increase of the stored energy is the work of the expansion.
@@ -24,7 +25,7 @@ use crate::heat::{ExpandingSystem, Expansion, Heat};
 use crate::step::{Simulation, StepReport};
 use std::sync::Arc;
 
-/// Share of the skin of the neighbour list by which bodies may grow before the list is built again.
+/// Fraction of the skin of the neighbour list by which bodies may grow before the list is rebuilt.
 const GROWTH: f64 = 0.25;
 
 /// Bodies that change their size with their temperature.
@@ -32,16 +33,16 @@ const GROWTH: f64 = 0.25;
 pub struct ThermalExpansion<S: Space> {
     expansion: Expansion<S>,
     heat: Arc<Heat>,
-    /// Lambda of each body at the end of the step.
+    /// Stretch lambda of each body at the end of the step.
     stretch: Vec<f64>,
     /// Rate of strain of each body in the step (1/s).
     rate: Vec<f64>,
 }
 
 impl<S: Space> ThermalExpansion<S> {
-    /// Lets rigid bodies expand from now on, by coefficients of linear expansion (1/K) of each,
-    /// from the temperatures that they have now, and bodies of finite elements. Without heat, which
-    /// is added before, nothing expands.
+    /// Lets rigid bodies with these coefficients of linear expansion (1/K), and bodies of finite
+    /// elements, expand relative to their current temperatures. Without heat, which must be added
+    /// before, nothing expands.
     pub fn add_to(s: &mut Simulation<S>, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>) {
         let Some(heat) = s.heat.clone() else {
             return;
@@ -73,8 +74,8 @@ impl<S: Space> ThermalExpansion<S> {
         Some(&s.process::<Self>()?.expansion)
     }
 
-    /// The velocities of the surfaces of a contact on their bodies (m/s): of balls that are bodies
-    /// of their own along its normal.
+    /// Returns the velocities of the surfaces of a contact relative to their bodies (m/s): along
+    /// its normal for balls that are bodies of their own.
     fn surface_velocities(&self, s: &Simulation<S>, contact: &Contact<S>) -> [S::Vector; 2] {
         std::array::from_fn(|side| {
             let body = contact.bodies[side] as usize;
@@ -87,7 +88,7 @@ impl<S: Space> ThermalExpansion<S> {
                 return arm * rate;
             }
             let along = contact.normal * contact.normal.dot(&arm);
-            // The arm of a ball of a body that nothing moves is from the centre of the ball.
+            // For a body that cannot move, the arm of a ball is from the centre of the ball.
             let offset = match [contact.key.ball(), contact.key.antagonist_ball()][side] {
                 Some(ball) => s.shapes.balls[ball].offset,
                 None => S::Vector::zero(),
@@ -96,8 +97,9 @@ impl<S: Space> ThermalExpansion<S> {
         })
     }
 
-    /// Finds by how much rigid bodies expand in the step: to the size of their temperature at its
-    /// start, or where heat makes one step for several of the mechanics by the same part in each.
+    /// Computes the expansion of rigid bodies in the step: to the size at the temperature at its
+    /// start, or, where a step of the heat spans several of the mechanics, by an equal part in
+    /// each.
     fn find_rates(&mut self, s: &Simulation<S>) {
         let Some(state) = &s.state.heat else { return };
         let parts = state.parts(self.heat.every);
@@ -156,7 +158,7 @@ impl<S: Space> ThermalExpansion<S> {
             let found = s.state.systems.get(system.system);
             let work = found.map_or(&[][..], |s| s.expansion_work());
             for (point, work) in work.iter().enumerate().filter(|(_, work)| **work != 0.0) {
-                // A single node is that of all points.
+                // A single node has the temperature of all points.
                 let node = (system.nodes.start + point).min(system.nodes.end - 1);
                 state.take_expansion_work(node, *work);
             }
@@ -169,9 +171,9 @@ impl<S: Space> Process<S> for ThermalExpansion<S> {
         "thermal expansion"
     }
 
-    /// Gives bodies of finite elements the free strain of the step: that of their temperatures at
-    /// its start, or where heat makes one step for several of the mechanics the same part of the
-    /// way there in each of them.
+    /// Sets the free strain of bodies of finite elements for the step: that of their temperatures
+    /// at its start, or, where a step of the heat spans several of the mechanics, an equal part of
+    /// the change in each.
     fn before_detection(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         let begun = has_begun(&self.heat, s);
         let Some(state) = s.state.heat.as_mut().filter(|_| begun) else {

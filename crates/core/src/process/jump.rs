@@ -4,9 +4,9 @@
 use super::cycle::{CycleClock, SlidingBody};
 pub use super::jump_summary::{Jump, JumpPoint, JumpSummary};
 use super::{Process, ProcessError};
-use crate::code::{CodeError, decode, encode};
 use crate::contact::Bond;
-use crate::contact::events::Life;
+use crate::contact::events::BondEnergies;
+use crate::encoding::{EncodingError, decode, encode};
 use crate::geometry::recede::Vertex;
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepReport};
@@ -24,16 +24,16 @@ pub struct JumpSpec {
     pub after: u32,
     /// Maximum number of cycles that one computed cycle represents.
     pub at_most: u32,
-    /// Target error of a jump, from which the length of the next one follows: relative to what the
-    /// jump adds, and for misplaced volume relative to the scar after `cycles` (without `cycles`,
-    /// to the current scar).
+    /// Target error of a jump, from which the length of the next jump follows: relative to the
+    /// increment by the jump, and for misplaced volume relative to the scar after `cycles` (without
+    /// `cycles`, to the current scar).
     pub tolerance: f64,
-    /// Number of cycles computed one by one after each jump, which check it.
+    /// Number of cycles computed one by one after each jump, to check it.
     pub control: u32,
     /// Largest increase of the damage of a bond in a jump.
     pub growth: f64,
-    /// Number of cycles after which the run ends, including those jumped over; by default it ends
-    /// at `time.end`.
+    /// Number of cycles after which the run ends, including skipped ones; by default it ends at
+    /// `time.end`.
     pub cycles: Option<u32>,
 }
 
@@ -67,7 +67,7 @@ struct Pending {
     /// Sum over the control cycles so far.
     control: Amounts,
     computed: u32,
-    /// Work of the cycle before it, and sum over its control cycles (J; J/m).
+    /// Work of the cycle before the jump, and sum over its control cycles (J; J/m).
     work: [f64; 2],
 }
 
@@ -79,12 +79,12 @@ pub struct Jumps {
     test: SlidingBody,
     /// Volume worn off first bodies and off grains (m^3; m^3/m).
     worn: (f64, f64),
-    /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far
-    /// (J; J/m).
+    /// Number of the cycle whose work is summed, and the work of the rubbed body in it so far (J;
+    /// J/m).
     current: (u32, f64),
     /// Tangential force in the last step (N; N/m).
     force: f64,
-    /// Steps of a cycle, and of the whole run.
+    /// Number of steps of a cycle, and of the whole run.
     steps: [u64; 2],
     /// Work of the last cycle that represents only itself (J; J/m).
     work: f64,
@@ -92,7 +92,7 @@ pub struct Jumps {
     number: u32,
     /// Number of cycles that the current one represents.
     cycle_multiplier: u32,
-    /// Number of completed cycles: computed, and including those jumped over.
+    /// Number of completed cycles: computed ones, and including skipped ones.
     computed: u32,
     represented: u32,
     /// Accumulated quantities at the start of the run and of the current cycle.
@@ -117,8 +117,8 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Begins at the current state: with the cycles of the test, the body that is rubbed, and the
-    /// steps of a cycle and of the whole run.
+    /// Creates jumps from the current state, with the cycles of the test, the rubbed body, and the
+    /// numbers of steps of a cycle and of the whole run.
     pub fn new<S: Space>(
         spec: JumpSpec,
         clock: CycleClock,
@@ -159,33 +159,35 @@ impl Jumps {
         }
     }
 
-    /// Cycles so far, those jumped over included, when a share of the current cycle is done.
+    /// Returns the number of cycles so far, including skipped ones, when a share of the current
+    /// cycle is done.
     fn cycles(&self, share: f64) -> f64 {
         f64::from(self.represented) + share * f64::from(self.cycle_multiplier)
     }
 
-    /// Cycles that were jumped over, when a share of the current cycle is done.
+    /// Returns the number of skipped cycles, when a share of the current cycle is done.
     fn jumped(&self, share: f64) -> f64 {
         f64::from(self.represented - self.computed) + share * f64::from(self.cycle_multiplier - 1)
     }
 
-    /// Cycles so far, those jumped over and the part of the current one included, at a time (s).
+    /// Returns the number of cycles so far, including skipped ones and the part of the current
+    /// cycle, at a time (s).
     pub fn cycles_at(&self, time: f64) -> f64 {
         self.cycles(self.open_share(time))
     }
 
-    /// Cycles that were jumped over by a time (s).
+    /// Returns the number of cycles skipped by a time (s).
     pub fn jumped_at(&self, time: f64) -> f64 {
         self.jumped(self.open_share(time))
     }
 
-    /// Length of a cycle (s).
+    /// Returns the length of a cycle (s).
     pub fn period(&self) -> f64 {
         self.clock.period.unwrap_or(0.0)
     }
 
-    /// Share of the current cycle that is done. A cycle that was closed with the last step is among
-    /// those represented.
+    /// Returns the completed share of the current cycle. A cycle that was closed with the last step
+    /// is among those represented.
     fn open_share(&self, time: f64) -> f64 {
         let share = self.clock.share(time);
         if share < 1.0 { share } else { 0.0 }
@@ -325,7 +327,7 @@ impl Jumps {
         if run.saturating_sub(s.state.steps) < cycle * (1 + u64::from(self.spec.control)) {
             return 1;
         }
-        // At least two, so that lengths can grow again; `at_most` may be one.
+        // The length is at least two, so that it can grow again; `at_most` may be one.
         self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
         let damage = self.rate.iter().skip(s.state.scars.len() + 1).flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
@@ -415,11 +417,11 @@ impl<S: Space> Process<S> for Jumps {
         self.spec.cycles.is_some_and(|n| self.represented >= n)
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(self)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         *self = decode(from)?;
         Ok(())
     }
@@ -434,8 +436,8 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
         all.push(scar.vertices().map(volume).collect());
     }
     all.push(vec![worn_third]);
-    // Broken bonds stay at one; a slot without a bond has no damage.
-    let held = |b: &Bond<S>| match b.damage < 1.0 || b.life != Life::default() {
+    // Broken bonds count as damage 1; a slot without a bond has no damage.
+    let held = |b: &Bond<S>| match b.damage < 1.0 || b.energies != BondEnergies::default() {
         true => b.damage,
         false => 0.0,
     };

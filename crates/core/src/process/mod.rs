@@ -1,6 +1,6 @@
 //! Processes, which act on a simulation at named moments of its steps: heat, thermal expansion,
-//! wear recession, cycle jumps, the tribological circuit, and those added by users of the library.
-//! The step names none of them.
+//! wear recession, cycle jumps, the tribological circuit, and processes added by users of the
+//! library. The step names none of them.
 //!
 //! ```text
 //! step:  at_start ─► imposed motion ─► before_detection ─► detect ─► contacts_found

@@ -1,7 +1,7 @@
 //! Recession: worn surfaces are lowered by the depth of their scars.
 //!
 //! The volume worn in a step is removed from the scars at the closest points of its contacts, at
-//! q_m; at a contact with a mean place from all vertices below the facets of its point
+//! q_m; at a contact with a mean position from all vertices below the facets of its point
 //! ([`crate::geometry::mortar`]). The surfaces recede after the motion of the step; the next
 //! detection finds the gap that opens. No work is done in between: a load that falls into the gap
 //! releases its potential energy in the next step, as over any open gap.
@@ -25,7 +25,7 @@ impl<S: Space> Process<S> for Recession {
         true
     }
 
-    /// Refuses a step of a surface that is worn through.
+    /// Refuses a step if a surface is worn through.
     fn at_start(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         s.check_worn_through()?;
         s.state.network.losses.get_or_insert_default();
@@ -40,14 +40,14 @@ impl<S: Space> Process<S> for Recession {
     /// Lowers the surfaces that are due in this step, at the interval `every` of their scars.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         let steps = s.state.steps;
-        // The surface follows a step that represents several cycles at once, so that the next
+        // After a step that represents several cycles the surface recedes at once, so that the next
         // contacts are at protruding places.
         let jumps = s.state.network.cycle_multiplier > 1.0;
         lower(s, |scar| jumps || steps.is_multiple_of(scar.every));
         Ok(())
     }
 
-    /// Lowers all surfaces to the depth of their scars, whatever their interval.
+    /// Lowers all surfaces to the depth of their scars, independent of their interval.
     fn at_end(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         lower(s, |_| true);
         Ok(())
@@ -66,7 +66,7 @@ impl<S: Space> Simulation<S> {
     /// Checks that no surface is worn through.
     ///
     /// # Errors
-    /// The surface that is worn through, and where.
+    /// Returns the surface that is worn through, and where.
     pub fn check_worn_through(&self) -> Result<(), StepError> {
         match &self.state.worn_through {
             None => Ok(()),

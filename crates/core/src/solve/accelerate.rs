@@ -1,6 +1,7 @@
-//! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum,
-//! less of it where the residual does not fall from test to test, Anderson extrapolation where it
-//! still does not fall, and that alone where momentum does not help.
+//! Acceleration of the Gauss-Seidel iteration over bodies, used once the first convergence tests
+//! fail: momentum, with a lower bound on it where the residual does not fall between two tests,
+//! then Anderson extrapolation as well, and Anderson extrapolation alone where momentum does not
+//! help.
 
 use super::body_anderson::{BodyAnderson, MEMORY};
 use super::kinds::of_kind;
@@ -10,9 +11,9 @@ use crate::geometry::space::Space;
 
 /// Iterations before Anderson extrapolation starts without momentum.
 const FIRST_ANDERSON: u32 = 20;
-/// Iterations in which the squared residual has to fall by half, or momentum is given up. With
-/// momentum an impulse crosses n contacts in a row in some n iterations; ten times that, and both
-/// bounds, are from trials (`docs/solvers.md`).
+/// Number of iterations in which the squared residual has to fall by half; otherwise momentum is
+/// given up. With momentum an impulse crosses n contacts in a row in about n iterations; the factor
+/// of ten, and both bounds, come from trials (`docs/solvers.md`).
 fn patience(contacts: usize) -> u32 {
     (10 * contacts).clamp(50, 1000) as u32
 }
@@ -20,23 +21,22 @@ fn patience(contacts: usize) -> u32 {
 /// State of the acceleration in a solve.
 #[derive(Debug)]
 pub(super) struct Acceleration<S: Space> {
-    /// Whether momentum is used: where all contacts are between rigid bodies, in rows with a closed
-    /// form without a bond, and Anderson extrapolation does not span all unknowns. Over bonds
-    /// momentum takes as many iterations.
+    /// Whether momentum is used: all contacts are between rigid bodies, in rows with a closed form
+    /// and without a bond, and Anderson extrapolation does not span all unknowns. Over bonds
+    /// momentum does not reduce the number of iterations.
     with_momentum: bool,
     parallel: bool,
-    /// Iterations before momentum starts, those to the second convergence test: most warm-started
-    /// steps need no more.
+    /// Number of iterations before momentum starts, up to the second convergence test: most
+    /// warm-started steps need no more.
     first: u32,
     patience: u32,
     momentum: Option<MomentumIteration<S>>,
     anderson: BodyAnderson,
     /// Squared residual at the last test.
     last: f64,
-    /// Whether it had risen there.
+    /// Whether the squared residual had risen at the last test.
     rose: bool,
-    /// Squared residual from which it has to fall by half, and the iterations after which it was
-    /// reached.
+    /// Squared residual that has to fall by half, and the iteration at which it was reached.
     least: f64,
     least_at: u32,
 }
@@ -72,12 +72,12 @@ impl<S: Space> Acceleration<S> {
         self.momentum.as_mut()
     }
 
-    /// Whether iterations are relaxed, because they have no momentum.
+    /// Returns whether iterations are relaxed, because they have no momentum.
     pub fn relaxes(&self) -> bool {
         self.momentum.is_none()
     }
 
-    /// Discards what Anderson extrapolation knows of the iteration, because that has changed.
+    /// Discards the history of Anderson extrapolation, because the iteration has changed.
     pub fn forget(&mut self) {
         self.anderson.forget();
     }
@@ -89,7 +89,7 @@ impl<S: Space> Acceleration<S> {
         }
     }
 
-    /// Takes the squared residual of a failed test after `done` iterations, and may change the
+    /// Uses the squared residual of a failed test after `done` iterations, and may change the
     /// impulses.
     pub fn on_failed_test(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
         if self.momentum.is_some() && self.stalls(done, residual) {

@@ -9,7 +9,8 @@ use crate::geometry::space::Space;
 
 /// Number of stored differences.
 pub(super) const MEMORY: usize = 6;
-/// Number of tests without a reduction of the residual by a tenth, after which it is paused.
+/// Number of tests without a reduction of the residual by a tenth, after which the acceleration
+/// pauses.
 const PATIENCE: u32 = 10;
 /// Length of the first pause in tests; doubled each time.
 const PAUSE: u32 = 6;
@@ -85,8 +86,8 @@ mod tests {
     use crate::solve::form::ContactForm;
     use nalgebra::Vector2;
 
-    /// It begins with the second call, is patient for ten tests without progress, and then rests
-    /// for six.
+    /// Extrapolation begins with the second call, continues for ten tests without progress, and
+    /// then pauses for six.
     #[test]
     fn it_rests_where_it_does_not_help() {
         let mut problem = Problem::of_unit_bodies(2);
@@ -103,7 +104,7 @@ mod tests {
         let changed: Vec<bool> = (0..20)
             .map(|_| anderson.extrapolate(&mut problem, 1.0))
             .collect();
-        // The least residual is that of the first call.
+        // The first call has the smallest residual.
         let mut wanted = vec![true; 20];
         wanted[0] = false;
         wanted[11..18].fill(false);

@@ -1,4 +1,5 @@
-//! Building a contact problem: bodies, then contacts, each as a row of the kind that it needs.
+//! Building a contact problem: bodies first, then contacts, each in a row of the kind that it
+//! needs.
 
 use super::form::{ContactForm, Mobility, RowPlace};
 
@@ -8,14 +9,14 @@ use super::row::{RigidBodies, SolverBody};
 use crate::geometry::space::Space;
 use crate::threads::{fill, for_chunks, map_chunks, worth_dividing};
 
-/// About what it takes to add a body (ns).
+/// Approximate time to add a body (ns).
 const BODY: f64 = 15.0;
-/// About what it takes to look up where a contact or a body belongs (ns).
+/// Approximate time to look up the place of a contact or a body (ns).
 const SORT: f64 = 3.0;
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
 
-/// The record of a body at its free velocity.
+/// Returns the record of a body at its free velocity.
 fn record<S: Space>(
     free: &(S::Vector, S::Spin),
     mobility: &Mobility<S>,
@@ -25,13 +26,13 @@ fn record<S: Space>(
         v: free.0,
         s: free.1 * length,
         im: (1..S::D).fold(mobility.mass[0], |most, k| most.max(mobility.mass[k])),
-        is: mobility.quickest() * length * length,
+        is: mobility.largest_inverse_inertia() * length * length,
     }
 }
 
 impl<S: Space> Problem<S> {
-    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that
-    /// scales spins.
+    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and the length
+    /// that scales its spin.
     pub fn push_body(
         &mut self,
         v: S::Vector,
@@ -50,7 +51,7 @@ impl<S: Space> Problem<S> {
         self.masses.push(mobility);
     }
 
-    /// Adds all bodies to a problem that has none, by their free velocities, mobilities and
+    /// Adds all bodies to a problem without bodies, with their free velocities, mobilities and
     /// lengths.
     pub fn push_bodies(
         &mut self,
@@ -83,7 +84,7 @@ impl<S: Space> Problem<S> {
         self.compliant |= contact.compliance != [0.0; 2];
     }
 
-    /// Adds all contacts to a problem that has none, in the order of the iteration.
+    /// Adds all contacts to a problem without contacts, in the order of the iteration.
     pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
         debug_assert!(self.places.is_empty());
         self.of_kind.iter_mut().for_each(Vec::clear);
@@ -126,7 +127,7 @@ impl<S: Space> Problem<S> {
         self.place_in_order(parallel);
     }
 
-    /// Whether a body moves, of each.
+    /// Returns for each body whether it moves.
     pub(super) fn movable(&self, parallel: bool) -> Vec<bool> {
         let (mut movable, count) = (Vec::new(), self.solver_bodies.len());
         fill(
@@ -141,7 +142,7 @@ impl<S: Space> Problem<S> {
         movable
     }
 
-    /// Takes the places of contacts from their order as pushed to that of the iteration.
+    /// Converts the places of contacts from the order as pushed to the order of the iteration.
     pub(super) fn place_in_order(&mut self, parallel: bool) {
         let in_order = self.rows.each_ref();
         let in_order = in_order.map(|rows| of_kind!(rows, rows => rows.places()));
@@ -175,8 +176,8 @@ mod tests {
         }
     }
 
-    /// The work of a step has c |p|^2 of contacts that yield, however these are added, and is not
-    /// asked for it where none does.
+    /// The work of a step includes c |p|^2 of compliant contacts, whatever the order in which they
+    /// are added, and is not computed where no contact is compliant.
     #[test]
     fn contacts_that_yield_are_known() {
         for compliance in [[0.0; 2], [3.0, 0.0], [0.0, 5.0]] {
@@ -209,8 +210,7 @@ mod tests {
         }
     }
 
-    /// A bond whose impulse is given takes its part of the impulse; what is left presses on the
-    /// compliance.
+    /// A bond whose impulse is given has its part of the impulse; the rest acts on the compliance.
     #[test]
     fn a_bond_beside_a_compliance_takes_its_part() {
         let mut problem = Problem::<Dim2>::default();

@@ -15,7 +15,7 @@ use super::form::ContactForm;
 
 use super::local::auto::{factorisations_before_newton, sweeps_per_factorisation};
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
@@ -24,18 +24,18 @@ use super::sticking;
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::RangeInclusive;
 
-/// Contacts of a problem whose start is checked before the first iteration, which costs about one
-/// more: of fewer, what is undetermined is sought in every step ([`super::sticking`]), and an
-/// iteration is often exact.
+/// Number of contacts from which the start is checked before the first iteration, at about the cost
+/// of one iteration. In smaller problems a search for undetermined impulses takes place in every
+/// step ([`super::sticking`]), and an iteration is often exact.
 const CHECKED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
 
-/// Share of the tolerance up to which a start is left as it is. Iterations in one order may not
-/// contract: what is left of rounding in a body that rests would grow from step to step, up to the
-/// tolerance.
+/// Share of the tolerance up to which the initial impulses are kept. Iterations in one order may
+/// not contract: rounding errors in a body at rest would otherwise grow from step to step, up to
+/// the tolerance.
 const AT_REST: f64 = 1e-3;
 
-/// Time of a dense factorisation as a share of a sparse one of as many entries: measured on
-/// `cases/cylinder_on_flat_fretting.ron`, some 80 contacts of two systems.
+/// Time of a dense factorisation relative to a sparse one with as many entries, measured on
+/// `cases/cylinder_on_flat_fretting.ron` with some 80 contacts of two systems.
 const DENSE: f64 = 1.0 / 6.0;
 /// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one
 /// case of three.
@@ -44,11 +44,12 @@ const HYPERSTATIC: u32 = 10;
 const MAX_FACTORISED: usize = 60_000;
 /// Number of Newton steps of the first attempt.
 const NEWTON: u32 = 40;
-/// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as
-/// in a column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
+/// Hyperstaticity below which the interior point is tried after Newton failed: there Newton fails
+/// because of slow propagation, as in a column, not for lack of rank. Above it the interior point
+/// failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
-/// How often a method that factorises is asked for a smaller error, and where contacts act on
-/// systems.
+/// Number of times that a factorising method is called with a smaller tolerance, in general and
+/// where contacts act on systems.
 const ATTEMPTS: [u32; 2] = [4, 20];
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
@@ -58,7 +59,7 @@ pub fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
-    options: &Options,
+    options: &SolverOptions,
     auto_state: &mut AutoState,
 ) -> Report {
     let context = SolveContext {
@@ -67,8 +68,8 @@ pub fn solve<S: Space>(
         options,
     };
     let mut report = match options.method {
-        Method::Nlgs => context.sweep(problem, false, options.max_iterations),
-        Method::Anderson => context.sweep(problem, true, options.max_iterations),
+        Method::Nlgs => context.sweep(problem, options.max_iterations),
+        Method::Anderson => context.sweep_accelerated(problem, options.max_iterations),
         Method::Auto => context.auto(problem, auto_state),
         method => context.solve_by(problem, method),
     };
@@ -85,7 +86,7 @@ pub fn solve<S: Space>(
     }
 }
 
-/// How methods that factorise and Gauss-Seidel alternate.
+/// State of the alternation between factorising methods and Gauss-Seidel.
 struct Alternation {
     /// Iterations of Gauss-Seidel before the first attempt.
     sweeps: u32,
@@ -108,9 +109,9 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Improves the solution until its error over bodies is within the tolerance, each time by that
-    /// much more in the measure of the method, which has not the tractions of systems in it; in
-    /// some iterations and attempts at most.
+    /// Improves the solution until its error over bodies is within the tolerance. Each attempt
+    /// lowers the tolerance of the method by the same ratio, since the method's own error does not
+    /// contain the tractions of systems. Iterations and attempts are limited.
     fn improve_until(
         &self,
         problem: &mut Problem<S>,
@@ -118,9 +119,9 @@ impl<S: Space> SolveContext<'_, S> {
         method: Method,
         (mut tolerance, most, attempts): (f64, u32, u32),
     ) {
-        // Error that an attempt must leave at most, over that before; attempts in a row that may
-        // fail to; and the least factor on the tolerance: one that falls faster is below rounding
-        // before the method has answered to it.
+        // Largest ratio of the error after an attempt to that before; number of successive attempts
+        // that may exceed it; and smallest factor on the tolerance, below which rounding would
+        // prevent progress.
         const LESS: f64 = 0.9;
         const STALLED: u32 = 2;
         const FALLS: f64 = 1e-2;
@@ -133,7 +134,7 @@ impl<S: Space> SolveContext<'_, S> {
             let next = self.improve(problem, method, tolerance, left);
             left = left.saturating_sub(next.iterations);
             report.add(&next);
-            // One that had nothing to do is not at its end: its own measure lacks a part of the
+            // A method that did nothing has not failed: its own error lacks a part of the total
             // error.
             let less = report.error < LESS * before || next.iterations == 0;
             stalled = if less { 0 } else { stalled + 1 };
@@ -141,10 +142,11 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Whether the impulses grew in this solve, beyond what shifts of velocities and bonds explain.
-    /// Otherwise bodies hold each other: at rest velocities are rounding errors.
+    /// Returns whether the impulses grew in this solve beyond what shifts of velocities and bonds
+    /// explain. Otherwise bodies hold each other, and the velocities of bodies at rest are rounding
+    /// errors.
     fn grew(&self, problem: &Problem<S>) -> bool {
-        /// Growth, squared: a load that comes in one step, by whatever wedges, is far below it.
+        /// Squared growth: a load that appears in one step, with any wedges, stays far below it.
         const GROWTH: f64 = 1e12;
         let (mut now, mut explained) = (0.0, 0.0);
         for (k, form) in self.forms.iter().enumerate() {
@@ -167,15 +169,15 @@ impl<S: Space> SolveContext<'_, S> {
         now > GROWTH * explained
     }
 
-    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from nothing:
-    /// they are finite, say where bodies close in, and do not grow from step to step.
+    /// Ends a solve whose impulses grew without bound, with the impulses of a few sweeps from zero:
+    /// they are finite, oppose bodies that approach, and do not grow from step to step.
     fn give_up(&self, problem: &mut Problem<S>, so_far: &Report) -> Report {
         const SWEEPS: u32 = 10;
         let impulses = vec![Some(S::Vector::zero()); self.forms.len()];
         let moments = vec![Some(S::Spin::zero()); self.moments.len()];
         problem.adopt(&impulses, &moments);
         let mut report = *so_far;
-        report.add(&self.sweep(problem, false, SWEEPS));
+        report.add(&self.sweep(problem, SWEEPS));
         Report {
             converged: false,
             unbounded: true,
@@ -184,14 +186,14 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they
+    /// Solves by Gauss-Seidel, and by factorising methods where Gauss-Seidel takes longer than they
     /// cost.
     fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
         let options = self.options;
         if CHECKED_FIRST.contains(&problem.contacts()) {
             let report = nlgs::arrange(problem, options);
             if report.error <= AT_REST * options.tolerance {
-                // Sweeps, of which none was needed.
+                // No sweep was needed.
                 return Report {
                     used: Method::Anderson,
                     ..report
@@ -217,13 +219,13 @@ impl<S: Space> SolveContext<'_, S> {
             large.then_some(SolvePath::Large)
         };
         if let Some(chosen) = without_newton {
-            let mut report = self.sweep(problem, true, options.max_iterations);
+            let mut report = self.sweep_accelerated(problem, options.max_iterations);
             if report.iterations > sweeps {
                 report.chosen = chosen;
             }
             return report;
         }
-        let mut report = self.sweep(problem, true, options.max_iterations.min(sweeps));
+        let mut report = self.sweep_accelerated(problem, options.max_iterations.min(sweeps));
         let left = options.max_iterations - report.iterations;
         if report.converged || report.unbounded || left == 0 {
             return report;
@@ -232,7 +234,7 @@ impl<S: Space> SolveContext<'_, S> {
         if hyperstaticity > 1.0 {
             // Leaves iterations for another attempt of Newton.
             let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
-            report.add(&self.sweep(problem, true, more));
+            report.add(&self.sweep_accelerated(problem, more));
             report.chosen = SolvePath::Longer { hyperstaticity };
         }
         let features = Features {
@@ -255,7 +257,7 @@ impl<S: Space> SolveContext<'_, S> {
         report
     }
 
-    /// Returns the number of iterations of Gauss-Seidel before Newton, whose cost is that of some
+    /// Returns the number of Gauss-Seidel iterations before Newton, whose cost equals that of some
     /// factorisations.
     fn sweeps_before_newton(&self, problem: &Problem<S>, auto_state: &AutoState) -> u32 {
         // Estimate: a contact between balls shares a body with about eight others.
@@ -317,7 +319,7 @@ impl<S: Space> SolveContext<'_, S> {
             let left = options.max_iterations.saturating_sub(report.iterations);
             if !ended(report) && left > 0 {
                 let more = sweeps.saturating_mul(HYPERSTATIC << round.min(16));
-                report.add(&self.sweep(problem, true, left.min(more)));
+                report.add(&self.sweep_accelerated(problem, left.min(more)));
             }
             round += 1;
         }
@@ -338,8 +340,8 @@ impl<S: Space> SolveContext<'_, S> {
         tried
     }
 
-    /// Tries a method that factorises, from the current impulses or from those of the forms; keeps
-    /// the solution with the smaller error.
+    /// Tries a factorising method, from the current impulses or from those of the forms; keeps the
+    /// solution with the smaller error.
     fn attempt(
         &self,
         problem: &mut Problem<S>,
@@ -384,8 +386,8 @@ impl<S: Space> SolveContext<'_, S> {
     }
 }
 
-/// The local form of a problem of Coulomb contacts: W, q, mu; `None` where another law is at work,
-/// or where W cannot be had as a matrix.
+/// Returns the local form of a problem of Coulomb contacts: W, q, mu; `None` where another law
+/// acts, or where W is not available as a matrix.
 pub fn coulomb<S: Space>(
     problem: &Problem<S>,
     forms: &[ContactForm<S>],

@@ -1,4 +1,4 @@
-//! The choices of `auto` in a step, and the hyperstaticity of a contact set.
+//! Choices of the method `auto` in a step, and the hyperstaticity of a contact set.
 
 use super::form::{ContactForm, RowPlace};
 
@@ -9,12 +9,12 @@ use crate::geometry::space::{MatrixLike, Space, VectorLike};
 /// Result of a method in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attempt {
-    /// It was not tried.
+    /// The method was not tried.
     #[default]
     No,
-    /// It did not reach the tolerance.
+    /// The method did not reach the tolerance.
     Failed,
-    /// It reached the tolerance.
+    /// The method reached the tolerance.
     Ended,
 }
 
@@ -29,9 +29,9 @@ pub enum SolvePath {
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
     },
-    /// Gauss-Seidel used its allowance, and methods that factorise were tried.
+    /// Gauss-Seidel used its allowance, and factorising methods were tried.
     Factorised {
-        /// Gauss-Seidel iterations before them.
+        /// Number of Gauss-Seidel iterations before the factorising methods.
         after: u32,
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
@@ -40,14 +40,16 @@ pub enum SolvePath {
         /// Result of the interior point.
         interior: Attempt,
     },
-    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
+    /// Gauss-Seidel used its allowance and continued, because Newton does not support friction
+    /// against rotation.
     Unserved,
     /// Gauss-Seidel used its allowance and continued, because the set is too large to factorise.
     Large,
 }
 
 impl SolvePath {
-    /// Combines the choices of several solves of a step: the first one with more than Gauss-Seidel.
+    /// Combines the choices of several solves of a step: the first choice that used more than
+    /// Gauss-Seidel.
     #[must_use]
     pub fn or(self, later: Self) -> Self {
         if self == Self::Sweeps { later } else { self }
@@ -59,8 +61,8 @@ impl SolvePath {
 /// the impulses.
 ///
 /// A frictionless contact has one unknown. Rotations count where a contact can rotate the body, by
-/// friction or by a lever arm. The impulse of a bond follows from its opening and is no unknown. Of
-/// a dynamical system the motions of the nodes count that contacts act on. The result is 0 without
+/// friction or by a lever arm. The impulse of a bond follows from its opening and is no unknown.
+/// For a dynamical system the motions of the nodes with contacts count. The result is 0 without
 /// active contacts.
 pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) -> f64 {
     /// Flags of a body with a contact, and of one that contacts can rotate.

@@ -26,14 +26,15 @@ const BLOCKS: usize = 128;
 /// separately.
 const HUB: u32 = 16;
 
-/// Contacts of a task, and about what it takes to read the bodies of one and to colour it (ns).
+/// Number of contacts of a task, and approximate time to read the bodies of a contact and to colour
+/// it (ns).
 const CHUNK: usize = 4096;
 const READ: f64 = 4.0;
 const COLOUR: f64 = 15.0;
 
 /// Colouring state of a body: the last visitor, and the colours in use.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct BodyColours {
     by: u32,
     taken: u32,
 }
@@ -47,12 +48,12 @@ pub struct ContactOrder {
     places: Vec<u32>,
     pairs: Vec<[u32; 2]>,
     schedule: Schedule,
-    /// How often it was computed.
+    /// Number of times that the order was computed.
     changes: u64,
 }
 
 impl ContactOrder {
-    /// A number that changes with the contacts, their bodies or which of these move.
+    /// Returns a number that changes with the contacts, their bodies, or which bodies move.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -120,7 +121,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
     let mut sorting = Sorting {
         bodies,
         movable,
-        seen: vec![Seen::default(); movable.len()],
+        seen: vec![BodyColours::default(); movable.len()],
         order: Vec::with_capacity(bodies.len()),
         schedule: Schedule::default(),
     };
@@ -140,7 +141,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
 struct Sorting<'a> {
     bodies: &'a [[u32; 2]],
     movable: &'a [bool],
-    seen: Vec<Seen>,
+    seen: Vec<BodyColours>,
     order: Vec<u32>,
     schedule: Schedule,
 }
@@ -175,7 +176,7 @@ impl Hubs {
         }
     }
 
-    /// Returns whether a contact moves one of them.
+    /// Returns whether a contact moves a hub.
     #[inline]
     fn touch(&self, pair: &[u32; 2], movable: &[bool]) -> bool {
         self.any
@@ -193,7 +194,8 @@ fn moved(pair: &[u32; 2], movable: &[bool]) -> [Option<usize>; 2] {
 }
 
 impl Sorting<'_> {
-    /// Colours the blocks, without the contacts of hubs; returns colour and index of each, sorted.
+    /// Colours the blocks, without the contacts of hubs; returns colour and index of each block,
+    /// sorted.
     fn colour_blocks(&mut self, span: usize, hubs: &Hubs) -> Vec<(u32, u32)> {
         let Self {
             bodies,
@@ -201,7 +203,7 @@ impl Sorting<'_> {
             seen,
             ..
         } = self;
-        seen.fill(Seen::default());
+        seen.fill(BodyColours::default());
         let mut blocks: Vec<(u32, u32)> = Vec::new();
         for (block, pairs) in bodies.chunks(span).enumerate() {
             let own = || {
@@ -232,7 +234,7 @@ impl Sorting<'_> {
     /// threads.
     fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs, parallel: bool) {
         let (bodies, movable) = (self.bodies, self.movable);
-        let memory = || (vec![Seen::default(); movable.len()], 0);
+        let memory = || (vec![BodyColours::default(); movable.len()], 0);
         let divide = worth_dividing(parallel, bodies.len(), COLOUR);
         let grouped = map_with_memory(divide, blocks.len(), memory, |(seen, mark), k| {
             let first = blocks[k].1 as usize * span;
@@ -260,7 +262,7 @@ impl Sorting<'_> {
         }
     }
 
-    /// Appends the contacts of hubs, in a block of their own, each a group.
+    /// Appends the contacts of hubs in a separate block, each in its own group.
     fn append_hubs(&mut self, hubs: &Hubs) {
         if !hubs.any {
             return;
@@ -280,17 +282,18 @@ impl Sorting<'_> {
 #[derive(Default)]
 struct ColourGroups {
     order: Vec<u32>,
-    /// Where each group ends in the order.
+    /// End of each group in the order.
     ends: Vec<u32>,
 }
 
 impl ColourGroups {
-    /// Appends the contacts of a part. `seen` is of all bodies; `mark` differs from part to part.
+    /// Appends the contacts of a part. `seen` has one entry per body; `mark` is different for each
+    /// part.
     fn add(
         &mut self,
         bodies: &[[u32; 2]],
         movable: &[bool],
-        seen: &mut [Seen],
+        seen: &mut [BodyColours],
         part: impl Iterator<Item = usize>,
         mark: u32,
     ) {
@@ -303,7 +306,7 @@ impl ColourGroups {
             for body in pair.into_iter().flatten() {
                 let seen = &mut seen[body];
                 if seen.by != mark {
-                    *seen = Seen { by: mark, taken: 0 };
+                    *seen = BodyColours { by: mark, taken: 0 };
                 }
                 taken |= seen.taken;
             }

@@ -36,8 +36,8 @@ pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] 
     std::array::from_fn(|k| if k == 0 { nearest.normal } else { z[k] * share })
 }
 
-/// A projected point: whether it was inside, its P, and |t| where it was not. All cases are
-/// computed and one is selected, because branches would be mispredicted too often.
+/// A projected point: whether the given point was inside, its P, and |t| where it was outside. All
+/// cases are computed and one is selected, because branches would be mispredicted too often.
 struct NearestImpulse<L: Lane> {
     inside: L::Mask,
     normal: L,
@@ -59,7 +59,7 @@ impl<L: Lane> NearestImpulse<L> {
         }
     }
 
-    /// The factor that limits a tangent of this length.
+    /// Returns the factor that limits a tangent of this length.
     #[inline(always)]
     fn share(&self, length: L) -> L {
         let (zero, one) = (L::all(0.0), L::all(1.0));
@@ -74,7 +74,7 @@ mod tests {
     use crate::lanes::LaneArray;
     use rand::{RngExt, SeedableRng};
 
-    /// Brute-force projection over a fine sampling of the set.
+    /// Projects by brute force over a fine sampling of the set.
     fn nearest_by_sampling(normal: f64, s: f64, mu: f64, c: f64) -> f64 {
         let mut best = f64::INFINITY;
         for i in 0..4000 {

@@ -1,33 +1,33 @@
-//! Sets of contacts that are connected through bodies that can move. Within a step nothing that
-//! happens in one of them acts on another: bodies whose motion is given pass no impulse on.
+//! Sets of contacts connected through movable bodies. Within a step the sets do not act on each
+//! other: bodies with imposed motion transmit no impulse.
 
 use super::kinds::KINDS;
 
 /// No set.
 const NONE: u32 = u32::MAX;
 
-/// The connected sets of the contacts of a problem, until these change.
+/// The connected sets of the contacts of a problem, valid until the contacts change.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Connected {
-    /// The contacts that it is of: the numbers of the orders of their rows
+pub(super) struct ConnectedSets {
+    /// The contacts for which the sets were found: the numbers of the orders of their rows
     /// ([`ContactOrder::changes`](super::colour::ContactOrder::changes)).
     pub of: Option<[u64; KINDS]>,
-    /// The set of each body; `NONE` for bodies that do not move, or that nothing touches.
+    /// Set of each body; `NONE` for bodies that do not move or have no contact.
     of_body: Vec<u32>,
-    /// The first body of each set.
+    /// First body of each set.
     first: Vec<u32>,
     /// Number of contacts of each set.
     contacts: Vec<u32>,
-    /// Whether contacts with dynamical systems are among them.
+    /// Whether each set has contacts with dynamical systems.
     with_systems: Vec<bool>,
-    /// The controlled bodies, and the contacts of such with others that have several, see
-    /// `Problem::of_several_controlled`.
+    /// The controlled bodies, and their contacts with bodies that touch several controlled bodies,
+    /// see `Problem::of_several_controlled`.
     pub controlled: Vec<u32>,
     pub of_several_controlled: Vec<usize>,
 }
 
-impl Connected {
-    /// Finds the sets of bodies, some of which move, from the pairs that touch.
+impl ConnectedSets {
+    /// Finds the sets from the bodies that move and the pairs in contact.
     pub fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
         let mut parent: Vec<u32> = (0..moves.len() as u32).collect();
         pairs(&mut |[a, b]: [u32; 2]| {
@@ -59,7 +59,7 @@ impl Connected {
         out
     }
 
-    /// The set of a body that is its root.
+    /// Returns the set of a root body, which is added if it is new.
     fn enter(&mut self, root: u32) -> usize {
         let set = &mut self.of_body[root as usize];
         if *set == NONE {
@@ -76,7 +76,7 @@ impl Connected {
         self.contacts.len()
     }
 
-    /// The first body of a set, which names it.
+    /// Returns the first body of a set, which identifies it.
     pub fn first(&self, set: usize) -> u32 {
         self.first[set]
     }
@@ -86,14 +86,14 @@ impl Connected {
         self.contacts[set] as usize
     }
 
-    /// Notes that a contact of a body is with a dynamical system.
+    /// Records that a body has a contact with a dynamical system.
     pub fn touches_system(&mut self, body: u32) {
         if let Some(set) = self.of_body(body) {
             self.with_systems[set] = true;
         }
     }
 
-    /// Whether contacts with dynamical systems are among those of a set.
+    /// Returns whether a set has contacts with dynamical systems.
     pub fn with_systems(&self, set: usize) -> bool {
         self.with_systems[set]
     }
@@ -104,7 +104,7 @@ impl Connected {
         (set != NONE).then_some(set as usize)
     }
 
-    /// The set of a contact of two bodies; `None` where neither moves.
+    /// Returns the set of a contact of two bodies; `None` where neither moves.
     pub fn of(&self, [a, b]: [u32; 2]) -> Option<usize> {
         self.of_body(a).or_else(|| self.of_body(b))
     }
@@ -124,13 +124,13 @@ fn root(parent: &mut [u32], mut body: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Two chains over a floor that joins nothing, a body that touches the floor alone, one that
-    /// touches nothing, and two fixed ones.
+    /// Two chains over a floor, which connects nothing; a body that touches only the floor, a body
+    /// without contacts, and two fixed bodies.
     #[test]
     fn what_does_not_move_connects_nothing() {
         let moves = [false, true, true, true, true, true, true, false];
         let touching = [[0, 1], [2, 1], [4, 3], [0, 4], [3, 7], [5, 0], [0, 7]];
-        let sets = Connected::new(&moves, |found| touching.into_iter().for_each(found));
+        let sets = ConnectedSets::new(&moves, |found| touching.into_iter().for_each(found));
         assert_eq!(sets.len(), 3);
         let of = [0, 1, 2, 3, 4, 5, 6, 7].map(|b| sets.of_body(b));
         let (a, b, c) = (Some(0), Some(1), Some(2));
@@ -148,7 +148,7 @@ mod tests {
             .map(|k| (k * 83) % 199)
             .map(|k| [k + 1, k])
             .collect();
-        let sets = Connected::new(&moves, |found| links.iter().copied().for_each(found));
+        let sets = ConnectedSets::new(&moves, |found| links.iter().copied().for_each(found));
         assert_eq!((sets.len(), sets.contacts(0)), (1, 199));
     }
 }

@@ -1,17 +1,16 @@
-//! One solve of a step: what it is given, what earlier steps taught, and the runs of single methods
-//! that choices are made of.
+//! One solve of a step: its input, what was learned in earlier steps, and runs of single methods.
 
 use super::form::ContactForm;
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::row::MomentForm;
-use super::search::Search;
+use super::search::SecondSearch;
 use super::standard;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// What `auto` learned from previous steps.
+/// State that `auto` carries from step to step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
     /// Factor on the number of iterations before Newton.
@@ -19,11 +18,11 @@ pub struct AutoState {
     /// Whether the interior point converged in the last step in which Newton failed; it is then
     /// tried first.
     pub(super) interior_first: bool,
-    /// How often the interior point is still to be skipped, and was to be skipped after its last
-    /// failure.
+    /// Number of times that the interior point is still to be skipped, and number of skips after
+    /// its last failure.
     skipped: [u32; 2],
-    /// When another solution is sought.
-    pub(super) search: Search,
+    /// State of the search for second solutions.
+    pub(super) search: SecondSearch,
 }
 
 impl Default for AutoState {
@@ -32,14 +31,14 @@ impl Default for AutoState {
             patience: 1.0,
             interior_first: false,
             skipped: [0; 2],
-            search: Search::default(),
+            search: SecondSearch::default(),
         }
     }
 }
 
 impl AutoState {
-    /// When another solution is sought.
-    pub fn search(&self) -> &Search {
+    /// Returns the state of the search for second solutions.
+    pub fn search(&self) -> &SecondSearch {
         &self.search
     }
 
@@ -56,7 +55,7 @@ impl AutoState {
         due
     }
 
-    /// Changes the patience by whether a method that factorises has solved the last problem.
+    /// Changes the patience by whether a factorising method solved the last problem.
     pub(super) fn adapt(&mut self, ended: bool) {
         self.patience *= if ended { 0.5 } else { 2.0 };
         self.patience = self.patience.clamp(1.0, 64.0);
@@ -70,27 +69,32 @@ impl AutoState {
     }
 }
 
-/// What a solve is given beside the problem.
+/// Input of a solve, in addition to the problem.
 pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
     pub(super) moments: &'a [MomentForm<S>],
-    pub(super) options: &'a Options,
+    pub(super) options: &'a SolverOptions,
 }
 
 impl<S: Space> SolveContext<'_, S> {
     /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
-    pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
-        let options = Options {
-            accelerated,
+    pub(super) fn sweep(&self, problem: &mut Problem<S>, most: u32) -> Report {
+        self.iterate(problem, Method::Nlgs, most)
+    }
+
+    /// Runs the iteration of [`Self::sweep`] with Anderson acceleration.
+    pub(super) fn sweep_accelerated(&self, problem: &mut Problem<S>, most: u32) -> Report {
+        self.iterate(problem, Method::Anderson, most)
+    }
+
+    fn iterate(&self, problem: &mut Problem<S>, method: Method, most: u32) -> Report {
+        let options = SolverOptions {
+            accelerated: method == Method::Anderson,
             max_iterations: most,
             ..*self.options
         };
         Report {
-            used: if accelerated {
-                Method::Anderson
-            } else {
-                Method::Nlgs
-            },
+            used: method,
             ..nlgs::solve(problem, &options)
         }
     }
@@ -117,7 +121,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Goes back to the impulses of the forms.
+    /// Restores the impulses of the forms.
     pub(super) fn start_anew(&self, problem: &mut Problem<S>) {
         let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
         let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();

@@ -28,11 +28,11 @@
 //! step's work, so that f^2 is the kinetic energy of the part that is not supported, relative to
 //! the part that is.
 //!
-//! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in
-//! small sets only: where a heavy body rests on light ones, p/rho is far above all velocities, and
-//! powers of opposite sign, of a body that rocks, have no sum. It is the largest of all sets of
-//! contacts that are connected through bodies that move, each with its own N and work
-//! ([`super::rocking`]): a stack stands as well among others as alone.
+//! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 over N contacts, matters
+//! in small sets only: where a heavy body rests on light ones, p/rho is far above all velocities,
+//! and in a rocking body powers of opposite sign cancel in the sum. The part is the largest over
+//! all sets of contacts connected through movable bodies, each with its own N and work
+//! ([`super::rocking`]), so that the error of a stack does not depend on other stacks in the scene.
 //!
 //! [`Norm::Power`], the power of the residuals over that of slip, for contacts that are springs:
 //!
@@ -41,7 +41,7 @@
 //! ```
 //!
 //! `Balance` compares residuals with p/rho, which with scaled inertia is far above the velocities
-//! of a slow flow; `Power` compares the heat that they make with the heat of friction. Where
+//! of a slow flow; `Power` compares the power of the residuals with the heat of friction. Where
 //! nothing slips, at rest and where sliding reverses, the error of `Balance` times 5e5 takes its
 //! place.
 //!
@@ -53,11 +53,11 @@
 //! For bodies that move fast together, and for impulses that hold each other, the relative
 //! velocities are rounding errors; those below the rounding of the body velocities, or of the
 //! impulses where that exceeds all free velocities, count as zero. Impulses that leave nothing but
-//! rounding of the velocities are no solution, see [`Sums::drowned`].
+//! rounding of the velocities are no solution, see [`Sums::lost_in_rounding`].
 //!
 //! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least
 //! that of their single tractions, see [`super::traction`], times the default tolerance of the norm
-//! over 1e-3: at defaults they are right to 1e-3 of the largest.
+//! over 1e-3: with the default tolerances each traction is accurate to 1e-3 of the largest.
 //!
 //! The error does not change when a scene is scaled in length, mass or time.
 //!
@@ -79,14 +79,14 @@ use serde::{Deserialize, Serialize};
 /// How the residual is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Norm {
-    /// Relative to the velocities and the impulses of the contacts, combined with the global
+    /// Residuals relative to velocities and impulses of the contacts, combined with the global
     /// balance of work.
     #[default]
     Balance,
-    /// Relative to the current velocities.
+    /// Residuals relative to the current velocities.
     Velocity,
-    /// The power of the residuals over that of friction: what a step may get wrong of the heat of
-    /// slip.
+    /// Power of the residuals relative to that of friction: the relative error of the heat of slip
+    /// in a step.
     Power,
     /// The error measure of the literature, for problems from files.
     #[serde(skip)]
@@ -94,8 +94,8 @@ pub enum Norm {
 }
 
 impl Norm {
-    /// The bound on the error of a case that states none: 1e-4 of velocities or forces, half of the
-    /// heat of slip. (Absolute values of the residuals' power are summed; of the net error of
+    /// The bound on the error of a case without `tolerance`: 1e-4 of velocities or forces, half of
+    /// the heat of slip. (Absolute values of the residuals' power are summed; of the net error of
     /// friction it is a bound by far: `docs/accuracy.md`.)
     pub fn default_tolerance(self) -> f64 {
         match self {
@@ -130,8 +130,7 @@ pub fn lost<L: Lane>(p_n: L, u_n: L, mu: L) -> L {
     p_n.least(u_n) * (squared / (L::all(1.0) + squared))
 }
 
-/// Returns the squared residual of a contact: that of the natural map, or [`lost`] where that is
-/// larger.
+/// Returns the squared residual of a contact: the larger of the natural map's and [`lost`].
 #[inline(always)]
 pub fn residual<L: Lane>(natural: L, p_n: L, u_n: L, mu: L) -> L {
     let most = p_n.least(u_n);
@@ -145,25 +144,26 @@ pub fn residual<L: Lane>(natural: L, p_n: L, u_n: L, mu: L) -> L {
     L::select(enough, natural, natural.greatest(lost * lost))
 }
 
-/// Returns the residual relative to the velocities alone where that is of order one: it detects
+/// Returns the residual relative to the velocities alone where it is of order one, which detects
 /// unbounded impulses of a problem without a solution.
 pub fn unbounded(residual: f64) -> f64 {
     if residual > 0.5 { residual } else { 0.0 }
 }
 
-/// Error of single tractions that the default tolerances ask for.
+/// Error of single tractions that corresponds to the default tolerances.
 const TRACTION: f64 = 1e-3;
-/// Errors of single tractions below it count as zero, whatever the tolerance.
+/// Error of single tractions below which it counts as zero, whatever the tolerance.
 const FINEST: f64 = 1e-6;
 /// Squared relative rounding error of a relative velocity.
 pub(super) const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
 
-/// Contacts of a set up to which powers of residuals of either sign may not exceed what their sum
-/// may. Beyond it they may in proportion to their number, which a packing in two or three
-/// dimensions does not reach.
+/// Number of contacts of a set up to which the sum of absolute powers of the residuals has the
+/// bound of their sum. In larger sets the bound grows in proportion to the number, which a packing
+/// in two or three dimensions does not reach.
 const FEW: f64 = 20.0;
 
-/// Error of [`Norm::Power`] over that of [`Norm::Balance`] where nothing slips: 0.5 asks for 1e-6.
+/// Error of [`Norm::Power`] over that of [`Norm::Balance`] where nothing slips: 0.5 corresponds to
+/// 1e-6.
 const AT_REST: f64 = 5e5;
 
 /// Reference values for the residual.
@@ -193,19 +193,19 @@ impl Scale {
     }
 }
 
-/// What a solution gets wrong, in parts, whichever norm decides when it is good enough.
+/// Errors of a solution, independent of the norm that decides on convergence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorParts {
     /// Force balance: the unbalanced share of the step's work, |sum p.r| / |v - v_free|_M^2.
     pub force_balance: f64,
     /// Velocity: the residual velocities over those of the contacts, |r| / max(|u|, |u_free|).
     pub velocity: f64,
-    /// Contact law: the error of [`Norm::Power`], the energy that the residuals make over the heat
-    /// of slip.
+    /// Contact law: the error of [`Norm::Power`], the energy of the residuals over the heat of
+    /// slip.
     pub contact_law: f64,
     /// Heat of slip, sum |p_t.(u_t + s_t)| (J).
     pub slip_energy: f64,
-    /// Energy that the residuals take, |sum p.r| (J).
+    /// Energy of the residuals, |sum p.r| (J).
     pub residual_energy: f64,
 }
 
@@ -218,7 +218,7 @@ pub struct Residual<L = f64> {
     pub velocity: L,
     /// |p / rho|^2 (m^2/s^2).
     pub impulse: L,
-    /// p . r, r the residual velocity (J).
+    /// Power p . r with the residual velocity r (J).
     pub power: L,
     /// |p . r|, or rho |r|^2 where that is larger, as at a contact without the impulse that it
     /// should have (J).
@@ -238,7 +238,7 @@ pub struct Sums {
     pub impulse: f64,
     /// Sum of p . r (J).
     pub power: f64,
-    /// Sum of |p . r|, or of rho |r|^2 where that is larger (J).
+    /// Sum of |p . r|, or of rho |r|^2 where it is larger (J).
     pub unbalanced: f64,
     /// Sum of |p_t . (u_t + s_t)| (J).
     pub slip: f64,
@@ -290,11 +290,11 @@ impl Sums {
         }
     }
 
-    /// Squared rounding error of velocities that follow from the impulses, where it exceeds all
-    /// velocities without impulses (`free` as in [`Scale`]); 0 elsewhere, where bodies may be as
-    /// unlike as they like.
+    /// Returns the squared rounding error of velocities that follow from the impulses, where it
+    /// exceeds all velocities without impulses (`free` as in [`Scale`]); 0 elsewhere, where the
+    /// masses of bodies may differ by any factor.
     pub(super) fn rounding(&self, free: f64) -> f64 {
-        /// By how much, squared.
+        /// Squared ratio by which it must exceed them.
         const EXCEEDS: f64 = 4.0;
         let rounding = ROUNDINGS * self.impulse;
         if rounding > EXCEEDS * free {
@@ -304,10 +304,10 @@ impl Sums {
         }
     }
 
-    /// Whether the velocities are lost in the rounding of the impulses that should have made them:
-    /// those of a problem without a solution grow until then, where W p, of bodies that are
-    /// squeezed, vanishes. Without convergence W p may be anything. `free` as in [`Scale`].
-    pub fn drowned(&self, free: f64, converged: bool) -> bool {
+    /// Returns whether the velocities are lost in the rounding of the impulses. The impulses of a
+    /// problem without a solution grow until then, as W p of squeezed bodies vanishes. Without
+    /// convergence W p may have any value. `free` as in [`Scale`].
+    pub fn lost_in_rounding(&self, free: f64, converged: bool) -> bool {
         let rounding = self.rounding(free);
         let moves = self.velocity.max(free) > 0.0;
         let vanishes = 16.0 * rounding > self.velocity || (!converged && free > 0.0);
@@ -354,8 +354,8 @@ impl Sums {
         }
     }
 
-    /// Error of single tractions on dynamical systems, over the largest of each; 0 where it is
-    /// finer than any answer needs.
+    /// Returns the error of single tractions on dynamical systems, relative to the largest of each
+    /// system; 0 where it is below [`FINEST`].
     fn traction_error(&self, scale: &Scale) -> f64 {
         let [error, residual] = self.traction;
         if residual <= scale.noise || error <= FINEST {
@@ -381,14 +381,14 @@ impl Sums {
         }
     }
 
-    /// Third part of the error in the norm Balance.
+    /// Returns the third part of the error in the norm Balance.
     pub(super) fn rocking(&self, scale: &Scale) -> f64 {
         let allowed = (scale.contacts as f64 / FEW).max(1.0);
         over(self.unbalanced, allowed * scale.work.max(scale.energy)).powi(2)
     }
 
-    /// The first two parts of the error in the norm Balance. Where no load is transmitted the work
-    /// itself is an error, relative to the upper bound of the contacts' work.
+    /// Returns the first two parts of the error in the norm Balance. Where no load is transmitted
+    /// the work itself is an error, relative to the upper bound of the contacts' work.
     fn balance(&self, local: f64, scale: &Scale) -> f64 {
         local.max(over(self.power, scale.work.max(scale.energy)).powi(2))
     }
@@ -402,8 +402,8 @@ fn over(x: f64, scale: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The error of unbalanced work is its share of the work, squared, of which more contacts than
-    /// [`FEW`] are allowed more in proportion.
+    /// The error of unbalanced work is its squared share of the work; above [`FEW`] contacts its
+    /// bound grows in proportion to their number.
     #[test]
     fn more_contacts_may_rock_more() {
         let sums = Sums {
@@ -421,8 +421,8 @@ mod tests {
         }
     }
 
-    /// The power of residuals is compared with that of slip. Where nothing slips, a share of 1e-3
-    /// of the work, squared, counts as much as 0.5 of that of slip.
+    /// The power of residuals is compared with that of slip. Where nothing slips, a squared share
+    /// of 1e-3 of the work counts as much as a share of 0.5 of slip.
     #[test]
     fn the_power_of_residuals_is_compared_with_slip() {
         let scale = Scale {
@@ -442,8 +442,8 @@ mod tests {
         }
     }
 
-    /// Velocities that are less than sixteen roundings of impulses which have grown to 1e20 m/s are
-    /// lost; those of sound impulses are not.
+    /// Velocities are lost if they are less than sixteen roundings of impulses that have grown to
+    /// 1e20 m/s; velocities of ordinary impulses are not lost.
     #[test]
     fn velocities_drown_in_the_rounding_of_their_impulses() {
         let sums = |impulse: f64| Sums {
@@ -451,8 +451,8 @@ mod tests {
             velocity: 1.0,
             ..Sums::default()
         };
-        assert!(sums(1e20).drowned(1.0, true));
-        assert!(!sums(1.0).drowned(1.0, true));
-        assert!(!sums(0.0).drowned(0.0, false));
+        assert!(sums(1e20).lost_in_rounding(1.0, true));
+        assert!(!sums(1.0).lost_in_rounding(1.0, true));
+        assert!(!sums(0.0).lost_in_rounding(0.0, false));
     }
 }

@@ -1,4 +1,4 @@
-//! One contact in the standard local form, its solution, and how a body answers to impulses.
+//! One contact in the standard local form, its solution, and the response of a body to impulses.
 
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -9,12 +9,12 @@ pub struct ContactForm<S: Space> {
     pub bodies: [u32; 2],
     /// Unit normal, from the antagonist to the candidate.
     pub normal: S::Vector,
-    /// From each body's centre to the contact point (m).
+    /// Vectors from each body's centre to the contact point (m).
     pub arms: [S::Vector; 2],
-    /// Both arms lie along the normal and both inverse masses are isotropic.
+    /// Whether both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
-    /// For a central contact, whether its arms are not the lengths of its bodies: it acts in the
-    /// gap between two balls, or in their overlap.
+    /// For a central contact, whether its arms differ from the lengths of its bodies: the contact
+    /// point lies in the gap between two balls, or in their overlap.
     pub apart: bool,
     /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
     pub shift_n: f64,
@@ -72,7 +72,8 @@ pub struct Elastic<S: Space> {
     pub tension_only: bool,
     /// Whether the normal part has damping.
     pub damped: bool,
-    /// Whether the law's traction is not linear in the opening, so that this is a tangent of it.
+    /// Whether the traction of the law is not linear in the opening, so that this form is its
+    /// tangent.
     pub curved: bool,
     /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t
     /// |u_t,th|^2 (kg).
@@ -97,11 +98,11 @@ impl<S: Space> Elastic<S> {
         }
     }
 
-    /// Energy that damping and the time scheme take in a step (J), given the opening at its start
-    /// (m) and the relative velocity, its average over the step and at its end (m/s). `None` for a
-    /// bond whose force is not linear over the step: its law is not, or it acts in tension only and
-    /// opens, closes, or would push by its damping. What is lost then follows from its stored
-    /// energy.
+    /// Returns the energy dissipated by damping and the time scheme in a step (J), given the
+    /// opening at its start (m) and the relative velocity, its average over the step and its value
+    /// at the end (m/s). `None` for a bond whose force is not linear over the step: its law is not
+    /// linear, or it acts in tension only and opens, closes, or would push by its damping. The loss
+    /// then follows from the stored energy.
     pub fn lost(
         &self,
         solution: &ContactSolution<S>,
@@ -116,7 +117,8 @@ impl<S: Space> Elastic<S> {
         let normal_part = if self.curved || self.tension_only && opens[0] != opens[1] {
             return None;
         } else if self.tension_only && self.damped && !opens[0] {
-            // It stores nothing in compression, so that all the work of its damping is lost.
+            // The bond stores nothing in compression, so that all the work of its damping is
+            // dissipated.
             (solution.unilateral_n - normal.dot(&solution.impulse)) * un
         } else if pulls {
             self.loss_n * un * un
@@ -175,7 +177,8 @@ impl<S: Space> Mobility<S> {
         self.freedoms(true) > 0
     }
 
-    /// Returns along how many axes the body moves, and with `turns` about how many it turns.
+    /// Returns the number of axes along which the body moves, and with `turns` also the number
+    /// about which it rotates.
     pub fn freedoms(&self, turns: bool) -> usize {
         let about = if turns && self.turns() { S::Spin::N } else { 0 };
         (0..S::D).filter(|k| self.mass[*k] > 0.0).count() + about
@@ -183,7 +186,7 @@ impl<S: Space> Mobility<S> {
 
     /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic
     /// inertia (1/(kg m^2)).
-    pub fn quickest(&self) -> f64 {
+    pub fn largest_inverse_inertia(&self) -> f64 {
         let n = S::Spin::N;
         let row = |i: usize| (0..n).map(|j| self.inertia.entry(i, j).abs()).sum::<f64>();
         (0..n).map(row).fold(0.0, f64::max)
@@ -205,7 +208,7 @@ impl<S: Space> Mobility<S> {
         shift + self.energy_of_turning(dw)
     }
 
-    /// Returns twice the energy of a change of rotation, where the inertia has directions (J).
+    /// Returns twice the energy of a change of rotation for an anisotropic inertia (J).
     #[inline(never)]
     fn energy_of_turning(&self, dw: &S::Spin) -> f64 {
         let inertia = self.inertia.inverse();

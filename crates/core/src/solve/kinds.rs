@@ -1,13 +1,13 @@
-//! The kinds of contacts between rigid bodies, in the order of the iteration. A new kind is a file
-//! in [`row`](super::row) and a line here.
+//! The kinds of contacts between rigid bodies, in the order of the iteration. A new kind needs a
+//! file in [`row`](super::row) and a line here.
 
 use super::form::ContactForm;
 use super::row::{Bonded, Full, Plain, Row, RowKind, Unbonded};
 use super::rows::Rows;
 use crate::geometry::space::Space;
 
-/// Declares the kinds: their rows as an enumeration, and `of_kind!`, which does the same with the
-/// rows of any kind.
+/// Declares the kinds: an enumeration of their rows, and the macro `of_kind!`, which applies the
+/// same code to the rows of any kind.
 macro_rules! kinds {
     ($dollar:tt $($(#[$doc:meta])* $name:ident: $law:ty,)+) => {
         /// The rows of one kind.
@@ -16,23 +16,23 @@ macro_rules! kinds {
             $($(#[$doc])* $name(Rows<S, $law>),)+
         }
 
-        /// How many kinds there are.
+        /// Number of kinds.
         pub(super) const KINDS: usize = [$(stringify!($name)),+].len();
 
         impl<S: Space> RowsOfKind<S> {
-            /// No rows, of each kind.
+            /// Returns empty rows of each kind.
             pub fn none() -> [Self; KINDS] {
                 [$(Self::$name(Rows::default())),+]
             }
 
-            /// The kind of a contact: the first that it can be of.
+            /// Returns the kind of a contact: the first kind that supports it.
             #[inline]
             pub fn kind(contact: &ContactForm<S>) -> usize {
                 let serves = [$(<$law as RowKind<S>>::serves(contact)),+];
                 serves.iter().position(|serves| *serves).unwrap_or(KINDS - 1)
             }
 
-            /// Bytes of a row of each kind, with the indices of its bodies.
+            /// Bytes of a row of each kind, including the indices of its bodies.
             pub const BYTES: [usize; KINDS] =
                 [$(size_of::<Row<S, $law>>() + size_of::<[u32; 2]>()),+];
         }
@@ -53,7 +53,7 @@ kinds! { $
     Plain: Plain,
     /// Contacts of two balls with springs, bonds, cohesion or tangential restitution.
     Full: Full<S>,
-    /// Contacts with lever arms, or of bodies that are free along some axes only, without bond.
+    /// Contacts without bond, with lever arms or between bodies that are free along some axes only.
     Unbonded: Unbonded<S>,
     /// Contacts with lever arms and bonds.
     Bonded: Bonded<S>,

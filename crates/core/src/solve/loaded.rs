@@ -1,12 +1,13 @@
 //! The points of a large system that carry impulses.
 //!
-//! An impulse on a node changes the velocities of all nodes of its system, and its column of the
-//! compliance would be read from memory in each update of a contact. Contacts act on points,
-//! weighted sums of nodes. Between two tests of convergence sweeps update the velocities of loaded
-//! points alone, by blocks of their own compliance that fit in a cache; those of the others stay as
-//! they were at the last test, and are found exactly where a point is loaded for the first time and
-//! for all nodes at the next test. Where contacts act on more points than nodes, it is the nodes
-//! that sweeps follow, so that the blocks never have more columns than there are nodes.
+//! An impulse on a node changes the velocities of all nodes of its system, and each update of a
+//! contact would read the column of the compliance from memory. Contacts act on points, which are
+//! weighted sums of nodes. Between two convergence tests sweeps update the velocities of loaded
+//! points only, with blocks of their own compliance that fit in a cache. The velocities of the
+//! other points keep their values from the last test; they are computed when a point is loaded for
+//! the first time, and for all nodes at the next test. Where contacts act on more points than there
+//! are nodes, sweeps update the nodes instead, so that the blocks never have more columns than
+//! there are nodes.
 
 use crate::geometry::space::{Space, VectorLike};
 use pulp::Arch;
@@ -14,19 +15,19 @@ use pulp::Arch;
 /// Column of a point that is not loaded.
 const NONE: u32 = u32::MAX;
 
-/// Points for which columns have place beyond those that are loaded when they are found.
+/// Number of points for which columns are allocated in addition to those loaded at that time.
 const SPARE: usize = 16;
 
-/// Adds what an impulse does to velocities: `rows` has one row for each axis of the impulse (1/kg),
-/// `velocities` are those of nodes one after the other (m/s).
+/// Adds the effect of an impulse to velocities: `rows` has one row for each axis of the impulse
+/// (1/kg), `velocities` the components of all nodes (m/s).
 pub(super) fn add_response<'a, S: Space>(
     velocities: &mut [f64],
     rows: impl Fn(usize) -> &'a [f64],
     impulse: &S::Vector,
 ) {
     let ([a, b], [p, q]) = ([rows(0), rows(1)], [impulse[0], impulse[1]]);
-    // Compiled for wide registers where the processor has them; products and sums are rounded one
-    // by one all the same.
+    // This is compiled for wide registers where the processor has them; products and sums are still
+    // rounded one by one.
     if S::D == 2 {
         Arch::new().dispatch(|| {
             for ((v, a), b) in velocities.iter_mut().zip(a).zip(b) {
@@ -43,20 +44,20 @@ pub(super) fn add_response<'a, S: Space>(
     }
 }
 
-/// Weighted sums of the nodes of a system, identified by their index: first each node alone, then
-/// those that are added.
+/// Weighted sums of the nodes of a system, identified by index: first each single node, then the
+/// added sums.
 #[derive(Clone, Debug)]
 pub(super) struct Points {
-    /// Where the terms of each point end.
+    /// End of the terms of each point.
     ends: Vec<u32>,
-    /// Places of nodes with their weights, point by point.
+    /// Nodes with their weights, point by point.
     terms: Vec<(u32, f64)>,
-    /// How many points are single nodes, which come first.
+    /// Number of points that are single nodes; these come first.
     nodes: u32,
-    /// The nodes that contacts act on, and how many they are.
+    /// Whether contacts act on each node, and the number of such nodes.
     touched: Vec<bool>,
     touched_nodes: usize,
-    /// How many of these are points of contacts by themselves.
+    /// Number of such nodes that are contact points by themselves.
     alone: Vec<bool>,
     alone_nodes: usize,
 }
@@ -76,7 +77,7 @@ impl Points {
         }
     }
 
-    /// Adds a point; gives its index.
+    /// Adds a point; returns its index.
     pub fn add(&mut self, terms: &[(u32, f64)]) -> u32 {
         let mut count = 0;
         for (node, weight) in terms {
@@ -113,7 +114,7 @@ impl Points {
         &self.terms[from as usize..self.ends[k] as usize]
     }
 
-    /// The sum of vectors that are given for nodes, one after the other.
+    /// Returns the weighted sum for a point of vectors given per node.
     #[inline]
     pub fn sum<S: Space>(&self, point: u32, all: &[f64]) -> S::Vector {
         if point < self.nodes {
@@ -131,22 +132,22 @@ impl Points {
 #[derive(Clone, Debug)]
 pub(super) struct LoadedPoints<S: Space> {
     points: Vec<u32>,
-    /// The place of each point of the system among the loaded ones, as far as one was loaded.
+    /// Index of each point of the system among the loaded ones, if it was loaded.
     index: Vec<u32>,
     /// Velocities of loaded points, one after the other (m/s).
     velocity: Vec<f64>,
-    /// Compliance between loaded points, column by column and in it by axis of the impulse; a
-    /// column is completed when an impulse needs it. Columns beyond those of loaded points are
-    /// memory of earlier steps.
+    /// Compliance between loaded points, by columns, and in a column by axis of the impulse; a
+    /// column is completed when an impulse needs it. Further columns are unused memory from earlier
+    /// steps.
     blocks: Vec<[Vec<f64>; 3]>,
-    /// Impulses since the velocities of all nodes were found (N s).
+    /// Impulses since the velocities of all nodes were last computed (N s).
     since: Vec<S::Vector>,
-    /// Velocities of all nodes for an impulse on a point, kept for its memory.
+    /// Buffer for the velocities of all nodes due to an impulse on a point.
     response: Vec<f64>,
 }
 
 impl<S: Space> LoadedPoints<S> {
-    /// No loaded point.
+    /// Creates a list without loaded points.
     pub fn new() -> Self {
         Self {
             points: Vec::new(),
@@ -158,7 +159,7 @@ impl<S: Space> LoadedPoints<S> {
         }
     }
 
-    /// Takes all loads away and keeps the memory.
+    /// Removes all loaded points, keeping the memory.
     pub fn clear(&mut self) {
         self.points.clear();
         self.index.clear();
@@ -166,7 +167,7 @@ impl<S: Space> LoadedPoints<S> {
         self.since.clear();
     }
 
-    /// The current velocity of a point, if it is loaded (m/s).
+    /// Returns the current velocity of a point, if it is loaded (m/s).
     #[inline]
     pub fn velocity(&self, point: u32) -> Option<S::Vector> {
         match self.index.get(point as usize) {
@@ -175,7 +176,8 @@ impl<S: Space> LoadedPoints<S> {
         }
     }
 
-    /// The index of a point among the loaded ones, which it joins, and whether it just did.
+    /// Returns the index of a point among the loaded ones, to which it is added, and whether it was
+    /// new.
     fn place(&mut self, point: u32) -> (usize, bool) {
         let at = point as usize;
         if self.index.len() <= at {
@@ -202,7 +204,7 @@ impl<S: Space> LoadedPoints<S> {
         self.since[k] += *impulse;
     }
 
-    /// Adds an impulse (N s) and what it does to loaded points; `all` are the velocities of all
+    /// Adds an impulse (N s) and its effect on loaded points; `all` holds the velocities of all
     /// nodes at the last test (m/s).
     pub fn push<'a>(
         &mut self,
@@ -225,9 +227,9 @@ impl<S: Space> LoadedPoints<S> {
         self.since[k] += *impulse;
     }
 
-    /// Completes the column of a loaded point. One that just joined the others also gets the
-    /// velocity that impulses since the last test give it: the compliance is symmetric, so that its
-    /// response to an impulse on another point is the response of that to one on it.
+    /// Completes the column of a loaded point. A new point also gets the velocity due to the
+    /// impulses since the last test: since the compliance is symmetric, its response to an impulse
+    /// on another point equals the response of that point to an impulse on it.
     fn complete<'a>(
         &mut self,
         k: usize,
@@ -252,7 +254,7 @@ impl<S: Space> LoadedPoints<S> {
             };
             let block = &mut self.blocks[k][axis];
             let known = block.len() / S::D;
-            // With room for points that are loaded later.
+            // Reserves room for points that are loaded later.
             block.reserve((self.points.len() + SPARE - known) * S::D);
             for a in &self.points[known..] {
                 let response = points.sum::<S>(*a, response);
@@ -267,7 +269,8 @@ impl<S: Space> LoadedPoints<S> {
         }
     }
 
-    /// Finds the velocities of all nodes (m/s) from those at the last test and the impulses since.
+    /// Computes the velocities of all nodes (m/s) from those at the last test and the impulses
+    /// since.
     pub fn settle<'a>(
         &mut self,
         points: &Points,
@@ -290,7 +293,7 @@ impl<S: Space> LoadedPoints<S> {
         self.adopt(points, all);
     }
 
-    /// Takes the velocities of all nodes (m/s), with no impulse since.
+    /// Sets the velocities of all nodes (m/s), without impulses since.
     pub fn adopt(&mut self, points: &Points, all: &[f64]) {
         self.since.fill(S::Vector::zero());
         for (velocity, point) in self.velocity.chunks_exact_mut(S::D).zip(&self.points) {

@@ -8,9 +8,9 @@ use super::row::SolverBodies;
 use crate::geometry::space::Space;
 use crate::threads::{for_chunks, map_ranges, worth_dividing};
 
-/// Bodies per task. Sums are formed per chunk and added in order.
+/// Number of bodies per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 2048;
-/// About what the work of a body takes (ns).
+/// Approximate time to compute the work of a body (ns).
 const WORK: f64 = 5.0;
 
 /// Sums over the contacts; the worst contact is searched among the rows in the order of the
@@ -49,12 +49,13 @@ fn measure_systems<S: Space>(problem: &mut Problem<S>, first: usize, sums: &mut 
     problem.tractions = tractions;
 }
 
-/// Unbalanced share of the work of the step below which it matters to no tolerance, being squared.
+/// Unbalanced share of the work of the step below which the squared share is negligible for any
+/// tolerance.
 const BALANCED: f64 = 1e-6;
-/// Contacts up to which powers of either sign matter, see [`super::error`].
+/// Number of contacts up to which powers of either sign matter, see [`super::error`].
 const FEW: usize = 500;
 
-/// Computes the reference values of the error that has these sums.
+/// Computes the reference values of the error from its sums.
 pub(super) fn scale<S: Space>(
     problem: &mut Problem<S>,
     free: Scale,
@@ -79,8 +80,8 @@ pub(super) fn scale<S: Space>(
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
     }
-    // Contacts yield little beside the motion of bodies, except where these hold each other: only
-    // then this is worth a pass.
+    // Compliance of contacts is small compared with the motion of bodies, except where bodies hold
+    // each other: only then is this pass needed.
     let few = problem.contacts() <= FEW;
     let unbalanced = if few {
         sums.unbalanced
@@ -98,8 +99,8 @@ pub(super) fn scale<S: Space>(
     }
 }
 
-/// The error in a norm; where the sums over all contacts are within the tolerance, of each
-/// connected set.
+/// Returns the error in a norm; where the sums over all contacts are within the tolerance, also
+/// that of each connected set.
 pub(super) fn error<S: Space>(
     problem: &mut Problem<S>,
     (norm, tolerance): (Norm, f64),
@@ -126,8 +127,8 @@ fn work_on_compliance<S: Space>(problem: &mut Problem<S>, parallel: bool) -> f64
     work + of_systems.sum::<f64>()
 }
 
-/// Computes the reference values that depend on the free velocities; leaves these in the body
-/// records.
+/// Computes the reference values that depend on the free velocities; leaves these velocities in the
+/// body records.
 pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Scale {
     problem.set_free(parallel);
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);

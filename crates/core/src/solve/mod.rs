@@ -44,7 +44,7 @@ pub use choose::solve;
 pub use chosen::{Attempt, SolvePath};
 pub use context::AutoState;
 pub use form::ContactForm;
-pub use nlgs::{Options, Report};
+pub use nlgs::{Report, SolverOptions};
 pub use nodal::NodalSystem;
 pub use problem::Problem;
 pub use requirements::{Features, Operator, refusal};

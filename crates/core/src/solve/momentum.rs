@@ -1,15 +1,15 @@
 //! Nesterov's momentum on the Gauss-Seidel iteration over bodies: an iteration starts from impulses
-//! that are moved on by a factor times what the previous iteration changed,
+//! extrapolated by a factor times their change in the previous iteration,
 //!
 //! y_k = p_k + beta_k (p_k - p_(k-1)),  beta_k = (t_k - 1) / t_(k+1),  t_(k+1) = (1 + sqrt(1 + 4
 //! t_k^2)) / 2  (Nesterov 1983).
 //!
-//! Velocities are moved on by the same factor, since they are linear in the impulses. Momentum
-//! starts anew (t = 1) where it points against what the iteration did,
-//! (y_k - p_(k+1)) . W (p_(k+1) - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015,
-//! measured by the kinetic energy of the velocities that the impulses make).
+//! Velocities are extrapolated by the same factor, since they are linear in the impulses. Momentum
+//! starts anew (t = 1) where it points against the change by the iteration, (y_k - p_(k+1)) . W
+//! (p_(k+1) - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015, measured by the kinetic
+//! energy of the velocity changes due to the impulses).
 //!
-//! With friction the contact problem is no minimisation, and full momentum may circle. Where the
+//! With friction the contact problem is not a minimisation, and full momentum may cycle. Where the
 //! residual does not fall from one convergence test to the next, t is limited to half of its
 //! largest value between them.
 
@@ -19,9 +19,9 @@ use super::row::{Parts, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{fill, map_chunks_of_two, worth_dividing};
 
-/// Bodies of a task.
+/// Number of bodies of a task.
 const CHUNK: usize = 2048;
-/// About what a pass over bodies takes for each (ns).
+/// Approximate time per body of a pass over bodies (ns).
 const EACH: f64 = 4.0;
 
 /// Velocities of a body after the last iteration, and their change in it (m/s).
@@ -39,9 +39,9 @@ struct BodyIncrement<S: Space> {
 /// The state of the momentum iteration.
 #[derive(Debug)]
 pub(super) struct MomentumIteration<S: Space> {
-    /// t_k of the module.
+    /// The sequence t_k of the module.
     t: f64,
-    /// beta_k.
+    /// The factor beta_k of the module.
     factor: f64,
     /// Upper bound of t_k.
     max_t: f64,
@@ -96,14 +96,14 @@ impl<S: Space> MomentumIteration<S> {
         };
     }
 
-    /// Halves the momentum that it may have, after a test at which the residual had not fallen.
+    /// Halves the bound on momentum, after a test at which the residual had not fallen.
     pub fn slow_down(&mut self) {
         self.max_t = (0.5 * self.peak_t).max(1.0);
         self.t = self.t.min(self.max_t);
         self.peak_t = self.t;
     }
 
-    /// Allows half as much momentum again, where it was bounded, after a test at which the residual
+    /// Increases the bound on momentum by half, if there is one, after a test at which the residual
     /// had fallen.
     pub fn speed_up(&mut self) {
         if self.peak_t >= self.max_t {
@@ -112,8 +112,8 @@ impl<S: Space> MomentumIteration<S> {
         self.peak_t = self.t;
     }
 
-    /// Extrapolates the velocities after an iteration; returns the factor by which the next one
-    /// extrapolates the impulses.
+    /// Extrapolates the velocities after an iteration; returns the factor by which the next
+    /// iteration extrapolates the impulses.
     pub fn advance(&mut self, solver_bodies: &mut [SolverBody<S>], parallel: bool) -> f64 {
         let next = |t: f64| 0.5 * (1.0 + (1.0 + 4.0 * t * t).sqrt());
         let next_t = next(self.t);
@@ -138,8 +138,8 @@ impl<S: Space> MomentumIteration<S> {
             along += part[1];
         }
         if self.factor * along > squared {
-            // Momentum points against the iteration: t = 1, and the extrapolation is taken back.
-            // This is rare.
+            // Momentum points against the iteration: t = 1, and the extrapolation is undone. This
+            // is rare.
             let lists = (&mut self.bodies[..], solver_bodies);
             map_chunks_of_two(divide, CHUNK, lists, |_, increments, bodies| {
                 for (last, b) in increments.iter().zip(bodies) {
@@ -158,7 +158,7 @@ impl<S: Space> MomentumIteration<S> {
 #[cfg(test)]
 mod tests {
     use crate::geometry::space::{Dim2, VectorLike};
-    use crate::solve::{ContactForm, Options, Problem, nlgs};
+    use crate::solve::{ContactForm, Problem, SolverOptions, nlgs};
     use nalgebra::{Matrix1, Vector1, Vector2};
 
     /// A column of `count` disks of 1 kg on a floor, each with velocity -1 m/s without contacts.
@@ -184,17 +184,17 @@ mod tests {
         problem
     }
 
-    /// A contact carries what is above it. A sweep passes a force on to the next contact, so that
-    /// without momentum the number of sweeps grows with the square of the height; with momentum in
-    /// proportion to it.
+    /// Each contact carries the load above it. A sweep passes a force on to the next contact, so
+    /// that the number of sweeps grows with the square of the height without momentum, and in
+    /// proportion to the height with momentum.
     #[test]
     fn a_column_is_solved_in_sweeps_that_grow_with_its_height() {
         for friction in [0.0, 0.3] {
             let sweeps = [100, 200, 400].map(|count| {
                 let mut problem = column(count, friction);
-                let options = Options {
+                let options = SolverOptions {
                     tolerance: 1e-12,
-                    ..Options::default()
+                    ..SolverOptions::default()
                 };
                 let report = nlgs::solve(&mut problem, &options);
                 assert!(report.converged);
@@ -210,22 +210,21 @@ mod tests {
         }
     }
 
-    /// With sliding contacts, and bodies that move fast together, the solution is that of plain
-    /// sweeps.
+    /// With sliding contacts and fast common motion, the solution equals that of plain sweeps.
     #[test]
     fn it_solves_the_same_problem() {
         for drift in [0.0, 1e3] {
             let solved = [true, false].map(|accelerated| {
                 let mut problem = column(60, 0.02);
                 for (k, body) in problem.free.iter_mut().enumerate() {
-                    // Pushed sideways, the more the higher: some contacts slide.
+                    // A sideways velocity that increases with height lets some contacts slide.
                     body.0.x = drift + 0.5 * k as f64;
                 }
-                let options = Options {
+                let options = SolverOptions {
                     tolerance: 1e-12,
                     max_iterations: 1_000_000,
                     accelerated,
-                    ..Options::default()
+                    ..SolverOptions::default()
                 };
                 let report = nlgs::solve(&mut problem, &options);
                 assert!(report.converged, "{report:?}");

@@ -17,7 +17,7 @@ use crate::geometry::space::Space;
 
 /// Solver options.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct SolverOptions {
     /// Error to reach.
     pub tolerance: f64,
     /// Norm of the error, see [`super::error`].
@@ -37,7 +37,7 @@ pub struct Options {
     pub parallel: bool,
 }
 
-impl Default for Options {
+impl Default for SolverOptions {
     fn default() -> Self {
         Self {
             tolerance: 1e-4,
@@ -59,20 +59,20 @@ pub struct Report {
     pub iterations: u32,
     /// Error, recomputed from the impulses at the end.
     pub error: f64,
-    /// Its parts.
+    /// Parts of the error.
     pub parts: ErrorParts,
     /// Whether the error is within the tolerance.
     pub converged: bool,
-    /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]:
-    /// the problem has no solution.
+    /// Whether the impulses grew until the velocities were lost in their rounding, see
+    /// [`Sums::lost_in_rounding`]: the problem has no solution.
     pub unbounded: bool,
-    /// Whether another solution was found, of more energy, in which a loaded contact slides that
-    /// sticks in the one taken, or the reverse: the step has several.
+    /// Whether another solution with more energy was found, in which a loaded contact slides that
+    /// sticks in the accepted one, or the reverse: the step has several solutions.
     pub several: bool,
-    /// Whether a loaded contact began to slide in a set of contacts that was too large to seek
-    /// another solution, see [`Problem::is_not_searched`].
+    /// Whether a loaded contact began to slide in a set of contacts that was too large for a search
+    /// for another solution, see [`Problem::is_not_searched`].
     pub not_searched: bool,
-    /// Whether it was one of a body that bodies with imposed or controlled motion squeeze.
+    /// Whether that contact is of a body squeezed by bodies with imposed or controlled motion.
     pub pinched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
@@ -83,7 +83,7 @@ pub struct Report {
 }
 
 /// Sorts the rows, computes velocities from the current impulses, and evaluates the error.
-pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &SolverOptions) -> Report {
     if problem.contacts() == 0 {
         return Report {
             converged: true,
@@ -96,7 +96,10 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
 }
 
 /// Computes velocities from the current impulses and evaluates the error.
-pub(super) fn check_convergence<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn check_convergence<S: Space>(
+    problem: &mut Problem<S>,
+    options: &SolverOptions,
+) -> Report {
     let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
@@ -107,14 +110,14 @@ pub(super) fn check_convergence<S: Space>(problem: &mut Problem<S>, options: &Op
         error,
         parts: sums.parts(&scale),
         converged,
-        unbounded: sums.drowned(free.free, converged),
+        unbounded: sums.lost_in_rounding(free.free, converged),
         worst: problem.pushed(sums.worst_at),
         ..Report::default()
     }
 }
 
 /// Iterates in place until the problem is solved or the iteration limit is reached.
-pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub fn solve<S: Space>(problem: &mut Problem<S>, options: &SolverOptions) -> Report {
     if problem.contacts() == 0 {
         return Report {
             converged: true,
@@ -129,7 +132,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let mut acceleration = options
         .accelerated
         .then(|| Acceleration::new(problem, every, options.parallel));
-    let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
+    let (mut relaxation, mut caution) = (options.relaxation, RelaxationControl::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
     let mut next = every.div_ceil(2);
@@ -138,18 +141,18 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         while report.iterations < last {
             let momentum = acceleration.as_mut();
             let momentum = momentum.and_then(|a| a.momentum(problem, report.iterations));
-            // The iteration before a test is not relaxed, so that its impulses are admissible; nor
-            // is one with momentum, which takes the place of relaxation.
+            // The iteration before a test is not relaxed, so that its impulses are admissible; an
+            // iteration with momentum is not relaxed either.
             let plain = report.iterations + 1 == last || momentum.is_some();
             let relaxation = if plain { 1.0 } else { relaxation };
             sweep(problem, relaxation, options.parallel, momentum);
             report.iterations += 1;
         }
         let ended = report.iterations >= options.max_iterations;
-        // The velocities have accumulated rounding errors: convergence is decided with velocities
-        // recomputed from the impulses. The first tests, which often succeed, recompute them at
-        // once; so do all with large systems, where finding the velocities of all nodes costs the
-        // same in either way, and the pass over the other contacts little beside it.
+        // The velocities have accumulated rounding errors, so that convergence is decided with
+        // velocities recomputed from the impulses. The first tests, which often succeed, recompute
+        // them at once. So do all tests with large systems, where the velocities of all nodes cost
+        // the same in either case, and the pass over the other contacts little in comparison.
         let fresh = report.iterations <= every || large;
         if fresh {
             problem.reload(options.parallel);
@@ -171,7 +174,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             report.error = error(problem, limit, &sums, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
-            report.unbounded = sums.drowned(free.free, report.converged);
+            report.unbounded = sums.lost_in_rounding(free.free, report.converged);
             if ended || report.converged {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;
@@ -217,8 +220,8 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
 }
 
 impl Report {
-    /// Adds another solve of the same step: iterations are summed, what was found of several
-    /// solutions is kept, the rest is taken from the last solve.
+    /// Adds another solve of the same step: iterations are summed, findings of several solutions
+    /// are kept, and the rest is taken from the last solve.
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
@@ -233,12 +236,12 @@ impl Report {
 
 /// Controls the relaxation. Over-relaxation has no convergence proof with friction; where the
 /// residual grows or cycles, it is reduced.
-struct Caution {
+struct RelaxationControl {
     least: f64,
     tests: u32,
 }
 
-impl Default for Caution {
+impl Default for RelaxationControl {
     fn default() -> Self {
         Self {
             least: f64::INFINITY,
@@ -247,7 +250,7 @@ impl Default for Caution {
     }
 }
 
-impl Caution {
+impl RelaxationControl {
     /// Growth of the squared residual that triggers a reduction.
     const GROWTH: f64 = 4.0;
     /// Number of tests without a reduction of the squared residual by a hundredth that triggers a
@@ -282,7 +285,7 @@ impl<S: Space> Problem<S> {
         self.moments.iter().for_each(|row| row.store(out));
     }
 
-    /// Restores them, and recomputes the velocities.
+    /// Restores the components, and recomputes the velocities.
     pub(super) fn restore(&mut self, mut from: &[f64]) {
         let from = &mut from;
         for rows in &mut self.rows {
@@ -294,8 +297,9 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Takes impulses and moments in the order pushed, and recomputes the velocities. A contact
-    /// without one (`None`, where both bodies are immovable) is solved for the current velocities.
+    /// Sets impulses and moments in the order pushed, and recomputes the velocities. A contact
+    /// without an impulse (`None`, where both bodies are immovable) is solved for the current
+    /// velocities.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
             match impulse {
@@ -312,7 +316,7 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Takes the impulses and moments of some contacts, and recomputes the velocities.
+    /// Sets the impulses and moments of some contacts, and recomputes the velocities.
     pub(super) fn adopt_some(&mut self, impulses: &[(u32, S::Vector)], moments: &[(u32, S::Spin)]) {
         for (k, impulse) in impulses {
             self.set(self.places[*k as usize], impulse);
@@ -333,7 +337,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Solves a contact that moves nothing for the current velocities.
+    /// Solves a contact between immovable bodies for the current velocities.
     fn solve_at_rest(&mut self, place: RowPlace) {
         let bodies = &mut self.solver_bodies;
         match place {
@@ -346,7 +350,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// rho of the natural map; 0 for a contact that moves nothing.
+    /// Returns rho of the natural map; 0 for a contact that moves nothing.
     fn rho(&self, place: RowPlace) -> f64 {
         match place {
             RowPlace::Row { kind, row } => {
@@ -356,8 +360,8 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Solves the contacts and moments that move nothing: their impulses follow from velocities
-    /// that are given, and methods that check the start first would leave them as they start.
+    /// Solves the contacts and moments that move nothing: their impulses follow from given
+    /// velocities, and methods that check the start first would leave them at their initial values.
     fn solve_held(&mut self) {
         for k in 0..self.places.len() {
             if self.rho(self.places[k]) == 0.0 {
@@ -429,7 +433,7 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     }
 }
 
-/// Solves every contact once; with momentum from impulses and velocities that it has moved on.
+/// Solves every contact once; with momentum from extrapolated impulses and velocities.
 fn sweep<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
@@ -481,11 +485,12 @@ mod tests {
     use crate::solve::form::ContactForm;
     use nalgebra::Vector2;
 
-    /// Over-relaxation is halved where the residual grows to more than four times the least, or
-    /// does not fall by a hundredth in twenty tests, and given up below 0.05.
+    /// The excess of the relaxation over 1 is halved where the residual grows to more than four
+    /// times the smallest one, or does not fall by a hundredth in twenty tests, and set to zero
+    /// below 0.05.
     #[test]
     fn caution_reduces_the_relaxation() {
-        let mut caution = Caution::default();
+        let mut caution = RelaxationControl::default();
         for residual in [1.0, 0.5, 1.9, 0.4] {
             assert_eq!(caution.next_relaxation(residual, 1.5), 1.5);
         }

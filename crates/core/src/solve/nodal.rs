@@ -6,37 +6,36 @@ use crate::bodies::{Compliance, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-/// The nodes of a system that contacts of the step act on. The solver knows nothing else of it; the
-/// system finds the rest of its velocities from the impulses on these nodes once the problem is
-/// solved.
+/// The nodes of a system on which contacts of the step act. This is all that the solver knows of
+/// the system, which computes its other velocities from the impulses on these nodes once the
+/// problem is solved.
 ///
-/// Copies share the compliance: a step that is solved several times hands copies of one to the
-/// problem.
+/// Copies share the compliance: a step that is solved several times passes copies to the problem.
 #[derive(Clone, Debug)]
 pub struct NodalSystem<S: Space> {
     /// Ids of the nodes in the system, in increasing order.
     pub nodes: Vec<u32>,
-    /// Their velocities without contacts (m/s).
+    /// Velocities of the nodes without contacts (m/s).
     pub free: Vec<S::Vector>,
     compliance: ComplianceColumns<S>,
-    /// Velocities of all nodes, one after the other (m/s); of a large system those at the last
+    /// Components of the velocities of all nodes (m/s); for a large system those at the last
     /// [`Self::settle`].
     pub(super) velocity: Vec<f64>,
-    /// What contacts act on.
+    /// Points on which contacts act.
     points: Points,
-    /// What sweeps follow of a large system.
+    /// Points that sweeps update, for a large system.
     pub(super) loaded: Option<LoadedPoints<S>>,
 }
 
-/// Fewest nodes of a large system, of which sweeps follow loaded points alone. Below that all
-/// columns fit in a cache.
+/// Smallest number of nodes of a large system, in which sweeps update loaded points only. The
+/// columns of smaller systems all fit in a cache.
 const LARGE: usize = 64;
 
-/// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an
-/// impulse on one are read in a row in each update of a contact.
+/// Compliance of the nodes, by columns as in [`Compliance`]: each update of a contact reads the
+/// responses of all nodes to an impulse on one node consecutively.
 #[derive(Clone, Debug)]
 enum ComplianceColumns<S: Space> {
-    /// Blocks of the step, one after the other.
+    /// Blocks of the step, stored consecutively.
     Own(Arc<Vec<f64>>),
     /// Compliance that the system keeps, with the columns of touched nodes.
     Retained(Arc<Compliance<S>>),
@@ -53,15 +52,15 @@ impl<S: Space> ComplianceColumns<S> {
 }
 
 impl<S: Space> NodalSystem<S> {
-    /// Takes all nodes of a compliance that the system keeps, with their free velocities (m/s).
-    /// Contacts act on nodes whose columns are there.
+    /// Creates the system from a compliance that it keeps, with the free velocities of all nodes
+    /// (m/s). Contacts may act on nodes whose columns are computed.
     pub fn kept(compliance: Arc<Compliance<S>>, free: Vec<S::Vector>) -> Self {
         let nodes = compliance.nodes().to_vec();
         Self::with(nodes, free, ComplianceColumns::Retained(compliance))
     }
 
-    /// Takes nodes in increasing order, with their free velocities (m/s) and their compliance, row
-    /// by row (1/kg).
+    /// Creates the system from nodes in increasing order, with their free velocities (m/s) and
+    /// their compliance, row by row (1/kg).
     pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: &[S::Matrix]) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());
@@ -91,19 +90,19 @@ impl<S: Space> NodalSystem<S> {
         system
     }
 
-    /// Compliance P_a A^-1 P_b^T of two of its nodes, by their places in the list (1/kg).
+    /// Returns the compliance P_a A^-1 P_b^T of two nodes, by their indices in the list (1/kg).
     pub(super) fn block(&self, a: u32, b: u32) -> S::Matrix {
         block_of::<S>(self.column(b as usize), self.nodes.len(), a as usize)
     }
 
-    /// The responses of all nodes for an impulse on one.
+    /// Returns the responses of all nodes to an impulse on one node.
     fn column(&self, at: usize) -> &[f64] {
         let column = self.compliance.column(at, self.nodes.len());
         debug_assert!(!column.is_empty(), "contacts act on touched nodes alone");
         column
     }
 
-    /// The velocities that impulses on its nodes give.
+    /// Returns the velocities due to impulses on the nodes.
     pub(super) fn response(&self, impulses: &[S::Vector]) -> Vec<S::Vector> {
         let row = S::D * impulses.len();
         let mut velocities = vec![0.0; row];
@@ -117,20 +116,20 @@ impl<S: Space> NodalSystem<S> {
         all.map(S::Vector::from_slice).collect()
     }
 
-    /// Adds a weighted sum of its nodes, by their places in the list; gives the index of the point.
-    /// A node alone is a point with its place.
+    /// Adds a point as a weighted sum of nodes, by their indices in the list; returns its index.
+    /// The point of a single node has the index of the node.
     pub(super) fn add_point(&mut self, terms: &[(u32, f64)]) -> u32 {
         self.points.add(terms)
     }
 
-    /// Whether sweeps follow loaded points alone, so that velocities are those of the last
-    /// [`Self::settle`] elsewhere.
+    /// Returns whether sweeps update loaded points only, so that the other velocities are those of
+    /// the last [`Self::settle`].
     pub(super) fn is_large(&self) -> bool {
         self.loaded.is_some()
     }
 
-    /// The current velocity of a point (m/s). Of a large system it is exact for loaded points, and
-    /// for the others after [`Self::settle`].
+    /// Returns the current velocity of a point (m/s). In a large system it is exact for loaded
+    /// points, and for the others after [`Self::settle`].
     #[inline]
     pub(super) fn velocity(&self, point: u32) -> S::Vector {
         let Some(loaded) = &self.loaded else {
@@ -149,13 +148,13 @@ impl<S: Space> NodalSystem<S> {
         })
     }
 
-    /// Whether sweeps follow nodes and not points, of a large system on which contacts act on more
-    /// points than nodes.
+    /// Returns whether sweeps update nodes instead of points, for a large system on which contacts
+    /// act at more points than there are nodes.
     pub(super) fn follows_nodes(&self) -> bool {
         self.points.outnumber_nodes()
     }
 
-    /// Adds what an impulse on a point does to velocities.
+    /// Adds the effect of an impulse on a point to the velocities.
     pub(super) fn push(&mut self, point: u32, impulse: &S::Vector) {
         let by_nodes = self.follows_nodes();
         let (compliance, count) = (&self.compliance, self.nodes.len());
@@ -182,7 +181,8 @@ impl<S: Space> NodalSystem<S> {
         }
     }
 
-    /// Adds what one of many impulses does to velocities, which are right after [`Self::settle`].
+    /// Adds the effect of one of many impulses to the velocities, which are valid after
+    /// [`Self::settle`].
     pub(super) fn load(&mut self, point: u32, impulse: &S::Vector) {
         let by_nodes = self.follows_nodes();
         match &mut self.loaded {
@@ -196,7 +196,7 @@ impl<S: Space> NodalSystem<S> {
         }
     }
 
-    /// Finds the velocities of all nodes.
+    /// Computes the velocities of all nodes.
     pub(super) fn settle(&mut self) {
         let (compliance, count) = (&self.compliance, self.nodes.len());
         if let Some(loaded) = &mut self.loaded {

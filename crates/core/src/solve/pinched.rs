@@ -1,5 +1,5 @@
-//! Bodies that controlled bodies squeeze, as debris between first bodies: where friction lets them
-//! go, another solution may hold them.
+//! Bodies squeezed by controlled bodies, such as debris between first bodies: where friction
+//! releases them, another solution may hold them.
 
 use super::form::ContactForm;
 
@@ -20,8 +20,9 @@ impl<S: Space> Problem<S> {
         self.controlled.binary_search(body).is_ok()
     }
 
-    /// Contacts of controlled bodies with others that have two or more such, in order; none where
-    /// systems act. Rows are looked through, which take less memory than forms.
+    /// Returns the contacts of controlled bodies with bodies that touch two or more controlled
+    /// ones, in order; none where systems act. Rows are read instead of forms, since they take less
+    /// memory.
     pub(super) fn of_several_controlled(&self) -> Vec<usize> {
         if self.controlled.is_empty() || !self.systems.is_empty() {
             return Vec::new();
@@ -44,7 +45,8 @@ impl<S: Space> Problem<S> {
         found
     }
 
-    /// Gives the bodies of each contact between rigid bodies, and its index as pushed.
+    /// Passes the bodies of each contact between rigid bodies, and its index as pushed, to a
+    /// function.
     fn each_body_pair(&self, give: &mut impl FnMut([u32; 2], u32)) {
         for (rows, pushed) in self.rows.iter().zip(&self.of_kind) {
             of_kind!(rows, rows => for (pair, k) in rows.pairs().iter().zip(rows.sequence()) {
@@ -53,17 +55,17 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Of these contacts those of a body, not a controlled one, which controlled bodies squeeze: by
-    /// two loaded ones of `of_several` ([`Self::of_several_controlled`]) whose friction cones lie
-    /// in each other, so that no other load need press them (Nguyen, "Constructing force-closure
-    /// grasps", Int. J. Robotics Research 7, 1988).
+    /// Returns those of the given contacts whose body, not a controlled one, is squeezed by
+    /// controlled bodies: by two loaded contacts of `of_several` ([`Self::of_several_controlled`])
+    /// whose friction cones contain the line between the contact points, so that no other load is
+    /// needed (Nguyen, "Constructing force-closure grasps", Int. J. Robotics Research 7, 1988).
     pub(super) fn of_pinched(
         &self,
         forms: &[ContactForm<S>],
         of_several: &[usize],
         contacts: impl Iterator<Item = usize>,
     ) -> Vec<usize> {
-        // The body that is held, and the direction in which it is pushed.
+        // Returns the held body, and the direction in which it is pushed.
         let held = |form: &ContactForm<S>| {
             let [a, b] = form.bodies;
             match [&a, &b].map(|b| self.is_controlled(b)) {
@@ -105,7 +107,7 @@ mod tests {
     use nalgebra::Vector2;
 
     /// A grain between two bodies that push it along these directions (degrees), with this
-    /// friction; the loads are of 1 N s.
+    /// friction; both loads are 1 N s.
     fn between(directions: [f64; 2], friction: f64, controlled: &[u32]) -> Vec<usize> {
         let mut problem = Problem::of_unit_bodies(3);
         let form = |k: usize| {
@@ -133,8 +135,9 @@ mod tests {
         problem.of_pinched(&forms, &several, 0..2)
     }
 
-    /// Two that push against each other squeeze, in a corner only where the friction angles bridge
-    /// what the directions lack; not where one of them is free, nor where all three are controlled.
+    /// Two opposite controlled bodies squeeze; two at an angle only where the friction angles are
+    /// large enough. There is no squeezing where one of them is free, nor where all three bodies
+    /// are controlled.
     #[test]
     fn what_is_in_both_friction_cones_is_squeezed() {
         assert_eq!(between([0.0, 180.0], 0.1, &[2, 1]), [0, 1]);

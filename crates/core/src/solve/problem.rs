@@ -1,6 +1,6 @@
 //! The contact problem of a step: bodies as velocity records, contacts as rows.
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::form::{ContactForm, ContactSolution, Mobility, RowPlace};
 use super::kinds::{KINDS, RowsOfKind, of_kind};
 use super::loaded::LoadedPoints;
@@ -12,11 +12,11 @@ use crate::geometry::space::Space;
 /// The contact problem of one step. Push the bodies, then the contacts.
 ///
 /// # Examples
-/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s
-/// downwards, and 0.001 m/s sideways, which is within what Coulomb friction with mu = 0.5 holds.
+/// A disk of 2 kg rests on an immovable plane. In a step of 1 ms gravity would accelerate it by
+/// 0.01 m/s downwards and 0.001 m/s sideways, which Coulomb friction with mu = 0.5 can hold.
 /// ```
 /// use fretwork_core::geometry::space::{Dim2, VectorLike};
-/// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
+/// use fretwork_core::solve::{ContactForm, Problem, SolverOptions, nlgs};
 /// use nalgebra::{Matrix1, Vector1, Vector2};
 ///
 /// let mut problem = Problem::<Dim2>::default();
@@ -30,7 +30,8 @@ use crate::geometry::space::Space;
 ///     friction: 0.5,
 ///     ..ContactForm::default()
 /// });
-/// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
+/// let options = SolverOptions { tolerance: 1e-10, ..SolverOptions::default() };
+/// let report = nlgs::solve(&mut problem, &options);
 /// assert!(report.converged);
 /// // The impulse that stops it: its mass times the change of velocity (N s).
 /// let impulse = problem.solution(0).impulse;
@@ -47,18 +48,18 @@ pub struct Problem<S: Space> {
     pub(super) masses: Vec<Mobility<S>>,
     /// Contacts between rigid bodies, by kind.
     pub(super) rows: [RowsOfKind<S>; KINDS],
-    /// Contacts with dynamical systems; they run after those above, in order.
+    /// Contacts with dynamical systems; the iteration visits them after the rows above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
     pub(super) tractions: Tractions,
-    /// The dynamical systems, as far as contacts see them.
+    /// The nodes of the dynamical systems on which contacts act.
     pub(super) systems: Vec<NodalSystem<S>>,
-    /// Memory of large systems that were solved before.
+    /// Memory of large systems of earlier problems.
     pub(super) loaded: Vec<LoadedPoints<S>>,
-    /// Moments of contacts that resist rotation; they run last, in order.
+    /// Moments of contacts that resist rotation; the iteration visits them last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<RowPlace>,
     /// Connected sets of the contacts, as last computed.
-    pub(super) connected: Connected,
+    pub(super) connected: ConnectedSets,
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
@@ -81,7 +82,7 @@ impl<S: Space> Default for Problem<S> {
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            connected: Connected::default(),
+            connected: ConnectedSets::default(),
             compliant: false,
             of_kind: Default::default(),
             controlled: Vec::new(),
@@ -190,17 +191,17 @@ impl<S: Space> Problem<S> {
         (record.v, record.s * (1.0 / self.lengths[body]))
     }
 
-    /// Finds its connected sets, unless those that are known are of the same contacts: packings at
-    /// rest keep theirs from step to step. Takes them out of the problem, to which they are to be
-    /// given back.
-    pub(super) fn take_connected(&mut self) -> Connected {
+    /// Finds the connected sets, unless the stored sets belong to the same contacts: packings at
+    /// rest keep them from step to step. The sets are moved out of the problem, and must be
+    /// returned to it.
+    pub(super) fn take_connected(&mut self) -> ConnectedSets {
         let of = self.contacts_of_rows();
         let known = std::mem::take(&mut self.connected);
         if of.is_some() && known.of == of && known.controlled == self.controlled {
             return known;
         }
         let movable = self.movable(false);
-        let mut sets = Connected::new(&movable, |found| {
+        let mut sets = ConnectedSets::new(&movable, |found| {
             for rows in &self.rows {
                 of_kind!(rows, rows => rows.pairs().iter().for_each(|pair| found(*pair)));
             }
@@ -214,8 +215,8 @@ impl<S: Space> Problem<S> {
         sets
     }
 
-    /// What distinguishes its contacts of rigid bodies from those of another step; `None` where
-    /// they are not sorted, or systems act.
+    /// Returns numbers that identify the contacts of rigid bodies of this step; `None` where they
+    /// are not sorted, or systems act.
     fn contacts_of_rows(&self) -> Option<[u64; KINDS]> {
         let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
         let known = self.rows.iter().all(sorted) && self.systems.is_empty();
@@ -223,8 +224,8 @@ impl<S: Space> Problem<S> {
         Some(rows.map(|rows| of_kind!(rows, rows => rows.changes())))
     }
 
-    /// Freedoms of the bodies of each connected set.
-    pub(super) fn freedoms(&self, sets: &Connected) -> Vec<usize> {
+    /// Returns the number of degrees of freedom of the bodies of each connected set.
+    pub(super) fn freedoms(&self, sets: &ConnectedSets) -> Vec<usize> {
         let mut freedoms = vec![0; sets.len()];
         for (body, mobility) in (0..).zip(&self.masses) {
             if let Some(set) = sets.of_body(body) {
@@ -237,7 +238,7 @@ impl<S: Space> Problem<S> {
 
 #[cfg(test)]
 impl Problem<crate::geometry::space::Dim2> {
-    /// Bodies at rest of unit mass, inertia and length.
+    /// Creates a problem of bodies at rest of unit mass, inertia and length.
     pub(super) fn of_unit_bodies(count: usize) -> Self {
         use nalgebra::{Matrix1, Vector1, Vector2};
         let mut problem = Self::default();

@@ -1,35 +1,35 @@
-//! What each method needs of a problem, and what a problem has: a method that cannot serve a
-//! problem is refused with a sentence, and `auto` passes it over.
+//! Requirements of each method and features of a problem: a method that cannot solve a problem is
+//! refused with a sentence, and `auto` skips it.
 
 use super::local::solver::Method;
 use super::problem::Problem;
 use crate::geometry::space::Space;
 
-/// How W = H A^-1 H^T can be had, from the least to the most.
+/// How W = H A^-1 H^T is available, in ascending order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Operator {
-    /// Contact by contact, velocities updated in place, with the diagonal blocks.
+    /// Contact by contact, with velocities updated in place and the diagonal blocks.
     Sweep,
-    /// Products with all impulses at a time.
+    /// Products of W with all impulses at once.
     Products,
-    /// The matrix, or a factorisation of it.
+    /// The matrix W, or a factorisation of it.
     #[default]
     Matrix,
 }
 
-/// What of a problem not every method serves.
+/// Features of a problem that not every method supports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Features {
-    /// Rolling or spinning friction: a bound that is another unknown.
+    /// Rolling or spinning friction: the bound depends on another unknown.
     pub rotation: bool,
     /// Shear cohesion: friction without pressure.
     pub cohesion: bool,
-    /// The most that can be had of W.
+    /// The strongest available form of W.
     pub operator: Operator,
 }
 
 impl Method {
-    /// The least of W that it works with in a step.
+    /// Returns the weakest form of W with which the method works in a step.
     pub fn operator(self) -> Operator {
         match self {
             Self::Auto | Self::Nlgs | Self::Anderson => Operator::Sweep,
@@ -39,8 +39,8 @@ impl Method {
         }
     }
 
-    /// What a method asks of W in a problem in local form, where sweeps go over the rows of the
-    /// matrix.
+    /// Returns the form of W that a method needs in a problem in local form, where sweeps read the
+    /// rows of the matrix.
     pub fn operator_in_local_form(self) -> Operator {
         match self.operator() {
             Operator::Products => Operator::Products,
@@ -50,8 +50,8 @@ impl Method {
 }
 
 impl<S: Space> Problem<S> {
-    /// The most of W that can be had. The contacts of a dynamical system are all coupled: where
-    /// there are too many of them for a matrix, products are left.
+    /// Returns the strongest available form of W. All contacts of a dynamical system are coupled:
+    /// where they are too many for a matrix, only products are available.
     pub fn operator(&self) -> Operator {
         if self.coupled_by_systems() > MAX_COUPLED {
             Operator::Products
@@ -60,7 +60,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Entries of W between contacts of the same system, at most; zero without systems.
+    /// Largest number of entries of W between contacts of the same system; zero without systems.
     pub(super) fn coupled_by_systems(&self) -> f64 {
         let mut contacts = vec![0.0; self.systems.len()];
         for row in &self.of_systems {
@@ -78,10 +78,11 @@ impl<S: Space> Problem<S> {
     }
 }
 
-/// About 100 MB for W, and a factorisation of the order of ten seconds.
+/// Limit of about 100 MB for W, and of about ten seconds for a factorisation.
 const MAX_COUPLED: f64 = 1.2e7;
 
-/// Why a method cannot solve a problem with these features, if it cannot: what to take instead.
+/// Returns why a method cannot solve a problem with these features, and what to use instead; `None`
+/// if it can.
 pub fn refusal(method: Method, features: &Features) -> Option<&'static str> {
     if method.operator() > features.operator {
         return Some(
@@ -109,7 +110,7 @@ mod tests {
     use crate::solve::local::law::Law;
     use crate::solve::local::state::{Budget, Iteration};
 
-    /// An operator that gives products alone, as a transform would.
+    /// An operator that provides products only.
     struct Products(BlockMatrix<2>);
 
     impl Delassus<2> for Products {
@@ -130,8 +131,8 @@ mod tests {
         }
     }
 
-    /// Two contacts that press on each other a little: methods that say that products are enough
-    /// for them solve it without the matrix, the others leave it as it is.
+    /// Two weakly coupled contacts: methods that declare products as sufficient solve the problem
+    /// without the matrix; the others leave it unchanged.
     #[test]
     fn methods_work_with_what_they_ask_for() {
         let mut matrix = BlockMatrix::new(vec![[[1.0, 0.1], [0.1, 2.0]]; 2]);

@@ -1,8 +1,8 @@
 //! The third part of the norm [`Norm::Balance`](super::error::Norm::Balance) by connected sets:
-//! what one of them gets wrong is not made up for by others, which it does not touch. Asked for
-//! where the sums over all contacts say that a step is solved.
+//! errors of one set are not balanced by other sets, which it does not touch. It is computed where
+//! the sums over all contacts are within the tolerance.
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::error::{Scale, Sums};
 use super::kinds::of_kind;
 use super::problem::Problem;
@@ -11,14 +11,15 @@ use super::rows::Rows;
 use crate::geometry::space::Space;
 use crate::lanes::{Batch, LaneVector};
 
-/// Share of the sums over all contacts from which their difference from those of the other sets is
-/// more than rounding.
+/// Share of the sums over all contacts above which their difference from the sums of the other sets
+/// is more than rounding.
 const KNOWN: f64 = 1e-6;
-/// Share of the work of all contacts that the work of a set is taken to be at least: a grain that
-/// sticks to a wall carries nothing, and what is left of its residuals is no error.
+/// Smallest share of the work of all contacts that is used as the work of a set: a grain that
+/// sticks to a wall carries no load, and its small residuals are no error.
 const LEAST: f64 = 1e-4;
 
-/// The error of the worst set, given the sums over all; 0 where all contacts are of one.
+/// Returns the error of the worst set, given the sums over all contacts; 0 where all contacts are
+/// in one set.
 pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Scale) -> f64 {
     let sets = problem.take_connected();
     let worst = if sets.len() < 2 {
@@ -32,12 +33,12 @@ pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Sca
 
 fn of_sets<S: Space>(
     problem: &mut Problem<S>,
-    sets: &Connected,
+    sets: &ConnectedSets,
     sums: &Sums,
     scale: &Scale,
 ) -> f64 {
-    // Nearly all contacts of a packing are of one set, whose sums are what others leave of those
-    // over all.
+    // In a packing nearly all contacts are in one set, whose sums follow from the total by
+    // subtracting the other sets.
     let largest = (0..sets.len()).max_by_key(|k| sets.contacts(*k));
     let most = largest
         .filter(|k| problem.systems.is_empty() && 2 * sets.contacts(*k) > problem.contacts());
@@ -53,7 +54,7 @@ fn of_sets<S: Space>(
         let residual = rest(sums.residual, |s| s.0.residual);
         let total = scale.work.max(scale.energy);
         if unbalanced <= KNOWN * sums.unbalanced {
-            // Below what any tolerance asks for.
+            // The error is below that of any tolerance.
         } else if work.max(energy) > KNOWN * total {
             all[most].0.unbalanced = unbalanced;
             all[most].0.residual = residual;
@@ -83,10 +84,10 @@ fn of_sets<S: Space>(
     errors.fold(0.0, f64::max)
 }
 
-/// The sums of each set but one.
+/// Returns the sums of each set but one.
 fn apart<S: Space>(
     problem: &mut Problem<S>,
-    sets: &Connected,
+    sets: &ConnectedSets,
     without: Option<usize>,
 ) -> Vec<(Sums, Scale)> {
     let mut out = vec![(Sums::default(), Scale::default()); sets.len()];

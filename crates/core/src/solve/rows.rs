@@ -11,23 +11,24 @@ use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, worth_dividing};
 use std::ops::Range;
 
-/// Contacts per task. Sums are formed per chunk and added in order.
+/// Number of contacts per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 512;
-/// About what making a row takes (ns).
+/// Approximate time to create a row (ns).
 const MAKE: f64 = 15.0;
-/// About what a visit of a row takes (ns).
+/// Approximate time of a visit of a row (ns).
 const VISIT: f64 = 10.0;
-/// About what a contact takes in a sweep, which threads share from about 10,000 contacts on (ns).
+/// Approximate time per contact of a sweep (ns), set so that threads share it from about 10,000
+/// contacts on.
 const ORDERED: f64 = 14.0;
 
 /// The contacts of one kind. Rows are added in any order and sorted once.
 #[derive(Debug)]
 pub(in crate::solve) struct Rows<S: Space, K: RowKind<S>> {
     rows: Vec<Row<S, K>>,
-    /// Their bodies, until they are sorted.
+    /// Bodies of the rows, until they are sorted.
     pushed: Vec<[u32; 2]>,
     order: ContactOrder,
-    /// Whether the rows are in that order.
+    /// Whether the rows are in the order of the iteration.
     sorted: bool,
 }
 
@@ -54,12 +55,12 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.rows.len()
     }
 
-    /// Whether bonds may act on them.
+    /// Returns whether bonds may act on contacts of this kind.
     pub fn may_have_bonds(&self) -> bool {
         K::BONDS && !self.rows.is_empty()
     }
 
-    /// Adds a row; gives its place until rows are sorted.
+    /// Adds a row; returns its index, valid until rows are sorted.
     pub fn push(&mut self, contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> u32 {
         if self.sorted {
             self.pushed = self.pairs().to_vec();
@@ -70,17 +71,17 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.rows.len() as u32 - 1
     }
 
-    /// Where each of [`Self::all`] is in the list that [`Self::set`] made them of.
+    /// Returns the index of each row of [`Self::all`] in the list given to [`Self::set`].
     pub fn sequence(&self) -> &[u32] {
         self.order.sequence()
     }
 
-    /// All of them, in the order of the iteration.
+    /// Returns all rows, in the order of the iteration.
     pub fn all(&self) -> &[Row<S, K>] {
         &self.rows
     }
 
-    /// The bodies of each of [`Self::all`].
+    /// Returns the bodies of each row of [`Self::all`].
     pub fn pairs(&self) -> &[[u32; 2]] {
         if self.sorted {
             self.order.pairs()
@@ -108,18 +109,19 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.row(place).solution(a, b)
     }
 
-    /// Sets the impulse of a row to what the current velocities ask for, which it does not change.
+    /// Sets the impulse of a row to the solution for the current velocities, which it does not
+    /// change.
     pub fn solve_at(&mut self, place: u32, bodies: &[SolverBody<S>]) {
         let [a, b] = self.bodies(place, bodies);
         self.row_mut(place).solve_at(a, b);
     }
 
-    /// The place of each row in the order of the iteration.
+    /// Returns the place of each row in the order of the iteration.
     pub fn places(&self) -> &[u32] {
         self.order.places()
     }
 
-    /// A number that changes with the order of the rows ([`ContactOrder::changes`]).
+    /// Returns a number that changes with the order of the rows ([`ContactOrder::changes`]).
     pub fn changes(&self) -> u64 {
         self.order.changes()
     }
@@ -139,7 +141,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.sorted = true;
     }
 
-    /// Makes the rows of the contacts with these indices, in the order of the iteration.
+    /// Creates the rows of the contacts with these indices, in the order of the iteration.
     pub fn set(
         &mut self,
         of: &[u32],
@@ -167,8 +169,8 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.pass(solver_bodies, parallel, |_, _| Update(relaxation));
     }
 
-    /// A [`Self::sweep`] from impulses extrapolated by `factor` times their change since `before`,
-    /// which then holds them as they were.
+    /// Sweeps as [`Self::sweep`] does, from impulses extrapolated by `factor` times their change
+    /// since `before`; `before` then holds the impulses before the extrapolation.
     pub fn sweep_extrapolated(
         &mut self,
         solver_bodies: &SolverBodies<S>,
@@ -177,9 +179,9 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         (before, factor): (&mut [Parts<S>], f64),
     ) {
         assert_eq!(before.len(), self.rows.len());
-        let before = Shared(before.as_mut_ptr());
+        let before = SharedRows(before.as_mut_ptr());
         self.pass(solver_bodies, parallel, |rows, range| {
-            // SAFETY: as many as there are rows; blocks are disjoint, and each is run once.
+            // SAFETY: there are as many entries as rows; blocks are disjoint, and each is run once.
             let before = unsafe { before.slice(range) };
             for (row, before) in rows.iter_mut().zip(before) {
                 let now = row.local_impulse();
@@ -195,8 +197,8 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         self.pass(solver_bodies, parallel, |_, _| Load);
     }
 
-    /// Applies a visitor to all rows, block by block; `what` gives it for each, after it has seen
-    /// the rows and their range.
+    /// Applies a visitor to all rows, block by block; `what` creates the visitor of each block from
+    /// its rows and their range.
     fn pass<V: Visit>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
@@ -208,7 +210,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
             schedule.contacts() == count,
             "rows are sorted before they are visited"
         );
-        let rows = Shared(self.rows.as_mut_ptr());
+        let rows = SharedRows(self.rows.as_mut_ptr());
         let pairs = self.order.pairs();
         schedule.run(worth_dividing(parallel, count, ORDERED), |block| {
             // SAFETY: blocks are disjoint, and each is run once.
@@ -225,7 +227,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         rows.for_each(|r| row::store(r.local_impulse(), out));
     }
 
-    /// Takes them from the front of `from`.
+    /// Reads the components of the impulses from the front of `from`.
     pub fn restore(&mut self, from: &mut &[f64]) {
         let rows = self.rows.iter_mut();
         rows.for_each(|r| r.set_local_impulse(row::restore(from)));
@@ -257,7 +259,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         parts.iter().for_each(|part| sums.merge(part));
     }
 
-    /// The work on the compliance of the contacts, see [`Row::work_on_compliance`].
+    /// Returns the work on the compliance of the contacts, see [`Row::work_on_compliance`].
     pub fn work_on_compliance(&self, solver_bodies: &SolverBodies<S>, parallel: bool) -> f64 {
         let (count, pairs) = (self.rows.len(), self.pairs());
         let of = |k: usize| {
@@ -273,7 +275,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         parts.iter().sum()
     }
 
-    /// The scales of the error from the free velocities, which are the current ones.
+    /// Returns the scales of the error from the free velocities, which must be the current ones.
     pub fn free(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool) -> Scale {
         let parts = self.read(solver_bodies, parallel, Free::default, |f, _| f.scale());
         let mut out = Scale::default();
@@ -281,7 +283,8 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         out
     }
 
-    /// Applies a visitor that only reads to each chunk of rows; what it found, in their order.
+    /// Applies a visitor that only reads to each chunk of rows; returns the visitors in the order
+    /// of the chunks.
     fn read<V: Visit, T: Send>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
@@ -290,7 +293,7 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
         found: impl Fn(&V, usize) -> T + Sync,
     ) -> Vec<T> {
         let count = self.rows.len();
-        let rows = Shared(self.rows.as_mut_ptr());
+        let rows = SharedRows(self.rows.as_mut_ptr());
         let pairs = self.pairs();
         map_ranges(
             worth_dividing(parallel, count, VISIT),
@@ -311,18 +314,18 @@ impl<S: Space, K: RowKind<S>> Rows<S, K> {
 }
 
 /// Rows accessed by several threads, each in its own part.
-struct Shared<R>(*mut R);
+struct SharedRows<R>(*mut R);
 
 // SAFETY: each part is used by one thread.
-unsafe impl<R: Send> Sync for Shared<R> {}
+unsafe impl<R: Send> Sync for SharedRows<R> {}
 
-impl<R> Shared<R> {
+impl<R> SharedRows<R> {
     /// # Safety
-    /// The places are those of rows that no one else uses meanwhile.
+    /// No one else may use the rows at these places meanwhile.
     #[inline(always)]
     #[expect(clippy::mut_from_ref)]
     unsafe fn slice(&self, places: Range<usize>) -> &mut [R] {
-        // SAFETY: as above.
+        // SAFETY: the caller guarantees exclusive use of these rows.
         unsafe { std::slice::from_raw_parts_mut(self.0.add(places.start), places.len()) }
     }
 }

@@ -47,8 +47,7 @@ impl Schedule {
     /// Runs every block once, colour by colour, on the current thread pool if `parallel`.
     ///
     /// Threads take blocks from a shared counter, in the order of the iteration, and wait only for
-    /// the blocks of earlier colours that were taken; nobody waits for a thread that has not
-    /// started.
+    /// the blocks of earlier colours that were taken; no thread waits for one that has not started.
     pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
         let blocks = self.blocks.len() - 1;
         let threads = rayon::current_num_threads().min(blocks);
@@ -106,7 +105,7 @@ impl Schedule {
         out
     }
 
-    /// The schedule of groups that end there, not yet cut into blocks.
+    /// Creates a schedule of groups that end at these contacts, not yet cut into blocks.
     pub(super) fn of_groups(ends: impl IntoIterator<Item = u32>) -> Self {
         let mut out = Self::default();
         ends.into_iter().for_each(|end| out.end_group(end as usize));

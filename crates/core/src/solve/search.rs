@@ -1,63 +1,68 @@
-//! When another solution of a connected set is sought, see [`super::sticking`].
+//! Decides when to search for another solution of a connected set, see [`super::sticking`].
 
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Largest number of steps that are passed over after those that had no other solution, while no
-/// loaded contact that held begins to slide; and of steps without sliding until this is forgotten.
+/// Largest number of steps that are skipped after searches without another solution, while no
+/// loaded contact that held begins to slide; also the number of steps without sliding after which
+/// the waits of a set are forgotten.
 const PASSED: i32 = 8;
 
-/// When a second solution is sought.
+/// State of the searches for a second solution.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Search {
-    /// By the first body of a set that slid.
-    waits: BTreeMap<u32, Wait>,
+pub struct SecondSearch {
+    /// Waiting times of the sets that slid, by their first body.
+    backoffs: BTreeMap<u32, Backoff>,
     /// Sets of which another solve ended in a solution in this step.
     #[serde(default)]
     searched: BTreeSet<u32>,
 }
 
-/// After searches without a result.
+/// Steps to wait after searches without a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Wait {
-    /// Steps until the next one; negative where nothing slid since then.
+struct Backoff {
+    /// Steps until the next search; negative where nothing slid since then.
     left: i32,
-    /// Steps that are passed over.
+    /// Number of steps that are skipped.
     passed: i32,
 }
 
-impl Search {
+impl SecondSearch {
     /// Begins a step.
     pub fn begin_step(&mut self) {
         self.searched.clear();
-        self.waits.values_mut().for_each(|wait| wait.left -= 1);
-        self.waits.retain(|_, wait| wait.left >= -PASSED);
+        self.backoffs
+            .values_mut()
+            .for_each(|backoff| backoff.left -= 1);
+        self.backoffs.retain(|_, backoff| backoff.left >= -PASSED);
     }
 
-    /// Whether a set is to be searched in this step.
+    /// Returns whether a set is to be searched in this step.
     pub fn is_due(&self, set: u32) -> bool {
-        self.waits.get(&set).is_none_or(|wait| wait.left <= 0)
+        self.backoffs
+            .get(&set)
+            .is_none_or(|backoff| backoff.left <= 0)
     }
 
-    /// Whether another solve of a set ended in a solution in this step.
+    /// Returns whether another solve of a set ended in a solution in this step.
     pub fn was_searched(&self, set: u32) -> bool {
         self.searched.contains(&set)
     }
 
-    /// Takes that another solve of a set ended in a solution.
+    /// Records that another solve of a set ended in a solution.
     pub fn answered(&mut self, set: u32) {
         self.searched.insert(set);
     }
 
-    /// Takes the result of a search.
+    /// Records the result of a search.
     pub fn learn(&mut self, set: u32, found: bool) {
         if found {
-            self.waits.remove(&set);
+            self.backoffs.remove(&set);
             return;
         }
-        let wait = self.waits.entry(set).or_default();
-        wait.passed = (2 * wait.passed).clamp(1, PASSED);
-        wait.left = wait.passed + 1;
+        let backoff = self.backoffs.entry(set).or_default();
+        backoff.passed = (2 * backoff.passed).clamp(1, PASSED);
+        backoff.left = backoff.passed + 1;
     }
 }
 
@@ -65,11 +70,11 @@ impl Search {
 mod tests {
     use super::*;
 
-    /// Steps are counted, not solves: after 1, 2, 4, 8, 8 steps without a result, whatever is
-    /// solved in between.
+    /// Steps are counted, not solves: searches follow after 1, 2, 4, 8, 8 steps without a result,
+    /// whatever is solved in between.
     #[test]
     fn searches_are_put_off_by_steps() {
-        let mut search = Search::default();
+        let mut search = SecondSearch::default();
         let (mut last, mut passed) = (None, Vec::new());
         for step in 0..35 {
             search.begin_step();
@@ -92,6 +97,6 @@ mod tests {
         for _ in 0..20 {
             search.begin_step();
         }
-        assert_eq!(search, Search::default(), "it is forgotten");
+        assert_eq!(search, SecondSearch::default(), "it is forgotten");
     }
 }

@@ -1,4 +1,4 @@
-//! The sides of a contact: what an impulse on it acts on.
+//! Sides of a contact: the points on which an impulse acts.
 
 use crate::bodies::Nodes;
 use crate::geometry::space::Space;
@@ -10,7 +10,7 @@ pub enum Side<S: Space> {
     Rigid {
         /// Index of the body.
         body: u32,
-        /// From its centre to the contact (m).
+        /// Vector from the centre of the body to the contact (m).
         arm: S::Vector,
     },
     /// A point of a dynamical system, a weighted sum of its nodes.

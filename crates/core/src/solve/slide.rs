@@ -39,8 +39,8 @@ pub fn schur<L: Lane, const D: usize>(w: &[[L; D]; D]) -> ([[L; 2]; 2], L) {
     (a, determinant(&a))
 }
 
-/// The impulses of the contacts in `slides` for their free velocities `f`, and their multipliers,
-/// from the last ones; nothing is meant by those of other lanes.
+/// Returns the impulses of the contacts in `slides` for their free velocities `f`, and their
+/// multipliers, starting from the last ones; values in other lanes are meaningless.
 #[inline(always)]
 pub fn slide<L: Lane, const D: usize>(
     w: &[[L; D]; D],
@@ -50,7 +50,7 @@ pub fn slide<L: Lane, const D: usize>(
     slides: L::Mask,
 ) -> ([L; 3], L) {
     const STEPS: usize = 30;
-    /// Relative tolerance of |p_t|: after one more nearly linear step, only rounding is left.
+    /// Relative tolerance of |p_t|, at which one more nearly linear step leaves only rounding.
     const CLOSE: f64 = 1e-8;
     /// Relative rounding of a result.
     const EXACT: f64 = 1e-15;

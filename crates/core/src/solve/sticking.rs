@@ -1,115 +1,119 @@
-//! Which of several solutions: contacts that hold go on to hold, where a solution lets them.
+//! Choice among several solutions: contacts that held continue to hold, where a solution allows it.
 //!
 //! Where contacts are hyperstatic, Coulomb's law may have several solutions for one step. A block
 //! pinched at both ends by its friction may hang, or turn about one end that carries all of the
-//! load while the other slides. A sweep finds the one that the order of the contacts leads to: the
-//! first contact takes the load before the others are asked. Where contacts begin to slide, those
-//! that are connected with them through bodies that can move ([`super::connected`]) are solved a
-//! second time, as a problem of their own, from the impulses at the start of the step, by a
-//! gradient method, whose impulses follow from all contacts at once. It minimises the energy
+//! load while the other slides. A sweep finds the one that follows from the order of the contacts:
+//! the first contact takes the load before the others are solved. Where contacts begin to slide,
+//! the contacts connected with them through movable bodies ([`super::connected`]) are solved a
+//! second time, as a separate problem, from the impulses at the start of the step, by a gradient
+//! method, which changes the impulses of all contacts at once. It minimises the energy
 //!
 //! E = p.W p/2 + p.(q + s),   the kinetic energy of the step, seen from the imposed motions,
 //!
-//! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a
-//! solution that sticks have the least energy, where there is one. Of both solutions the one of
-//! less energy is taken; there may be others, which neither method finds.
+//! over impulses in the cones, without the dilation due to sliding. Of all impulses in the cones,
+//! those of a solution in which all contacts stick, if there is one, have the least energy. Of the
+//! two solutions the one with less energy is used; there may be others, which neither method finds.
 //!
-//! A set of more than [`SMALL`] contacts is solved again after steps without a result
-//! ([`super::search`]) only, one of more than [`MOST`] where controlled bodies squeeze a body that
-//! begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not,
-//! nor those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide
-//! in a set of rigid contacts that is not solved again, it is reported
-//! ([`Problem::is_not_searched`]).
+//! Sets of up to [`SMALL`] contacts are solved again in each such step; sets of up to [`MOST`] only
+//! in some steps, after steps without a result ([`super::search`]); sets of [`LARGE`] contacts
+//! where controlled bodies squeeze a body that begins to slide, or that slides and touched nothing
+//! before. Larger sets are not solved again, nor are sets with bonds, compliances or dynamical
+//! systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved
+//! again, it is reported ([`Problem::is_not_searched`]).
 
-use super::connected::Connected;
+use super::connected::ConnectedSets;
 use super::context::{AutoState, SolveContext};
 use super::form::{ContactForm, ContactSolution};
 
 use super::local::solver::Method;
-use super::nlgs::{self, Options, Report};
+use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::row::MomentForm;
-use super::search::Search;
+use super::search::SecondSearch;
 use crate::geometry::space::{Space, VectorLike};
 use crate::lanes::LaneVector;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-/// Contacts of a set up to which a second solution is sought in each step in which a contact begins
-/// to slide, and up to which in some of these steps: a second solve costs more, and in a large set
-/// that flows some contacts begin to slide in every step.
+/// Number of contacts of a set up to which a second solution is searched in each step in which a
+/// contact begins to slide, and number up to which it is searched in some of these steps. A second
+/// solve has a cost, and in a large flowing set some contacts begin to slide in every step.
 pub(super) const SMALL: usize = 64;
 pub(super) const MOST: usize = 256;
-/// Contacts of a set in which it is sought where controlled bodies let a body go that they might
-/// hold.
+/// Number of contacts of a set up to which a second solution is searched where controlled bodies
+/// release a body that they might hold.
 const LARGE: RangeInclusive<usize> = MOST + 1..=16_384;
-/// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of
-/// the set.
+/// Iterations of the gradient method, and sweeps from its result: minimum number, and number per
+/// contact of the set.
 const ITERATIONS: u32 = 300;
 const OF_CONTACT: u32 = 10;
-/// Tolerance of the solution of a set over that of the step, so that all sets together are within
-/// that.
+/// Ratio of the tolerance of a set to that of the step, so that all sets together are within the
+/// tolerance.
 const FINER: f64 = 0.5;
-/// Relative velocity of a contact that slides, over the largest of its set without contacts; slower
-/// ones are the error of a solution.
+/// Relative velocity of a sliding contact over the largest in its set without contact impulses;
+/// lower velocities are errors of a solution.
 const SLIDES: f64 = 1e-3;
-/// Share of the friction bound from which a contact is at it.
+/// Share of the friction bound from which a contact counts as being at the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
-/// Share of the friction bound up to which a contact held at the start of the step.
+/// Share of the friction bound up to which a contact counts as holding at the start of the step.
 const HELD: f64 = 1.0 - 1e-3;
-/// Share of the freedoms of bodies from which impulses of their contacts are taken to be
-/// undetermined: friction may be so beside freedoms that no contact holds.
+/// Ratio of the number of impulses of contacts to the number of degrees of freedom of their bodies,
+/// from which the impulses count as undetermined: friction may be undetermined although some
+/// degrees of freedom are not held by any contact.
 const DETERMINED: f64 = 0.75;
-/// Share of the largest normal impulse of a set from which a contact is loaded.
+/// Share of the largest normal impulse of a set from which a contact counts as loaded.
 const LOADED: f64 = 1e-3;
-/// Difference of the energies of two solutions, over the work of the step, from which the lower one
-/// is taken, and which their errors do not make.
+/// Difference of the energies of two solutions, relative to the work of the step, from which the
+/// lower one is used; errors of the solutions are smaller.
 const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
-/// The lower bound where a loaded contact slides in one solution and holds in the other: one grain
-/// of many that slips has little energy.
+/// Lower bound where a loaded contact slides in one solution and holds in the other: one slipping
+/// grain of many has little energy.
 const LOWER_HOLDS: f64 = 1e-9;
-/// No place in a list.
+/// Marks a contact that is not in a list.
 const NONE: u32 = u32::MAX;
 
-/// What a contact does.
+/// Status of a contact in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Does {
-    /// It carries nothing and does not slide, or leaves.
+enum ContactStatus {
+    /// The contact carries no load and does not slide, or separates.
     Nothing,
-    /// It carries a load without sliding.
-    Holds,
-    /// It slides as it did at the start of the step.
-    GoesOn,
-    /// It slides and touched nothing at the start of the step.
-    New,
-    /// It slides and held at the start of the step.
-    Begins,
+    /// The contact carries a load without sliding.
+    Sticks,
+    /// The contact slides, and slid at the start of the step.
+    KeepsSliding,
+    /// The contact slides, and was open at the start of the step.
+    SlidesNew,
+    /// The contact slides, and stuck at the start of the step.
+    StartsSliding,
 }
 
-impl Does {
+impl ContactStatus {
     fn slides(self) -> bool {
-        matches!(self, Self::GoesOn | Self::New | Self::Begins)
+        matches!(
+            self,
+            Self::KeepsSliding | Self::SlidesNew | Self::StartsSliding
+        )
     }
 }
 
 /// A set of contacts, by their indices as pushed, in which some slide.
 struct SlidingSet {
-    /// Its first body, which names it.
+    /// First body of the set, which identifies it.
     name: u32,
     contacts: Vec<u32>,
 }
 
-/// What a second solve gave.
-struct Sought<S: Space> {
-    /// Whether it reached a solution, whichever it is.
+/// Result of a second solve.
+struct SecondSolve<S: Space> {
+    /// Whether the second solve converged.
     answered: bool,
-    /// One of less energy.
-    other: Option<Other<S>>,
+    /// The other solution, if it has less energy.
+    other: Option<OtherSolution<S>>,
 }
 
-/// A solution of a set.
-struct Other<S: Space> {
+/// Another solution of a set.
+struct OtherSolution<S: Space> {
     report: Report,
     impulses: Vec<(u32, S::Vector)>,
     moments: Vec<(u32, S::Spin)>,
@@ -120,12 +124,12 @@ fn bound<S: Space>(form: &ContactForm<S>, n: f64) -> f64 {
     form.friction * (n + form.tension) + form.cohesion
 }
 
-/// Rigid, and without a bond.
+/// Returns whether a contact is rigid and has no bond.
 fn simple<S: Space>(form: &ContactForm<S>) -> bool {
     form.elastic.is_none() && form.compliance == [0.0; 2]
 }
 
-/// Relative velocity of a contact (m/s), by the motion of bodies.
+/// Returns the relative velocity of a contact (m/s), by the motion of bodies.
 fn relative<S: Space>(
     form: &ContactForm<S>,
     motion: impl Fn(usize) -> (S::Vector, S::Spin),
@@ -137,41 +141,50 @@ fn relative<S: Space>(
     of_side(0) - of_side(1)
 }
 
-/// Velocities of a contact (m/s): that of opening, and of its slip.
+/// Returns the opening velocity and the slip velocity of a contact (m/s).
 fn parts<S: Space>(problem: &Problem<S>, form: &ContactForm<S>) -> [f64; 2] {
     let u = relative(form, |b| problem.velocity(b));
     let slip = S::tangential(&form.normal, &u) + form.shift_t;
     [form.normal.dot(&u) + form.shift_n, slip.norm()]
 }
 
-/// Whether friction is at its bound; where nothing is carried, too: the others may have been given
-/// all of the load.
+/// Returns whether friction is at its bound. A contact without load counts too, since the other
+/// contacts may have received all of it.
 fn at_bound<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>) -> bool {
     let p = problem.local_impulse(problem.places[k as usize]);
     form.friction > 0.0 && p.t.norm() >= AT_BOUND * bound(form, p.n)
 }
 
-/// What a contact does where relative velocities below `least` are errors.
-fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f64) -> Does {
+/// Returns the state of a contact, where relative velocities below `least` are errors.
+fn status<S: Space>(
+    problem: &Problem<S>,
+    k: u32,
+    form: &ContactForm<S>,
+    least: f64,
+) -> ContactStatus {
     let [opens, slip] = parts(problem, form);
     let loaded = problem.normal(problem.places[k as usize]) > 0.0;
     if opens > least || form.friction == 0.0 {
-        return Does::Nothing;
+        return ContactStatus::Nothing;
     }
     if slip <= least || !at_bound(problem, k, form) {
-        return if loaded { Does::Holds } else { Does::Nothing };
+        return if loaded {
+            ContactStatus::Sticks
+        } else {
+            ContactStatus::Nothing
+        };
     }
     if form.normal.dot(&form.impulse) <= 0.0 {
-        Does::New
+        ContactStatus::SlidesNew
     } else if held_by(form, &form.impulse, HELD) {
-        Does::Begins
+        ContactStatus::StartsSliding
     } else {
-        Does::GoesOn
+        ContactStatus::KeepsSliding
     }
 }
 
-/// Largest relative velocity of contacts without impulses (m/s), times the share from which one
-/// slides.
+/// Returns the largest relative velocity of contacts without impulses (m/s), times the ratio from
+/// which a contact slides.
 fn least_slip<'a, S: Space>(
     problem: &Problem<S>,
     forms: impl Iterator<Item = &'a ContactForm<S>>,
@@ -187,8 +200,8 @@ fn is_undetermined(unknowns: usize, freedoms: usize) -> bool {
     unknowns as f64 >= DETERMINED * freedoms as f64
 }
 
-/// Whether impulses of contacts, D of each with friction and one of each without, may be more than
-/// the freedoms of their bodies determine.
+/// Returns whether the impulses of contacts, D for each with friction and one for each without, may
+/// outnumber the degrees of freedom of their bodies.
 fn outnumber<'a, S: Space>(
     problem: &Problem<S>,
     forms: impl Iterator<Item = &'a ContactForm<S>>,
@@ -216,22 +229,24 @@ pub fn begins_to_slide<S: Space>(
     form.friction > 0.0 && simple(form) && solution.unilateral_n > 0.0 && held()
 }
 
-/// Whether a contact carried a load by this impulse, with less than a share of the friction bound.
+/// Returns whether a contact carried a load by this impulse, with less than the holding share of
+/// the friction bound.
 fn held_by<S: Space>(form: &ContactForm<S>, impulse: &S::Vector, share: f64) -> bool {
     let n = form.normal.dot(impulse);
     n > 0.0 && S::tangential(&form.normal, impulse).norm() < share * bound(form, n)
 }
 
 impl<S: Space> Problem<S> {
-    /// Whether one of these contacts, at their friction bound since this step, slides and is of a
-    /// set that is too large to search in every step and was not searched in this one, and in which
-    /// impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set,
-    /// which determine them. And whether one of them is of a body that controlled ones squeeze.
+    /// Returns whether one of these contacts, at their friction bound since this step, slides in a
+    /// set that was not searched in this step because it is too large, and in which impulses
+    /// outnumber degrees of freedom; and whether one of them belongs to a body squeezed by
+    /// controlled bodies. Sets with springs or bonds do not count, since these determine the
+    /// impulses.
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
         begin: &[usize],
-        search: &Search,
+        search: &SecondSearch,
     ) -> [bool; 2] {
         let sets = self.take_connected();
         let freedoms = self.freedoms(&sets);
@@ -254,7 +269,7 @@ impl<S: Space> Problem<S> {
         let several = &sets.of_several_controlled;
         let pinched = self.of_pinched(forms, several, of_large.iter().copied());
         self.connected = sets;
-        // Each measured by its own free velocities: others may move fast.
+        // Each contact is compared with its own free velocity, since others may move fast.
         [of_large, pinched].map(|contacts| {
             let least = least_slip(self, contacts.iter().map(|k| &forms[*k]));
             let slides = |k: &usize| parts(self, &forms[*k])[1] > least;
@@ -264,7 +279,7 @@ impl<S: Space> Problem<S> {
 }
 
 impl<S: Space> SolveContext<'_, S> {
-    /// Takes another solution than that of the sweeps in each connected set of which one of less
+    /// Replaces the solution of the sweeps in each connected set for which a solution with less
     /// energy is found.
     pub(super) fn prefer_sticking(
         &self,
@@ -287,7 +302,7 @@ impl<S: Space> SolveContext<'_, S> {
                 && self.is_sought(problem, &set.contacts, due)
                 && many()
             {
-                let Sought { answered, other } = self.lower(problem, &set.contacts);
+                let SecondSolve { answered, other } = self.lower(problem, &set.contacts);
                 if answered {
                     auto_state.search.answered(set.name);
                 }
@@ -300,19 +315,21 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Whether a contact may slide: decided by its impulse first, which costs little, then by its
-    /// velocities.
+    /// Returns whether a contact may slide: decided by its impulse first, which costs little, then
+    /// by its velocities.
     fn may_slide(&self, problem: &Problem<S>, k: u32) -> bool {
         let form = &self.forms[k as usize];
         if !form.shift_n.is_finite() || !at_bound(problem, k, form) {
             return false;
         }
         let [opens, slip] = parts(problem, form);
-        // No bound on the velocities of its set is needed to see that this one opens, or stays.
+        // No bound on the velocities of the set is needed to see that this contact opens, or does
+        // not move.
         slip > 0.0 && opens <= slip
     }
 
-    /// The sets that are small enough to search, and of which impulses may outnumber freedoms.
+    /// Returns the sets that are small enough to search, and in which impulses may outnumber
+    /// degrees of freedom.
     fn sets_to_search(&self, problem: &mut Problem<S>) -> Vec<SlidingSet> {
         let sets = problem.take_connected();
         let freedoms = problem.freedoms(&sets);
@@ -344,9 +361,9 @@ impl<S: Space> SolveContext<'_, S> {
         small
     }
 
-    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies squeeze, or slides
-    /// and was not squeezed before.
-    fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
+    /// Returns the sets of [`LARGE`] contacts in which a body squeezed by controlled bodies
+    /// begins to slide, or slides and was not squeezed before.
+    fn letting_go(&self, problem: &Problem<S>, sets: &ConnectedSets) -> BTreeSet<usize> {
         let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
         let several = &sets.of_several_controlled;
         let begins = |k: &usize| {
@@ -363,23 +380,26 @@ impl<S: Space> SolveContext<'_, S> {
             .collect()
     }
 
-    /// Whether another solution of a set is to be sought: where a contact begins to slide, and in
-    /// steps that are `due` where some slide while others hold or are new. Where all that carry a
-    /// load go on to slide, friction is used up.
+    /// Returns whether to search another solution of a set: where a contact begins to slide, and in
+    /// steps that are `due` where some contacts slide while others hold or are new. Where all
+    /// loaded contacts continue to slide, no other solution is to be expected.
     fn is_sought(&self, problem: &Problem<S>, of: &[u32], due: bool) -> bool {
         let form = |k: &u32| &self.forms[*k as usize];
         let least = least_slip(problem, of.iter().map(form));
         let all: Vec<_> = of
             .iter()
-            .map(|k| does(problem, *k, form(k), least))
+            .map(|k| status(problem, *k, form(k), least))
             .collect();
-        let some = |what: Does| all.contains(&what);
-        let begins = some(Does::Begins) && (due || of.len() <= SMALL);
-        begins || due && (some(Does::New) || some(Does::GoesOn) && some(Does::Holds))
+        let some = |what: ContactStatus| all.contains(&what);
+        let begins = some(ContactStatus::StartsSliding) && (due || of.len() <= SMALL);
+        begins
+            || due
+                && (some(ContactStatus::SlidesNew)
+                    || some(ContactStatus::KeepsSliding) && some(ContactStatus::Sticks))
     }
 
-    /// Another solution of a set, of less energy than the present one.
-    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> Sought<S> {
+    /// Searches another solution of a set, with less energy than the present one.
+    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> SecondSolve<S> {
         let mut alone = Problem::default();
         let mut bodies = BTreeMap::new();
         let mut body = |b: u32| {
@@ -409,7 +429,7 @@ impl<S: Space> SolveContext<'_, S> {
         for form in &moments {
             alone.push_moment(form, &forms[form.contact as usize]);
         }
-        let options = Options {
+        let options = SolverOptions {
             tolerance: FINER * self.options.tolerance,
             parallel: false,
             ..*self.options
@@ -430,7 +450,7 @@ impl<S: Space> SolveContext<'_, S> {
         alone.adopt(&now, &now_turned);
         let (answered, lower) = context.find_lower(&mut alone);
         let Some((report, differs)) = lower else {
-            return Sought {
+            return SecondSolve {
                 answered,
                 other: None,
             };
@@ -438,9 +458,9 @@ impl<S: Space> SolveContext<'_, S> {
         let impulses = of.iter().enumerate();
         let impulses = impulses.map(|(k, of)| (*of, alone.solution(k).impulse));
         let moments = turned.iter().zip(&alone.moments);
-        Sought {
+        SecondSolve {
             answered,
-            other: Some(Other {
+            other: Some(OtherSolution {
                 report,
                 impulses: impulses.collect(),
                 moments: moments.map(|(k, row)| (*k, row.moment())).collect(),
@@ -449,12 +469,13 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Solves a set again from the start of the step. Whether that ended in a solution; and if it
-    /// has less energy, whether a contact slides in one of both that holds a load in the other.
+    /// Solves a set again from the start of the step. Returns whether it converged; and, if the
+    /// solution has less energy, whether a contact slides in one of the two solutions and holds a
+    /// load in the other.
     fn find_lower(&self, alone: &mut Problem<S>) -> (bool, Option<(Report, bool)>) {
         let before = self.energy(alone)[0];
         let least = least_slip(alone, self.forms.iter());
-        let did = self.all_do(alone, least);
+        let did = self.statuses(alone, least);
         self.start_anew(alone);
         let tolerance = 0.3 * self.options.tolerance;
         let of_contacts = OF_CONTACT * self.forms.len().min(MOST) as u32;
@@ -465,11 +486,11 @@ impl<S: Space> SolveContext<'_, S> {
             before - energy > by * work.abs()
         };
         if !other.converged && is_lower(alone, LOWER) {
-            other.add(&self.sweep(alone, true, most));
+            other.add(&self.sweep_accelerated(alone, most));
         }
-        let does = self.all_do(alone, least);
-        let differs = |(a, b): (&Does, &Does)| {
-            a.slides() && *b == Does::Holds || b.slides() && *a == Does::Holds
+        let does = self.statuses(alone, least);
+        let differs = |(a, b): (&ContactStatus, &ContactStatus)| {
+            a.slides() && *b == ContactStatus::Sticks || b.slides() && *a == ContactStatus::Sticks
         };
         let one_differs = did.iter().zip(&does).any(differs);
         let by = if one_differs { LOWER_HOLDS } else { LOWER };
@@ -479,17 +500,17 @@ impl<S: Space> SolveContext<'_, S> {
         (true, Some((other, one_differs && is_lower(alone, DIFFERS))))
     }
 
-    /// What the contacts of a problem do; those without a load do not hold.
-    fn all_do(&self, problem: &Problem<S>, least: f64) -> Vec<Does> {
+    /// Returns the states of the contacts of a problem; contacts without a load do not hold.
+    fn statuses(&self, problem: &Problem<S>, least: f64) -> Vec<ContactStatus> {
         let normal = |k: u32| problem.normal(problem.places[k as usize]);
         let count = self.forms.len() as u32;
         let largest = (0..count).map(normal).fold(0.0, f64::max);
         let of = |k: u32| {
             let form = &self.forms[k as usize];
-            let what = does(problem, k, form, least);
-            // What slides may have lost its load to the others.
-            if what == Does::Holds && normal(k) <= LOADED * largest {
-                Does::Nothing
+            let what = status(problem, k, form, least);
+            // Sliding contacts may have lost their load to the others.
+            if what == ContactStatus::Sticks && normal(k) <= LOADED * largest {
+                ContactStatus::Nothing
             } else {
                 what
             }
@@ -497,17 +518,17 @@ impl<S: Space> SolveContext<'_, S> {
         (0..count).map(of).collect()
     }
 
-    /// Takes solutions of sets, unless all contacts together are not solved then.
-    fn take(&self, problem: &mut Problem<S>, report: &mut Report, found: &[Other<S>]) {
+    /// Uses the solutions of sets, unless all contacts together do not converge with them.
+    fn take(&self, problem: &mut Problem<S>, report: &mut Report, found: &[OtherSolution<S>]) {
         let mut saved = Vec::new();
         problem.store(&mut saved);
-        let list = |of: &Other<S>| of.impulses.clone();
+        let list = |of: &OtherSolution<S>| of.impulses.clone();
         let impulses: Vec<_> = found.iter().flat_map(list).collect();
         let moments: Vec<_> = found.iter().flat_map(|of| of.moments.clone()).collect();
         problem.adopt_some(&impulses, &moments);
         let mut whole = nlgs::check_convergence(problem, self.options);
         if !whole.converged {
-            whole.add(&self.sweep(problem, true, ITERATIONS));
+            whole.add(&self.sweep_accelerated(problem, ITERATIONS));
         }
         if !whole.converged {
             problem.restore(&saved);
@@ -520,7 +541,7 @@ impl<S: Space> SolveContext<'_, S> {
         report.used = used;
     }
 
-    /// The energy E of the module, and the work p.W p/2 in it (J).
+    /// Returns the energy E of the module, and the work p.W p/2 in it (J).
     fn energy(&self, problem: &Problem<S>) -> [f64; 2] {
         let (mut energy, mut work) = (0.0, 0.0);
         for (k, form) in self.forms.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::bodies::TurningNode;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 impl<S: Space> Problem<S> {
-    /// Adds a dynamical system, before the contacts with it; systems are counted in the order in
+    /// Adds a dynamical system, before the contacts with it; systems are numbered in the order in
     /// which they are added.
     pub fn push_system(&mut self, mut system: NodalSystem<S>) {
         if let (Some(loaded), Some(memory)) = (&mut system.loaded, self.loaded.pop()) {
@@ -28,9 +28,9 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Adds a contact of which a side is a dynamical system. The bodies of the form are those of
-    /// detection; what the impulse acts on is said by the sides. False, and nothing is added, where
-    /// a side names a system or a node that was not pushed.
+    /// Adds a contact with a dynamical system on at least one side. The bodies of the form are
+    /// those of detection; the sides say on what the impulse acts. Returns false, and adds nothing,
+    /// where a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_between(&mut self, contact: &ContactForm<S>, sides: &[Side<S>; 2]) -> bool {
         let (mut rigid, mut points) = ([None; 2], [None; 2]);
@@ -87,9 +87,9 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by
-    /// side of a system that turns the node that turns with it. False, and nothing is added, where
-    /// a side names a system or a node that was not pushed.
+    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: for
+    /// each side with a system that rotates, the node that represents rotation. Returns false, and
+    /// adds nothing, where a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_moment_between(
         &mut self,
@@ -117,7 +117,7 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// The impulses that contacts have on the nodes of the systems (N s), by system, in the order
+    /// Returns the impulses of contacts on the nodes of the systems (N s), by system, in the order
     /// of its nodes.
     pub fn node_impulses(&self) -> Vec<Vec<S::Vector>> {
         let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
@@ -131,7 +131,8 @@ impl<S: Space> Problem<S> {
         impulses
     }
 
-    /// Twice the energy |v - v_free|_A^2 of what contacts change of the systems (J).
+    /// Returns twice the energy |v - v_free|_A^2 of the velocity changes of the systems by contacts
+    /// (J).
     pub(super) fn work_on_systems(&self) -> f64 {
         let mut work = 0.0;
         for (system, impulses) in self.systems.iter().zip(self.node_impulses()) {
@@ -143,7 +144,8 @@ impl<S: Space> Problem<S> {
         work
     }
 
-    /// Relative velocities at the contacts with systems, at the current velocities (m/s).
+    /// Returns the relative velocities at the contacts with systems, at the current velocities
+    /// (m/s).
     #[cfg(test)]
     fn relative_velocities_of_systems(&self) -> Vec<S::Vector> {
         let rows = self.of_systems.iter();
@@ -151,7 +153,7 @@ impl<S: Space> Problem<S> {
             .collect()
     }
 
-    /// Finds the velocities of all nodes of systems, after sweeps.
+    /// Computes the velocities of all nodes of systems, after sweeps.
     pub(super) fn settle_systems(&mut self) {
         self.systems.iter_mut().for_each(NodalSystem::settle);
     }

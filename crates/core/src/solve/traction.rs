@@ -2,44 +2,45 @@
 //!
 //! The norms of [`super::error`] compare residuals with all velocities of a step. Where a load
 //! moves a holder of little mass, u_free = h P/m is far above the velocities of the surface, and
-//! residuals that are small beside it leave pressures that are wrong from cell to cell. A residual
-//! r_c is worth a traction r_c/w_c, with w_c the compliance of the contact against its neighbours,
-//! without the motion that all of them share. The error is the largest of these over the largest
-//! impulse on the same system,
+//! residuals that are small in comparison leave wrong pressures in single cells. A residual r_c
+//! corresponds to an impulse r_c/w_c, with w_c the compliance of the contact relative to its
+//! neighbours, without their common motion. The error is the largest of these impulses over the
+//! largest impulse on the same system,
 //!
 //! ```text
 //! max_c |r_c|/w_c / max |p|      w_c = sum_a weight_a^2 (C_aa - C_ab)
 //! ```
 //!
-//! where b is the touched node before or after a in the list of the system whose motion is most
-//! like that of a. Systems number the nodes of their surfaces along it: the cells of a half-space
-//! row by row, the points of a mesh as its file has them. A node that is next in number but far
-//! away shares less of the motion than one of the same facet, so that w_c comes out larger and the
-//! error smaller, at most by the ratio of a node's own compliance to that against a neighbour; the
-//! solver does not know the facets, and a search for the nearest of all touched nodes would need
-//! the blocks of all pairs. It is the error of systems that touch at many points; one that touches
-//! at few, as a grain, takes part as a rigid body does.
+//! where b is the touched node before or after a in the list of the system whose motion is closest
+//! to that of a. Systems number the nodes of their surfaces along it: the cells of a half-space row
+//! by row, the points of a mesh as its file has them. A node that is next in number but far away
+//! shares less of the motion than one of the same facet, so that w_c comes out larger and the error
+//! smaller, at most by the ratio of a node's own compliance to that against a neighbour; the solver
+//! does not know the facets, and a search for the nearest of all touched nodes would need the
+//! blocks of all pairs. This error is computed for systems with contacts at many points; a system
+//! with few contacts, such as a grain, is treated as a rigid body.
 
 use super::error::Residual;
 use super::nodal::NodalSystem;
 use super::row::SystemRow;
 use crate::geometry::space::{MatrixLike, Space};
 
-/// Contacts from which on a body or a system is a surface that touches, with a motion that its
-/// contacts share. The rigid motion of a body has six freedoms, so that in up to six contacts it is
-/// all that they answer with, and their tractions are those that its balance demands, which the
-/// norms measure; beyond that tractions vary from point to point by the deformation. Corners of
-/// blocks on a surface are four to eight contacts.
+/// Number of contacts from which a body or a system counts as a touching surface, whose contacts
+/// have a common motion. The rigid motion of a body has six degrees of freedom: with up to six
+/// contacts their tractions follow from the balance of the body, which the norms measure. With more
+/// contacts the tractions vary from point to point by the deformation. A block has four to eight
+/// corners on a surface.
 const MANY: u32 = 8;
-/// Least compliance of a node against its neighbours, over its own: of nodes that move as one.
+/// Smallest ratio of the compliance of a node relative to its neighbours to its own compliance, for
+/// nodes that move together.
 const LEAST: f64 = 1e-3;
 
-/// Errors of single tractions, of the contacts of a problem until these change.
+/// Errors of single tractions of the contacts of a problem, valid until the contacts change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tractions {
-    /// 1/w_c of each contact with a system (kg); 0 where that touches at few points.
+    /// 1/w_c of each contact with a system (kg); 0 where the system has few contacts.
     stiffness: Vec<f64>,
-    /// Whether each system touches at many points.
+    /// Whether each system has contacts at many points.
     many: Vec<bool>,
     /// Squared error of each contact (N^2 s^2), and its squared residual (m^2/s^2).
     errors: Vec<[f64; 2]>,
@@ -48,7 +49,7 @@ pub(super) struct Tractions {
 }
 
 impl Tractions {
-    /// Forgets the contacts.
+    /// Discards the contacts.
     pub fn clear(&mut self) {
         self.stiffness.clear();
     }
@@ -81,8 +82,8 @@ impl Tractions {
         self.errors.push([error, residual.squared]);
     }
 
-    /// The largest error, and the squared residual of that contact (m^2/s^2); zeros where nothing
-    /// is loaded.
+    /// Returns the largest error, and the squared residual of that contact (m^2/s^2); zeros where
+    /// nothing is loaded.
     pub fn worst<S: Space>(&self, rows: &[SystemRow<S>]) -> [f64; 2] {
         let mut worst = [0.0; 2];
         for (row, [error, residual]) in rows.iter().zip(&self.errors) {
@@ -97,7 +98,8 @@ impl Tractions {
     }
 }
 
-/// 1/w_c of each contact with a system (kg), and whether each system touches at many points.
+/// Returns 1/w_c of each contact with a system (kg), and whether each system has contacts at many
+/// points.
 fn stiffness<S: Space>(
     rows: &[SystemRow<S>],
     systems: &[NodalSystem<S>],
@@ -145,8 +147,8 @@ fn stiffness<S: Space>(
     (rows.iter().map(of_row).collect(), many)
 }
 
-/// Compliance of nodes of a system along the axis where it is least (1/kg), where they are `many`
-/// without the motion that they share with a neighbour in their list.
+/// Returns the compliance of nodes of a system along the axis where it is smallest (1/kg); where
+/// they are `many`, without the motion that they share with a neighbour in their list.
 fn against_neighbours<S: Space>(system: &NodalSystem<S>, nodes: &[u32], many: bool) -> Vec<f64> {
     let of_node = |at: usize| {
         let own = system.block(nodes[at], nodes[at]);
@@ -159,7 +161,7 @@ fn against_neighbours<S: Space>(system: &NodalSystem<S>, nodes: &[u32], many: bo
             let shared = shared.fold(0.0, f64::max);
             (alone - shared).max(LEAST * alone)
         };
-        // What is held along an axis has no compliance there.
+        // A node that is held along an axis has no compliance there.
         let axes = (0..S::D).map(along).filter(|w| *w > 0.0);
         let least = axes.fold(f64::INFINITY, f64::min);
         if least.is_finite() { least } else { 0.0 }

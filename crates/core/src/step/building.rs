@@ -1,4 +1,4 @@
-//! What is added to a scene, and done to it from outside.
+//! Additions to a scene, and external actions on it.
 
 use super::process::Process;
 use super::{Simulation, control, motion};
@@ -11,18 +11,18 @@ impl<S: Space> Simulation<S> {
     /// its ball, point or surface; gives its index. The bodies are
     /// [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
     ///
-    /// Energy that it holds counts as work done on it before the start.
+    /// The energy that the system stores counts as work done on it before the start.
     pub fn add_system(&mut self, system: Box<dyn DynamicalSystem<S>>) -> usize {
         motion::add_system(self, system)
     }
 
-    /// Adds a process, which acts from now on, after those added before.
+    /// Adds a process, which acts from now on, after earlier ones.
     pub fn add_process(&mut self, process: impl Process<S>) {
         self.processes.push(Box::new(process));
     }
 
-    /// Adds a feature of the core, which acts from now on, before those added earlier and before
-    /// all processes. What it carries from step to step is in the state.
+    /// Adds a feature of the core, which acts from now on, before features added earlier and before
+    /// all processes. Its data from step to step are in the state.
     pub(crate) fn add_feature(&mut self, feature: impl Process<S>) {
         self.features.insert(0, Box::new(feature));
     }
@@ -40,9 +40,9 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s
-    /// in 2D), and adds the work to the energy ledger. Degrees of freedom whose motion is imposed
-    /// take none, nor does a body that stands for a contactor of a dynamical system.
+    /// Applies an impulse (N s; N s/m in 2D) at the centre of a body and an angular impulse (N m s;
+    /// N s in 2D), and adds the work to the energy ledger. Degrees of freedom with imposed motion
+    /// are not affected, nor is a body that represents a contactor of a dynamical system.
     pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
         let bodies = &mut self.state.bodies;
         let before = bodies.energy_of(body);
@@ -55,8 +55,8 @@ impl<S: Space> Simulation<S> {
         self.state.energy.external_work += work;
     }
 
-    /// Removes a grain for good: it is at rest, has no contacts, and its bonds break. Its kinetic
-    /// energy becomes an entry of the energy ledger.
+    /// Removes a grain permanently: it is at rest, has no contacts, and its bonds break. Its
+    /// kinetic energy becomes an entry of the energy ledger.
     pub fn remove_body(&mut self, body: usize) {
         let energy = self.state.bodies.energy_of(body);
         self.state.energy.carried += energy;

@@ -1,4 +1,4 @@
-//! How much the contact forces changed in a step, from which follows whether a longer one would do.
+//! Change of the contact forces in a step, from which the step length is adapted.
 
 use crate::contact::Key;
 use nalgebra::Vector3;
@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 pub struct ContactForces(pub(super) Vec<(Key, Vector3<f64>)>);
 
 impl ContactForces {
-    /// Root of the sum of squares of the differences, over that of the forces, the larger of the
-    /// two; 0 where there is none.
+    /// Returns the root of the sum of squared differences, divided by that of the forces before or
+    /// after, whichever is larger; 0 without forces.
     pub fn change(&self, after: &Self) -> f64 {
         let (mut old, mut new) = (self.0.iter().peekable(), after.0.iter().peekable());
         let (mut difference, mut sums) = (0.0, [0.0; 2]);
@@ -59,7 +59,7 @@ mod tests {
         let before = forces(&[(0, 3.0), (1, 4.0)]);
         assert_eq!(before.change(&before), 0.0);
         assert!((before.change(&forces(&[(0, 3.0), (1, 3.5)])) - 0.1).abs() < 1e-15);
-        // 4 N go, 3 N come.
+        // A force of 4 N ends, a force of 3 N begins.
         let after = forces(&[(0, 3.0), (2, 3.0)]);
         assert!((before.change(&after) - 1.0).abs() < 1e-15);
         assert!((after.change(&before) - 1.0).abs() < 1e-15);

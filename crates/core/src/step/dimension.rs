@@ -1,7 +1,7 @@
 //! Simulations whose dimension is found at run time.
 //!
-//! [`Simulation::step`] and [`Simulation::detect`] look it up, so that the step is compiled here,
-//! once for each dimension, and not again in every crate that makes steps.
+//! [`Simulation::step`] and [`Simulation::detect`] look the dimension up, so that the step is
+//! compiled here, once for each dimension, and not again in every crate that calls it.
 
 use super::one_step::one_step;
 use super::{Simulation, StepError, StepReport};
@@ -54,15 +54,15 @@ fn detect_in_space(simulation: &mut Simulation<Dim3>) {
 }
 
 impl<S: Space> Simulation<S> {
-    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are
-    /// due between the last step and this one first, where [`Simulation::between_steps`] was not
+    /// Makes one step of h. Processes act at its named moments, see [`crate::process`]; the moment
+    /// between the last step and this one comes first, where [`Simulation::between_steps`] was not
     /// called.
     ///
     /// # Errors
-    /// A law or a process failed, the method does not support what the laws require, or a velocity
-    /// is not finite; the state is then that of the failed step, or of the end of the previous one
-    /// if a process failed between the two. A surface was worn through in the previous step; the
-    /// state is then that at its end.
+    /// Fails if a law or a process failed, the method does not support what the laws require, or a
+    /// velocity is not finite; the state is then that of the failed step, or of the end of the
+    /// previous one if a process failed between the two. Fails also if a surface was worn through
+    /// in the previous step; the state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         by_dimension(self, step_in_plane, step_in_space)
     }

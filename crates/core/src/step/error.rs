@@ -4,7 +4,7 @@ use crate::heat::DiffusionError;
 use crate::laws::LawError;
 use crate::wear::WornThrough;
 
-/// Why a process cannot go on; it ends the run.
+/// Error of a process; it ends the run.
 pub type ProcessError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Reason why a step failed.
@@ -15,7 +15,7 @@ pub enum StepError {
     Law {
         /// Number of the step.
         step: u64,
-        /// Time at its start (s).
+        /// Time at the start of the step (s).
         time: f64,
         /// The law's error.
         source: LawError,
@@ -35,7 +35,7 @@ pub enum StepError {
     WornThrough {
         /// Number of the step in which it happened.
         step: u64,
-        /// Time at its end (s).
+        /// Time at the end of that step (s).
         time: f64,
         /// The surface and the position.
         source: WornThrough,
@@ -43,16 +43,16 @@ pub enum StepError {
     /// A process refused.
     #[error("step {step} at t = {time:.6e} s: {process}: {source}")]
     Process {
-        /// Number of the last step that was done.
+        /// Number of the last completed step.
         step: u64,
-        /// Time at its end (s).
+        /// Time at the end of that step (s).
         time: f64,
         /// Name of the process.
         process: String,
-        /// What it said.
+        /// Error of the process.
         source: ProcessError,
     },
-    /// Overlaps are to be removed by displacements, which dynamical systems do not take part in.
+    /// Projection of overlaps is requested, which dynamical systems do not support.
     #[error(
         "step {step}: solver.projection moves grains and first bodies apart, not the system `{system}`; set solver.projection to 0, \
          and solver.correction above 0 to have overlaps removed"
@@ -68,9 +68,9 @@ pub enum StepError {
     Heat {
         /// Number of the step.
         step: u64,
-        /// Time at its start (s).
+        /// Time at the start of the step (s).
         time: f64,
-        /// Why.
+        /// Reason.
         source: DiffusionError,
     },
     /// A velocity is not finite.
@@ -80,7 +80,7 @@ pub enum StepError {
     NotFinite {
         /// Number of the step.
         step: u64,
-        /// Time at its start (s).
+        /// Time at the start of the step (s).
         time: f64,
         /// Identity of the body.
         body: u64,
@@ -93,7 +93,7 @@ pub enum StepError {
     SystemNotFinite {
         /// Number of the step.
         step: u64,
-        /// Time at its start (s).
+        /// Time at the start of the step (s).
         time: f64,
         /// Name of the system.
         system: String,
@@ -103,11 +103,11 @@ pub enum StepError {
     SystemBalance {
         /// Number of the step.
         step: u64,
-        /// Time at its start (s).
+        /// Time at the start of the step (s).
         time: f64,
         /// Name of the system.
         system: String,
-        /// Why, and what to change.
+        /// Reason, and what to change.
         why: String,
     },
     /// A quantity of the state or of the ledger is not finite.
@@ -118,11 +118,11 @@ pub enum StepError {
     Overflow {
         /// Number of the step.
         step: u64,
-        /// Time at its end (s).
+        /// Time at the end of the step (s).
         time: f64,
         /// The quantity, with the body to which it belongs.
         quantity: String,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
 }

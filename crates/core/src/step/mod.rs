@@ -48,9 +48,9 @@ pub use control::ImpossibleMotions;
 pub use error::StepError;
 pub use options::{Coupling, Options, Scheme};
 pub use reading::ContactRow;
-pub use repeat::{ProcessState, RepeatError, Saved};
+pub use repeat::{ProcessState, RepeatError, SavedSimulation};
 pub use report::{
-    Agreement, CouplingReport, DrivenOverlap, Impossible, Projected, StepReport, Timing,
+    Agreement, CouplingReport, DrivenOverlap, Impossible, ProjectionReport, StepReport, Timing,
 };
 pub use simulation::Simulation;
 pub use state::State;

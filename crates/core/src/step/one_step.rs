@@ -1,7 +1,7 @@
 //! One time step: the list of its stages, in the order of the picture in [`super`].
 //!
-//! What a scene has beside bodies in contact acts at the named moments of [`Process`]; none of it
-//! is named here.
+//! Features beyond bodies in contact act at the named moments of [`Process`]; none of them is named
+//! here.
 
 use super::motion::StepStart;
 use super::process::Process;
@@ -52,7 +52,7 @@ pub(super) fn one_step<S: Space>(s: &mut Simulation<S>) -> Result<StepReport, St
     Ok(report)
 }
 
-/// Data of the current step for the laws.
+/// Returns the data of the current step for the laws.
 fn step_info<S: Space>(s: &Simulation<S>) -> StepInfo {
     let Scheme { h, theta } = s.options.scheme;
     StepInfo {

@@ -1,4 +1,4 @@
-//! How a simulation is computed: what a case or a program chooses, and no step changes.
+//! Options of the computation, chosen by a case or a program; no step changes them.
 
 use crate::solve;
 use serde::{Deserialize, Serialize};
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 /// The time scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
-    /// Step (s).
+    /// Length of the step (s).
     pub h: f64,
     /// Theta in \[1/2, 1\]: 1/2 conserves energy, 1 damps.
     pub theta: f64,
 }
 
 impl Default for Scheme {
-    /// A step of 1 ms that conserves energy.
+    /// Returns a step of 1 ms that conserves energy.
     fn default() -> Self {
         Self {
             h: 1e-3,
@@ -22,16 +22,16 @@ impl Default for Scheme {
     }
 }
 
-/// How a simulation is computed. No step changes it, and checkpoints do not hold it; a resumed
-/// simulation is given the same options by its case.
+/// Options of the computation. No step changes them, and checkpoints do not contain them; a resumed
+/// simulation gets the same options from its case.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
     /// The time scheme.
     pub scheme: Scheme,
     /// The solver. Phases may set another tolerance, see [`super::Simulation::solver_in_force`].
-    pub solver: solve::Options,
-    /// Steps of the case that the step spans in addition to its own; 0 unless it has grown, see
-    /// [`super::Simulation::span_steps`].
+    pub solver: solve::SolverOptions,
+    /// Number of steps of the case that a step spans in addition to its own; 0 unless it has grown,
+    /// see [`super::Simulation::span_steps`].
     pub grown: u32,
     /// Coupling of damage and opening within a step.
     pub coupling: Coupling,
@@ -40,13 +40,15 @@ pub struct Options {
     /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved
     /// apart; 0 for never. See `detection/projection.rs`.
     pub projection: f64,
-    /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact
-    /// dissipated. Once there, the record is continued until it is set to `None`.
+    /// Whether steps write the energy dissipated by each contact to
+    /// [`crate::contact::Network::dissipation`]. Once requested, the record continues until it is
+    /// set to `None`.
     pub record_dissipation: bool,
 }
 
 impl Options {
-    /// Length of a step that has not grown (s): events are assigned to steps to half of it.
+    /// Length of a step of the case (s): events belong to the step in whose time, to half a step,
+    /// they fall.
     pub fn event_step(&self) -> f64 {
         self.scheme.h / (1.0 + f64::from(self.grown))
     }
@@ -67,7 +69,7 @@ pub enum Coupling {
     Implicit {
         /// Largest change of damage between two iterations at convergence.
         tolerance: f64,
-        /// Maximum number of solves in a step; 50 where it is left out.
+        /// Maximum number of solves in a step; the default is 50.
         #[serde(default = "default_max_iterations")]
         max_iterations: u32,
     },

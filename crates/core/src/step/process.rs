@@ -1,118 +1,117 @@
-//! A process: what acts on a simulation at the named moments of its steps, see [`crate::process`].
+//! Processes act on a simulation at the named moments of its steps, see [`crate::process`].
 
 pub use super::error::ProcessError;
 use super::{Simulation, StepReport};
-use crate::code::CodeError;
+use crate::encoding::EncodingError;
 use crate::geometry::space::Space;
 use std::any::Any;
 use std::fmt::Debug;
 
-/// Something that acts on a simulation at the named moments of a step, see [`crate::process`]. All
-/// moments but those that it needs may be left out. While a process acts, [`Simulation::process`]
-/// finds no other.
+/// A process acts on a simulation at the named moments of a step, see [`crate::process`]. Moments
+/// that it does not need may be left out. While a process acts, [`Simulation::process`] finds no
+/// other.
 ///
-/// An error of a moment ends the step with [`super::StepError::Process`], unless it is a
+/// An error at a moment ends the step with [`super::StepError::Process`], unless it is a
 /// [`super::StepError`] itself; the state is then that of this moment.
 pub trait Process<S: Space>: Any + Debug + Send + Sync {
-    /// Its name, which identifies it among the processes of a simulation in checkpoints and
-    /// messages.
+    /// Returns the name, which identifies the process in checkpoints and messages.
     fn name(&self) -> &str;
 
-    /// At the start of a step, before anything of it is done.
+    /// Acts at the start of a step, before any of its stages.
     ///
     /// # Errors
-    /// Why the step is not to be made.
+    /// Returns why the step cannot be made.
     fn at_start(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// When imposed motions have their velocities of the step: where forces act on bodies, see
-    /// [`Simulation::apply_impulse`].
+    /// Acts when imposed motions have their velocities of the step. This is the moment at which to
+    /// apply forces to bodies, see [`Simulation::apply_impulse`].
     ///
     /// # Errors
-    /// Why it cannot go on.
+    /// Returns why the process cannot continue.
     fn before_detection(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// When the contacts of the step are found, at q_m, before the laws see them: what laws are to
-    /// see of contacts is set here. Called again in the same step where its velocities close
-    /// further contacts.
+    /// Acts when the contacts of the step are found, at q_m, before the laws are called: quantities
+    /// of contacts that laws read are set here. It is called again in the same step if the
+    /// velocities close further contacts.
     ///
     /// # Errors
-    /// Why it cannot go on.
+    /// Returns why the process cannot continue.
     fn contacts_found(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// When impulses are known and the laws have committed their damage and wear; bodies are at
-    /// q_m.
+    /// Acts when impulses are known and the laws have updated damage and wear; bodies are at q_m.
     ///
     /// # Errors
-    /// Why it cannot go on.
+    /// Returns why the process cannot continue.
     fn after_solve(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// When bodies and time are at the end of the step.
+    /// Acts when bodies and time are at the end of the step.
     ///
     /// # Errors
-    /// Why it cannot go on.
+    /// Returns why the process cannot continue.
     fn after_move(&mut self, _: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// After what looks at the step has seen it, and before the next one: where bodies are taken
-    /// out, and where the next step is prepared.
+    /// Acts after observers of the step, and before the next step: bodies are removed and the next
+    /// step is prepared here.
     ///
     /// # Errors
-    /// Why it cannot go on.
+    /// Returns why the process cannot continue.
     fn between_steps(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// After the last step of a run: what is otherwise done every so many steps is done now.
+    /// Acts after the last step of a run: actions at intervals of steps are completed here.
     ///
     /// # Errors
-    /// Why it cannot.
+    /// Returns why the process cannot complete.
     fn at_end(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
-    /// When a body has been removed from the scene.
+    /// Called when a body has been removed from the scene.
     fn body_removed(&mut self, _: &mut Simulation<S>, _body: usize) {}
 
-    /// When the state has been replaced, see [`Simulation::restore`] and [`Simulation::repeat`]:
-    /// what follows the state elsewhere, such as the sizes of shapes, is brought up to date.
+    /// Called when the state has been replaced, see [`Simulation::restore`] and
+    /// [`Simulation::repeat`]: data outside the state that depend on it, such as the sizes of
+    /// shapes, are updated here.
     fn follow_state(&mut self, _: &mut Simulation<S>) {}
 
-    /// Whether what it was to reach is reached, so that the run may end.
+    /// Returns whether the process has reached its goal, so that the run may end.
     fn finished(&self) -> bool {
         false
     }
 
-    /// Whether steps in which it acts may be repeated from a saved state, see
-    /// [`Simulation::repeat`]: all that it does is undone by restoring the simulation and by
-    /// [`Process::restore`]. A run with a process that says no, as by default, does not estimate
-    /// its error.
+    /// Returns whether steps in which the process acts may be repeated from a saved state, see
+    /// [`Simulation::repeat`]: all its effects are undone by restoring the simulation and by
+    /// [`Process::restore`]. The default is no; the error of a run with such a process is not
+    /// estimated.
     fn repeats(&self) -> bool {
         false
     }
 
-    /// What it carries from step to step, as bytes for a checkpoint ([`crate::code::encode`]); none
-    /// where it carries nothing.
+    /// Returns the state that the process carries from step to step, as bytes for a checkpoint
+    /// ([`crate::encoding::encode`]); empty if there is none.
     ///
     /// # Errors
-    /// It cannot be put into bytes.
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    /// The state cannot be encoded.
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         Ok(Vec::new())
     }
 
-    /// Goes on from what [`Process::save`] gave.
+    /// Restores the state that [`Process::save`] returned.
     ///
     /// # Errors
     /// The bytes are of something else.
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, _: &[u8]) -> Result<(), EncodingError> {
         Ok(())
     }
 }

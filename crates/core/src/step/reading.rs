@@ -1,5 +1,4 @@
-//! What a simulation holds at the end of a step, for readers: columns of bodies, rows of
-//! contacts.
+//! Data of a simulation at the end of a step, for readers: columns of bodies, rows of contacts.
 
 use super::Simulation;
 use super::change::ContactForces;
@@ -20,9 +19,9 @@ use std::any::Any;
 pub struct ContactRow<S: Space> {
     /// The two bodies, by their places in the columns: candidate, antagonist.
     pub bodies: [u32; 2],
-    /// Place of its interface in the case.
+    /// Index of the interface in the case.
     pub interface: u16,
-    /// Where it touches, seen from the candidate (m).
+    /// Contact point on the candidate's side (m).
     pub point: S::Vector,
     /// Unit normal, from the antagonist to the candidate.
     pub normal: S::Vector,
@@ -30,41 +29,41 @@ pub struct ContactRow<S: Space> {
     pub gap: f64,
     /// Mean force of the last step on the candidate (N; 2D N/m); the antagonist has its opposite.
     pub force: S::Vector,
-    /// Its part along the normal (N; 2D N/m), positive in compression.
+    /// Part of the force along the normal (N; 2D N/m), positive in compression.
     pub normal_force: f64,
     /// Whether friction is at its bound.
     pub slides: bool,
 }
 
 impl<S: Space> Simulation<S> {
-    /// Number of bodies, grains first, then first bodies: the length of every column.
+    /// Returns the number of bodies, grains first, then first bodies: the length of every column.
     pub fn body_count(&self) -> usize {
         self.state.bodies.len()
     }
 
-    /// The place of a first body in the columns, by its name.
+    /// Returns the index of a first body in the columns, by its name.
     pub fn body_named(&self, name: &str) -> Option<usize> {
         let mut driven = self.state.bodies.driven.iter();
         driven.find(|d| d.name == name).map(|d| d.body as usize)
     }
 
-    /// Centres of mass (m).
+    /// Returns the centres of mass (m).
     pub fn positions(&self) -> &[S::Vector] {
         &self.state.bodies.position
     }
 
-    /// Velocities of the centres of mass (m/s).
+    /// Returns the velocities of the centres of mass (m/s).
     pub fn velocities(&self) -> &[S::Vector] {
         &self.state.bodies.velocity
     }
 
-    /// Angular velocities (rad/s).
+    /// Returns the angular velocities (rad/s).
     pub fn spins(&self) -> &[S::Spin] {
         &self.state.bodies.spin
     }
 
-    /// The contacts of the last step, open ones within the alert distance too; empty before the
-    /// first step.
+    /// Returns the contacts of the last step, including open ones within the alert distance; empty
+    /// before the first step.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactRow<S>> + '_ {
         let contacts = self.state.network.contacts.iter();
         contacts.map(|contact| self.row(contact))
@@ -85,8 +84,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its
-    /// contacts on a first body; `None` for a name that no first body has.
+    /// Returns the mean force (N; 2D N/m) and the mean moment about its centre (N m; 2D N) in the
+    /// last step by the contacts on a first body; `None` for an unknown name.
     pub fn contact_force_on(&self, name: &str) -> Option<(S::Vector, S::Spin)> {
         let place = self
             .state
@@ -99,19 +98,20 @@ impl<S: Space> Simulation<S> {
         Some((*impulse * rate, *moment * rate))
     }
 
-    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its
-    /// mesh; `None` where it has none or no heat is computed.
+    /// Returns the temperature of a body (K): the mean over the nodes of its surface, or over its
+    /// mesh weighted by heat capacity; `None` where it has none or no heat is computed.
     pub fn temperature(&self, body: usize) -> Option<f64> {
         self.mean_temperature(self.heat.as_ref()?.nodes.get(body)?.range())
     }
 
-    /// Mean temperature of some nodes (K), see [`crate::heat::HeatState::mean_temperature`].
+    /// Returns the mean temperature of some nodes (K), see
+    /// [`crate::heat::HeatState::mean_temperature`].
     pub fn mean_temperature(&self, nodes: std::ops::Range<usize>) -> Option<f64> {
         self.state.heat.as_ref()?.mean_temperature(nodes)
     }
 
-    /// The problem of the last step solved, in the form of the field's collection; `None` where a
-    /// bond, cohesion or friction against rotation was at work, which that form does not hold.
+    /// Returns the problem of the last solved step, in the form of the collection FCLIB; `None`
+    /// where a bond, cohesion or friction against rotation acted, which that form does not contain.
     pub fn local_problem(&self) -> Option<LocalProblem> {
         let (forms, contacts) = (&self.workspace.forms, &self.state.network.contacts);
         let of_bodies = self.workspace.surfaces.forms_of_bodies(forms, contacts);
@@ -145,32 +145,32 @@ impl<S: Space> Simulation<S> {
         phase > 0 && phase == self.phases.len() && self.state.control.turns()
     }
 
-    /// Whether the next step is the first of a phase: what bounds it is known after it.
+    /// Returns whether the next step is the first of a phase, whose bounds are known only after it.
     pub fn phase_begins(&self) -> bool {
         self.state.control.turns() && self.state.control.phase() < self.phases.len()
     }
 
-    /// What bounds the next step. Drives of deformable bodies are not looked at.
+    /// Returns the bounds of the next step. Drives of deformable bodies are not included.
     pub fn step_bounds(&self) -> StepBounds {
         StepBounds::of(self)
     }
 
-    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place
-    /// that its point faces, or of the contact point. None where that side, 0 of the candidate or 1
-    /// of the antagonist, is rigid.
+    /// Returns the nodes of a system on which a contact acts at the current positions: those of the
+    /// mean position that its point faces, or of the contact point. Empty where that side, 0 for
+    /// the candidate or 1 for the antagonist, is rigid.
     pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
         mean_places::nodes_of_side(self, contact, side)
     }
 
-    /// The vertices of the surface of the antagonist below the facets of a point, with their shares
-    /// of what is worn off there; `None` for a contact on the nearest place.
+    /// Returns the vertices of the surface of the antagonist opposite the facets of a point, with
+    /// their shares of the volume worn there; `None` for a contact on the nearest position.
     pub(crate) fn worn_shares(&self, contact: &Contact<S>) -> Option<&[(u32, f64)]> {
         mean_places::worn_shares(self, contact)
     }
 
-    /// The contacts of points of deformable bodies with surfaces of others in the last step, no
-    /// grains, and whether each acted on the place that its point faces on average; the others
-    /// acted on the nearest place.
+    /// Returns the contacts of points of deformable bodies, other than grains, with surfaces of
+    /// others in the last step, and whether each acted on the mean position that its point faces;
+    /// the others acted on the nearest position.
     pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
         mean_places::acted_on_mean_places(self)
     }
@@ -190,10 +190,10 @@ impl<S: Space> Simulation<S> {
         ContactForces(carrying.map(force).collect())
     }
 
-    /// The largest displacement of a point of a body in a step at the current velocities, over the
-    /// length of the smallest grain, or the alert distance without grains. Infinite where a surface
-    /// turns into another place, since its extent is not known. A ball that turns in its place does
-    /// not move.
+    /// Returns the largest displacement of a point of a body in a step at the current velocities,
+    /// over the length of the smallest grain, or over the alert distance without grains. Infinite
+    /// where a surface rotates so that it changes its place, since its extent is not known. A ball
+    /// that rotates about its centre does not move.
     pub fn largest_displacement(&self) -> f64 {
         let (bodies, network) = (&self.state.bodies, &self.state.network);
         let turning = self.shapes.surfaces.iter().any(|surface| {
@@ -226,18 +226,18 @@ impl<S: Space> Simulation<S> {
         self.options.scheme.h * present.map(speed).fold(0.0, f64::max) / size
     }
 
-    /// The process of a type, the first where there are several.
+    /// Returns the process of a type, the first where there are several.
     pub fn process<P: Process<S>>(&self) -> Option<&P> {
         self.processes_as_any().find_map(|p| p.downcast_ref())
     }
 
-    /// What the core itself added to the stages of a step, and then the processes.
+    /// Iterates over the features that the core added, and then over the processes.
     pub(crate) fn processes_as_any(&self) -> impl Iterator<Item = &dyn Any> {
         let list = self.features.iter().chain(&self.processes);
         list.map(|p| p.as_ref() as &dyn Any)
     }
 
-    /// Whether the last phase has come to its end, or a process has reached what it was to reach.
+    /// Returns whether the last phase has ended, or a process has reached its goal.
     pub fn finished(&self) -> bool {
         self.phases_finished() || self.processes.iter().any(|p| p.finished())
     }

@@ -1,14 +1,15 @@
-//! Repeating steps from a saved state: steps with other options, after which all is as before.
+//! Repeating steps from a saved state: steps with other options, after which the original state is
+//! restored.
 
 use super::{Options, Simulation, State, control};
-use crate::code::CodeError;
+use crate::encoding::EncodingError;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 
 /// The state of one process: its name and its bytes.
 pub type ProcessState = (String, Vec<u8>);
 
-/// Why steps cannot be repeated.
+/// Reason why steps cannot be repeated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RepeatError {
     /// A process may do what cannot be undone.
@@ -16,17 +17,17 @@ pub enum RepeatError {
         "the process `{process}` does not declare that its steps can be repeated (Process::repeats)"
     )]
     Process {
-        /// Its name.
+        /// Name of the process.
         process: String,
     },
     /// A process cannot be saved or restored.
     #[error("the state of a process cannot be saved or put back for repeated steps: {0}")]
-    Code(#[from] CodeError),
+    Code(#[from] EncodingError),
 }
 
-/// All of a simulation that steps may change, to go back to it.
+/// All data of a simulation that steps may change, to restore it.
 #[derive(Debug)]
-pub struct Saved<S: Space> {
+pub struct SavedSimulation<S: Space> {
     state: State<S>,
     options: Options,
     laws: Vec<Interface>,
@@ -36,9 +37,9 @@ pub struct Saved<S: Space> {
 impl<S: Space> Simulation<S> {
     /// Continues from the state of a simulation that was built from the same case. The next step
     /// gives the same bits as in that simulation. Returns false, and changes nothing, if the state
-    /// belongs to another case, or if this simulation has made steps already: build it again then,
-    /// since laws and surfaces follow the state. A decoded state is restored here, not assigned to
-    /// `state`, which would leave dynamical systems without their data.
+    /// belongs to another case, or if this simulation has made steps already; it must then be built
+    /// again, since laws and surfaces depend on the state. A decoded state is restored here, not
+    /// assigned to `state`, which would leave dynamical systems without their data.
     #[must_use]
     pub fn restore(&mut self, mut state: State<S>) -> bool {
         if self.state.steps > 0 || !fits(&state, self) || !state.systems.resume(&self.state.systems)
@@ -60,11 +61,11 @@ impl<S: Space> Simulation<S> {
         true
     }
 
-    /// What the processes carry from step to step, in their order.
+    /// Returns the states of the processes, in their order.
     ///
     /// # Errors
-    /// One cannot be put into bytes.
-    pub fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+    /// A state cannot be encoded.
+    pub fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError> {
         let list = self.processes.iter();
         list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
     }
@@ -73,12 +74,12 @@ impl<S: Space> Simulation<S> {
     /// simulation with the same processes.
     ///
     /// # Errors
-    /// The states are of other processes; where one cannot be read, those before it are restored
-    /// already.
-    pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+    /// The states belong to other processes, or one cannot be read; processes before it are then
+    /// restored already.
+    pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError> {
         let names = self.processes.iter().map(|p| p.name());
         if !names.eq(from.iter().map(|(name, _)| name.as_str())) {
-            return Err(CodeError::other("processes"));
+            return Err(EncodingError::other("processes"));
         }
         let mut pairs = self.processes.iter_mut().zip(from);
         pairs.try_for_each(|(process, (_, bytes))| process.restore(bytes))
@@ -87,7 +88,7 @@ impl<S: Space> Simulation<S> {
     /// Whether steps can be repeated.
     ///
     /// # Errors
-    /// Which process does not permit it.
+    /// Returns an error with the first process that does not permit repetition.
     pub fn repeatable(&self) -> Result<(), RepeatError> {
         let other = self.processes.iter().find(|p| !p.repeats());
         other.map_or(Ok(()), |p| {
@@ -97,8 +98,8 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    /// Goes on with another step (s). Impulses of contacts, from which the solver starts and which
-    /// laws see, are those of the same forces.
+    /// Continues with another step length (s). The impulses of contacts, from which the solver
+    /// starts and which laws read, are scaled to keep the forces.
     pub fn change_step(&mut self, h: f64) {
         let ratio = h / self.options.scheme.h;
         self.options.scheme.h = h;
@@ -108,8 +109,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events
-    /// stay with the steps of the case, see [`super::control::StepBounds`].
+    /// Continues with steps that each span `count` steps of the case (at least 1) of `h` (s).
+    /// Events remain at steps of the case, see [`super::control::StepBounds`].
     pub fn span_steps(&mut self, h: f64, count: u32) {
         let count = count.max(1);
         let spanned = h * f64::from(count);
@@ -120,10 +121,10 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Lets `trial` make steps from the current state, with options that it may change, and then
-    /// restores the state before it: the next step gives the same bits as without the trial.
+    /// restores the state: the next step gives the same bits as without the trial.
     ///
     /// # Errors
-    /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
+    /// Steps cannot be repeated; nothing was changed then, unless a process could not be restored.
     pub fn repeat<R>(&mut self, trial: impl FnOnce(&mut Self) -> R) -> Result<R, RepeatError> {
         let saved = self.save()?;
         let result = trial(self);
@@ -134,7 +135,7 @@ impl<S: Space> Simulation<S> {
     /// Lets `trial` make steps; if it fails, restores the state before it.
     ///
     /// # Errors
-    /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
+    /// Steps cannot be repeated; nothing was changed then, unless a process could not be restored.
     pub fn attempt<R, E>(
         &mut self,
         trial: impl FnOnce(&mut Self) -> Result<R, E>,
@@ -147,10 +148,10 @@ impl<S: Space> Simulation<S> {
         Ok(result)
     }
 
-    /// Copies all that steps may change.
-    fn save(&self) -> Result<Saved<S>, RepeatError> {
+    /// Copies all data that steps may change.
+    fn save(&self) -> Result<SavedSimulation<S>, RepeatError> {
         self.repeatable()?;
-        Ok(Saved {
+        Ok(SavedSimulation {
             processes: self.save_processes()?,
             state: self.state.clone(),
             options: self.options,
@@ -158,7 +159,7 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
+    fn put_back(&mut self, saved: SavedSimulation<S>) -> Result<(), RepeatError> {
         let worn = self.state.scars.iter().zip(&saved.state.scars);
         let worn: Vec<bool> = worn.map(|(now, then)| !now.same_depths(then)).collect();
         self.state = saved.state;
@@ -175,8 +176,8 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Returns whether it is a state of this scene, in which a step can be made: its lists are as long
-/// as those of the scene, indices are in range, and numbers of motion are finite.
+/// Returns whether the state belongs to this scene and permits a step: its lists are as long as
+/// those of the scene, indices are in range, and numbers of motion are finite.
 fn fits<S: Space>(state: &State<S>, scene: &Simulation<S>) -> bool {
     let built = &scene.state;
     let scars = state.scars.iter().zip(&built.scars);
@@ -208,7 +209,7 @@ mod tests {
     use crate::wear::Scar;
     use nalgebra::Vector2;
 
-    /// A surface that a trial wears is as before afterwards, worn as it was.
+    /// A surface that a trial wears is restored to its worn state before the trial.
     #[test]
     fn a_trial_leaves_no_wear() {
         let chain = [0.0, 1.0, 2.0].map(|x| Vector2::new(x, 0.0)).to_vec();
@@ -239,7 +240,7 @@ mod tests {
         assert!((s.state.scars[0].volume() - 0.1).abs() < 1e-15);
     }
 
-    /// A step that spans four of the case: contacts have the impulses of the same forces.
+    /// In a step that spans four steps of the case contacts have the impulses of the same forces.
     #[test]
     fn forces_stay_where_steps_grow() {
         let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];

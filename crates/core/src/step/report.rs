@@ -1,4 +1,4 @@
-//! What a step reports.
+//! Report of a step.
 
 use crate::laws::Totals;
 use crate::solve;
@@ -9,7 +9,7 @@ use std::time::Duration;
 pub struct Timing {
     /// Detection, including the projection of penetrations.
     pub detect: Duration,
-    /// Laws: prepare and commit.
+    /// Laws: preparation and commit.
     pub laws: Duration,
     /// The solver.
     pub solve: Duration,
@@ -22,20 +22,20 @@ pub struct StepReport {
     pub solver: solve::Report,
     /// Report of the coupling of damage and opening.
     pub coupling: CouplingReport,
-    /// How laws and the step agree.
+    /// Agreement of laws and solution.
     pub agreement: Agreement,
     /// Sums over contacts.
     pub totals: Totals,
-    /// Number of solves: above 1 where the first left contacts out that its velocities closed.
+    /// Number of solves; more than one if the first omitted contacts that its velocities closed.
     pub solves: u32,
     /// Number of contacts that carry an impulse.
     pub active: usize,
-    /// Number of contacts: those within the alert distance or bonded, and of the predicted ones
-    /// those with an impulse.
+    /// Number of contacts: those within the alert distance or bonded, and predicted contacts with
+    /// an impulse.
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
-    pub projected: Option<Projected>,
-    /// Imposed motions that nothing could obey, if there were any.
+    pub projected: Option<ProjectionReport>,
+    /// Imposed motions that no solution can follow, if there were any.
     pub impossible: Option<Box<Impossible>>,
     /// Deepest overlap at detection, after a projection, see
     /// [`super::Simulation::deepest_overlap`].
@@ -55,13 +55,13 @@ pub struct CouplingReport {
     pub missed: bool,
 }
 
-/// How laws and the step agree.
+/// Agreement of laws and solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Agreement {
     /// Number of solves: more than 1 where friction depends on velocity, or attraction on the gap.
     pub solves: u32,
     /// Sum over contacts of the difference between the friction used and that of the laws at the
-    /// velocity of sliding reached, over the sum of the friction.
+    /// resulting sliding velocity, over the sum of the friction.
     pub friction: f64,
     /// Sum over contacts of the difference between the attraction used and that over the gaps
     /// passed, over the sum of their loads.
@@ -70,7 +70,7 @@ pub struct Agreement {
 
 /// Result of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projected {
+pub struct ProjectionReport {
     /// Deepest penetration before it, as a fraction of the smaller body's length.
     pub before: f64,
     /// Deepest penetration left.
@@ -81,18 +81,17 @@ pub struct Projected {
     pub against_loads: f64,
 }
 
-/// What a step could not obey.
+/// Imposed motions that no solution can follow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impossible {
     /// Bodies that squeeze others without bound: those that do the work first, then those against
-    /// which they press; empty where none do.
+    /// which they press; empty if there are none.
     pub squeezing: Vec<u32>,
-    /// The deepest overlap of two bodies whose motions are both imposed, if there is one that
-    /// grows.
+    /// Deepest growing overlap of two bodies with imposed motions, if there is one.
     pub overlap: Option<DrivenOverlap>,
 }
 
-/// Two bodies whose motions are both imposed, and that overlap.
+/// Two overlapping bodies with imposed motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrivenOverlap {
     /// The bodies.

@@ -6,19 +6,19 @@ use crate::geometry::space::Space;
 use std::ops::ControlFlow;
 
 impl<S: Space> Simulation<S> {
-    /// Steps until a time (s) is reached, and calls `after` with the state and the report at the
-    /// end of every step. Break from `after` to stop early, for instance where the phases of a case
-    /// have ended ([`Simulation::finished`]). Returns why the run stopped early, if it did; the
-    /// simulation can go on.
+    /// Makes steps until a time (s) is reached, and calls `after` with the state and the report at
+    /// the end of every step. Break from `after` to stop early, for instance where the phases of a
+    /// case have ended ([`Simulation::finished`]). Returns why the run stopped early, if it did;
+    /// the simulation can go on.
     ///
     /// # Errors
-    /// Those of [`Simulation::step`].
+    /// Returns the errors of [`Simulation::step`].
     pub fn run_until<B>(
         &mut self,
         end: f64,
         mut after: impl FnMut(&Self, &StepReport) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, StepError> {
-        // An end that a whole number of steps reaches up to rounding takes no step more.
+        // If a whole number of steps reaches the end up to rounding, no further step is made.
         while self.state.time < end - 1e-6 * self.options.scheme.h {
             let report = self.step()?;
             if let ControlFlow::Break(reason) = after(self, &report) {
@@ -29,11 +29,11 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Calls the processes between two steps, once for each step. An observer of each step calls
-    /// this when it has seen the state; the next step does it first where nobody did.
+    /// this after reading the state; otherwise the next step calls it first.
     ///
     /// # Errors
-    /// Why a process cannot go on. The processes after it have not acted then, and do not act on
-    /// this state any more: the simulation has ended.
+    /// Returns why a process cannot continue. The processes after it have not acted, and will not
+    /// act on this state: the simulation has ended.
     pub fn between_steps(&mut self) -> Result<(), StepError> {
         if std::mem::replace(&mut self.state.settled, true) {
             return Ok(());
@@ -41,11 +41,11 @@ impl<S: Space> Simulation<S> {
         self.act(Process::between_steps)
     }
 
-    /// Calls the processes after the last step, for what they do at intervals of steps only; what
-    /// is due between steps comes first.
+    /// Calls the processes after the last step, for actions at intervals of steps; actions that are
+    /// due between steps come first.
     ///
     /// # Errors
-    /// Why a process cannot.
+    /// Returns why a process cannot complete.
     pub fn end(&mut self) -> Result<(), StepError> {
         self.between_steps()?;
         self.act(Process::at_end)
@@ -66,8 +66,7 @@ impl<S: Space> Simulation<S> {
         let acted = list
             .iter_mut()
             .try_for_each(|p| self.act_one(p, &mut moment));
-        // A process that was added acts after those that were there; while they acted it could not
-        // see them.
+        // A process that was added acts after the existing ones; while they act it cannot see them.
         let added = std::mem::take(&mut self.processes);
         for process in added {
             if list.iter().all(|p| p.name() != process.name()) {

@@ -1,4 +1,4 @@
-//! The simulation: what a case gives, how it is computed, and its state.
+//! The simulation: data of the case, options of the computation, and state.
 
 use super::control::phases::Phase;
 use super::fields::Fields;
@@ -16,34 +16,33 @@ use crate::solve::{self, ContactForm};
 use crate::threads::worth_dividing;
 use std::sync::Arc;
 
-/// About what a pass over contacts takes for each (ns).
+/// Approximate time per contact of a pass over contacts (ns).
 const EACH: f64 = 15.0;
 
-/// A scene that is advanced in time: what a case gives, the options of the computation, and the
-/// state.
+/// A scene that is advanced in time: data of the case, options of the computation, and state.
 #[derive(Debug)]
 pub struct Simulation<S: Space> {
-    /// What can touch. Worn surfaces follow their scars.
+    /// Collision shapes. Worn surfaces follow their scars.
     pub shapes: Shapes<S>,
-    /// Interface laws. Parameters that phases set are in force here, and are kept by the state.
+    /// Interface laws, with the parameters that phases have set, which the state keeps too.
     pub laws: Vec<Interface>,
     /// Interface law of each pair of materials.
     pub table: LawTable,
-    /// Phases in the order in which they run; the schedule of the state has the index of the
+    /// Phases in the order in which they run; the schedule in the state has the index of the
     /// current one.
     pub phases: Vec<Phase>,
-    /// How it is computed; no step changes it.
+    /// Options of the computation; no step changes them.
     pub options: Options,
-    /// Heat and current; `None` where none is computed. See [`crate::process::heat::HeatFlow`].
+    /// Heat and current; `None` if not computed. See [`crate::process::heat::HeatFlow`].
     pub(crate) heat: Option<Arc<Heat>>,
-    /// What steps change; a checkpoint holds all of it.
+    /// Data that steps change; a checkpoint contains all of them.
     pub state: State<S>,
-    /// What grains and contacts carry for output, by name.
+    /// Output quantities of grains and contacts, by name.
     pub fields: Fields<S>,
-    /// What the core itself adds to the stages of a step, see [`Simulation::add_feature`].
+    /// Features that the core adds to the stages of a step, see [`Simulation::add_feature`].
     pub(super) features: Vec<Box<dyn Process<S>>>,
-    /// What acts at the named moments of a step, in this order; they save themselves, see
-    /// [`Simulation::save_processes`].
+    /// Processes that act at the named moments of a step, in this order; they save their own state,
+    /// see [`Simulation::save_processes`].
     pub(super) processes: Vec<Box<dyn Process<S>>>,
     pub(crate) workspace: Workspace<S>,
 }
@@ -88,15 +87,16 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Heat and current, as the case gives them.
+    /// Returns heat and current, as the case gives them.
     pub fn heat(&self) -> Option<&Heat> {
         self.heat.as_deref()
     }
 
-    /// The options of the solver, with the tolerance that the current phase has set, if any.
-    pub fn solver_in_force(&self) -> solve::Options {
+    /// Returns the options of the solver, with the tolerance that the current phase has set, if
+    /// any.
+    pub fn solver_in_force(&self) -> solve::SolverOptions {
         let given = self.options.solver;
-        solve::Options {
+        solve::SolverOptions {
             tolerance: self.state.control.tolerance.unwrap_or(given.tolerance),
             ..given
         }
@@ -118,10 +118,10 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Scenes of unit tests in the plane. Without a law what is in contact is what the test puts there.
+/// Scenes of unit tests in the plane. Without a law the contacts are those that the test adds.
 #[cfg(test)]
 impl Simulation<crate::geometry::space::Dim2> {
-    /// Disks at rest by centre and radius (m), of 1 kg/m^3 and the material 0.
+    /// Creates disks at rest by centre and radius (m), of 1 kg/m^3 and the material 0.
     pub(crate) fn of_disks(disks: &[([f64; 2], f64)]) -> Self {
         use crate::geometry::periodic::Periodic;
         use crate::geometry::shape::Ball;
@@ -150,7 +150,7 @@ impl Simulation<crate::geometry::space::Dim2> {
         Self::new(self.state.bodies, self.shapes, vec![law], table, 1e-3, 1e-3)
     }
 
-    /// Drives a body, with these drives of x, y and the rotation.
+    /// Drives a body with these drives of x, y and the rotation.
     pub(crate) fn drive(&mut self, body: u32, dofs: [crate::bodies::Dof; 3]) {
         let name = format!("body {body}");
         let dofs = dofs.to_vec();

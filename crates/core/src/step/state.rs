@@ -1,10 +1,10 @@
 //! State of a simulation between two steps: the content of a checkpoint.
 //!
-//! All of it is saved, by its derived form: a new field is saved without being named anywhere else.
-//! What a case gives (shapes, laws, phases, options) is built again, and work arrays of a step
-//! (forms, columns, the solver's problem and its colouring) depend only on this state. Two things
-//! of the case follow the state while it changes: worn surfaces follow their scars, and parameters
-//! of laws what phases have set; [`super::Simulation::restore`] has them follow again.
+//! All of it is saved by its derived form: a new field is saved without further code. Data of the
+//! case (shapes, laws, phases, options) are built again, and work arrays of a step (forms, columns,
+//! the solver's problem and its colouring) depend only on this state. Two kinds of data of the case
+//! depend on the state: worn surfaces on their scars, and parameters of laws on phases;
+//! [`super::Simulation::restore`] updates them.
 
 use super::control::schedule::Control;
 use crate::bodies::{Bodies, Systems};
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// State of a simulation between two steps; see [`super::Simulation::restore`].
 ///
 /// ```
-/// use fretwork_core::code::{CodeError, decode, encode};
+/// use fretwork_core::encoding::{EncodingError, decode, encode};
 /// use fretwork_core::geometry::space::Dim2;
 /// use fretwork_core::step::{Simulation, StepError};
 ///
@@ -40,7 +40,7 @@ use serde::{Deserialize, Serialize};
 pub struct State<S: Space> {
     /// Time at the end of the last step (s).
     pub time: f64,
-    /// What the sum of the steps in `time` has too much by rounding (s).
+    /// Rounding error of the sum of the steps in `time` (s).
     pub(super) time_excess: f64,
     /// Steps completed.
     pub steps: u64,
@@ -49,15 +49,15 @@ pub struct State<S: Space> {
     pub(super) settled: bool,
     /// Grains and first bodies.
     pub bodies: Bodies<S>,
-    /// Bodies that are more than rigid; see [`super::Simulation::add_system`].
+    /// Deformable and other bodies that are more than rigid; see [`super::Simulation::add_system`].
     pub systems: Systems<S>,
     /// The contacts.
     pub network: Network<S>,
-    /// What laws have to know of earlier steps, beyond what contacts remember.
+    /// State of the laws from earlier steps that is not stored with contacts.
     pub(super) law_history: LawHistory,
     /// Acceleration of gravity (m/s^2).
     pub gravity: S::Vector,
-    /// What acts from outside and changes in time.
+    /// Progress of the external actions that change in time.
     pub control: Control<S>,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
@@ -76,12 +76,12 @@ pub struct State<S: Space> {
     pub worn_through: Option<WornThrough>,
     /// Temperatures and the account of heat; `None` where none is computed.
     pub heat: Option<HeatState>,
-    /// What the automatic choice of the solver has learned.
+    /// State of the automatic choice of the solver.
     pub(super) auto_state: AutoState,
 }
 
 impl<S: Space> State<S> {
-    /// Bodies and contacts at rest at time zero.
+    /// Creates a state of bodies and contacts at rest at time zero.
     pub(super) fn at_rest(bodies: Bodies<S>, network: Network<S>) -> Self {
         let kinetic = bodies.kinetic_energy();
         Self {

@@ -1,4 +1,4 @@
-//! Whole steps of scenes that have a closed form, with laws of unit tests.
+//! Whole steps of scenes with a closed form, with laws for unit tests.
 
 use super::control::{Changes, Phase, Until};
 use super::*;
@@ -6,7 +6,8 @@ use crate::bodies::Dof;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
 use crate::heat::{
-    BodyNodes, Heat, HeatShares, HeatState, Imposed, Node, Partition, Store, ThermalMaterial,
+    BodyNodes, Heat, HeatShares, HeatState, ImposedHeatFlow, Node, Partition, Store,
+    ThermalMaterial,
 };
 use crate::laws::Interface;
 use crate::laws::sample_laws::{bond, constant, interface, sticky};
@@ -16,13 +17,13 @@ use nalgebra::Vector2;
 
 const H: f64 = 1.0 / 64.0;
 
-/// Same as far as rounding goes.
+/// Returns whether two numbers are equal to rounding.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs()).max(1.0)
 }
 
-/// A disk that does not turn lies on a chain of 20 m, and slides at 3 m/s; index 0, and 1 of the
-/// body of the chain.
+/// A disk that does not rotate lies on a chain of 20 m, and slides at 3 m/s; body 0 is the disk,
+/// body 1 that of the chain.
 fn slider() -> Simulation<Dim2> {
     slider_of(interface([]))
 }
@@ -39,15 +40,15 @@ fn slider_of(law: Interface) -> Simulation<Dim2> {
     s
 }
 
-/// Under g = 10 m/s^2 with friction of 0.5 it slows down by 5 m/s^2: v = 3 - 5 t and x = 3 t - 5
-/// t^2/2, exactly at theta = 1/2, and stops; its energy goes into friction. The chain gets the
-/// weight and the friction, and the moment of the weight about its origin.
+/// Under g = 10 m/s^2 with friction of 0.5 the disk slows down by 5 m/s^2: v = 3 - 5 t and x = 3
+/// t - 5 t^2/2, exactly at theta = 1/2, and stops; friction dissipates its energy. The chain gets
+/// the weight and the friction, and the moment of the weight about its origin.
 #[test]
 fn a_disk_slides_and_stops() {
     let mut s = slider();
     let m = s.state.bodies.mass[0];
     let before = 0.5 * m * 9.0;
-    // 0.6 s are 38.4 steps.
+    // A time of 0.6 s is 38.4 steps.
     for k in 1..=38 {
         let x_mean = s.state.bodies.position[0].x + 0.5 * H * s.state.bodies.velocity[0].x;
         s.step().unwrap();
@@ -76,8 +77,8 @@ fn a_disk_slides_and_stops() {
     assert!(same(energy.friction, before) && energy.impact.abs() < 1e-12);
 }
 
-/// A shear cohesion of 3 Pa over the area of the contact stops it earlier: v = 3 - (5 + 3 A/m) t,
-/// and friction takes that energy too.
+/// A shear cohesion of 3 Pa over the area of the contact stops the disk earlier: v = 3 - (5 + 3
+/// A/m) t, and friction dissipates that energy too.
 #[test]
 fn shear_cohesion_acts_beside_friction() {
     let law = interface([sticky()]);
@@ -85,7 +86,7 @@ fn shear_cohesion_acts_beside_friction() {
     let mut s = slider_of(law);
     let m = s.state.bodies.mass[0];
     let slows = 5.0 + 3.0 * area / m;
-    // Until it stops.
+    // The disk moves until this step.
     for k in 1..=(3.0 / slows / H) as u32 {
         s.step().unwrap();
         let v = s.state.bodies.velocity[0];
@@ -100,8 +101,8 @@ fn shear_cohesion_acts_beside_friction() {
     assert!(s.state.bodies.velocity[0].norm() < 1e-12);
 }
 
-/// A disk that falls is exact at any theta in its velocity, and at theta = 1/2 in its place; the
-/// scheme takes (theta - 1/2) m (g h)^2 in each step.
+/// The velocity of a falling disk is exact at any theta, its position at theta = 1/2; the scheme
+/// dissipates (theta - 1/2) m (g h)^2 in each step.
 #[test]
 fn a_disk_falls() {
     for theta in [0.5, 0.75, 1.0] {
@@ -127,9 +128,9 @@ fn a_disk_falls() {
     }
 }
 
-/// Two disks that a bond of k A = 0.5 N/m holds fly apart at v: by the midpoint rule the opening is
-/// v/w sin(n phi) after n steps and its rate v cos(n phi), with tan(phi/2) = w h/2 and w^2 = 2 k
-/// A/m, and no energy is lost.
+/// Two disks held by a bond of k A = 0.5 N/m separate at v: by the midpoint rule the opening is v/w
+/// sin(n phi) after n steps and its rate v cos(n phi), with tan(phi/2) = w h/2 and w^2 = 2 k A/m,
+/// and no energy is lost.
 #[test]
 fn a_bond_swings_as_the_midpoint_rule_says() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
@@ -143,7 +144,7 @@ fn a_bond_swings_as_the_midpoint_rule_says() {
     let w = (2.0 * stiffness / m).sqrt();
     let phi = 2.0 * (0.5 * w * H).atan();
     let (v, all) = (0.025, m * 0.0125 * 0.0125);
-    // Half a swing is 178 steps.
+    // Half an oscillation is 178 steps.
     for k in 1..=150 {
         s.step().unwrap();
         let angle = f64::from(k) * phi;
@@ -160,13 +161,13 @@ fn a_bond_swings_as_the_midpoint_rule_says() {
         let network = &s.state.network;
         let kept = &network.memory[0].bonds[0];
         assert!((kept.opening_n - opening).abs() < 1e-14 && kept.intact());
-        assert!((kept.life.work[0] - stored).abs() < 1e-14);
+        assert!((kept.energies.work[0] - stored).abs() < 1e-14);
         assert_eq!((network.bonds_made(), network.bonds_broken()), (1, 0));
     }
 }
 
-/// Phases of 8, 4 and 2 steps: friction of 0.5, then none, then 0.25 under twice the weight, which
-/// is the same force as at first. The run has ended with the last.
+/// Phases of 8, 4 and 2 steps have friction of 0.5, then none, then 0.25 under twice the weight,
+/// which gives the initial force. The run ends with the last phase.
 #[test]
 fn phases_change_gravity_and_friction() {
     let mut s = slider();
@@ -238,10 +239,10 @@ fn nodes(list: [(f64, f64); 2]) -> HeatState {
     HeatState::new(list.map(node).to_vec(), 1)
 }
 
-/// Two disks of 1 and 2 J/K at 400 and 300 K, joined by 3 W/K, of which the first is heated by 5 W:
-/// with implicit Euler over a time t the difference d goes to (d + 5 t/1)/(1 + 3 t (1/1 + 1/2)),
-/// and 3 W/K times it goes over. A step of the heat is of so many steps of the mechanics, each of
-/// the clock times h. Heat begins to flow at its time.
+/// Two disks of 1 and 2 J/K at 400 and 300 K are joined by 3 W/K, and the first is heated by 5 W:
+/// with implicit Euler over a time t the difference d becomes (d + 5 t/1)/(1 + 3 t (1/1 + 1/2)),
+/// and 3 W/K times it flows. A step of the heat spans a number of steps of the mechanics, each of
+/// the clock times h. Heat begins to flow at its start time.
 #[test]
 fn two_disks_come_to_one_temperature() {
     for (every, clock, start) in [
@@ -253,7 +254,7 @@ fn two_disks_come_to_one_temperature() {
         let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
         let mut s = Simulation::of_disks(&disks).with_law(interface([constant()]));
         s.options.scheme = Scheme { h: H, theta: 0.5 };
-        let imposed = vec![Imposed {
+        let imposed = vec![ImposedHeatFlow {
             body: None,
             node: 0,
             flow: 5.0,
@@ -292,9 +293,9 @@ fn two_disks_come_to_one_temperature() {
     }
 }
 
-/// The friction of a disk that slides warms it and the chain by half each, since they are of one
-/// material; or by the shares of the case, all of it on one side where the other is insulated, and
-/// into nothing where both are.
+/// The friction of a sliding disk heats disk and chain by half each, since they have the same
+/// material; or by the shares of the case; or one side only where the other is insulated, and
+/// neither where both are.
 #[test]
 fn friction_warms_both_sides() {
     let (one, two) = (BodyNodes::One(0), BodyNodes::One(1));
@@ -334,8 +335,8 @@ fn friction_warms_both_sides() {
     }
 }
 
-/// Where a hardness is given a contact is warmer than its bodies by the rise that its force, speed
-/// and friction give, in thermal time, from the second step on.
+/// Where a hardness is given a contact is warmer than its bodies by the rise that follows from its
+/// force, speed and friction, in thermal time, from the second step on.
 #[test]
 fn a_sliding_contact_flashes() {
     for clock in [1.0, 4.0] {
@@ -356,7 +357,7 @@ fn a_sliding_contact_flashes() {
             let seen = &s.state.network.thermal.as_ref().unwrap().temperatures[0];
             let [mean, a, b] = seen.temperature;
             assert_eq!((a, b), (300.0, 300.0));
-            // The force of the last step, and the speed at the start of this one.
+            // The rise uses the force of the last step, and the speed at the start of this one.
             let (force, v) = (10.0 * m, (3.0 - 5.0 * f64::from(k) * H) / clock);
             let rise = match k {
                 0 => 0.0,
@@ -371,8 +372,8 @@ fn a_sliding_contact_flashes() {
     }
 }
 
-/// A disk of mass m and inertia m r^2/2 at 2 m/s and 3 rad/s: an impulse p along its way and L
-/// about it do the work p v + p^2/(2 m) and L w + L^2/(m r^2).
+/// A disk of mass m and inertia m r^2/2 moves at 2 m/s and 3 rad/s: an impulse p along its motion
+/// and L about its axis do the work p v + p^2/(2 m) and L w + L^2/(m r^2).
 #[test]
 fn the_work_of_an_impulse_is_that_of_the_mean_velocity() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5)]);
@@ -386,7 +387,7 @@ fn the_work_of_an_impulse_is_that_of_the_mean_velocity() {
     assert!(same(s.state.bodies.velocity[0].x, 2.0 + p / m));
 }
 
-/// Spots get no warmer without a force, without sliding, or without heat.
+/// Contact spots do not heat up without a force, without sliding, or without heat.
 #[test]
 fn spots_rise_where_a_sliding_contact_is_heated() {
     let heat = Heat {
@@ -405,7 +406,7 @@ fn spots_rise_where_a_sliding_contact_is_heated() {
 }
 
 /// A disk grows by 5 mm in each step, far more than the skin of the neighbour list, until it is
-/// half the alert distance from one that was not in its reach: their contact is there.
+/// half the alert distance from a disk that was out of its reach: their contact is found.
 #[test]
 fn a_disk_that_grows_meets_its_neighbour() {
     let disks = [([0.0, 0.0], 0.5), ([1.1, 0.0], 0.5)];

@@ -1,4 +1,4 @@
-//! What a step makes for itself and throws away.
+//! Temporary data of a step.
 
 use super::problem::surfaces::Surfaces;
 use crate::bodies::{Nodes, TurningNode};
@@ -9,32 +9,31 @@ use crate::laws::evaluator::LawEvaluator;
 use crate::laws::{ContactStep, MomentStep, SolvedStep, SpringForm, SpringStep, Velocities};
 use crate::solve::{ContactForm, MomentForm, NodalSystem, Problem, Side};
 
-/// What a step makes for itself and throws away; its memory is kept from step to step, nothing
-/// else.
+/// Temporary data of a step; only the allocated memory is kept from step to step.
 #[derive(Debug)]
 pub(crate) struct Workspace<S: Space> {
-    /// Calls the laws.
+    /// Evaluator of the laws.
     pub evaluator: LawEvaluator,
     /// The contact problem.
     pub problem: Problem<S>,
-    /// Its contacts in the standard form, in the network's order.
+    /// Contacts in the standard form, in the network's order.
     pub forms: Vec<ContactForm<S>>,
-    /// What the motion closes of each gap beyond its velocity (m), in the same order; empty where
-    /// nothing does.
-    pub swerves: Vec<f64>,
-    /// What the laws of compliant contacts gave, in the same order; empty without one.
+    /// Distance by which the motion closes each gap beyond its velocity (m), in the same order;
+    /// empty if it is zero for all.
+    pub nonlinear_closing: Vec<f64>,
+    /// Linearised springs of compliant contacts, in the same order; empty without one.
     pub springs: Vec<Option<SpringForm<S>>>,
     /// Energy in springs of contacts at the start of the step (J).
     pub spring_energy: f64,
     /// Forms of the contacts that resist rotation.
     pub moments: Vec<MomentForm<S>>,
-    /// What contacts with dynamical systems act on.
+    /// Nodes and points on which contacts with dynamical systems act.
     pub systems: SystemContacts<S>,
-    /// The mean places that contacts reach to.
+    /// Mean positions that contacts face.
     pub means: MeanPlaces<S>,
-    /// How surfaces move on their bodies.
+    /// Motion of surfaces relative to their bodies.
     pub surfaces: Surfaces<S>,
-    /// What contacts did in the step.
+    /// Results of the contacts in the step.
     pub solved: Solved<S>,
     /// Whether a process has given a body an impulse in the step, see
     /// [`super::Simulation::apply_impulse`].
@@ -47,7 +46,7 @@ impl<S: Space> Default for Workspace<S> {
             evaluator: LawEvaluator::default(),
             problem: Problem::default(),
             forms: Vec::new(),
-            swerves: Vec::new(),
+            nonlinear_closing: Vec::new(),
             springs: Vec::new(),
             spring_energy: 0.0,
             moments: Vec::new(),
@@ -78,7 +77,7 @@ pub(crate) struct Solved<S: Space> {
 }
 
 impl<S: Space> Solved<S> {
-    /// What laws are given of it.
+    /// Returns the results as laws receive them.
     pub fn step<'a>(&'a self, info: &'a StepInfo) -> SolvedStep<'a, S> {
         SolvedStep {
             contacts: &self.contact_steps,
@@ -104,22 +103,22 @@ impl<S: Space> Default for Solved<S> {
     }
 }
 
-/// What the contacts of a step act on where dynamical systems take part, found once for the current
-/// contacts.
+/// Nodes and points on which the contacts of the step act where dynamical systems take part,
+/// computed once for the current contacts.
 #[derive(Debug)]
 pub(crate) struct SystemContacts<S: Space> {
     /// The sides of the contacts with systems, in the network's order.
     pub sides: Vec<[Side<S>; 2]>,
-    /// Where each contact of the network stands among them, [`RIGID`] where both sides are rigid;
+    /// Index of each contact of the network in this list, [`RIGID`] where both sides are rigid;
     /// empty without systems.
     pub places: Vec<u32>,
     /// The nodes of each system that are touched, in increasing order.
     pub touched: Vec<Vec<u32>>,
-    /// What the solver knows of each system: nodes, or points between them.
+    /// Systems as the solver uses them: nodes, or points between them.
     pub nodal: Vec<NodalSystem<S>>,
-    /// By system the points that stand for nodes; empty where nodes stand for themselves.
+    /// Points of each system that replace nodes; empty where the solver uses the nodes.
     pub points: Vec<Vec<Nodes>>,
-    /// The nodes that the moments of the step turn, by side.
+    /// Nodes on which the moments of the step act, by side.
     pub turned: Vec<[Option<TurningNode>; 2]>,
 }
 
@@ -137,43 +136,44 @@ impl<S: Space> Default for SystemContacts<S> {
 }
 
 impl<S: Space> SystemContacts<S> {
-    /// A point as the solver knows it: its place among the points of the system where there are
-    /// any, or itself.
+    /// Returns a point as the solver identifies it: its index among the points of the system if
+    /// there are any, or itself.
     pub fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
         let at = points.binary_search_by(|other| other.order(point));
         at.map_or_else(|_| point.clone(), |at| Nodes::one(at as u32))
     }
 }
 
-/// What a contact acts on of its antagonist.
+/// Position of the antagonist on which a contact acts.
 #[derive(Clone, Debug)]
 pub(crate) enum Reach<S: Space> {
-    /// The mean place that its point faces.
+    /// The mean position that its point faces.
     Mean(Box<MeanPlace<S>>),
-    /// The nearest place, because the mean one is not to be found.
+    /// The nearest position, because the mean one does not exist.
     Nearest,
-    /// The nearest place, of a contact that is none of a point of a deformable body with the
-    /// surface of another, or of one on an equal grid, where that carries a uniform pressure.
+    /// The nearest position, for a contact that is not between a point of a deformable body and the
+    /// surface of another, or that is between equal grids, where it carries a uniform pressure.
     Other,
 }
 
-/// The mean place that a point faces.
+/// The mean position that a point faces.
 #[derive(Clone, Debug)]
 pub(crate) struct MeanPlace<S: Space> {
-    /// The nodes that the contact acts on.
+    /// Nodes on which the contact acts.
     pub nodes: Nodes,
-    /// Where it is (m).
+    /// Position (m).
     pub place: S::Vector,
-    /// Normal of the contact: beyond the border of a surface that of the facets there.
+    /// Normal of the contact: beyond the border of a surface that of the facets at the border.
     pub normal: S::Vector,
-    /// Vertices of the surface with their shares of what is worn off.
+    /// Vertices of the surface with their shares of the worn volume.
     pub shares: Vec<(u32, f64)>,
 }
 
-/// What the contacts of the network act on, in its order, found once for the places of the step.
+/// Positions on which the contacts of the network act, in its order, found once for the positions
+/// of the step.
 #[derive(Debug)]
 pub(crate) struct MeanPlaces<S: Space> {
-    /// The contacts and their normals when that was found.
+    /// The contacts, and their normals when the positions were found.
     pub of: Vec<(Key, S::Vector)>,
     pub found: Vec<Reach<S>>,
 }
@@ -186,7 +186,7 @@ impl<S: Space> Default for MeanPlaces<S> {
 }
 
 impl<S: Space> MeanPlaces<S> {
-    /// What was found of a contact with this normal.
+    /// Returns the position found for a contact with this normal.
     pub fn known(&self, contact: &Contact<S>) -> Option<&Reach<S>> {
         let at = self.of.binary_search_by_key(&contact.key, |of| of.0).ok()?;
         (self.of[at].1 == contact.normal).then(|| &self.found[at])

@@ -38,25 +38,25 @@ impl AnySimulation {
         in_dimension!(self, |s| &**s)
     }
 
-    /// The simulation before its first step, to be set up.
+    /// Returns the simulation before its first step, for setup.
     #[inline(never)]
     pub fn setup(&mut self) -> &mut dyn RunSetup {
         in_dimension!(self, |s| &mut **s)
     }
 
-    /// The simulation in dimension `S`; `None` if it has the other.
+    /// Returns the simulation in dimension `S`; `None` if it has the other dimension.
     pub fn get<S: Space>(&self) -> Option<&Simulation<S>> {
         let simulation: &dyn Any = in_dimension!(self, |s| &**s);
         simulation.downcast_ref()
     }
 
-    /// The simulation in dimension `S`, to be changed; `None` if it has the other.
+    /// Returns the mutable simulation in dimension `S`; `None` if it has the other dimension.
     pub fn get_mut<S: Space>(&mut self) -> Option<&mut Simulation<S>> {
         let simulation: &mut dyn Any = in_dimension!(self, |s| &mut **s);
         simulation.downcast_mut()
     }
 
-    /// Steps until a time (s), or until `after`, which is called after each step, breaks; see
+    /// Makes steps until a time (s), or until `after`, which is called after each step, breaks; see
     /// [`Simulation::run_until`].
     ///
     /// # Errors
@@ -89,10 +89,10 @@ impl AnySimulation {
         in_dimension!(self, |s| s.run_until(time, |s, report| after(s, report)))
     }
 
-    /// Takes the simulation out in dimension `S`.
+    /// Converts to the simulation in dimension `S`.
     ///
     /// # Errors
-    /// The simulation itself, if it has the other dimension.
+    /// Returns the simulation itself, if it has the other dimension.
     pub fn into_dimension<S: Space>(self) -> Result<Simulation<S>, Self> {
         if self.get::<S>().is_none() {
             return Err(self);
@@ -134,7 +134,7 @@ impl DerefMut for AnySimulation {
 }
 
 impl<S: Space> Simulation<S> {
-    /// The simulation without its dimension, for reading.
+    /// Returns the simulation without its dimension, for reading.
     pub fn view(&self) -> &dyn RunView {
         self
     }

@@ -4,39 +4,40 @@ use super::rows::{BodyColumns, BodyMotion};
 use crate::geometry::space::{MatrixLike, Space, VectorLike, about_axes, spin_about};
 use crate::step::Simulation;
 
-/// The bodies of a run: where they are, how they move, and what they resist it with.
+/// The bodies of a run: positions, motion, mass and inertia.
 ///
-/// Bodies are counted as in [`BodiesView::bodies`], driven bodies as in [`BodyColumns::driven`].
+/// Bodies are numbered as in [`BodiesView::bodies`], driven bodies as in [`BodyColumns::driven`].
 pub trait BodiesView {
-    /// Columns of the bodies.
+    /// Returns the columns of the bodies.
     fn bodies(&self) -> BodyColumns<'_>;
-    /// The bodies that are grains and are still there.
+    /// Returns the indices of the grains that have not been removed.
     fn grains(&self) -> Vec<usize>;
-    /// Whether each body is a grain that is still there.
+    /// Returns for each body whether it is a grain that has not been removed.
     fn grain_flags(&self) -> Vec<bool>;
-    /// Where a body is and how it moves.
+    /// Returns position and motion of a body.
     fn motion(&self, body: usize) -> BodyMotion;
     /// A vector in the axes of a body, turned to world axes.
     fn turned(&self, body: usize, vector: [f64; 3]) -> [f64; 3];
     /// A vector in world axes, turned to the axes of a body.
     fn turned_back(&self, body: usize, vector: [f64; 3]) -> [f64; 3];
-    /// Moments of inertia in the body's own axes, row by row (kg m^2); in 2D the first alone.
+    /// Returns the moments of inertia in the body's own axes, row by row (kg m^2); in 2D a single
+    /// number.
     fn inertia_tensor(&self, body: usize) -> [f64; 9];
-    /// Angular momentum of a body about its centre at an angular velocity (rad/s), in world axes
-    /// (kg m^2/s; kg m/s in 2D).
+    /// Returns the angular momentum of a body about its centre at an angular velocity (rad/s), in
+    /// world axes (kg m^2/s; kg m/s in 2D).
     fn angular_momentum(&self, body: usize, spin: [f64; 3]) -> [f64; 3];
-    /// Kinetic energy of a body (J; J/m in 2D).
+    /// Returns the kinetic energy of a body (J; J/m in 2D).
     fn kinetic_energy(&self, body: usize) -> f64;
-    /// Name of a body in messages: a first body's name, a grain's identity.
+    /// Returns the name of a body in messages: a first body's name, a grain's identity.
     fn body_name(&self, body: u32) -> String;
-    /// Impulse (N s; N s/m in 2D) and moment of it about the centre (N m s; N s in 2D) of the
-    /// contacts on each driven body in the last step.
+    /// Returns the impulse (N s; N s/m in 2D) and its moment about the centre (N m s; N s in 2D) of
+    /// the contacts on each driven body in the last step.
     fn received(&self) -> Vec<[[f64; 3]; 2]>;
-    /// Velocity (m/s) and angular velocity (rad/s) of each driven body at the start of the last
-    /// step, after the jumps of imposed motion.
+    /// Returns the velocity (m/s) and angular velocity (rad/s) of each driven body at the start of
+    /// the last step, after the jumps of imposed motion.
     fn started(&self) -> Vec<[[f64; 3]; 2]>;
-    /// Mean force (N; N/m in 2D) and moment about its centre (N m; N in 2D) of the last step by its
-    /// contacts on a first body; `None` for a name that no first body has.
+    /// Returns the mean force (N; N/m in 2D) and the mean moment about its centre (N m; N in 2D) in
+    /// the last step by the contacts on a first body; `None` for an unknown name.
     fn contact_force_on(&self, name: &str) -> Option<[[f64; 3]; 2]>;
 }
 

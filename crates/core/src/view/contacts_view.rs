@@ -12,58 +12,58 @@ use std::collections::BTreeMap;
 
 /// The contacts of the last step of a run, and the bonds between its bodies.
 ///
-/// Contacts are counted as [`ContactsView::visit_contacts`] hands them out, interfaces as in
+/// Contacts are numbered in the order of [`ContactsView::visit_contacts`], interfaces as in
 /// [`RunView::laws`](super::RunView::laws).
 pub trait ContactsView {
-    /// Number of contacts, open ones within the alert distance too.
+    /// Returns the number of contacts, including open ones within the alert distance.
     fn contact_count(&self) -> usize;
-    /// Number of contacts that [count](ContactView::counts).
+    /// Returns the number of contacts that [count](ContactView::counts).
     fn counted_contacts(&self) -> usize;
-    /// Hands each contact of the last step to a function, in the order of their keys.
+    /// Calls a function with each contact of the last step, in the order of their keys.
     fn visit_contacts(&self, visit: &mut dyn FnMut(&ContactView));
-    /// Forces of the contacts of points of deformable bodies with surfaces of others, no grains
-    /// (N; N/m in 2D), and whether each acted on the place that its point faces on average; the
-    /// others acted on the nearest place.
+    /// Returns the forces of the contacts of points of deformable bodies, other than grains, with
+    /// surfaces of others (N; N/m in 2D), and whether each acted on the mean position that its
+    /// point faces; the others acted on the nearest position.
     fn forces_on_points(&self) -> Vec<(f64, bool)>;
-    /// End points of a contact (m): the candidate's centre, and the antagonist's centre or the
-    /// closest point on its surface.
+    /// Returns the end points of a contact (m): the candidate's centre, and the antagonist's centre
+    /// or the closest point on its surface.
     fn ends_of_contact(&self, contact: usize) -> [[f64; 3]; 2];
-    /// End points of the contacts that [count](ContactView::counts) (m), the first in the periodic
-    /// cell.
+    /// Returns the end points of the contacts that [count](ContactView::counts) (m), the first in
+    /// the periodic cell.
     fn contact_ends(&self) -> Vec<[[f64; 3]; 2]>;
     /// The forces of the contacts.
     fn contact_forces(&self) -> ContactForces;
-    /// The nodes of a dynamical system that a contact acts on, on the side 0 of its candidate or 1
-    /// of its antagonist; `None` where that side is rigid.
+    /// Returns the nodes of a dynamical system on which a contact acts, on the side 0 of its
+    /// candidate or 1 of its antagonist; `None` where that side is rigid.
     fn nodes_of_side(&self, contact: usize, side: usize) -> Option<Nodes>;
-    /// What each contact dissipated in the last step (J; J/m in 2D), where the run keeps it
-    /// ([`Options::record_dissipation`](crate::step::Options::record_dissipation)).
+    /// Returns the energy dissipated by each contact in the last step (J; J/m in 2D), where the run
+    /// records it ([`Options::record_dissipation`](crate::step::Options::record_dissipation)).
     fn dissipation(&self) -> Option<&[ContactDissipation]>;
-    /// Temperatures and conductances of the contacts in the last step; `None` where no heat is
-    /// computed.
+    /// Returns temperatures and conductances of the contacts in the last step; `None` where no heat
+    /// is computed.
     fn contact_heat(&self) -> Option<&ContactHeat>;
 
-    /// Bonds made so far.
+    /// Returns the number of bonds formed so far.
     fn bonds_made(&self) -> u64;
-    /// Bonds broken so far.
+    /// Returns the number of bonds broken so far.
     fn bonds_broken(&self) -> u64;
-    /// Bodies and interface of the bonds that formed in the last step.
+    /// Returns bodies and interface of the bonds that formed in the last step.
     fn bonds_formed(&self) -> &[([u32; 2], u16)];
     /// The bonds of an interface.
     fn bonds_of(&self, interface: usize) -> BondCounts;
-    /// The bonds that broke in the last step.
+    /// Returns the bonds that broke in the last step.
     fn bond_breaks(&self) -> &[Break];
-    /// Bodies of each pair of shapes whose bond broke, in no order.
+    /// Returns the bodies of each pair of shapes whose bond broke, in no particular order.
     fn broken_pairs(&self) -> Vec<[u32; 2]>;
-    /// Mean damage of the bonds.
+    /// Returns the mean damage of the bonds.
     fn mean_damage(&self) -> f64;
 
-    /// Volume worn off each surface that lost some (m^3; m^2 in 2D), by its place among the
+    /// Returns the volume worn off each surface with wear (m^3; m^2 in 2D), by its index among the
     /// surfaces.
     fn worn(&self) -> &BTreeMap<usize, f64>;
-    /// Number of cycles that the current one stands for; 1 where none are jumped over.
+    /// Returns the number of cycles that the current one represents; 1 without jumps.
     fn cycle_multiplier(&self) -> f64;
-    /// Diagnostics of the step size.
+    /// Returns the diagnostics of the step size.
     fn step_size(&self) -> &StepSizeDiagnostics;
 }
 

@@ -1,7 +1,7 @@
 //! Stepping a simulation, and saving and restoring its state.
 
 use super::RunView;
-use crate::code::{CodeError, decode_first, encode};
+use crate::encoding::{EncodingError, decode_first, encode};
 use crate::geometry::space::{Space, VectorLike, spin_about};
 use crate::solve::local::LocalProblem;
 use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, StepReport};
@@ -9,14 +9,14 @@ use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, Ste
 /// A simulation that is stepped. Its methods are those of [`Simulation`], where their errors are
 /// described.
 pub trait RunControl: RunView + Send {
-    /// One step; see [`Simulation::step`].
+    /// Makes one step; see [`Simulation::step`].
     ///
     /// # Errors
     /// The errors of [`Simulation::step`].
     fn step(&mut self) -> Result<StepReport, StepError>;
     /// Detects the contacts at the current positions, without an alert distance.
     fn detect(&mut self);
-    /// Lets the processes act that are due; see [`Simulation::between_steps`].
+    /// Calls the processes that are due; see [`Simulation::between_steps`].
     ///
     /// # Errors
     /// The errors of [`Simulation::between_steps`].
@@ -33,11 +33,11 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// A surface is worn through.
     fn check_worn_through(&self) -> Result<(), StepError>;
-    /// Options of the computation, to be changed.
+    /// Returns the mutable options of the computation.
     fn options_mut(&mut self) -> &mut Options;
     /// Continues with another time step (s); see [`Simulation::change_step`].
     fn change_step(&mut self, h: f64);
-    /// Goes on with steps that each span so many of the case, of `h` (s); see
+    /// Continues with steps that each span this number of steps of the case, of `h` (s); see
     /// [`Simulation::span_steps`].
     fn span_steps(&mut self, h: f64, count: u32);
     /// Replaces the tolerance that the current phase has set, see [`RunView::phase_tolerance`].
@@ -52,24 +52,24 @@ pub trait RunControl: RunView + Send {
     ///
     /// # Errors
     /// The state cannot be serialised.
-    fn save(&self) -> Result<Vec<u8>, CodeError>;
+    fn save(&self) -> Result<Vec<u8>, EncodingError>;
     /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns
     /// the bytes after it, or `None` if the state belongs to another case. See
     /// [`Simulation::restore`].
     ///
     /// # Errors
     /// The bytes are not a state.
-    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError>;
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, EncodingError>;
     /// The states of the processes.
     ///
     /// # Errors
     /// A state cannot be serialised.
-    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError>;
+    fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError>;
     /// Restores the states of the processes.
     ///
     /// # Errors
     /// The states belong to other processes.
-    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError>;
     /// Calls `trial`, which may make steps and change options, and restores the state before it;
     /// see [`Simulation::repeat`].
     ///
@@ -80,7 +80,7 @@ pub trait RunControl: RunView + Send {
     /// ([`Simulation::attempt`]). Returns what `trial` returned.
     ///
     /// # Errors
-    /// As [`Simulation::attempt`].
+    /// Returns the errors of [`Simulation::attempt`].
     fn attempt(
         &mut self,
         trial: &mut dyn FnMut(&mut dyn RunControl) -> bool,
@@ -88,11 +88,10 @@ pub trait RunControl: RunView + Send {
 }
 
 impl dyn RunControl + '_ {
-    /// Returns what `trial` returns, and restores the state before it, see
-    /// [`RunControl::repeat`].
+    /// Returns the result of `trial`, and restores the state before it, see [`RunControl::repeat`].
     ///
     /// # Errors
-    /// As [`RunControl::repeat`].
+    /// Returns the errors of [`RunControl::repeat`].
     pub fn repeated<R>(
         &mut self,
         trial: impl FnOnce(&mut dyn RunControl) -> R,
@@ -105,11 +104,11 @@ impl dyn RunControl + '_ {
         }
     }
 
-    /// Returns what `trial` returns, and restores the state before it where that is an error, see
+    /// Returns the result of `trial`, and restores the state before it if that is an error, see
     /// [`RunControl::attempt`].
     ///
     /// # Errors
-    /// As [`RunControl::attempt`].
+    /// Returns the errors of [`RunControl::attempt`].
     pub fn attempted<R, E>(
         &mut self,
         trial: impl FnOnce(&mut dyn RunControl) -> Result<R, E>,
@@ -165,17 +164,17 @@ impl<S: Space> RunControl for Simulation<S> {
         self.local_problem()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
-    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError> {
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, EncodingError> {
         let (state, rest) = decode_first(bytes)?;
         Ok(self.restore(state).then_some(rest))
     }
-    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+    fn save_processes(&self) -> Result<Vec<ProcessState>, EncodingError> {
         self.save_processes()
     }
-    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), EncodingError> {
         self.restore_processes(from)
     }
     fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError> {

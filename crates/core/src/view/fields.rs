@@ -5,7 +5,7 @@ use crate::geometry::space::Space;
 use crate::step::Simulation;
 use crate::step::fields::{Field, FieldList, GrainPart, Value, orientation, removed};
 
-/// How the values of a field are kept.
+/// Type of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// Numbers.
@@ -23,9 +23,9 @@ pub struct FieldInfo {
     pub name: &'static str,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
-    /// One line.
+    /// Description in one line.
     pub doc: &'static str,
-    /// How its values are kept.
+    /// Type of the values.
     pub kind: FieldKind,
 }
 
@@ -43,7 +43,7 @@ impl FieldInfo {
         }
     }
 
-    /// Numbers of a value: 3 of a vector, 1 of others.
+    /// Returns the number of components of a value: 3 for a vector, otherwise 1.
     pub fn width(&self) -> usize {
         match self.kind {
             FieldKind::Vector => 3,
@@ -52,14 +52,14 @@ impl FieldInfo {
     }
 }
 
-/// The values of a field, one for each thing that carries it.
+/// Values of a field, one for each item that has it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FieldValues {
     /// Numbers.
     Number(Vec<f64>),
     /// Whole numbers.
     Whole(Vec<i64>),
-    /// Vectors in world axes, three numbers each, one after the other.
+    /// Vectors in world axes, three components each, one after the other.
     Vector(Vec<f64>),
 }
 
@@ -77,16 +77,16 @@ impl FieldValues {
     }
 }
 
-/// Fields of grains beside those that every simulation registers.
+/// Optional fields of grains, in addition to those that every simulation registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GrainFields {
-    /// Orientations, needed if grains are not single balls.
+    /// Orientations, needed if some grains are not single balls.
     pub orientation: bool,
     /// Whether each grain was removed.
     pub removed: bool,
 }
 
-/// The fields of the grains, in the order in which they are written.
+/// Returns the fields of the grains, in the order in which they are written.
 fn of_grains<S: Space>(s: &Simulation<S>, with: GrainFields) -> FieldList<S, GrainPart<S>> {
     let mut fields = s.fields.grains.clone();
     let turns = with.orientation.then(orientation).into_iter().flatten();
@@ -112,7 +112,7 @@ pub(super) fn grain_field<S: Space>(s: &Simulation<S>, name: &str) -> Option<Fie
     Some(FieldValues::of(field, s, parts.iter()))
 }
 
-/// Which contacts are shown.
+/// Returns the contacts that are shown.
 fn shown<S: Space>(s: &Simulation<S>, counted: bool) -> impl Iterator<Item = &Contact<S>> {
     let network = &s.state.network;
     let all = network.contacts.iter().filter(move |_| !counted);

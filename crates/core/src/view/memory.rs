@@ -7,21 +7,21 @@ use crate::geometry::space::Space;
 use crate::solve::Problem;
 use crate::step::Simulation;
 
-/// Bytes of a grain and of a contact, from the sizes of the types that hold them.
+/// Memory of a grain and of a contact (bytes), from the sizes of their types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryUse {
     /// State and shape of a grain.
     pub grain: usize,
     /// A body in the solver.
     pub solver_body: usize,
-    /// A contact in the sweep of the solver: without bonds and levers, with bonds, with levers,
-    /// with both.
+    /// Memory of a contact in the sweep of the solver: without bonds and levers, with bonds, with
+    /// levers, with both.
     pub rows: [usize; 4],
     /// Geometry and memory of a contact, and its place in the order of the sweep.
     pub contact: usize,
     /// A bond.
     pub bond: usize,
-    /// The rotation of a bond, where its law follows it.
+    /// Rotation of a bond, for laws that use it.
     pub turn: usize,
 }
 

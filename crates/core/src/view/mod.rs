@@ -11,7 +11,7 @@
 //!
 //! Positions, velocities and forces are `[f64; 3]` in world axes. In the plane the third component
 //! is zero, angular velocities and moments are about the third axis, and extensive quantities are
-//! those of a depth of 1 m.
+//! for a depth of 1 m.
 //!
 //! ```
 //! use fretwork_core::bodies::Bodies;

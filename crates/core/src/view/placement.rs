@@ -6,12 +6,12 @@ use crate::geometry::convex::{ConvexCollider, Core};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 
-/// Centre of a convex part (m).
+/// Returns the centre of a convex part (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
     crate::contact::detect::piece_centre(piece, &s.state.bodies)
 }
 
-/// Corners of a convex part (m): its outline in 2D, its faces in 3D.
+/// Returns the corners of a convex part (m): its outline in 2D, its faces in 3D.
 pub fn piece_outline<S: Space>(
     s: &Simulation<S>,
     piece: &ConvexCollider<S>,
@@ -33,8 +33,8 @@ pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondStat
     s.state.network.bond_state(contact)
 }
 
-/// End points of a contact: the candidate's centre, and the antagonist's centre or the closest
-/// point on its surface.
+/// Returns the end points of a contact: the candidate's centre, and the antagonist's centre or the
+/// closest point on its surface.
 pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let key = &contact.key;
     let (Some(candidate), 0) = (key.ball(), key.antagonist & Key::PIECE) else {
@@ -52,7 +52,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// End points of a contact with a convex part: via the contact point, which is the end at a first
+/// Returns the end points of a contact with a convex part; the contact point is the end at a first
 /// body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let centre = s.state.bodies.position[contact.bodies[0] as usize];

@@ -1,7 +1,7 @@
 //! Rows of a view: plain data with three components.
 
 use crate::bodies::{Carrier, Driven};
-use crate::contact::{BondState, Key, Slides};
+use crate::contact::{BondState, Key, SlideStatistics};
 use crate::geometry::space::{VectorLike, Vectors};
 use nalgebra::Vector3;
 
@@ -40,7 +40,7 @@ impl<'a> BodyColumns<'a> {
         self.id.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no bodies.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }
@@ -56,7 +56,7 @@ impl<'a> BodyColumns<'a> {
     }
 }
 
-/// Where a body is and how it moves.
+/// Position and motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyMotion {
     /// Centre of mass (m).
@@ -70,13 +70,13 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// Magnitude of the velocity (m/s).
+    /// Returns the magnitude of the velocity (m/s).
     pub fn speed(&self) -> f64 {
         VectorLike::norm(&Vector3::from(self.velocity))
     }
 }
 
-/// A ball of a body, or a point of one that deforms, which has the radius zero.
+/// A ball of a body, or a surface point of a deformable body, which has radius zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallView {
     /// Index of its body.
@@ -103,7 +103,7 @@ pub struct PieceView {
     pub material: u16,
     /// Radius of the ball (2D: disk) of the same volume (m).
     pub size: f64,
-    /// Radius of the ball about its centre that holds it (m).
+    /// Radius of the ball about the piece's centre that contains it (m).
     pub bound: f64,
     /// Rounding radius (m).
     pub rounding: f64,
@@ -122,9 +122,9 @@ pub struct SurfaceView {
     pub material: u16,
     /// Origin in the frame of the body (m).
     pub offset: [f64; 3],
-    /// Whether it is the surface of a grain that deforms.
+    /// Whether the surface encloses a deformable grain.
     pub closed: bool,
-    /// Whether it has an end everywhere, unlike a plane.
+    /// Whether the surface is bounded, unlike a plane.
     pub bounded: bool,
     /// Outward normal of a plane, in its own frame.
     pub flat: Option<[f64; 3]>,
@@ -154,41 +154,41 @@ pub struct ScarView<'a> {
     pub volume: f64,
     /// Greatest depth (m).
     pub deepest: f64,
-    /// Where that is, in the frame of the surface before any wear (m).
+    /// Position of the greatest depth, in the frame of the surface before any wear (m).
     pub deepest_at: [f64; 3],
 }
 
 /// A vertex of a scar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScarVertex {
-    /// Where it is, in the frame of the surface before any wear (m).
+    /// Position of the vertex, in the frame of the surface before any wear (m).
     pub at: [f64; 3],
-    /// Area that it stands for (m^2; length in 2D, m).
+    /// Tributary area of the vertex (m^2; length in 2D, m).
     pub tributary: f64,
-    /// Depth that was worn off there (m).
+    /// Worn depth (m).
     pub depth: f64,
 }
 
 /// A contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactView {
-    /// Its place among the contacts of the step.
+    /// Index of the contact among the contacts of the step.
     pub place: usize,
     /// Key in the scene.
     pub key: Key,
     /// The bodies: candidate, antagonist.
     pub bodies: [u32; 2],
-    /// Place of its interface in the case.
+    /// Index of the interface in the case.
     pub interface: u16,
-    /// Where it touches, seen from the candidate (m).
+    /// Contact point on the candidate's side (m).
     pub point: [f64; 3],
-    /// Points of contact seen from the centres of mass of the bodies (m).
+    /// Vectors from the centres of mass of the bodies to the contact points (m).
     pub arms: [[f64; 3]; 2],
     /// Unit normal, from the antagonist to the candidate.
     pub normal: [f64; 3],
     /// Distance at detection (m), positive when open.
     pub gap: f64,
-    /// Reduced radius (m); zero where it is not known.
+    /// Reduced radius (m); zero where unknown.
     pub radius: f64,
     /// Impulse of the last step on the candidate (N s; N s/m in 2D); the antagonist has its
     /// opposite.
@@ -201,21 +201,22 @@ pub struct ContactView {
     pub slides: bool,
     /// Whether its forces pass through the centres of both bodies.
     pub central: bool,
-    /// Time at which it formed (s).
+    /// Time at which the contact formed (s).
     pub formed_at: f64,
     /// The state of its bond.
     pub bond: BondState,
-    /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
+    /// Whether the contact is within the alert distance or bonded, or was predicted and has an
+    /// impulse.
     pub counts: bool,
 }
 
 /// The bonds of an interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BondCounts {
-    /// Made so far.
+    /// Number of bonds formed so far.
     pub made: u64,
-    /// Broken so far.
+    /// Number of bonds broken so far.
     pub broken: u64,
-    /// How far they opened or slid in a step.
-    pub slides: Slides,
+    /// How far bonds opened or slid in a step.
+    pub slides: SlideStatistics,
 }

@@ -12,117 +12,119 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{Heat, HeatState};
 use crate::laws::Interface;
 use crate::momentum::Momentum;
-use crate::process::cycle::{Drive, SlidingBody};
+use crate::process::cycle::{SlidingBody, SlidingStep};
 use crate::process::expansion::ThermalExpansion;
 use crate::process::jump::{JumpSummary, Jumps};
 use crate::solve;
-use crate::step::control::{Begun, GravityDrive, StepBounds};
+use crate::step::control::{GravityDrive, StartedPhase, StepBounds};
 use crate::step::fields::GrainPart;
 use crate::step::{Options, RepeatError, Simulation};
 use std::any::{Any, TypeId};
 use std::fmt::Debug;
 
-/// A simulation for reading, between two steps. The [module](super) describes the third components.
+/// A simulation for reading, between two steps. The [module](super) describes the use of three
+/// components in 2D.
 ///
-/// Its bodies, shapes and contacts have traits of their own, whose methods a `&dyn RunView` has
-/// too.
+/// Bodies, shapes and contacts have separate traits, whose methods a `&dyn RunView` has too.
 pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
-    /// Time at the end of the last step (s).
+    /// Returns the time at the end of the last step (s).
     fn time(&self) -> f64;
-    /// Steps completed.
+    /// Returns the number of completed steps.
     fn steps(&self) -> u64;
-    /// How it is computed.
+    /// Returns the options of the computation.
     fn options(&self) -> &Options;
-    /// The options of the solver, with the tolerance that the current phase has set, if any.
-    fn solver_in_force(&self) -> solve::Options;
-    /// The tolerance of the solver that the current phase has set, if any.
+    /// Returns the options of the solver, with the tolerance that the current phase has set, if
+    /// any.
+    fn solver_in_force(&self) -> solve::SolverOptions;
+    /// Returns the tolerance of the solver that the current phase has set, if any.
     fn phase_tolerance(&self) -> Option<f64>;
     /// Whether steps can be repeated.
     ///
     /// # Errors
-    /// Which process does not permit it.
+    /// Returns an error with the first process that does not permit repetition.
     fn repeatable(&self) -> Result<(), RepeatError>;
-    /// What bounds the next step; see [`Simulation::step_bounds`].
+    /// Returns the bounds of the next step; see [`Simulation::step_bounds`].
     fn step_bounds(&self) -> StepBounds;
-    /// The largest displacement of a point of a body in a step at the current velocities, over the
-    /// length of the smallest grain; see [`Simulation::largest_displacement`].
+    /// Returns the largest displacement of a point of a body in a step at the current velocities,
+    /// over the length of the smallest grain; see [`Simulation::largest_displacement`].
     fn largest_displacement(&self) -> f64;
     /// Whether the next step is the first of a phase.
     fn phase_begins(&self) -> bool;
-    /// Number of the current phase, from 1; 0 before the first step and without phases.
+    /// Returns the number of the current phase, from 1; 0 before the first step and without phases.
     fn phase(&self) -> usize;
-    /// Whether phases or processes end the run before its time.
+    /// Returns whether phases or processes end the run before its end time.
     fn finished(&self) -> bool;
-    /// Names of the phases of the case, in order.
+    /// Returns the names of the phases of the case, in order.
     fn phase_names(&self) -> Vec<&str>;
-    /// The phases begun so far, in order.
-    fn begun(&self) -> &[Begun];
-    /// Acceleration of gravity (m/s^2).
+    /// Returns the phases begun so far, in order.
+    fn begun(&self) -> &[StartedPhase];
+    /// Returns the acceleration of gravity (m/s^2).
     fn gravity(&self) -> [f64; 3];
-    /// How gravity changes in time.
+    /// Returns the time dependence of gravity.
     fn gravity_drive(&self) -> Option<&GravityDrive>;
-    /// Bodies that are removed at a time: index among the driven bodies, and time (s).
-    fn gates(&self) -> &[(usize, f64)];
-    /// Lengths of the periodic cell.
+    /// Returns the bodies that are removed at a time: index among the driven bodies, and time (s).
+    fn removals(&self) -> &[(usize, f64)];
+    /// Returns the lengths of the periodic cell.
     fn periodic(&self) -> &Periodic;
-    /// Distance within which a pair forms a contact (m).
+    /// Returns the distance within which a pair forms a contact (m).
     fn alert(&self) -> f64;
-    /// Interface laws.
+    /// Returns the interface laws.
     fn laws(&self) -> &[Interface];
-    /// Interface law of each pair of materials.
+    /// Returns the interface law of each pair of materials.
     fn table(&self) -> &LawTable;
 
-    /// What grains and contacts take in memory.
+    /// Returns the memory of a grain and of a contact.
     fn memory_use(&self) -> MemoryUse;
     /// The energy ledger (J; J/m in 2D).
     fn energies(&self) -> &Energy;
-    /// Work of projections on driven bodies against imposed forces (J; J/m in 2D).
+    /// Returns the work of projections on driven bodies against imposed forces (J; J/m in 2D).
     fn projection_work(&self) -> f64;
     /// The ledger of momentum (N s, N m s; in 2D per m).
     fn momentum(&self) -> &Momentum;
-    /// Heat and current, as the case gives them.
+    /// Returns heat and current, as the case gives them.
     fn heat(&self) -> Option<&Heat>;
-    /// Temperatures and the account of heat.
+    /// Returns the temperatures and the account of heat.
     fn heat_state(&self) -> Option<&HeatState>;
-    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its
-    /// mesh; `None` where it has none or no heat is computed.
+    /// Returns the temperature of a body (K): the mean over the nodes of its surface, or over its
+    /// mesh weighted by heat capacity; `None` where it has none or no heat is computed.
     fn temperature(&self, body: usize) -> Option<f64>;
-    /// Coefficient of thermal expansion of each body (1/K), zero where it keeps its size, and the
-    /// dynamical systems that expand; `None` where no body expands.
+    /// Returns the coefficient of thermal expansion of each body (1/K), zero where it keeps its
+    /// size, and the dynamical systems that expand; `None` where no body expands.
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)>;
 
-    /// What the drive of a rubbed body did in the last step, and the normal force of its contacts,
-    /// the mean over the step (N; N/m in 2D), positive in compression.
-    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64);
-    /// What the jumps over cycles came to so far; `None` where the case has none.
+    /// Returns force and sliding distance of the drive of a rubbed body in the last step, and the
+    /// mean normal force of its contacts over the step (N; N/m in 2D), positive in compression.
+    fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64);
+    /// Returns the summary of the cycle jumps so far; `None` where the case has none.
     fn jump_summary(&self) -> Option<JumpSummary>;
-    /// The process of a type, the first where there are several; see
+    /// Returns the process of a type, the first where there are several; see
     /// [`process`](trait.RunView.html#method.process) of `dyn RunView`.
     fn process_of_type(&self, of: TypeId) -> Option<&dyn Any>;
 
-    /// Centres of the parts of grains and first bodies that carry fields (m).
+    /// Returns the centres of the parts of grains and first bodies that have fields (m).
     fn grain_centres(&self) -> Vec<[f64; 3]>;
-    /// Centres of the parts, moved into the periodic cell (m).
+    /// Returns the centres of these parts, moved into the periodic cell (m).
     fn grain_points(&self) -> Vec<[f64; 3]>;
-    /// The fields of the parts of grains and first bodies, in the order in which they are written.
+    /// Returns the fields of the parts of grains and first bodies, in the order in which they are
+    /// written.
     fn grain_fields(&self, with: GrainFields) -> Vec<FieldInfo>;
-    /// Their values, in the same order.
+    /// Returns the values of these fields, in the same order.
     fn grain_values(&self, with: GrainFields) -> Vec<FieldValues>;
-    /// The values of one of them.
+    /// Returns the values of one of these fields.
     fn grain_field(&self, name: &str) -> Option<FieldValues>;
-    /// The fields of contacts, in the order in which they are written.
+    /// Returns the fields of contacts, in the order in which they are written.
     fn contact_fields(&self) -> Vec<FieldInfo>;
-    /// Their values at all contacts, or at those that [count](ContactView::counts), in the same
-    /// order.
+    /// Returns the values of these fields at all contacts, or at those that
+    /// [count](ContactView::counts), in the same order.
     fn contact_values(&self, counted: bool) -> Vec<FieldValues>;
-    /// The values of one of them.
+    /// Returns the values of one of these fields.
     fn contact_field(&self, name: &str, counted: bool) -> Option<FieldValues>;
 }
 
 impl dyn RunView + '_ {
-    /// The process of a type, the first where there are several.
+    /// Returns the process of a type, the first where there are several.
     pub fn process<P: Any>(&self) -> Option<&P> {
         self.process_of_type(TypeId::of::<P>())?.downcast_ref()
     }
@@ -141,7 +143,7 @@ impl<S: Space> RunView for Simulation<S> {
     fn options(&self) -> &Options {
         &self.options
     }
-    fn solver_in_force(&self) -> solve::Options {
+    fn solver_in_force(&self) -> solve::SolverOptions {
         self.solver_in_force()
     }
     fn phase_tolerance(&self) -> Option<f64> {
@@ -171,7 +173,7 @@ impl<S: Space> RunView for Simulation<S> {
             .map(|phase| phase.name.as_str())
             .collect()
     }
-    fn begun(&self) -> &[Begun] {
+    fn begun(&self) -> &[StartedPhase] {
         self.state.control.begun()
     }
     fn gravity(&self) -> [f64; 3] {
@@ -180,8 +182,8 @@ impl<S: Space> RunView for Simulation<S> {
     fn gravity_drive(&self) -> Option<&GravityDrive> {
         self.state.control.gravity_drive.as_ref()
     }
-    fn gates(&self) -> &[(usize, f64)] {
-        &self.state.control.gates
+    fn removals(&self) -> &[(usize, f64)] {
+        &self.state.control.removals
     }
     fn periodic(&self) -> &Periodic {
         &self.shapes.periodic
@@ -223,7 +225,7 @@ impl<S: Space> RunView for Simulation<S> {
         Some((&expansion.coefficient, systems))
     }
 
-    fn rubbing(&self, body: &SlidingBody) -> (Drive, f64) {
+    fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64) {
         (body.drive(self), body.normal_force(self))
     }
     fn jump_summary(&self) -> Option<JumpSummary> {

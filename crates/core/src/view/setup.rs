@@ -2,11 +2,11 @@
 
 use super::RunControl;
 use crate::bodies::Dof;
-use crate::bodies::pressure::{Pushed, Servo};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::contact::detect;
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{ExpandingSystem, Heat, HeatState};
-use crate::process::circuit::{CircuitProcess, Intervals, Spec};
+use crate::process::circuit::{CircuitParameters, CircuitProcess, Intervals};
 use crate::process::cycle::{CycleClock, SlidingBody};
 use crate::process::expansion::ThermalExpansion;
 use crate::process::heat::HeatFlow;
@@ -15,55 +15,55 @@ use crate::step::Simulation;
 use crate::step::control::{GravityDrive, Phase};
 use crate::wear::Scar;
 
-/// A point of a body that deforms, behind a surface of another body.
+/// A point of a deformable body, behind a surface of another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointBehind {
     /// The body of the point.
     pub point: u32,
     /// The body of the surface.
     pub surface: u32,
-    /// How far behind it is (m).
+    /// Distance behind the surface (m).
     pub depth: f64,
 }
 
-/// A simulation that is set up.
+/// A simulation before its first step.
 pub trait RunSetup: RunControl {
-    /// Sets gravity (m/s^2), and how it changes in time.
+    /// Sets gravity (m/s^2), and its time dependence.
     fn set_gravity(&mut self, gravity: [f64; 3], drive: Option<GravityDrive>);
     /// Checks the pressures of a drive.
     ///
     /// # Errors
     /// A wall is missing or not plane, or no length is defined along an axis.
-    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    fn check_pressures(&self, target: &ServoTarget, drive: &Dof) -> Result<(), String>;
     /// Adds the pressures of a drive.
     ///
     /// # Errors
     /// The errors of [`RunSetup::check_pressures`].
-    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String>;
+    fn add_pressures(&mut self, target: &ServoTarget, drive: &Dof) -> Result<(), String>;
     /// Measures the loaded areas of all pressures.
     fn measure_areas(&mut self);
-    /// Lets a surface recede by wear, every `every` steps, in the place of its body; it is worn
+    /// Lets a surface recede by wear, every `every` steps, in the frame of its body; it is worn
     /// through at the depth `thickness` (m). Returns whether it can wear.
     fn add_scar(&mut self, surface: usize, name: String, thickness: f64, every: u64) -> bool;
-    /// Removes a driven body, by its place among them, at a time (s).
+    /// Removes a driven body, by its index among them, at a time (s).
     fn add_gate(&mut self, place: usize, time: f64);
-    /// Adds a phase after those that are there.
+    /// Adds a phase after the existing ones.
     fn add_phase(&mut self, phase: Phase);
     /// Gives driven bodies their imposed velocities at time zero.
     fn set_in_motion(&mut self);
-    /// Computes heat from here on.
+    /// Computes heat from now on.
     fn add_heat(&mut self, heat: Heat, state: HeatState);
     /// Lets bodies expand with temperature ([`ThermalExpansion::add_to`]): rigid bodies by
     /// coefficients of linear expansion (1/K), one per body, and dynamical systems.
     fn add_expansion(&mut self, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>);
-    /// Jumps over cycles; see [`Jumps::new`].
+    /// Adds jumps over cycles; see [`Jumps::new`].
     fn add_jumps(&mut self, spec: JumpSpec, clock: CycleClock, test: SlidingBody, steps: [u64; 2]);
-    /// Follows the tribological circuit from a time (s) on.
-    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals);
-    /// The first point of a body that deforms that lies further than the alert distance behind a
-    /// surface with which it interacts. Points are looked for up to twice the length of their body
-    /// in the plane, and up to `sizes` times their own size in space, where searches cost the
-    /// square of it.
+    /// Adds the tribological circuit, which starts at a time (s).
+    fn add_circuit(&mut self, spec: CircuitParameters, start: f64, intervals: Intervals);
+    /// Returns the first point of a deformable body that is farther behind a surface with which it
+    /// interacts than the alert distance. Points are searched up to twice the length of their body
+    /// in the plane, and up to `sizes` times their own size in space, where the cost of a search
+    /// grows with the square of the distance.
     fn point_behind(&self, sizes: f64) -> Option<PointBehind>;
 }
 
@@ -73,11 +73,11 @@ impl<S: Space> RunSetup for Simulation<S> {
         self.state.control.gravity = self.state.gravity;
         self.state.control.gravity_drive = drive;
     }
-    fn check_pressures(&self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
-        Servo::of(&self.state.bodies, &self.shapes, pushed, drive).map(drop)
+    fn check_pressures(&self, target: &ServoTarget, drive: &Dof) -> Result<(), String> {
+        Servo::of(&self.state.bodies, &self.shapes, target, drive).map(drop)
     }
-    fn add_pressures(&mut self, pushed: &Pushed, drive: &Dof) -> Result<(), String> {
-        let servos = Servo::of(&self.state.bodies, &self.shapes, pushed, drive)?;
+    fn add_pressures(&mut self, target: &ServoTarget, drive: &Dof) -> Result<(), String> {
+        let servos = Servo::of(&self.state.bodies, &self.shapes, target, drive)?;
         self.state.control.servos.extend(servos);
         Ok(())
     }
@@ -95,7 +95,7 @@ impl<S: Space> RunSetup for Simulation<S> {
         wears
     }
     fn add_gate(&mut self, place: usize, time: f64) {
-        self.state.control.gates.push((place, time));
+        self.state.control.removals.push((place, time));
     }
     fn add_phase(&mut self, phase: Phase) {
         self.phases.push(phase);
@@ -113,7 +113,7 @@ impl<S: Space> RunSetup for Simulation<S> {
         let jumps = Jumps::new(spec, clock, test, steps, self);
         self.add_process(jumps);
     }
-    fn add_circuit(&mut self, spec: Spec, start: f64, intervals: Intervals) {
+    fn add_circuit(&mut self, spec: CircuitParameters, start: f64, intervals: Intervals) {
         self.add_process(CircuitProcess::new(spec, start, intervals));
     }
     fn point_behind(&self, sizes: f64) -> Option<PointBehind> {

@@ -11,42 +11,44 @@ use crate::step::Simulation;
 
 /// The shapes of the bodies of a run, and its dynamical systems.
 ///
-/// Pieces are counted as in [`ShapesView::pieces`], surfaces as in [`ShapesView::surfaces`], scars
+/// Pieces are numbered as in [`ShapesView::pieces`], surfaces as in [`ShapesView::surfaces`], scars
 /// as in [`ShapesView::scars`].
 pub trait ShapesView {
-    /// The balls of all bodies, and the points of those that deform.
+    /// Returns the balls of all bodies, and the points of those that deform.
     fn balls(&self) -> Vec<BallView>;
     /// The convex pieces of all bodies.
     fn pieces(&self) -> Vec<PieceView>;
-    /// Corners of the core of a piece about its centre, in the axes of its body (m), and the
-    /// corners of each face in space, anticlockwise from outside; no faces in the plane.
+    /// Returns the corners of the core of a piece about its centre, in the axes of its body (m),
+    /// and in space the corners of each face, anticlockwise from outside; no faces in the plane.
     fn piece_core(&self, piece: usize) -> (Vec<[f64; 3]>, Vec<Vec<u32>>);
-    /// Outline of a piece as it is turned, rounding included, about its centre, in world axes (m):
-    /// one line in 2D, one around each face in 3D.
+    /// Returns the current outline of a piece, including its rounding, about its centre, in world
+    /// axes (m): one line in 2D, one around each face in 3D.
     fn piece_outline(&self, piece: usize) -> Vec<Vec<[f64; 3]>>;
-    /// Lines around the pieces where they are (m), in the periodic cell: one around each in 2D, one
-    /// around each face in 3D.
+    /// Returns the lines around the pieces at their current positions (m), in the periodic cell:
+    /// one around each piece in 2D, one around each face in 3D.
     fn piece_outlines(&self) -> Vec<Outline>;
     /// The surfaces of all bodies.
     fn surfaces(&self) -> Vec<SurfaceView>;
-    /// Lines of a surface in its own frame (m), of which [`SurfaceView::offset`] is the origin.
+    /// Returns the lines of a surface in its own frame (m), whose origin is
+    /// [`SurfaceView::offset`].
     fn surface_lines(&self, surface: usize) -> Vec<Vec<[f64; 3]>>;
-    /// Faces of a surface up to a distance (m) from its origin, in its own frame (m).
+    /// Returns the faces of a surface up to a distance (m) from its origin, in its own frame (m).
     fn surface_faces(&self, surface: usize, reach: f64) -> Vec<Vec<[f64; 3]>>;
-    /// Lines of the surfaces of bodies that are still there, where they are (m).
+    /// Returns the lines of the surfaces of bodies that have not been removed, at their current
+    /// positions (m).
     fn surface_outlines(&self) -> Vec<Outline>;
-    /// Surfaces that recede by wear.
+    /// Returns the surfaces that recede by wear.
     fn scars(&self) -> Vec<ScarView<'_>>;
-    /// The vertices of a scar, in the order of its surface.
+    /// Returns the vertices of a scar, in the order of its surface.
     fn scar_vertices(&self, scar: usize) -> Vec<ScarVertex>;
-    /// 1 where the solid is below the surface of a scar, which recedes downwards, and -1 where it
-    /// is above; `None` where the surface no longer recedes.
+    /// Returns 1 where the solid is below the surface of a scar, which recedes downwards, and -1
+    /// where it is above; `None` where the surface no longer recedes.
     fn scar_sign(&self, scar: usize) -> Option<f64>;
-    /// Place of the image of the first vertex of a scar at the end of the period of its profile
-    /// (m).
+    /// Returns the position of the image of the first vertex of a scar at the end of the period of
+    /// its profile (m).
     fn scar_end(&self, scar: usize) -> Option<[f64; 3]>;
-    /// A scar along x: positions (m), tributary lengths (m; areas in 3D, m^2) and depths (m), in
-    /// 3D averaged over equal x.
+    /// Returns a scar along x: positions (m), tributary lengths (m; areas in 3D, m^2) and depths
+    /// (m), in 3D averaged over equal x.
     fn scar_profile(&self, scar: usize) -> Vec<[f64; 3]>;
 
     /// Number of dynamical systems.
@@ -55,7 +57,7 @@ pub trait ShapesView {
     fn system(&self, system: usize) -> Option<Box<dyn SystemView + '_>>;
     /// The dynamical system of a name.
     fn system_named(&self, name: &str) -> Option<usize>;
-    /// The bodies that stand for the contactors of a dynamical system, in their order.
+    /// Returns the bodies that represent the contactors of a dynamical system, in their order.
     fn bodies_of_system(&self, system: usize) -> &[u32];
 }
 

@@ -10,47 +10,48 @@ use nalgebra::Vector3;
 /// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
 /// same names.
 pub trait SystemView {
-    /// Name in the case.
+    /// Returns the name in the case.
     fn name(&self) -> &str;
-    /// Number of its generalised velocities.
+    /// Returns the number of generalised velocities.
     fn freedoms(&self) -> usize;
-    /// Whether it is a grain.
+    /// Returns whether the system is a grain.
     fn is_grain(&self) -> bool;
-    /// A length of its size (m).
+    /// Returns a characteristic length (m).
     fn length(&self) -> f64;
-    /// Mass (kg; kg/m in 2D).
+    /// Returns the mass (kg; kg/m in 2D).
     fn mass(&self) -> f64;
-    /// Whether it can change its size with its temperature.
+    /// Returns whether the size can change with temperature.
     fn expands(&self) -> bool;
-    /// Mesh for the conduction of heat; `None` where it has none.
+    /// Returns the mesh for the conduction of heat; `None` without one.
     fn conduction(&self) -> Option<Conduction>;
-    /// Parts that can touch.
+    /// Returns the parts that can touch.
     fn contactors(&self) -> Vec<Contactor>;
-    /// Holders.
+    /// Returns the holders.
     fn holders(&self) -> Vec<Holder>;
-    /// Memory and cost of its solutions.
+    /// Returns memory and cost of the solutions.
     fn size(&self) -> Option<SystemSize>;
-    /// Its mesh as it is now; `None` where it has none.
+    /// Returns the current mesh; `None` without one.
     fn deformed_mesh(&self) -> Option<DeformedMesh<Vector3<f64>>>;
-    /// Velocities of the points of that mesh (m/s); empty where they are not known.
+    /// Returns the velocities of the points of that mesh (m/s); empty if unknown.
     fn mesh_velocity(&self) -> Vec<Vector3<f64>>;
-    /// Positions of the points of that mesh at the start of the run, without load (m), for a body
-    /// that travels as grains do; empty for others.
+    /// Returns the unloaded positions of the points of that mesh at the start of the run (m), for a
+    /// body that travels, such as a grain; empty for others.
     fn mesh_at_start(&self) -> Vec<Vector3<f64>>;
-    /// The surface that touches; `None` where tractions along it are not known.
+    /// Returns the contact surface; `None` where tractions on it are unknown.
     fn touching_surface(&self) -> Option<TouchingSurface<Vector3<f64>>>;
-    /// Where a node is (m).
+    /// Returns the position of a node (m).
     fn node_position(&self, node: u32) -> Vector3<f64>;
-    /// Whether the points that touch stand for equal areas in space.
+    /// Returns whether the contact points have equal tributary areas in space.
     fn has_equal_points(&self) -> bool;
-    /// The largest strain and the largest rotation (rad) in it now, where it takes both for small.
+    /// Returns the current largest strain and largest rotation (rad), where the system assumes both
+    /// to be small.
     fn small_strain(&self) -> Option<[f64; 2]>;
-    /// Where loads must stay away from the border of what can be loaded: the largest force there
-    /// over the largest at all, in the last step.
+    /// Returns, where loads must stay away from the border of the loadable part, the largest force
+    /// there relative to the largest force, in the last step.
     fn load_at_border(&self) -> Option<f64>;
-    /// Numbers of points and elements of its mesh; `None` where it has none.
+    /// Returns the numbers of points and elements of the mesh; `None` without one.
     fn mesh_size(&self) -> Option<[usize; 2]>;
-    /// Number of points of the surface by which it touches; 0 where it has none.
+    /// Returns the number of points of the contact surface; 0 without one.
     fn surface_points(&self) -> usize;
     /// Returns a copy, to measure the cost of its solutions.
     fn trial(&self) -> Box<dyn SystemTrial + '_>;
@@ -58,9 +59,10 @@ pub trait SystemView {
 
 /// A copy of a dynamical system at the start of a step, see [`SystemView::trial`].
 pub trait SystemTrial {
-    /// Begins the step and linearises, which factorises where the system has a factor.
+    /// Begins the step and linearises, which includes a factorisation where the system has a
+    /// factor.
     fn linearise(&mut self);
-    /// Puts a unit impulse on every node of its contactors, along the last axis.
+    /// Applies a unit impulse to every node of the contactors, along the last axis.
     fn push(&mut self);
     /// Solves once for these impulses.
     fn solve(&mut self);

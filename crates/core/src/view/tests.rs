@@ -4,7 +4,7 @@ use crate::laws::sample_laws::interface;
 use crate::step::Simulation;
 use nalgebra::{Vector1, Vector2};
 
-/// Two disks that touch, one of which moves and turns, after a step.
+/// Returns two touching disks after a step, one of which moves and rotates.
 fn two_disks() -> AnySimulation {
     let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
     let mut s = Simulation::<Dim2>::of_disks(&disks).with_law(interface([]));

@@ -14,16 +14,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Where a grain is.
+/// Location of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GrainPlace {
-    /// Connected by a path of bonds to the first body of this index.
+    /// Grain that a path of bonds connects to the first body of this index.
     Tied(u32),
-    /// Loose, between the first bodies.
+    /// Loose grain between the first bodies.
     Contact,
-    /// In the ejection zone of this index.
+    /// Grain in the ejection zone of this index.
     Ejected(u32),
-    /// Lost for good.
+    /// Grain that is lost permanently.
     Lost,
 }
 
@@ -47,13 +47,13 @@ impl Amount {
 /// Grains and their mass, by place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MassByPlace {
-    /// Tied to first bodies.
+    /// Amount tied to first bodies.
     pub tied: Amount,
-    /// In the contact, M.
+    /// Amount in the contact, M.
     pub contact: Amount,
-    /// In ejection zones.
+    /// Amount in ejection zones.
     pub ejected: Amount,
-    /// Lost.
+    /// Amount that is lost.
     pub lost: Amount,
 }
 
@@ -80,21 +80,21 @@ impl MassByPlace {
 /// Flows accumulated since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
-    /// From first bodies to the contact, source.
+    /// Amount moved from first bodies to the contact, source.
     pub source: Amount,
-    /// From the contact to first bodies, by newly formed bonds.
+    /// Amount moved from the contact to first bodies, by newly formed bonds.
     pub attached: Amount,
-    /// From the contact to ejection zones.
+    /// Amount moved from the contact to ejection zones.
     pub ejected: Amount,
-    /// From ejection zones back to the contact.
+    /// Amount moved from ejection zones back to the contact.
     pub recirculated: Amount,
-    /// From ejection zones to lost, wear.
+    /// Amount moved from ejection zones to lost, wear.
     pub wear: Amount,
 }
 
 /// The ledger.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct MassLedger {
     masses: Vec<f64>,
     places: Vec<GrainPlace>,
     start: MassByPlace,
@@ -104,7 +104,7 @@ pub struct Ledger {
     pub flows: Flows,
 }
 
-impl Ledger {
+impl MassLedger {
     /// Creates a ledger for grains of these masses (kg; kg/m in 2D) at these places.
     pub fn new(masses: Vec<f64>, places: Vec<GrainPlace>) -> Self {
         let start = MassByPlace::count(&places, &masses);
@@ -132,7 +132,7 @@ impl Ledger {
             let (from, to, mass) = (rank(old), rank(*new), self.masses[k]);
             let f = &mut self.flows;
             let out = [&mut f.source, &mut f.ejected, &mut f.wear];
-            // A lost grain that is found again did not wear.
+            // A lost grain that reappears is not counted as wear.
             for step in out.into_iter().take(to).skip(from) {
                 step.add(1, mass);
             }
@@ -214,7 +214,7 @@ mod tests {
         let masses: Vec<f64> = (0..500).map(|_| rng.random_range(1e-9..1e-6)).collect();
         let total: f64 = masses.iter().sum();
         let first = places(&mut rng, 500);
-        let mut ledger = Ledger::new(masses, first);
+        let mut ledger = MassLedger::new(masses, first);
         for _ in 0..200 {
             let next = places(&mut rng, 500);
             ledger.update(&next);
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_grain_that_flies_out_at_once_passes_every_flow() {
-        let mut ledger = Ledger::new(vec![2.0], vec![GrainPlace::Tied(0)]);
+        let mut ledger = MassLedger::new(vec![2.0], vec![GrainPlace::Tied(0)]);
         ledger.update(&[GrainPlace::Lost]);
         let one = Amount {
             grains: 1,
@@ -250,7 +250,7 @@ mod tests {
         // A first body with sufficient mass.
         let n = 8 * most;
         let mut places = vec![GrainPlace::Tied(0); n];
-        let mut ledger = Ledger::new(vec![1.0; n], places.clone());
+        let mut ledger = MassLedger::new(vec![1.0; n], places.clone());
         let (mut loose, mut lost, mut due) = (0, 0, [0.0f64; 2]);
         let tau = 1.0 / (cs + ce);
         let level = cs * most as f64 * tau;

@@ -350,8 +350,8 @@ mod tests {
         }
     }
 
-    /// The displacement of the surface adds up until the neighbour list is built again, and then
-    /// from zero.
+    /// The displacement of the surface is summed until the neighbour list is rebuilt, and then
+    /// starts from zero.
     #[test]
     fn displacements_add_up_between_two_lists() {
         let (mut shapes, mut scar) = flat(2, 1e3);
@@ -384,8 +384,8 @@ mod tests {
         assert!((under(&shapes) - before - 0.1).abs() < 1e-15);
     }
 
-    /// A chain of 1 m pieces: a vertex at an end has half a piece of its own, and one on which a
-    /// volume of 0.09 m^2 is put is as many m deep.
+    /// A chain of 1 m pieces: a vertex at an end has a tributary length of half a piece, and a
+    /// vertex that loses a volume of 0.09 m^2 recedes by that divided by its length.
     #[test]
     fn depths_along_the_chain_are_those_of_its_vertices() {
         let (shapes, mut scar) = flat(2, 1.0);
@@ -397,8 +397,8 @@ mod tests {
         );
     }
 
-    /// A flank: vertices of one place along the sliding direction have the mean of their depths, by
-    /// their lengths.
+    /// On a flank, vertices at one position along the sliding direction have the mean of their
+    /// depths, weighted by their lengths.
     #[test]
     fn depths_of_one_place_are_averaged() {
         let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0)], None);
@@ -413,7 +413,7 @@ mod tests {
         assert!((along[1][2] * both - 0.125).abs() < 1e-15);
     }
 
-    /// A state that was read is refused where it names vertices that the scar has not.
+    /// A state read from a file is refused where it names vertices that the scar does not have.
     #[test]
     fn a_state_with_other_vertices_does_not_fit() {
         let (_, first) = flat(2, 1.0);

@@ -1,4 +1,4 @@
-//! The conduction of heat in a body of finite elements.
+//! Conduction of heat in a body of finite elements.
 
 use crate::element::Simplex;
 use crate::mesh::Mesh;
@@ -6,7 +6,7 @@ use fretwork_core::bodies::Conduction;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 
-/// Volumes and conductances of a mesh without load.
+/// Returns volumes and conductances of a mesh without load.
 pub fn conduction<S: Space>(mesh: &Mesh<S>) -> Conduction {
     let mut volumes = vec![0.0; mesh.points().len()];
     let mut edges: BTreeMap<[u32; 2], f64> = BTreeMap::new();
@@ -41,7 +41,7 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 
-    /// What flows into each point at temperatures of a function.
+    /// Returns the heat flow into each point for temperatures given by a function.
     fn inflow<S: Space>(mesh: &Mesh<S>, of: impl Fn(&S::Vector) -> f64) -> (Conduction, Vec<f64>) {
         let found = conduction(mesh);
         let t: Vec<f64> = mesh.points().iter().map(of).collect();
@@ -55,9 +55,8 @@ mod tests {
         (found, flow)
     }
 
-    /// Patch test: a temperature that is linear in space leaves a point inside in balance, also
-    /// with obtuse elements around it, and what flows through a face is k times the gradient times
-    /// its area.
+    /// Patch test: with a temperature that is linear in space an inner point is in balance, also
+    /// for obtuse elements, and the flow through a face is k times the gradient times its area.
     #[test]
     fn a_linear_temperature_is_kept() {
         let points = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0], [0.4, 0.2]];
@@ -72,7 +71,7 @@ mod tests {
         let (found, flow) = inflow(&mesh, |x| 300.0 + 2.0 * x.x);
         assert!(found.edges.iter().any(|(_, factor)| *factor < 0.0));
         assert!(flow[4].abs() < 1e-12, "{flow:?}");
-        // Heat flows from the right to the left: it leaves the points of the right face.
+        // Heat flows from right to left, out of the points of the right face.
         assert!((flow[1] + flow[2] + 2.0).abs() < 1e-12, "{flow:?}");
         assert!((found.volumes.iter().sum::<f64>() - 3.0).abs() < 1e-12);
         assert_eq!(

@@ -1,18 +1,18 @@
 //! Thermal expansion of a body of finite elements.
 //!
 //! A point at a temperature T has the free strain e = alpha (T - T_0), and an element the mean of
-//! its points. In small strain the stress is that of what free strain leaves,
+//! its points. In small strain the stress is that of the strain less the free strain,
 //!
 //! ```text
 //! sigma = C : (epsilon - e 1),   f_a = V (3 lambda + 2 G) e grad N_a
 //! ```
 //!
 //! with f_a the force of the free strain on a corner, and in large strain the energy is (1 + e)^3
-//! W(F/(1 + e)), see [`crate::strain`]. In plane strain the depth stays, so that a free body
+//! W(F/(1 + e)), see [`crate::strain`]. In plane strain the depth is constant, so that a free body
 //! expands by (1 + nu) e in the plane.
 //!
-//! The free strain changes at the start of a step, where the displacement does not. What the stored
-//! energy gains by that is the work of expansion.
+//! The free strain changes at the start of a step, at constant displacement. The resulting increase
+//! of the stored energy is the work of expansion.
 //!
 //! Source: B. A. Boley, J. H. Weiner, "Theory of Thermal Stresses" (1960), chapter 3.
 
@@ -22,18 +22,18 @@ use crate::material::{Elasticity, Symmetric};
 use fretwork_core::geometry::space::Space;
 use std::sync::Arc;
 
-/// Free strains of a body and what follows from them; all empty without expansion.
+/// Free strains of a body and derived quantities; all empty without expansion.
 #[derive(Clone, Debug)]
 pub(crate) struct FreeStrain<S: Space> {
-    /// Of each point of the mesh, or one of all.
+    /// Free strain of each point of the mesh, or a single one for all.
     of_points: Vec<f64>,
-    /// Of each element.
+    /// Free strain of each element.
     pub of_elements: Vec<f64>,
     /// The elements in small strain.
     simplices: Arc<Vec<Option<Simplex<S>>>>,
     /// Force on each coordinate in small strain (N; N/m in 2D).
     force: Vec<f64>,
-    /// Work at each point by the last change (J; J/m in 2D).
+    /// Work at each point due to the last change (J; J/m in 2D).
     pub work: Vec<f64>,
 }
 
@@ -50,13 +50,13 @@ impl<S: Space> Default for FreeStrain<S> {
 }
 
 impl<S: Space> FreeStrain<S> {
-    /// Force on a coordinate (N; N/m in 2D).
+    /// Returns the force on a coordinate (N; N/m in 2D).
     #[inline]
     pub fn force(&self, coordinate: usize) -> f64 {
         self.force.get(coordinate).copied().unwrap_or(0.0)
     }
 
-    /// Of an element.
+    /// Returns the free strain of an element.
     #[inline]
     pub fn of(&self, element: usize) -> f64 {
         self.of_elements.get(element).copied().unwrap_or(0.0)
@@ -64,7 +64,7 @@ impl<S: Space> FreeStrain<S> {
 }
 
 impl<S: Space> ElasticBody<S> {
-    /// Takes the free strain of each point, or one of all points.
+    /// Sets the free strain of each point, or a single one for all points.
     pub(super) fn take_free_strain(&mut self, of_points: &[f64]) {
         if of_points == self.free_strain.of_points {
             self.free_strain.work.fill(0.0);
@@ -106,8 +106,8 @@ impl<S: Space> ElasticBody<S> {
         self.free_strain.work = work;
     }
 
-    /// Takes the free strains of the elements that a body was saved with; false where they are not
-    /// its own.
+    /// Restores the saved free strains of the elements; returns false where they belong to another
+    /// body.
     pub(super) fn restore_free_strain(&mut self, of_elements: Vec<f64>) -> bool {
         if !of_elements.is_empty() && of_elements.len() != self.model.mesh.elements().count() {
             return false;
@@ -120,7 +120,7 @@ impl<S: Space> ElasticBody<S> {
         true
     }
 
-    /// Finds the elements in small strain, where they are not known.
+    /// Computes the elements in small strain, where this has not been done.
     fn find_simplices(&mut self) {
         if self.model.large.is_none() && self.free_strain.simplices.is_empty() {
             let mesh = &self.model.mesh;
@@ -129,7 +129,8 @@ impl<S: Space> ElasticBody<S> {
         }
     }
 
-    /// Force of free strains of the elements on each coordinate in small strain (N; N/m in 2D).
+    /// Returns the force of free strains of the elements on each coordinate in small strain (N; N/m
+    /// in 2D).
     fn force_of(&self, free: &[f64]) -> Vec<f64> {
         if self.model.large.is_some() || free.is_empty() {
             return Vec::new();
@@ -150,8 +151,8 @@ impl<S: Space> ElasticBody<S> {
         force
     }
 
-    /// What an element in small strain stores more (J; J/m in 2D) with one free strain than with
-    /// another.
+    /// Returns the change of the stored energy of an element in small strain (J; J/m in 2D) when
+    /// its free strain changes.
     fn energy_gained(&self, e: usize, points: &[u32], [from, to]: [f64; 2]) -> f64 {
         let Some((simplex, strain)) = self.strain_of(e, points) else {
             return 0.0;
@@ -162,17 +163,17 @@ impl<S: Space> ElasticBody<S> {
         -modulus * simplex.volume * (to - from) * (trace - 1.5 * (from + to))
     }
 
-    /// An element in small strain, and its strain.
+    /// Returns an element in small strain, and its strain.
     fn strain_of(&self, e: usize, points: &[u32]) -> Option<(&Simplex<S>, Symmetric)> {
         let simplex = self.free_strain.simplices.get(e)?.as_ref()?;
-        // Less that of the first corner: a translation leaves no rounding.
+        // Displacements are relative to the first corner, so that a translation leaves no rounding.
         let first = self.displacement(points[0]);
         let moved = points.iter().map(|p| self.displacement(*p) - first);
         let strain = simplex.strain(&moved.collect::<Vec<S::Vector>>());
         Some((simplex, strain))
     }
 
-    /// Energy stored in small strain with free strains (J; J/m in 2D).
+    /// Returns the energy stored in small strain with free strains (J; J/m in 2D).
     pub(super) fn stored_with_free_strain(&self) -> f64 {
         let material = &self.model.material;
         let one = |(e, points): (usize, &[u32])| {

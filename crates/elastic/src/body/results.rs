@@ -1,15 +1,15 @@
-//! Results of a body of finite elements: stress, forces of its holders, its mesh and the
-//! surface that touches.
+//! Results of a body of finite elements: stress, forces of its holders, its mesh and its contact
+//! surface.
 
 use super::ElasticBody;
 use crate::element::Simplex;
-use crate::freedom::Held;
+use crate::freedom::HeldCoordinate;
 use crate::material::{Elasticity, Symmetric};
 use fretwork_core::bodies::{DeformedMesh, Dof, Holder, SystemStep, TouchingSurface};
 use fretwork_core::geometry::space::Space;
 
 impl<S: Space> ElasticBody<S> {
-    /// Stress in each element (Pa).
+    /// Returns the stress in each element (Pa).
     fn stresses(&self) -> Vec<Symmetric> {
         if let Some(large) = &self.model.large {
             return large.stresses(&self.displacement, &self.free_strain.of_elements);
@@ -28,8 +28,9 @@ impl<S: Space> ElasticBody<S> {
         mesh.elements().enumerate().map(stress).collect()
     }
 
-    /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N;
-    /// N/m in 2D): what the support needs to impose the motion, without contacts at its own points.
+    /// Returns the sum of the forces of the holder of each imposed axis over the last step, by
+    /// coordinate (N; N/m in 2D): the force that imposes the motion, without the contact forces at
+    /// points of the part itself.
     pub(super) fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let (average, theta_point) = self.average(step);
@@ -70,12 +71,12 @@ impl<S: Space> ElasticBody<S> {
             .collect()
     }
 
-    /// What holds and drives it, by support and axis.
+    /// Returns the holders and drives, by support and axis.
     pub(super) fn held_parts(&self) -> Vec<Holder> {
         let freedoms = &self.model.freedoms;
         let reactions = self.step.as_ref().map(|step| self.reactions(step));
         let averages = self.step.as_ref().map(|step| self.average(step));
-        let one = |(held, drive): (&Held, &Dof)| {
+        let one = |(held, drive): (&HeldCoordinate, &Dof)| {
             let c = held.coordinate as usize;
             let force = match (&self.step, &reactions) {
                 (Some(_), Some(reactions)) if c >= freedoms.free => reactions[c - freedoms.free],
@@ -91,12 +92,13 @@ impl<S: Space> ElasticBody<S> {
                 force,
             }
         };
-        let mut held: Vec<(&Held, &Dof)> = freedoms.held.iter().zip(&self.drives).collect();
+        let mut held: Vec<(&HeldCoordinate, &Dof)> =
+            freedoms.held.iter().zip(&self.drives).collect();
         held.sort_by_key(|(h, _)| (h.support, freedoms.axis[h.coordinate as usize]));
         held.into_iter().map(one).collect()
     }
 
-    /// Its mesh, displacements and stresses now.
+    /// Returns the mesh with its current displacements and stresses.
     pub(super) fn mesh_now(&self) -> DeformedMesh<S::Vector> {
         let mesh = &self.model.mesh;
         let all = 0..mesh.points().len() as u32;
@@ -111,12 +113,12 @@ impl<S: Space> ElasticBody<S> {
         }
     }
 
-    /// The part that touches, with its areas; `None` where nothing touches.
+    /// Returns the contact surface, with its areas; `None` where nothing touches.
     pub(super) fn surface_part(&self) -> Option<TouchingSurface<S::Vector>> {
         let part = self.model.part.as_ref()?;
         let finite = self.model.large.is_some();
         let rest = |p: u32| self.model.mesh.points()[p as usize];
-        // In small strain a force acts on the surface as it is without load.
+        // In small strain a force acts on the unloaded surface.
         let place = |p: u32| rest(p) + self.displacement(p) * f64::from(u8::from(finite));
         Some(TouchingSurface {
             nodes: part.points.clone(),

@@ -1,9 +1,9 @@
-//! Moments of contacts on a body of finite elements: what touches turns as its facet there, see
-//! [`crate::facet_spin`].
+//! Moments of contacts on a body of finite elements: the contact surface rotates as its facet does,
+//! see [`crate::facet_spin`].
 //!
-//! The nodes that turn come after the points of the mesh: one for each facet of the part that
-//! touches, then one for each point of the mesh, which turns as the mean of the facets at it, and
-//! in space one for each edge of each facet, which turns as the mean of the two at it.
+//! Nodes that represent rotation follow the points of the mesh: one for each facet of the contact
+//! surface, then one for each point of the mesh, with the mean rotation of its facets, and in space
+//! one for each edge of each facet, with the mean rotation of the two facets at it.
 
 use super::ElasticBody;
 use crate::facet_spin::FacetSpin;
@@ -12,7 +12,7 @@ use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, block_of};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
 impl<S: Space> ElasticBody<S> {
-    /// How a node turns as it stands now; `None` for points of the mesh.
+    /// Returns the current rotation of a node; `None` for points of the mesh.
     pub(super) fn facet_spin(&self, node: u32) -> Option<FacetSpin<S>> {
         let part = self.model.part.as_ref()?;
         let facet = (node as usize).checked_sub(self.model.mesh.points().len())?;
@@ -33,7 +33,7 @@ impl<S: Space> ElasticBody<S> {
         Some(FacetSpin::new(&facets, position))
     }
 
-    /// The node that turns with a contactor at an arm from its origin (m).
+    /// Returns the node that represents rotation at a contactor, at an arm from its origin (m).
     pub(super) fn turning(&self, contactor: &Contactor, arm: &S::Vector) -> Option<(u32, f64)> {
         let part = self.model.part.as_ref()?;
         let points = self.model.mesh.points().len() as u32;
@@ -52,8 +52,8 @@ impl<S: Space> ElasticBody<S> {
         Some((node, self.facet_spin(node)?.length))
     }
 
-    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; `None`
-    /// where these are not kept.
+    /// Returns the compliance of nodes, some of which represent rotation, from the kept columns of
+    /// contact points; `None` where these are not kept.
     pub(super) fn compliance_with_turning(&self, nodes: &[u32]) -> Option<Vec<S::Matrix>> {
         let formed = self.formed.as_ref()?;
         let kept = formed.surface.as_ref()?;
@@ -104,7 +104,7 @@ impl<S: Space> ElasticBody<S> {
     }
 }
 
-/// Compliance of points by their kept columns; `None` where one is not kept.
+/// Returns the compliance of points from their kept columns; `None` where one is not kept.
 pub(super) fn blocks_of_points<S: Space>(
     kept: &Compliance<S>,
     nodes: &[u32],
@@ -112,7 +112,7 @@ pub(super) fn blocks_of_points<S: Space>(
     let places: Option<Vec<usize>> = nodes.iter().map(|n| kept.place(*n)).collect();
     let (places, count) = (places?, nodes.len());
     let mut out = vec![S::Matrix::uniform(0.0); count * count];
-    // Column by column, as they are kept.
+    // The blocks are read column by column, as they are stored.
     for (of, b) in places.iter().enumerate() {
         let column = kept.column(*b);
         for (row, a) in places.iter().enumerate() {
@@ -122,7 +122,7 @@ pub(super) fn blocks_of_points<S: Space>(
     Some(out)
 }
 
-/// The moment of an impulse on a node that turns with a length (m).
+/// Returns the moment of an impulse on a node that represents rotation with a length (m).
 pub(super) fn moment<S: Space>(impulse: &S::Vector, length: f64) -> S::Spin {
     let mut out = S::Spin::zero();
     for k in 0..S::Spin::N {

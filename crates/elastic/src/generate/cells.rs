@@ -1,9 +1,10 @@
-//! Cells of a grid cut in triangles or tetrahedra that meet those of their neighbours.
+//! Division of the cells of a grid into triangles or tetrahedra that match those of their
+//! neighbours.
 
-use super::grid::{Grid, Place};
+use super::grid::{BlockGrid, Place};
 
-/// A cell: its lowest and highest place, and the number of its column along each axis and of its
-/// row.
+/// A cell: its lowest and highest grid point, and the number of its column along each axis and of
+/// its row.
 pub(super) struct Cell {
     pub(super) low: Place,
     pub(super) high: Place,
@@ -11,7 +12,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// Its corners, each along one axis from the last.
+    /// Returns the corners, each reached along one axis from the previous one.
     pub(super) fn corners(&self, d: usize) -> Vec<Place> {
         let corner = |k: usize| {
             let gray = k ^ (k >> 1);
@@ -22,15 +23,15 @@ impl Cell {
     }
 }
 
-/// The elements of a cell: whole ones by the places of their D + 1 corners, or around the centre of
-/// the cell by the D others.
+/// The elements of a cell: of an undivided one by the grid points of their D + 1 corners, or around
+/// the centre of the cell by the D others.
 pub(super) enum Cut {
     Whole(Vec<Vec<Place>>),
     Around(Vec<Vec<Place>>),
 }
 
 /// The cells of a row.
-pub(super) fn cells(grid: &Grid, row: usize) -> impl Iterator<Item = Cell> + '_ {
+pub(super) fn cells(grid: &BlockGrid, row: usize) -> impl Iterator<Item = Cell> + '_ {
     let (d, axis) = (grid.dimension(), grid.axis());
     let set = grid.row(row);
     let counts: Vec<usize> = set.iter().map(|s| s.len().max(2) - 1).collect();
@@ -50,8 +51,8 @@ pub(super) fn cells(grid: &Grid, row: usize) -> impl Iterator<Item = Cell> + '_ 
     })
 }
 
-/// Cuts a cell. Elements have positive volume where the coordinates rise along all axes.
-pub(super) fn cut(grid: &Grid, cell: &Cell) -> Cut {
+/// Divides a cell. Elements have positive volume where the coordinates increase along all axes.
+pub(super) fn cut(grid: &BlockGrid, cell: &Cell) -> Cut {
     let d = grid.dimension();
     if d == 3 && is_plain(grid, cell) {
         let mut whole = paths(cell);
@@ -75,9 +76,9 @@ pub(super) fn cut(grid: &Grid, cell: &Cell) -> Cut {
     Cut::Around(facets)
 }
 
-/// Whether a cell in space has no points but its corners, and the diagonals of its faces are those
-/// of [`paths`].
-fn is_plain(grid: &Grid, cell: &Cell) -> bool {
+/// Returns whether a cell in space has no points except its corners, and the diagonals of its faces
+/// are those of [`paths`].
+fn is_plain(grid: &BlockGrid, cell: &Cell) -> bool {
     let row = cell.at[grid.axis()];
     let others = (0..3).filter(|k| *k != grid.axis());
     others.into_iter().all(|k| {
@@ -88,9 +89,9 @@ fn is_plain(grid: &Grid, cell: &Cell) -> bool {
     })
 }
 
-/// Tetrahedra of a cell along the paths from one corner to the opposite one, along one axis after
-/// the other (Kuhn). Paths begin where all numbers are even, so that the diagonal of a face goes
-/// from its corner with even to that with odd numbers.
+/// Returns the tetrahedra of a cell along the paths from one corner to the opposite one, along one
+/// axis after the other (Kuhn). Paths begin where all numbers are even, so that the diagonal of a
+/// face goes from its corner with even numbers to that with odd numbers.
 fn paths(cell: &Cell) -> Vec<Vec<Place>> {
     let orders = [
         [0, 1, 2],
@@ -121,7 +122,7 @@ fn paths(cell: &Cell) -> Vec<Vec<Place>> {
 }
 
 /// The parts of an edge of a cell in the plane.
-fn edges(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
+fn edges(grid: &BlockGrid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
     let along = 1 - axis;
     let mut place = cell.low;
     place[axis] = [cell.low, cell.high][end][axis];
@@ -138,8 +139,8 @@ fn edges(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
     stops.windows(2).map(|w| vec![at(w[0]), at(w[1])]).collect()
 }
 
-/// The triangles of a face of a cell in space; the cell beyond has the same ones.
-fn triangles(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
+/// Returns the triangles of a face of a cell in space; the adjacent cell has the same ones.
+fn triangles(grid: &BlockGrid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place>> {
     let mut place = cell.low;
     place[axis] = [cell.low, cell.high][end][axis];
     let up = grid.axis();
@@ -155,7 +156,7 @@ fn triangles(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place
         }
         return out;
     }
-    // The other axis of the columns.
+    // This is the other axis of the columns.
     let along = 3 - axis - up;
     let (row, ends) = (cell.at[up], [cell.low[along], cell.high[along]]);
     let planes = [row, row + 1];
@@ -183,13 +184,13 @@ fn triangles(grid: &Grid, cell: &Cell, axis: usize, end: usize) -> Vec<Vec<Place
     halves(place, [along, up], [ends, planes], cell.at[along] + row).to_vec()
 }
 
-/// The two axes that are not this one.
+/// Returns the two other axes.
 fn others(axis: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][axis]
 }
 
-/// A rectangle along two axes cut along a diagonal, from the corner with even to that with odd
-/// numbers; `sum` is that of the numbers of its low ends.
+/// Divides a rectangle along two axes along a diagonal, from the corner with even to that with odd
+/// numbers; `sum` is the sum of the numbers of its low ends.
 fn halves(
     place: Place,
     [a, b]: [usize; 2],
@@ -201,7 +202,7 @@ fn halves(
         (out[a], out[b]) = (along[i], across[j]);
         out
     };
-    // Where the sum is odd, so are the numbers of one axis, and that of the other even.
+    // Where the sum is odd, the numbers along one axis are odd and those along the other even.
     let k = sum % 2;
     [0, 1].map(|other| {
         vec![
@@ -212,10 +213,10 @@ fn halves(
     })
 }
 
-/// Swaps the first two corners of an element that is turned inside out; the centre of a cell is its
-/// last corner if it has one.
+/// Swaps the first two corners of an inverted element; the centre of a cell is its last corner if
+/// it has one.
 fn orient(corners: &mut [Place], around: Option<&Cell>, d: usize) {
-    // Twice the places, so that a centre has whole numbers.
+    // Coordinates are doubled, so that a centre has whole numbers.
     let doubled = corners.iter().map(|p| p.map(|k| 2 * k as i64));
     let centre = around.map(|c| [0, 1, 2].map(|k| (c.low[k] + c.high[k]) as i64));
     let all: Vec<[i64; 3]> = doubled.chain(centre).collect();

@@ -1,47 +1,47 @@
-//! Rows of cells in a box, with fewer columns the further they are from one of its sides.
+//! Rows of cells in a box, with fewer columns the farther they are from one of its sides.
 
 use super::SIDES;
 
-/// Most of the relative difference of lengths that count as equal.
+/// Largest relative difference of lengths that count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// A place in the grid: which of the coordinates along each axis. In 2D the last is none.
+/// A grid point: indices of the coordinates along each axis. In 2D the last is not used.
 pub(super) type Place = [usize; 3];
 
-/// Cells of a box in rows along one axis. All cells of a row have the same columns; those of the
-/// next row are the same, or pairs of them are joined. Of two rows, the points between them are
-/// those of the row with more columns.
+/// Cells of a box in rows along one axis. All cells of a row have the same columns; the next row
+/// has the same columns, or pairs of them are joined. The points between two rows are those of the
+/// row with more columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
-    /// Coordinates along each axis (m), rising.
+pub struct BlockGrid {
+    /// Coordinates along each axis (m), increasing.
     lines: Vec<Vec<f64>>,
     /// The axis along which rows follow each other.
     axis: usize,
-    /// Columns of each row, as one of `sets`.
+    /// Columns of each row, as an index in `sets`.
     rows: Vec<usize>,
-    /// Along each axis, the coordinates where columns end; none along the axis of the rows.
+    /// Coordinates, along each axis, where columns end; empty along the axis of the rows.
     sets: Vec<Vec<Vec<usize>>>,
 }
 
-/// Which columns of a grid are joined, see [`Grid::coarsened`].
+/// Rule by which columns of a grid are joined, see [`BlockGrid::coarsened`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarsening<'a> {
-    /// The side, by its name, where all columns are kept.
+    /// Name of the side where all columns are kept.
     pub from: &'a str,
-    /// Pairs of columns are joined that are no wider than this many times the height of their row.
+    /// Largest ratio of the width of a joined pair of columns to the height of their row.
     pub ratio: f64,
 }
 
-/// Why a grid cannot be.
+/// Reason why a grid is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
-    /// Fewer than two axes, more than three, or fewer than two coordinates along one.
+    /// There are fewer than two axes, more than three, or fewer than two coordinates along one.
     #[error("a block has two or three axes, with two coordinates at least along each")]
     Lines,
-    /// No such side.
+    /// There is no such side.
     #[error("a block has no side `{0}` to coarsen from; its sides are {1}")]
     Side(String, String),
-    /// A ratio that is not positive.
+    /// The ratio is not positive.
     #[error(
         "cells join where they are `ratio` times as wide as high; it must be positive, got {0}"
     )]
@@ -62,7 +62,7 @@ pub enum GridError {
         /// Width over height at which columns join.
         ratio: f64,
     },
-    /// One row of cells.
+    /// There is only one row of cells.
     #[error(
         "no cells would join: the first row from `{side}` keeps all its columns, and the block has no other along {axis}; give it more rows, or leave `coarsen` out"
     )]
@@ -72,22 +72,22 @@ pub enum GridError {
         /// The axis of the rows.
         axis: char,
     },
-    /// One column.
+    /// There is only one column.
     #[error("the block has a single column, and none that could join; leave `coarsen` out")]
     Single,
-    /// More points than allowed.
+    /// There are more points than allowed.
     #[error(
         "the block has more than {0} points; make its elements larger, or let them grow away from `fine`"
     )]
     TooMany(usize),
 }
 
-impl Grid {
-    /// A grid with the same columns in all rows, between the given coordinates along two or three
-    /// axes (m), which must rise.
+impl BlockGrid {
+    /// Creates a grid with the same columns in all rows, between the given coordinates along two or
+    /// three axes (m), which must increase.
     ///
     /// # Errors
-    /// Fewer than two coordinates along an axis, or another number of axes.
+    /// Fails with fewer than two coordinates along an axis, or another number of axes.
     pub fn new(lines: &[Vec<f64>]) -> Result<Self, GridError> {
         if !(2..=3).contains(&lines.len()) || lines.iter().any(|line| line.len() < 2) {
             return Err(GridError::Lines);
@@ -102,15 +102,15 @@ impl Grid {
         })
     }
 
-    /// The given coordinates along each axis (m), with columns that join with the distance from a
-    /// side: from the second row on, neighbours join in pairs, from both ends of each axis to its
-    /// middle, where the pair is no wider than `ratio` times the height of the row. One that is
-    /// left over, of an odd number, joins in the next row in which it and its neighbour are narrow
-    /// enough.
+    /// Creates a grid with the given coordinates along each axis (m), whose columns join with the
+    /// distance from a side: from the second row on, neighbours join in pairs, from both ends of
+    /// each axis to its middle, where the pair is no wider than `ratio` times the height of the
+    /// row. A single column that is left over joins in the next row in which it and its neighbour
+    /// are narrow enough.
     ///
     /// # Errors
-    /// Fewer than two coordinates along an axis, or another number of axes; an unknown side; no row
-    /// that is high enough; more than `most` points of cells.
+    /// Fails with fewer than two coordinates along an axis, or another number of axes; an unknown
+    /// side; no row that is high enough; more than `most` points of cells.
     pub fn coarsened(
         lines: &[Vec<f64>],
         coarsening: &Coarsening,
@@ -168,7 +168,7 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Why no columns join with the distance from this side, at an end of the axis.
+    /// Returns why no columns join with the distance from this side, at an end of the axis.
     fn nothing(&self, coarsening: &Coarsening, end: usize) -> GridError {
         let side = coarsening.from.to_owned();
         let axis = ['x', 'y', 'z'][self.axis];
@@ -197,12 +197,12 @@ impl Grid {
         }
     }
 
-    /// Coordinates along each axis (m).
+    /// Returns the coordinates along each axis (m).
     pub fn lines(&self) -> &[Vec<f64>] {
         &self.lines
     }
 
-    /// Number of points of the cells, without those inside cells.
+    /// Returns the number of points of the cells, without those inside cells.
     pub fn points(&self) -> usize {
         (0..=self.rows.len()).map(|k| stops(self.plane(k))).sum()
     }
@@ -212,7 +212,7 @@ impl Grid {
         self.sets.len() > 1
     }
 
-    /// Number of columns of each row, along the axis of the rows.
+    /// Returns the number of columns of each row, along the axis of the rows.
     pub fn columns(&self) -> Vec<usize> {
         let one = |set: &usize| self.sets[*set].iter().filter(|s| !s.is_empty());
         let count = |set| one(set).map(|s| s.len() - 1).product();
@@ -232,22 +232,23 @@ impl Grid {
         self.rows.len()
     }
 
-    /// Along each axis but that of the rows, the coordinates where the columns of a row end.
+    /// Returns the coordinates, along each axis except that of the rows, where the columns of a row
+    /// end.
     pub(super) fn row(&self, row: usize) -> &[Vec<usize>] {
         &self.sets[self.rows[row]]
     }
 
-    /// Where the columns of the points between rows k - 1 and k end, along each axis but that of
-    /// the rows.
+    /// Returns the coordinates, along each axis except that of the rows, where the columns of the
+    /// points between rows k - 1 and k end.
     pub(super) fn plane(&self, k: usize) -> &[Vec<usize>] {
         let below = self.rows.get(k.wrapping_sub(1));
         let around = below.into_iter().chain(self.rows.get(k));
-        // Columns join from set to set.
+        // Columns join from one set to the next.
         &self.sets[around.copied().min().unwrap_or(0)]
     }
 
-    /// The coordinates of the points in plane k from one end of a column to the other along an
-    /// axis, and the number of the first.
+    /// Returns the coordinates of the points in plane k from one end of a column to the other along
+    /// an axis, and the number of the first.
     pub(super) fn between(
         &self,
         k: usize,
@@ -261,7 +262,7 @@ impl Grid {
     }
 }
 
-/// All coordinates along all axes but one.
+/// Returns all coordinates along all axes except one.
 fn all_columns(lines: &[Vec<f64>], axis: usize) -> Vec<Vec<usize>> {
     let every = |(k, line): (usize, &Vec<f64>)| {
         let count = if k == axis { 0 } else { line.len() };
@@ -270,7 +271,7 @@ fn all_columns(lines: &[Vec<f64>], axis: usize) -> Vec<Vec<usize>> {
     lines.iter().enumerate().map(every).collect()
 }
 
-/// Points where columns end.
+/// Returns the number of points where columns end.
 fn stops(set: &[Vec<usize>]) -> usize {
     let along = set.iter().filter(|s| !s.is_empty());
     along.map(Vec::len).product()
@@ -283,7 +284,7 @@ fn join(line: &[f64], stops: &[usize], longest: f64) -> Vec<usize> {
     };
     let narrow = |k: usize| line[stops[k + 1]] - line[stops[k - 1]] <= longest;
     let mut kept = vec![true; stops.len()];
-    // What is left lies between these stops.
+    // The remaining columns lie between these coordinates.
     let (mut low, mut high) = (0, parts);
     while low + 1 < high {
         if narrow(low + 1) {

@@ -1,4 +1,4 @@
-//! Columns of cells that join: which do, and that what they are cut in is a mesh.
+//! Tests of joining columns of cells, and of the resulting meshes.
 
 use super::*;
 use crate::element::Simplex;
@@ -12,11 +12,11 @@ const STEEL: Elasticity = Elasticity {
     density: 7800.0,
 };
 
-/// Upper bound of points that no grid here reaches.
+/// Upper bound of the number of points, which no grid here reaches.
 const MOST: usize = 100_000;
 
-fn coarsened(lines: &[Vec<f64>], from: &str, ratio: f64) -> Grid {
-    let grid = Grid::coarsened(lines, &Coarsening { from, ratio }, MOST);
+fn coarsened(lines: &[Vec<f64>], from: &str, ratio: f64) -> BlockGrid {
+    let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, MOST);
     grid.unwrap_or_else(|e| panic!("{from}: {e}"))
 }
 
@@ -27,8 +27,8 @@ fn sides(d: usize) -> Vec<(usize, usize, &'static str)> {
         .collect()
 }
 
-/// Coordinates along each axis for a side of small cells: even ones with these numbers, and rows
-/// that grow away from the side, from the narrowest columns on.
+/// Returns coordinates along each axis for a side of small cells: equidistant ones with these
+/// numbers, and rows that grow away from the side, starting with the narrowest columns.
 fn lines(counts: &[usize], axis: usize, end: usize) -> Vec<Vec<f64>> {
     let length = |k: usize| 1.0 + 0.25 * k as f64;
     let width = |k: usize| length(k) / counts[k] as f64;
@@ -47,8 +47,8 @@ fn lines(counts: &[usize], axis: usize, end: usize) -> Vec<Vec<f64>> {
     counts.iter().enumerate().map(along).collect()
 }
 
-/// A box of these numbers of columns, with joins away from each of its sides in turn.
-fn boxes(counts: &[usize]) -> Vec<(Grid, &'static str)> {
+/// Tests a box of these numbers of columns, with joins away from each of its sides in turn.
+fn boxes(counts: &[usize]) -> Vec<(BlockGrid, &'static str)> {
     let one = |(axis, end, name)| {
         let lines = lines(counts, axis, end);
         (coarsened(&lines, name, 1.0), name)
@@ -56,7 +56,7 @@ fn boxes(counts: &[usize]) -> Vec<(Grid, &'static str)> {
     sides(counts.len()).into_iter().map(one).collect()
 }
 
-/// Every facet that one element alone has is on exactly one side of the box: a crack between cells
+/// Every facet that belongs to one element is on exactly one side of the box: a crack between cells
 /// would have facets on none.
 fn is_conforming<S: Space>(mesh: &Mesh<S>) {
     let mut named = vec![0; mesh.facets()];
@@ -73,8 +73,8 @@ fn volumes<S: Space>(mesh: &Mesh<S>) -> Vec<f64> {
     mesh.elements().map(volume).collect()
 }
 
-/// The volume within the boundary (Gauss; m^3, m^2 in 2D), which sees nothing of the elements
-/// inside.
+/// Returns the volume within the boundary (Gauss; m^3, m^2 in 2D), which is independent of the
+/// elements inside.
 fn enclosed<S: Space>(mesh: &Mesh<S>) -> f64 {
     let one = |f: usize| {
         let c: Vec<_> = mesh
@@ -91,10 +91,10 @@ fn enclosed<S: Space>(mesh: &Mesh<S>) -> f64 {
     (0..mesh.facets()).map(one).sum()
 }
 
-/// Numbers of columns of the rows, from the side on.
+/// Pairs join where rows are high enough; the numbers of columns of the rows start at the side.
 #[test]
 fn pairs_join_where_rows_are_high_enough() {
-    // Heights 1, 1, 2, 4, 4 from the top.
+    // The heights from the top are 1, 1, 2, 4, 4.
     let y = vec![0.0, 4.0, 8.0, 10.0, 11.0, 12.0];
     let columns = |cells: usize, ratio: f64| {
         let lines = [even(0.0, cells as f64, cells), y.clone()];
@@ -103,16 +103,17 @@ fn pairs_join_where_rows_are_high_enough() {
         columns
     };
     assert_eq!(columns(8, 1.0), [8, 8, 4, 2, 2]);
-    // One of seven is left over, between pairs; with a pair it is 3 wide and joins where rows are 4
-    // high.
+    // One of seven columns is left over, between pairs; with a pair it is 3 wide and joins where
+    // rows are 4 high.
     assert_eq!(columns(7, 1.0), [7, 7, 4, 2, 2]);
-    // 5: 2 1 2, then 3 2; these are 5 wide.
+    // Five columns join to widths 2 1 2, then 3 2; the next would be 5 wide.
     assert_eq!(columns(5, 1.0), [5, 5, 3, 2, 2]);
-    // Twice as wide: the second row joins too.
+    // At a ratio of 2 the second row joins too.
     assert_eq!(columns(8, 2.0), [8, 4, 2, 1, 1]);
 }
 
-/// By hand: whole cells above, and joined ones with a point of smaller cells on each upper edge.
+/// The elements are known by hand: undivided cells above, and joined cells with a point of smaller
+/// cells on each upper edge.
 #[test]
 fn cells_are_cut_by_their_points() {
     let mesh = mapped_grid::<Dim2>(
@@ -126,7 +127,7 @@ fn cells_are_cut_by_their_points() {
     );
     let lines = [even(0.0, 4.0, 4), even(0.0, 2.0, 2), vec![0.0, 2.0, 3.0]];
     let mesh = mapped_grid::<Dim3>(&coarsened(&lines, "top", 1.0), |x| *x).unwrap();
-    // Of a joined cell: eight triangles above, two below, three on each of four sides.
+    // A joined cell has eight triangles above, two below, and three on each of four sides.
     assert_eq!(
         (mesh.points().len(), mesh.elements().len()),
         (15 + 15 + 6 + 2, 8 * 6 + 2 * 22)
@@ -164,7 +165,8 @@ fn fills<S: Space>(counts: &[usize]) {
             .map(|k| counts[k] + 1)
             .product();
         assert_eq!(mesh.points_of(from).unwrap().len(), all, "{from}");
-        // A few joined cells in space have more points, by their centres, than what they replace.
+        // A few joined cells in space have more points, including their centres, than the cells
+        // that they replace.
         let whole = mapped_block::<S>(grid.lines(), |x| *x).unwrap();
         assert!(
             all < 50 || mesh.points().len() < whole.points().len(),
@@ -173,7 +175,7 @@ fn fills<S: Space>(counts: &[usize]) {
     }
 }
 
-/// Powers of two, odd numbers, primes, and two.
+/// Numbers of columns are powers of two, odd numbers, primes, and two.
 #[test]
 fn coarsened_blocks_fill_their_box_and_have_its_sides() {
     for counts in [[64, 32], [61, 37], [2, 2], [3, 50], [100, 7]] {
@@ -277,7 +279,8 @@ fn graded_columns_and_sides_that_are_not_flat() {
     is_conforming(&mesh);
     let sum: f64 = volumes(&mesh).iter().sum();
     assert!((sum / enclosed(&mesh) - 1.0).abs() < 1e-12);
-    // Columns far away are wider than the first rows are high, and are the same in all of them.
+    // Columns far away are wider than the height of the first rows, and are the same in all of
+    // them.
     let columns = plane.columns();
     let (first, last) = (columns[columns.len() - 1], columns[0]);
     let fine = plane.lines()[0]
@@ -291,7 +294,7 @@ fn graded_columns_and_sides_that_are_not_flat() {
 fn grids_that_cannot_be_say_why() {
     let lines = lines(&[8, 8], 1, 1);
     let error = |lines: &[Vec<f64>], from: &str, ratio: f64, most: usize| {
-        let grid = Grid::coarsened(lines, &Coarsening { from, ratio }, most);
+        let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, most);
         grid.unwrap_err()
     };
     let said = error(&lines, "front", 1.0, MOST).to_string();
@@ -307,7 +310,7 @@ fn grids_that_cannot_be_say_why() {
         "{said}"
     );
     assert!(said.to_string().contains("1.250e-1 m") && said.to_string().contains("2.500e-1 m"));
-    // With a ratio of 1/20 a row must be twenty times as high.
+    // With a ratio of 1/20 a row must be twenty times as high as columns are wide.
     let said = error(&even, "left", 0.05, MOST);
     assert!(said.to_string().contains("1/0.05") && said.to_string().contains("5.000e0 m"));
     let one_row = [vec![0.0, 1.0, 2.0], vec![0.0, 1.0]];
@@ -324,7 +327,7 @@ fn grids_that_cannot_be_say_why() {
         GridError::TooMany(points - 1)
     );
     assert!(
-        Grid::coarsened(
+        BlockGrid::coarsened(
             &lines,
             &Coarsening {
                 from: "top",
@@ -334,5 +337,5 @@ fn grids_that_cannot_be_say_why() {
         )
         .is_ok()
     );
-    assert_eq!(Grid::new(&lines[..1]), Err(GridError::Lines));
+    assert_eq!(BlockGrid::new(&lines[..1]), Err(GridError::Lines));
 }

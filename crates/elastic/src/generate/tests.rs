@@ -1,4 +1,4 @@
-//! Blocks fill their boxes, and columns of cells join as they should.
+//! Blocks fill their boxes, and columns of cells join correctly.
 
 use super::*;
 use crate::element::Simplex;

@@ -1,8 +1,8 @@
-//! A step of a grain that deforms: its frame as a rigid body, its modes as oscillators, both by the
+//! A step of a deformable grain: its frame as a rigid body, its modes as oscillators, both by the
 //! theta scheme.
 
 use super::shape::stresses;
-use super::{ElasticGrain, Formed, Middle, State};
+use super::{ElasticGrain, GrainAtDetection, GrainState, ModalResponse};
 use crate::material::Symmetric;
 use crate::small_strain;
 use crate::touching_surface::closed_surface;
@@ -16,15 +16,15 @@ use nalgebra::{Matrix3, Vector3};
 use std::sync::{Arc, OnceLock};
 
 impl<S: Space> ElasticGrain<S> {
-    /// The rigid part of the step's A^-1 is this over mass and inertia.
+    /// Returns the factor by which the rigid part of A^-1 exceeds the inverse mass and inertia.
     fn frame_over(&self) -> f64 {
         let [h, theta] = self.formed.as_ref().map_or([0.0, 1.0], |f| f.of);
         1.0 / (1.0 + h * theta * self.model.damping.mass)
     }
 
-    /// The elastic compliance of the surface for an impulse along an axis of a vertex, in the
-    /// frame.
-    fn column<'a>(&self, formed: &'a Formed, vertex: usize, axis: usize) -> &'a [f64] {
+    /// Returns the elastic compliance of the surface for an impulse along an axis of a vertex, in
+    /// the frame.
+    fn column<'a>(&self, formed: &'a ModalResponse, vertex: usize, axis: usize) -> &'a [f64] {
         formed.columns[vertex * S::D + axis].get_or_init(|| {
             let (shape, scale) = (&self.model.shape, self.model.scale);
             let modes = shape.at(vertex, axis).iter().zip(&formed.over);
@@ -32,19 +32,20 @@ impl<S: Space> ElasticGrain<S> {
         })
     }
 
-    /// Arm of a vertex from the origin of the frame, in world axes (m); of the node that turns
-    /// none.
+    /// Returns the arm of a vertex from the origin of the frame, in world axes (m); zero for the
+    /// node that represents rotation.
     fn arm(&self, node: u32) -> S::Vector {
         let vertex = self.vertices.get(node as usize);
         vertex.map_or(S::Vector::zero(), |at| S::rotate(&self.state.rotation, at))
     }
 
-    /// Whether a node is the one that turns with the frame, after the vertices.
+    /// Returns whether a node represents the rotation of the frame; it follows the vertices.
     fn is_turning(&self, node: u32) -> bool {
         node as usize == self.vertices.len()
     }
 
-    /// The velocity of the node that turns, at an angular velocity of the frame.
+    /// Returns the velocity of the node that represents rotation, at an angular velocity of the
+    /// frame.
     fn turning_velocity(&self, spin: &S::Spin) -> S::Vector {
         let mut out = S::Vector::zero();
         for k in 0..S::Spin::N {
@@ -53,7 +54,7 @@ impl<S: Space> ElasticGrain<S> {
         out
     }
 
-    /// The moment of an impulse on that node.
+    /// Returns the moment of an impulse on that node.
     fn turning_moment(&self, impulse: &S::Vector) -> S::Spin {
         let mut out = S::Spin::zero();
         for k in 0..S::Spin::N {
@@ -62,13 +63,13 @@ impl<S: Space> ElasticGrain<S> {
         out
     }
 
-    /// Velocities averaged over the step.
+    /// Returns the velocities averaged over the step.
     fn average(&self, theta: f64) -> Vec<f64> {
         let pairs = self.start.velocity.iter().zip(&self.state.velocity);
         pairs.map(|(v, w)| v + theta * (w - v)).collect()
     }
 
-    fn energy_of_spin(state: &State<S>, inertia: &S::Tensor) -> f64 {
+    fn energy_of_spin(state: &GrainState<S>, inertia: &S::Tensor) -> f64 {
         let (_, spin) = Self::of_frame(&state.velocity);
         let turned = S::turned_tensor(&state.rotation, inertia);
         0.5 * spin.dot(&turned.apply(&spin))
@@ -102,7 +103,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
             let over =
                 |rate: &f64| 1.0 / (1.0 + length * self.damping(*rate) + length * length * rate);
             let columns = S::D * self.vertices.len();
-            self.formed = Some(Arc::new(Formed {
+            self.formed = Some(Arc::new(ModalResponse {
                 of,
                 over: self.model.rates.iter().map(over).collect(),
                 columns: (0..columns).map(|_| OnceLock::new()).collect(),
@@ -113,7 +114,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
     fn linearise(&mut self, step: &SystemStep<S>) {
         let (_, spin) = Self::of_frame(&self.state.velocity);
         let (_, free) = Self::of_frame(&self.free_velocity(step));
-        self.middle = Middle {
+        self.middle = GrainAtDetection {
             rotation: self.state.rotation,
             spin,
             free,
@@ -148,7 +149,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
         let brake = h * self.model.damping.mass * over;
         let (velocity, _) = Self::of_frame(&self.start.velocity);
         let velocity = velocity * (1.0 - brake) + step.gravity * (h * over);
-        // Angular momentum is kept where moments of inertia differ by axis.
+        // Angular momentum is conserved where moments of inertia differ by axis.
         let spin = self.turned(&self.model.inverse).apply(&self.start.momentum) * (1.0 - brake);
         let mut out: Vec<f64> = (0..S::D).map(|k| velocity[k]).collect();
         out.extend((0..S::Spin::N).map(|k| spin[k]));
@@ -197,8 +198,8 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
             scheme: (theta - 0.5) * model.mass * (after - before).dot(&(after - before)),
             ..SystemWork::default()
         };
-        // Contacts turned the grain with its inertia at q_m.
-        let Middle {
+        // Contacts rotated the grain with its inertia at q_m.
+        let GrainAtDetection {
             rotation,
             spin: spin_before,
             free: spin_free,
@@ -390,7 +391,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
         let displacements = self.displacements();
         let turned = displacements.iter().map(|u| S::rotate(rotation, u));
         let at = |x: &S::Vector| self.state.position + S::rotate(rotation, &(*x * model.size));
-        // Strain is that of the mesh of unit size by displacements in the same unit.
+        // The strain equals that of the mesh of unit size with displacements in the same unit.
         let small: Vec<S::Vector> = displacements
             .iter()
             .map(|u| *u * (1.0 / model.size))
@@ -457,7 +458,7 @@ impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn restore(&mut self, saved: &[u8]) -> bool {
-        match postcard::from_bytes::<State<S>>(saved) {
+        match postcard::from_bytes::<GrainState<S>>(saved) {
             Ok(state)
                 if state.amplitudes.len() == self.state.amplitudes.len()
                     && state.velocity.len() == self.state.velocity.len() =>

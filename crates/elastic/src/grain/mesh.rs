@@ -1,20 +1,21 @@
 //! Meshes of grains: rings of triangles around the centre of a polygon, shells of tetrahedra around
 //! that of a polyhedron.
 //!
-//! The outer ring or shell is the boundary of the grain, cut into edges of equal length; those
-//! within are smaller copies of it, in the plane with fewer points, so that elements stay alike.
+//! The outer ring or shell is the boundary of the grain, cut into edges of equal length; the inner
+//! rings or shells are smaller copies of it, in the plane with fewer points, so that elements have
+//! similar sizes.
 
 use crate::mesh::{Mesh, MeshError};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 
-/// Places along a ring that are closer than this are the same.
+/// Difference of two positions along a ring below which they count as equal.
 const ROUNDING: f64 = 1e-9;
-/// Least number of points of a ring.
+/// Smallest number of points of a ring.
 const LEAST: usize = 6;
 
-/// The corners of a disk's polygon on the unit circle, anticlockwise: six for each of the elements
-/// along its radius.
+/// Returns the corners of a disk's polygon on the unit circle, anticlockwise: six for each of the
+/// elements along its radius.
 pub fn disk<S: Space>(elements: usize) -> Vec<S::Vector> {
     let count = 6 * elements.max(1);
     let corner = |k: usize| {
@@ -24,11 +25,11 @@ pub fn disk<S: Space>(elements: usize) -> Vec<S::Vector> {
     (0..count).map(corner).collect()
 }
 
-/// A polygon with its corners (m) anticlockwise, whose elements have edges of about `size` (m),
-/// around a centre within (2D).
+/// Meshes a polygon with its corners (m) anticlockwise, with element edges of about `size` (m),
+/// around an inner centre (2D).
 ///
 /// # Errors
-/// Corners that enclose no area around the centre.
+/// The corners enclose no area around the centre.
 pub fn polygon<S: Space>(
     corners: &[S::Vector],
     centre: &S::Vector,
@@ -44,7 +45,7 @@ pub fn polygon<S: Space>(
     let rings = (radius / size).round().max(1.0) as usize;
     let along = Boundary::<S>::new(&outer);
     let (mut points, mut elements) = (vec![*centre], Vec::new());
-    // Places along the boundary, from 0 to 1, and first point of the ring before.
+    // Positions along the boundary, from 0 to 1, and first point of the previous ring.
     let mut inner: (Vec<f64>, usize) = (Vec::new(), 0);
     for ring in 1..=rings {
         let share = ring as f64 / rings as f64;
@@ -87,10 +88,10 @@ pub fn polygon<S: Space>(
     Mesh::new(points, elements, &BTreeMap::new())
 }
 
-/// A closed line, by the length along it.
+/// A closed line, parametrised by length.
 struct Boundary<'a, S: Space> {
     points: &'a [S::Vector],
-    /// Where each point is, from 0 to 1.
+    /// Position of each point, from 0 to 1.
     places: Vec<f64>,
 }
 
@@ -122,9 +123,9 @@ impl<'a, S: Space> Boundary<'a, S> {
 /// A closed surface of triangles, anticlockwise seen from outside.
 #[derive(Clone, Debug)]
 pub struct Triangles<S: Space> {
-    /// Their points (m).
+    /// Points of the surface (m).
     pub points: Vec<S::Vector>,
-    /// Three points of each.
+    /// Three points of each triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -159,7 +160,7 @@ impl<S: Space> Triangles<S> {
         out
     }
 
-    /// Turns triangles of a convex surface so that they are anticlockwise seen from outside.
+    /// Orients triangles of a convex surface so that they are anticlockwise seen from outside.
     fn turn_outwards(&mut self, centre: &S::Vector) {
         for t in &mut self.triangles {
             let [a, b, c] = t.map(|p| self.points[p as usize] - *centre);
@@ -171,7 +172,7 @@ impl<S: Space> Triangles<S> {
         }
     }
 
-    /// Each triangle cut into `parts` squared equal ones, with common points on common edges.
+    /// Divides each triangle into `parts` squared equal ones, with common points on common edges.
     pub fn cut(&self, parts: usize) -> Self {
         let mut points = self.points.clone();
         let mut on_edges: BTreeMap<(u32, u32, usize), u32> = BTreeMap::new();
@@ -181,7 +182,7 @@ impl<S: Space> Triangles<S> {
             let mut index = BTreeMap::new();
             for i in 0..=parts {
                 for j in 0..=parts - i {
-                    // Weights of the corners, of their sum `parts`.
+                    // Weights of the corners, whose sum is `parts`.
                     let weights = [parts - i - j, i, j];
                     let mut carried = (0..3).filter(|k| weights[*k] > 0);
                     let [one, two] = [carried.next(), carried.next()];
@@ -196,8 +197,8 @@ impl<S: Space> Triangles<S> {
                     let point = match (one, two, inside) {
                         (Some(k), None, _) => t[k],
                         (Some(k), Some(l), false) => {
-                            // From the point of lower index, so that both triangles give it one
-                            // name.
+                            // The edge starts at the point of lower index, so that both triangles
+                            // give it the same name.
                             let (k, l) = if t[k] < t[l] { (k, l) } else { (l, k) };
                             let name = (t[k], t[l], weights[k]);
                             *on_edges.entry(name).or_insert_with(|| make(&mut points))
@@ -224,7 +225,7 @@ impl<S: Space> Triangles<S> {
         Self { points, triangles }
     }
 
-    /// The surface with its points moved to a distance of 1 from the origin.
+    /// Moves the points of the surface to a distance of 1 from the origin.
     pub fn on_unit_sphere(mut self) -> Self {
         for p in &mut self.points {
             *p = *p * (1.0 / p.norm());
@@ -233,10 +234,10 @@ impl<S: Space> Triangles<S> {
     }
 }
 
-/// What a convex surface encloses, in shells around a centre within it (3D).
+/// Meshes the inside of a convex surface, in shells around an inner centre (3D).
 ///
 /// # Errors
-/// A surface that does not enclose the centre.
+/// The surface does not enclose the centre.
 pub fn shells<S: Space>(
     surface: &Triangles<S>,
     centre: &S::Vector,
@@ -256,7 +257,7 @@ pub fn shells<S: Space>(
         let at = |shell: usize, k: usize| (1 + shell * count) as u32 + t[k];
         elements.push([0, at(0, 0), at(0, 1), at(0, 2)]);
         for shell in 1..shells {
-            // Sides of prisms are cut from the inner point of lower index, in both prisms that
+            // Sides of prisms are divided from the inner point of lower index, in both prisms that
             // share one.
             let (i, o) = (shell - 1, shell);
             elements.push([at(i, 0), at(i, 1), at(i, 2), at(o, 2)]);
@@ -310,7 +311,7 @@ mod tests {
         let centre = Vector2::new(1.5, 0.8);
         for size in [5.0, 0.7, 0.2] {
             let mesh = polygon::<Dim2>(&corners, &centre, size).unwrap();
-            // Shoelace.
+            // The area follows from the shoelace formula.
             let found: f64 = volumes(&mesh).iter().sum();
             assert!((found - 5.0).abs() < 1e-12, "{found}");
         }

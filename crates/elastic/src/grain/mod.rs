@@ -1,7 +1,8 @@
-//! A grain that deforms: a rigid body with elastic modes about it, the floating frame of reference.
+//! A deformable grain: a rigid body with elastic modes relative to it (floating frame of
+//! reference).
 //!
-//! With the place c of its frame, its orientation R and the amplitudes eta of its modes, the point
-//! X of the grain is at and moves as
+//! With the position c of its frame, its orientation R and the amplitudes eta of its modes, the
+//! point X of the grain has the position and velocity
 //!
 //! ```text
 //! x = c + R (X + u),  u = sum_k phi_k(X) eta_k
@@ -9,10 +10,10 @@
 //! ```
 //!
 //! Frame and modes have the energies M V^2/2 + w . J w/2 + sum (deta_k^2 + lambda_k eta_k^2)/2 with
-//! the inertia J of the grain without load: what rotation and modes do to each other through
-//! inertia is left out, strains of the size rho w^2 R^2/E. Momentum and energy of this system are
-//! conserved to rounding as those of rigid bodies are. Strain in the frame is small; rotations are
-//! not.
+//! the inertia J of the grain without load: the inertial coupling of rotation and modes is
+//! neglected, which causes strains of the order rho w^2 R^2/E. Momentum and energy of this system
+//! are conserved to rounding as those of rigid bodies are. Strain in the frame is small; rotations
+//! are not.
 //!
 //! Source: A. A. Shabana, Dynamics of Multibody Systems, 4th ed. (2013), chapters 5 and 6; for
 //! modes of free bodies section 6.1 of T. J. R. Hughes, The Finite Element Method (1987), chapter
@@ -33,52 +34,52 @@ use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
-/// What a grain is made of.
+/// Parameters of a deformable grain.
 #[derive(Clone, Debug)]
 pub struct ElasticGrainSpec<S: Space> {
-    /// What messages call it.
+    /// Name in messages.
     pub name: String,
-    /// Its shape.
+    /// Shape.
     pub shape: Arc<GrainShape<S>>,
     /// Length of the unit of its shape (m).
     pub size: f64,
-    /// Radius of the ball (2D: disk) whose mass it has (m): of a ball that of it, of others the
-    /// radius of the same volume.
+    /// Radius of the ball (2D: disk) of the same mass (m): for a ball its radius, for other shapes
+    /// the radius of the ball of the same volume.
     pub radius: f64,
-    /// Its material.
+    /// Material.
     pub material: Elasticity,
-    /// Its damping.
+    /// Damping.
     pub damping: Rayleigh,
     /// Index of the material for interface laws.
     pub surface_material: u16,
-    /// Where its centre of mass is (m).
+    /// Position of the centre of mass (m).
     pub position: S::Vector,
-    /// Its orientation.
+    /// Orientation.
     pub rotation: S::Rotation,
-    /// Its velocity (m/s).
+    /// Velocity (m/s).
     pub velocity: S::Vector,
-    /// Its angular velocity (rad/s).
+    /// Angular velocity (rad/s).
     pub spin: S::Spin,
-    /// Displacements of the points of its mesh in the frame (m), and their rates (m/s); empty of a
+    /// Displacements of the points of the mesh in the frame (m), and their rates (m/s); empty for a
     /// grain without strain.
     pub displacement: [Vec<S::Vector>; 2],
 }
 
-/// What is known for the length of a step.
+/// Data that depend on the length of a step.
 #[derive(Debug)]
-struct Formed {
-    /// h and theta.
+struct ModalResponse {
+    /// Values of h and theta.
     of: [f64; 2],
-    /// 1/(1 + h theta c_k + h^2 theta^2 lambda_k) of each mode.
+    /// 1/(1 + h theta c_k + h^2 theta^2 lambda_k) for each mode.
     over: Vec<f64>,
-    /// The elastic compliance of the coordinates of the surface in the frame (1/kg), column by
-    /// column as they are touched.
+    /// Elastic compliance of the coordinates of the surface in the frame (1/kg), column by column
+    /// as they are touched.
     columns: Vec<OnceLock<Vec<f64>>>,
 }
 
-/// What does not change, shared by copies.
+/// Constant data, shared by copies.
 #[derive(Debug)]
-struct Model<S: Space> {
+struct GrainModel<S: Space> {
     name: String,
     shape: Arc<GrainShape<S>>,
     size: f64,
@@ -89,20 +90,20 @@ struct Model<S: Space> {
     /// Moments of inertia in the frame, and their inverse (kg m^2).
     inertia: S::Tensor,
     inverse: S::Tensor,
-    /// The moments of inertia where they differ by axis.
+    /// Inertia tensor, where the moments of inertia differ by axis.
     tensor: Option<InertiaTensor<S>>,
     /// The displacement of a mode of the shape at an amplitude of 1 (m).
     scale: f64,
-    /// lambda of each mode (1/s^2).
+    /// Squared angular frequency lambda of each mode (1/s^2).
     rates: Vec<f64>,
-    /// Where it was made, and its orientation there.
+    /// Position and orientation at which the grain was created.
     origin: (S::Vector, S::Rotation),
 }
 
 /// The state of a grain between two steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-struct State<S: Space> {
+struct GrainState<S: Space> {
     position: S::Vector,
     rotation: S::Rotation,
     /// Angular momentum (kg m^2/s).
@@ -114,24 +115,25 @@ struct State<S: Space> {
 
 /// A grain at q_m, before contacts act.
 #[derive(Clone, Debug)]
-struct Middle<S: Space> {
+struct GrainAtDetection<S: Space> {
     rotation: S::Rotation,
-    /// Its angular velocity there from the start of the step, which contacts see (rad/s).
+    /// Angular velocity at q_m by free rotation from the start of the step, which contacts see
+    /// (rad/s).
     spin: S::Spin,
-    /// Its angular velocity at the end of the step without contacts (rad/s).
+    /// Angular velocity at the end of the step without contacts (rad/s).
     free: S::Spin,
 }
 
-/// A grain that deforms.
+/// A deformable grain.
 #[derive(Clone, Debug)]
 pub struct ElasticGrain<S: Space> {
-    model: Arc<Model<S>>,
-    formed: Option<Arc<Formed>>,
-    state: State<S>,
-    /// At the start of the step.
-    start: State<S>,
-    middle: Middle<S>,
-    /// Where the vertices of the surface are in the frame (m).
+    model: Arc<GrainModel<S>>,
+    formed: Option<Arc<ModalResponse>>,
+    state: GrainState<S>,
+    /// State at the start of the step.
+    start: GrainState<S>,
+    middle: GrainAtDetection<S>,
+    /// Positions of the vertices of the surface in the frame (m).
     vertices: Vec<S::Vector>,
 }
 
@@ -139,7 +141,7 @@ impl<S: Space> ElasticGrain<S> {
     /// Builds a grain.
     ///
     /// # Errors
-    /// What of the material is out of range, or why the shape has no surface.
+    /// A property of the material is out of range, or the shape has no surface.
     pub fn new(spec: ElasticGrainSpec<S>) -> Result<Self, String> {
         spec.material.check().map_err(|e| e.to_string())?;
         let (shape, size) = (&spec.shape, spec.size);
@@ -155,7 +157,7 @@ impl<S: Space> ElasticGrain<S> {
             .inverse()
             .ok_or("its mesh has no moment of inertia")?;
         let rate = young / (density * size * size);
-        let model = Model {
+        let model = GrainModel {
             contactor: Contactor {
                 nodes: Nodes::one(0),
                 radius: spec.radius,
@@ -186,7 +188,7 @@ impl<S: Space> ElasticGrain<S> {
             false => amplitudes(of),
         });
         velocity.extend(rates);
-        let state = State {
+        let state = GrainState {
             position: spec.position,
             rotation: spec.rotation,
             momentum: S::turned_tensor(&spec.rotation, &model.inertia).apply(&spec.spin),
@@ -197,7 +199,7 @@ impl<S: Space> ElasticGrain<S> {
             model: Arc::new(model),
             formed: None,
             start: state.clone(),
-            middle: Middle {
+            middle: GrainAtDetection {
                 rotation: spec.rotation,
                 spin: spec.spin,
                 free: spec.spin,
@@ -211,7 +213,7 @@ impl<S: Space> ElasticGrain<S> {
         Ok(grain)
     }
 
-    /// Finds where the vertices are in the frame.
+    /// Computes the positions of the vertices in the frame.
     fn place_vertices(&mut self) {
         let model = &self.model;
         let moved = model.shape.of_vertices(&self.state.amplitudes);
@@ -219,13 +221,13 @@ impl<S: Space> ElasticGrain<S> {
         self.vertices = at.map(|(x, u)| x * model.size + u * model.scale).collect();
     }
 
-    /// Displacements of all points of the mesh in the frame (m).
+    /// Returns the displacements of all points of the mesh in the frame (m).
     fn displacements(&self) -> Vec<S::Vector> {
         let moved = self.model.shape.displacements(&self.state.amplitudes);
         moved.into_iter().map(|u| u * self.model.scale).collect()
     }
 
-    /// Velocity and angular velocity of the frame, of generalised velocities.
+    /// Returns velocity and angular velocity of the frame, from generalised velocities.
     fn of_frame(velocity: &[f64]) -> (S::Vector, S::Spin) {
         let spin = &velocity[S::D..S::D + S::Spin::N];
         (
@@ -234,12 +236,12 @@ impl<S: Space> ElasticGrain<S> {
         )
     }
 
-    /// Rates of the amplitudes, of generalised velocities.
+    /// Returns the rates of the amplitudes, from generalised velocities.
     fn of_modes(velocity: &[f64]) -> &[f64] {
         &velocity[S::D + S::Spin::N..]
     }
 
-    /// Damping of a mode, alpha + beta lambda (1/s).
+    /// Returns the damping of a mode, alpha + beta lambda (1/s).
     fn damping(&self, rate: f64) -> f64 {
         self.model.damping.mass + self.model.damping.stiffness * rate
     }

@@ -1,8 +1,8 @@
-//! What grains of one shape share: their mesh, and how it vibrates.
+//! Data shared by grains of one shape: their mesh, and its vibration modes.
 //!
-//! The modes of a free mesh, K phi = lambda M phi, turn its elastic motion into oscillators that
-//! know nothing of each other: a step of any length needs no factor, and grains of one shape and
-//! different sizes, stiffnesses and densities have the same modes.
+//! The modes of a free mesh, K phi = lambda M phi, turn its elastic motion into uncoupled
+//! oscillators: a step of any length needs no factor, and grains of one shape and different sizes,
+//! stiffnesses and densities have the same modes.
 
 use crate::element::Simplex;
 use crate::freedom::Freedoms;
@@ -18,8 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug)]
 pub struct GrainShape<S: Space> {
     mesh: Mesh<S>,
-    /// Points of the mesh that are on its boundary, in the order of the vertices of the surface:
-    /// clockwise in the plane.
+    /// Boundary points of the mesh, in the order of the vertices of the surface: clockwise in the
+    /// plane.
     vertices: Vec<u32>,
     /// The D vertices of each facet; outside is where they are anticlockwise (3D).
     facets: Vec<[u32; 3]>,
@@ -27,15 +27,15 @@ pub struct GrainShape<S: Space> {
     inertia: S::Tensor,
     /// Squares of the angular frequencies, lambda, in increasing order, without rigid motions.
     rates: Vec<f64>,
-    /// By mode its displacements: of all points in the order of the mesh, axis by axis.
+    /// Displacements of each mode: of all points in the order of the mesh, axis by axis.
     modes: Vec<f64>,
-    /// Displacements of the vertices alone: by mode, and by axis of a vertex over all modes.
+    /// Displacements of the vertices only: by mode, and by axis of a vertex over all modes.
     by_mode: Vec<f64>,
     by_vertex: Vec<f64>,
 }
 
 impl<S: Space> GrainShape<S> {
-    /// Of a mesh; Poisson's ratio is that of the material.
+    /// Creates the shape from a mesh, with Poisson's ratio of the material.
     ///
     /// # Errors
     /// A part of a sentence where the mesh is no grain.
@@ -57,7 +57,7 @@ impl<S: Space> GrainShape<S> {
         for (p, x) in mesh.points().iter().enumerate() {
             inertia = inertia + S::steiner(x).scaled(of_point(p));
         }
-        // M^-1/2 K M^-1/2
+        // The matrix is M^-1/2 K M^-1/2.
         let mut scaled = DMatrix::<f64>::zeros(total, total);
         for i in 0..total {
             for (j, k) in stiffness.row(i) {
@@ -105,39 +105,39 @@ impl<S: Space> GrainShape<S> {
         })
     }
 
-    /// The mesh, about its centre of mass.
+    /// Returns the mesh, about its centre of mass.
     pub fn mesh(&self) -> &Mesh<S> {
         &self.mesh
     }
 
-    /// Places of the vertices of the surface without load.
+    /// Returns the positions of the vertices of the surface without load.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = S::Vector> {
         self.vertices
             .iter()
             .map(|p| self.mesh.points()[*p as usize])
     }
 
-    /// The D vertices of each facet of the surface.
+    /// Returns the D vertices of each facet of the surface.
     pub fn facets(&self) -> &[[u32; 3]] {
         &self.facets
     }
 
-    /// Volume (area in the plane), which is the mass at unit density.
+    /// Returns the volume (area in the plane), which is the mass at unit density.
     pub fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// Moments of inertia at unit density.
+    /// Returns the moments of inertia at unit density.
     pub fn inertia(&self) -> &S::Tensor {
         &self.inertia
     }
 
-    /// Squares of the angular frequencies at unit density and unit Young's modulus.
+    /// Returns the squares of the angular frequencies at unit density and unit Young's modulus.
     pub fn rates(&self) -> &[f64] {
         &self.rates
     }
 
-    /// Mass that each point of the mesh stands for, at unit density.
+    /// Returns the lumped mass of each point of the mesh, at unit density.
     pub fn masses(&self) -> Vec<f64> {
         let mut out = vec![0.0; self.mesh.points().len()];
         for points in self.mesh.elements() {
@@ -148,7 +148,7 @@ impl<S: Space> GrainShape<S> {
         out
     }
 
-    /// Length or area of the surface that belongs to each vertex, along the outward normals of its
+    /// Returns the tributary length or area of each vertex, along the outward normals of its
     /// facets.
     pub fn tributary(&self) -> Vec<S::Vector> {
         let at: Vec<S::Vector> = self.vertices().collect();
@@ -156,7 +156,7 @@ impl<S: Space> GrainShape<S> {
         for facet in &self.facets {
             let [a, b, c] = facet.map(|v| at[v as usize]);
             let (along, moment) = (b - a, S::moment(&(b - a), &(c - a)));
-            // Clockwise in the plane.
+            // In the plane facets are clockwise.
             let area = match S::D {
                 2 => S::Vector::from_slice(&[-along[1], along[0]]),
                 _ => S::Vector::from_slice(&[moment[0], moment[1], moment[2]]) * 0.5,
@@ -168,14 +168,14 @@ impl<S: Space> GrainShape<S> {
         out
     }
 
-    /// Displacements of all points at amplitudes of the modes.
+    /// Returns the displacements of all points for amplitudes of the modes.
     pub fn displacements(&self, amplitudes: &[f64]) -> Vec<S::Vector> {
         sum::<S>(&self.modes, amplitudes, self.mesh.points().len())
     }
 
-    /// The amplitudes of the modes of displacements of all points, as many as the mesh has: what
-    /// [`Self::displacements`] gives, less any rigid motion. Modes are orthogonal by the masses of
-    /// the points.
+    /// Returns the amplitudes of the modes for displacements of all points of the mesh: the inverse
+    /// of [`Self::displacements`], without any rigid motion. Modes are orthogonal with the masses
+    /// of the points.
     pub fn amplitudes(&self, displacements: &[S::Vector]) -> Vec<f64> {
         let masses = self.masses();
         let weighed: Vec<f64> = displacements
@@ -188,7 +188,7 @@ impl<S: Space> GrainShape<S> {
         modes.map(along).collect()
     }
 
-    /// Displacements of the vertices.
+    /// Returns the displacements of the vertices.
     pub fn of_vertices(&self, amplitudes: &[f64]) -> Vec<S::Vector> {
         sum::<S>(&self.by_mode, amplitudes, self.vertices.len())
     }
@@ -200,7 +200,8 @@ impl<S: Space> GrainShape<S> {
         &self.by_vertex[from..from + count]
     }
 
-    /// Displacements of all axes of the vertices at amplitudes of the modes, vertex by vertex.
+    /// Returns the displacements of all axes of the vertices for amplitudes of the modes, vertex by
+    /// vertex.
     pub fn coordinates(&self, amplitudes: impl Iterator<Item = f64>) -> Vec<f64> {
         let rows = S::D * self.vertices.len();
         let mut out = vec![0.0; rows];
@@ -224,8 +225,8 @@ fn sum<S: Space>(modes: &[f64], amplitudes: &[f64], points: usize) -> Vec<S::Vec
     out.chunks_exact(S::D).map(S::Vector::from_slice).collect()
 }
 
-/// The points of the boundary, in the plane clockwise along it, and its facets by their places
-/// among these.
+/// Returns the points of the boundary, in the plane clockwise along it, and its facets by their
+/// indices among these.
 fn boundary<S: Space>(mesh: &Mesh<S>) -> Result<(Vec<u32>, Vec<[u32; 3]>), String> {
     let facets: Vec<&[u32]> = (0..mesh.facets()).map(|f| mesh.facet(f)).collect();
     if S::D == 2 {
@@ -256,7 +257,7 @@ fn boundary<S: Space>(mesh: &Mesh<S>) -> Result<(Vec<u32>, Vec<[u32; 3]>), Strin
     Ok((points, facets))
 }
 
-/// The stress in each element of a mesh at displacements of its points (Pa).
+/// Returns the stress in each element of a mesh for displacements of its points (Pa).
 pub fn stresses<S: Space>(
     mesh: &Mesh<S>,
     material: &Elasticity,
@@ -277,7 +278,7 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 
-    /// Free vibration of a disk in plane strain: the lowest mode turns the circle into an ellipse.
+    /// Free vibration of a disk in plane strain: the lowest mode deforms the circle to an ellipse.
     /// A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, art. 200; for n = 2 the
     /// frequency equation in Bessel functions is solved here by bisection.
     #[test]
@@ -325,7 +326,7 @@ mod tests {
             let corners = disk::<Dim2>(elements);
             let mesh = polygon::<Dim2>(&corners, &Vector2::zeros(), 1.0 / elements as f64).unwrap();
             let shape = GrainShape::new(mesh, nu).unwrap();
-            // Two modes of one frequency.
+            // The two lowest modes have the same frequency.
             assert!((shape.rates()[1] / shape.rates()[0] - 1.0).abs() < 1e-6);
             errors.push(shape.rates()[0].sqrt() / low - 1.0);
         }
@@ -336,7 +337,7 @@ mod tests {
         );
     }
 
-    /// Amplitudes of the modes have no momentum and no moment of it.
+    /// Modes have no linear and no angular momentum.
     #[test]
     fn modes_are_orthogonal_to_rigid_motions() {
         let surface = Triangles::<Dim3>::icosahedron().cut(2).on_unit_sphere();
@@ -345,9 +346,9 @@ mod tests {
         assert!(shape.rates()[0] > 0.1);
         let sphere = 8.0 / 15.0 * std::f64::consts::PI;
         let inertia = shape.inertia();
-        // Tetrahedra are cut from prisms in one of two ways, which no symmetry keeps.
+        // Tetrahedra divide prisms in one of two ways, which breaks the symmetry.
         assert!((inertia[(0, 0)] / inertia[(2, 2)] - 1.0).abs() < 0.02);
-        // Lumped masses lie farther out, chords within the sphere.
+        // Lumped masses lie farther out, and chords within the sphere.
         assert!((inertia[(0, 0)] / sphere - 1.0).abs() < 0.25);
         let count = shape.rates().len();
         let amplitudes: Vec<f64> = (0..count).map(|k| (1.0 + k as f64).sin()).collect();

@@ -59,8 +59,8 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.force.fill(0.0);
-        // The kept compliance depends on h and theta alone: phases of the run that change which
-        // axes of the holder yield to forces are refused.
+        // The kept compliance depends only on h and theta: phases that change which axes of the
+        // holder respond to forces are refused.
         let of = |s: &SystemStep<S>| [s.h, s.theta];
         if self.held() <= MAX_KEPT && self.step.as_ref().map(of) != Some(of(step)) {
             let cells = (0..self.fixed.grid.len() as u32).collect();
@@ -230,8 +230,8 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         let cells = self.fixed.grid.len();
         let base = self.fixed.places[origin as usize];
         let middle = self.fixed.grid.middle(origin as usize);
-        // The unloaded place of the material that is at the contact now, by fixed-point iteration:
-        // three rounds are enough since displacements are small against cells.
+        // Finds the unloaded position of the material that is now at the contact, by fixed-point
+        // iteration: three rounds are enough since displacements are small compared with cells.
         let mut at = self.node_position(origin) + *arm - self.entries(&self.displacement, cells);
         for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
             at[axis] += x - base[axis];
@@ -249,7 +249,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
         Nodes::on_facet(&weights).unwrap_or_else(|| contactor.nodes.clone())
     }
 
-    /// The velocity of the cells, without that of the material that rolls through them.
+    /// Returns the velocity of the cells, without that of the material that rolls through them.
     fn contactor_velocity(&self, contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {
         let terms = contactor.nodes.terms();
         let elastic = terms.fold(S::Vector::zero(), |sum, (cell, weight)| {
@@ -319,7 +319,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
             let (mut displacement, mut velocity, mut force) = (0.0, 0.0, 0.0);
             if let Some(step) = &self.step {
                 velocity = self.average(c, step.theta);
-                // The forces over the step lead to the displacement at its end.
+                // The forces of the step result in the displacement at its end.
                 displacement = self.start[0][c] + step.h * velocity;
                 force = if c == self.rolled() {
                     -self.force[c]
@@ -364,7 +364,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
 
     fn touching_surface(&self) -> Option<TouchingSurface<S::Vector>> {
         let cells = self.fixed.grid.len() as u32;
-        // Facets to the image of the first cell of a surface that repeats are left out.
+        // Facets to the image of the first cell of a periodic surface are left out.
         let mut facets = Vec::new();
         for facet in self.fixed.facets.iter().map(|f| &f[..S::D]) {
             let at = |k: &u32| self.fixed.vertices[*k as usize];
@@ -381,7 +381,7 @@ impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
     }
 
     fn size(&self) -> Option<SystemSize> {
-        // A surface that rolls has a second table: for the material that comes from behind.
+        // A rolling surface has a second table: for material that arrives from behind.
         let tables = 1 + usize::from(self.fixed.rolling.is_some());
         let column = if self.held() <= MAX_KEPT {
             self.held() * S::D * size_of::<f64>()

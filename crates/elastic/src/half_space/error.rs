@@ -1,38 +1,38 @@
-//! Why a half-space cannot be made.
+//! Reasons why a half-space cannot be created.
 
 use crate::material::ElasticityError;
 
-/// Why a half-space cannot be made.
+/// Reason why a half-space cannot be created.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HalfSpaceError {
-    /// Its material.
+    /// The material is invalid.
     #[error(transparent)]
     Material(#[from] ElasticityError),
     /// A cell without a size.
     #[error("the size of a cell must be positive and finite, got {0} m")]
     Size(f64),
-    /// Too few cells.
+    /// There are too few cells.
     #[error(
         "a half-space needs at least two cells along {0}, got {1}: make cells smaller or the extent larger"
     )]
     Few(&'static str, usize),
-    /// Too many cells.
+    /// There are too many cells.
     #[error("a half-space can have {0} cells at most: make them larger or the extent smaller")]
     Many(usize),
-    /// A depth that leaves no positive compliance.
+    /// The compliance at this depth is not positive.
     #[error(
         "`depth`, where the displacement is zero, must be positive and in two dimensions not less than the extent of the cells, {1} m; got {0} m"
     )]
     Depth(f64, f64),
-    /// A mass that is none.
+    /// The mass is negative or not finite.
     #[error("the mass of a half-space must not be negative, got {0} kg")]
     Mass(f64),
-    /// Moves under forces without a mass.
+    /// The half-space moves under forces, but has no mass.
     #[error(
         "a half-space that is free or under a force along {0} needs a `mass`, that of what moves with it"
     )]
     NoMass(&'static str),
-    /// Motion imposed at one time and a force at another.
+    /// A drive imposes motion at one time and a force at another.
     #[error(
         "the drive along {0} imposes motion at one time and a force at another; a half-space cannot change that within a run"
     )]
@@ -40,7 +40,7 @@ pub enum HalfSpaceError {
     /// A profile without a height.
     #[error("the height of the profile at x = {0} m is not finite")]
     Height(f64),
-    /// Cells that form no surface.
+    /// The cells form no surface.
     #[error("its cells form no surface: {0}")]
     NoSurface(String),
 }

@@ -4,27 +4,27 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 
 /// Equal cells in a rectangle (an interval in the plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
+pub struct CellGrid {
     /// Lowest corner (m), along x and y.
     pub from: [f64; 2],
     /// Sides of a cell (m).
     pub size: [f64; 2],
-    /// Number of cells along x and along y: one in the plane.
+    /// Number of cells along x and along y: one along y in the plane.
     pub cells: [usize; 2],
 }
 
-impl Grid {
+impl CellGrid {
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells[0] * self.cells[1]
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Column and row of a cell.
+    /// Returns column and row of a cell.
     pub fn place(&self, cell: usize) -> [usize; 2] {
         [cell % self.cells[0], cell / self.cells[0]]
     }
@@ -34,7 +34,7 @@ impl Grid {
         j * self.cells[0] + i
     }
 
-    /// Middle of a cell (m).
+    /// Returns the middle of a cell (m).
     pub fn middle(&self, cell: usize) -> [f64; 2] {
         let [i, j] = self.place(cell);
         [
@@ -43,17 +43,17 @@ impl Grid {
         ]
     }
 
-    /// Area of a cell (m^2; its width in the plane, m).
+    /// Returns the area of a cell (m^2; its width in the plane, m).
     pub fn area(&self, dimension: usize) -> f64 {
         self.size[..dimension - 1].iter().product()
     }
 
-    /// Lengths of its sides (m).
+    /// Returns the lengths of the sides of the grid (m).
     pub fn extent(&self) -> [f64; 2] {
         [0, 1].map(|k| self.cells[k] as f64 * self.size[k])
     }
 
-    /// Facets between the middles of cells; outside is above where they are anticlockwise (3D).
+    /// Returns the facets between the middles of cells, anticlockwise seen from above (3D).
     pub fn facets(&self, dimension: usize) -> Vec<[u32; 3]> {
         let [columns, rows] = self.cells;
         if dimension == 2 {
@@ -70,8 +70,8 @@ impl Grid {
         out
     }
 
-    /// The cells around a place and their weights, by the shape functions of the facets; clamped to
-    /// the grid, or along x wrapped into it where it repeats (2D).
+    /// Returns the cells around a position and their weights, by the shape functions of the facets;
+    /// clamped to the grid, or along x wrapped into it where it is periodic (2D).
     pub fn weights<S: Space>(&self, at: &S::Vector, repeats: bool) -> Vec<(u32, f64)> {
         if repeats {
             let s = (at[0] - self.from[0]) / self.size[0] - 0.5;
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn weights_interpolate_linear_functions() {
-        let grid = Grid {
+        let grid = CellGrid {
             from: [-1.0, 2.0],
             size: [0.5, 0.25],
             cells: [7, 5],
@@ -122,13 +122,13 @@ mod tests {
                 .sum();
             assert!((sum - f(at)).abs() < 1e-14, "{at:?}: {sum}");
         }
-        let line = Grid {
+        let line = CellGrid {
             cells: [7, 1],
             ..grid
         };
         let weights = line.weights::<Dim2>(&Vector2::new(9.0, 0.0), false);
         assert_eq!(weights, [(5, 0.0), (6, 1.0)]);
-        // From -1 to 2.5: the last cell and the first meet at 2.5.
+        // The grid is from -1 to 2.5: the last cell and the first meet at 2.5.
         for at in [2.5, -1.0] {
             let weights = line.weights::<Dim2>(&Vector2::new(at, 0.0), true);
             assert_eq!(weights, [(6, 0.5), (0, 0.5)]);

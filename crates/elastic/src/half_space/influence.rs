@@ -1,9 +1,9 @@
 //! Displacement of the surface of an elastic half-space by a uniform load on one cell of it, in
 //! closed form.
 //!
-//! The axes are those of the surface, x and, in space, y, and the inward normal n, last. `[a][b]`
-//! of what is returned is the displacement along a by a force on the cell along b (m/N; m per N/m
-//! in the plane).
+//! The axes are those of the surface, x and, in space, y, and the inward normal n, last. Entry
+//! `[a][b]` of a result is the displacement along a due to a force on the cell along b (m/N; m per
+//! N/m in the plane).
 //!
 //! Sources: K. L. Johnson, "Contact Mechanics" (1985), sections 2.2 to 2.5, 3.2 and 3.6; A. E. H.
 //! Love, "The stress produced in a semi-infinite solid by pressure on part of the boundary", Phil.
@@ -13,21 +13,20 @@
 use crate::material::Elasticity;
 use std::f64::consts::PI;
 
-/// Displacements by forces, by axis; two of each in the plane.
+/// Displacements due to forces, by axis; in the plane only two of each are used.
 pub type Influence = [[f64; 3]; 3];
 
-/// Plane strain: the displacement at `x` from the middle of a strip of width `size` (m), relative
-/// to the points at `depth` (m) below the strip.
+/// Returns, for plane strain, the displacement at `x` from the middle of a strip of width `size`
+/// (m), relative to the points at `depth` (m) below the strip.
 ///
-/// Of a force P per depth far from the strip the displacement along P is
-/// (2 (1 - nu^2) P/(pi E)) (ln(depth/|x|) -+ 1/(2 (1 - nu))), with the minus along the normal and
-/// the plus along the surface (Flamant's solution with its constant such that it vanishes at that
-/// depth).
+/// Far from the strip the displacement along a force P per depth is (2 (1 - nu^2) P/(pi E))
+/// (ln(depth/|x|) -+ 1/(2 (1 - nu))), with the minus for the normal and the plus for a direction
+/// along the surface (Flamant's solution, with its constant such that it vanishes at that depth).
 pub fn strip(material: &Elasticity, size: f64, depth: f64, x: f64) -> Influence {
     let nu = material.poisson;
     let own = 2.0 / (PI * material.plane_strain());
     let constant = 0.5 / (1.0 - nu);
-    // Mean of ln |x - s| over the strip.
+    // This is the mean of ln |x - s| over the strip.
     let [from, to] = [x - 0.5 * size, x + 0.5 * size];
     let integral = |s: f64| {
         if s == 0.0 {
@@ -38,7 +37,7 @@ pub fn strip(material: &Elasticity, size: f64, depth: f64, x: f64) -> Influence 
     };
     let mean = (integral(to) - integral(from)) / size;
     let far = depth.ln() - mean;
-    // A pressure strains the surface below it alone, by -(1 - 2 nu)(1 + nu) p/E.
+    // A pressure strains only the surface below it, by -(1 - 2 nu)(1 + nu) p/E.
     let inside = (x / (0.5 * size)).clamp(-1.0, 1.0);
     let coupling = 0.5 * (1.0 - 2.0 * nu) * (1.0 + nu) / material.young * inside;
     let mut out = Influence::default();
@@ -49,7 +48,7 @@ pub fn strip(material: &Elasticity, size: f64, depth: f64, x: f64) -> Influence 
     out
 }
 
-/// The displacement at (`x`, `y`) from the middle of a rectangle with sides `size` (m).
+/// Returns the displacement at (`x`, `y`) from the middle of a rectangle with sides `size` (m).
 pub fn rectangle(material: &Elasticity, size: [f64; 2], x: f64, y: f64) -> Influence {
     let nu = material.poisson;
     let sum = |f: fn(f64, f64) -> f64| {
@@ -57,8 +56,8 @@ pub fn rectangle(material: &Elasticity, size: [f64; 2], x: f64, y: f64) -> Influ
         let [y0, y1] = [y - 0.5 * size[1], y + 0.5 * size[1]];
         (f(x1, y1) - f(x0, y1) - f(x1, y0) + f(x0, y0)) / (size[0] * size[1])
     };
-    // Integrals of x^2/r^3, y^2/r^3, x y/r^3, x/r^2 and y/r^2, whose sum of the first two is that
-    // of 1/r.
+    // These are the integrals of x^2/r^3, y^2/r^3, x y/r^3, x/r^2 and y/r^2; the sum of the first
+    // two is that of 1/r.
     let xx = sum(|x, y| times(y, log_of_sum(x, y)));
     let yy = sum(|x, y| times(x, log_of_sum(y, x)));
     let xy = sum(|x, y| -x.hypot(y));
@@ -82,12 +81,12 @@ pub fn rectangle(material: &Elasticity, size: [f64; 2], x: f64, y: f64) -> Influ
     out
 }
 
-/// A product that is zero where its first factor is: the limit at an edge of a cell.
+/// Returns a product that is zero where its first factor is: the limit at an edge of a cell.
 fn times(zero: f64, other: f64) -> f64 {
     if zero == 0.0 { 0.0 } else { zero * other }
 }
 
-/// ln(x + r), without cancellation where x is negative.
+/// Returns ln(x + r), without cancellation where x is negative.
 fn log_of_sum(x: f64, y: f64) -> f64 {
     let r = x.hypot(y);
     if x >= 0.0 {
@@ -97,9 +96,9 @@ fn log_of_sum(x: f64, y: f64) -> f64 {
     }
 }
 
-/// The displacement of a wave of traction exp(i k x) of unit amplitude (m/Pa): its real part, and
-/// the part that is a quarter of a wave ahead (imaginary). `k` has one wave number in the plane and
-/// two in space (1/m); not all may be zero.
+/// Returns the displacement due to a wave of traction exp(i k x) of unit amplitude (m/Pa): its real
+/// part, and the part that is a quarter of a wave ahead (imaginary). `k` has one wave number in the
+/// plane and two in space (1/m); not all may be zero.
 pub fn wave(material: &Elasticity, k: [f64; 2], dimension: usize) -> [Influence; 2] {
     let nu = material.poisson;
     let (mut real, mut imaginary) = (Influence::default(), Influence::default());
@@ -123,8 +122,8 @@ pub fn wave(material: &Elasticity, k: [f64; 2], dimension: usize) -> [Influence;
     [real, imaginary]
 }
 
-/// The displacement by a uniform traction (m/Pa), relative to points at `depth` (m): pure shear,
-/// and compression without lateral strain.
+/// Returns the displacement due to a uniform traction (m/Pa), relative to points at `depth` (m):
+/// pure shear, and compression without lateral strain.
 pub fn uniform(material: &Elasticity, depth: f64, dimension: usize) -> Influence {
     let mut out = Influence::default();
     let n = dimension - 1;
@@ -152,7 +151,7 @@ mod tests {
         );
     }
 
-    /// Far away a cell acts as a point force (Johnson, equations 3.22 and 3.75).
+    /// At large distance a cell acts as a point force (Johnson, equations 3.22 and 3.75).
     #[test]
     fn a_rectangle_is_a_point_from_afar() {
         let (x, y) = (0.8, -0.6);
@@ -179,7 +178,7 @@ mod tests {
         near(0.5 * middle, of(a, -a * (1.0 - 1e-12)), 1e-9);
     }
 
-    /// Forces and displacements of two places are reciprocal.
+    /// Forces and displacements at two positions are reciprocal.
     #[test]
     fn influences_are_reciprocal() {
         let [there, back] =
@@ -193,9 +192,9 @@ mod tests {
         }
     }
 
-    /// The middle of a strip of width 2 a: the approach of Johnson's equation 5.55 has the same
-    /// constant, -nu/(1 - nu), with the mean of the logarithm over an ellipse in place of that of a
-    /// strip.
+    /// For the middle of a strip of width 2 a the approach of Johnson's equation 5.55 has the same
+    /// constant, -nu/(1 - nu), with the mean of the logarithm over an ellipse in place of that over
+    /// a strip.
     #[test]
     fn a_strip_sinks_relative_to_its_depth() {
         let (a, d, nu) = (1e-3, 0.5, RUBBER.poisson);
@@ -218,7 +217,7 @@ mod tests {
         let mut sum = [0.0; 2];
         for j in -half..=half {
             let x = f64::from(j) * size;
-            // A smooth end in place of a sudden one.
+            // The load fades out smoothly instead of ending abruptly.
             let fade = (0.5 * PI * x / (f64::from(half) * size)).cos().powi(4);
             let of = strip(&RUBBER, size, 1.0, x);
             sum[0] += of[1][1] * (k * x).cos() * fade * size;
@@ -226,8 +225,8 @@ mod tests {
         }
         let [real, imaginary] = wave(&RUBBER, [k, 0.0], 2);
         near(real[1][1], sum[0], 3e-3);
-        // u(0) by a load p(x) = sin(k x) is the sum of the influence at -x, which is odd, and Re(i
-        // imaginary (-i)).
+        // u(0) for a load p(x) = sin(k x) is the sum of the influence at -x, which is odd, and
+        // equals Re(i imaginary (-i)).
         near(imaginary[0][1], -sum[1], 3e-3);
     }
 }

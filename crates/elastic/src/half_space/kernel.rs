@@ -1,21 +1,20 @@
-//! The influence of loads on a regular grid of cells: it depends on the distance of two cells
-//! alone, so that one number a distance is kept, and the displacement by many loads is a
-//! convolution.
+//! Influence of loads on a regular grid of cells: it depends only on the distance of two cells, so
+//! that one number per distance is stored, and the displacement due to many loads is a convolution.
 
-use super::grid::Grid;
+use super::grid::CellGrid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
 use crate::material::Elasticity;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::sync::{Arc, OnceLock};
 
-/// How far a half-space reaches.
+/// Extent of a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
-    /// To infinity, free of load outside its cells. In the plane displacements are relative to this
+    /// Infinite, without load outside its cells. In the plane displacements are relative to this
     /// depth (m); in space to infinity.
     Infinite(f64),
-    /// The cells repeat with their extent; displacements are relative to this depth (m).
+    /// Periodic, with the extent of the cells; displacements are relative to this depth (m).
     Periodic(f64),
 }
 
@@ -25,7 +24,7 @@ pub struct Kernel {
     dimension: usize,
     cells: [usize; 2],
     periodic: bool,
-    /// Cells of the table along x and y: twice those of the grid, or those of a period.
+    /// Size of the table along x and y: twice that of the grid, or that of a period.
     table: [usize; 2],
     influence: Vec<Influence>,
     spectrum: OnceLock<Vec<[[Complex64; 3]; 3]>>,
@@ -33,10 +32,10 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// The kernel of a grid, with the displacement at places that lie `shift` (m) along x from the
-    /// middles of cells.
+    /// Creates the kernel of a grid, with the displacement at positions that lie `shift` (m) along
+    /// x from the middles of cells.
     pub fn new(
-        grid: &Grid,
+        grid: &CellGrid,
         material: &Elasticity,
         reach: Reach,
         dimension: usize,
@@ -63,8 +62,8 @@ impl Kernel {
         }
     }
 
-    /// The displacement in a cell by a force on another (m/N; m per N/m in the plane), with the
-    /// inward normal as last axis.
+    /// Returns the displacement of a cell due to a force on another (m/N; m per N/m in the plane),
+    /// with the inward normal as last axis.
     pub fn between(&self, at: usize, load: usize) -> &Influence {
         let columns = self.cells[0];
         let place = |cell: usize| [cell % columns, cell / columns];
@@ -73,13 +72,13 @@ impl Kernel {
         &self.influence[j * self.table[0] + i]
     }
 
-    /// The displacements by forces on all cells: `[a][cell]` along each axis.
+    /// Returns the displacements due to forces on all cells: `[a][cell]` along each axis.
     pub fn displacements(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let loaded: Vec<usize> = (0..forces[0].len())
             .filter(|c| forces.iter().any(|f| f[*c] != 0.0))
             .collect();
-        // Measured: a pair of cells takes five times as long as a place and bit of a transform, of
-        // which there are 2 D.
+        // By measurement a pair of cells takes five times as long as an entry times a bit of a
+        // transform, of which there are 2 D.
         let size = self.table[0] * self.table[1];
         let bits = usize::BITS - size.leading_zeros();
         if 5 * loaded.len() * forces[0].len() < 2 * self.dimension * size * bits as usize {
@@ -164,12 +163,13 @@ impl Kernel {
         out
     }
 
-    /// Memory of the tables, by distance and by wave number (bytes).
+    /// Returns the memory of the tables, by distance and by wave number (bytes).
     pub fn bytes(&self) -> usize {
         self.influence.len() * (size_of::<Influence>() + size_of::<[[Complex64; 3]; 3]>())
     }
 
-    /// Floating-point operations of a convolution: a transform of n numbers takes some 5 n log2(n).
+    /// Returns the number of floating-point operations of a convolution: a transform of n numbers
+    /// takes some 5 n log2(n).
     pub fn operations(&self) -> f64 {
         let (n, d) = (self.influence.len() as f64, self.dimension as f64);
         n * (10.0 * d * n.log2().max(1.0) + 8.0 * d * d)
@@ -183,15 +183,15 @@ impl Kernel {
 
 /// The table of a half-space without end.
 fn closed_forms(
-    grid: &Grid,
+    grid: &CellGrid,
     material: &Elasticity,
     dimension: usize,
     depth: f64,
     table: [usize; 2],
     shift: f64,
 ) -> Vec<Influence> {
-    // Distances beyond the middle of the table stand for negative ones; those between the two are
-    // met by no pair of cells.
+    // Distances beyond the middle of the table represent negative ones; distances in between occur
+    // for no pair of cells.
     let distance = |k: usize, of: usize| match k {
         k if k < grid.cells[of] => k as f64 * grid.size[of],
         k => (k as f64 - table[of] as f64) * grid.size[of],
@@ -208,10 +208,10 @@ fn closed_forms(
         .collect()
 }
 
-/// The table of a half-space with a period, from the waves that fit in it and are longer than two
-/// cells.
+/// Returns the table of a half-space with a period, from the waves that fit in it and are longer
+/// than two cells.
 fn waves(
-    grid: &Grid,
+    grid: &CellGrid,
     material: &Elasticity,
     dimension: usize,
     depth: f64,
@@ -226,7 +226,7 @@ fn waves(
     };
     let number =
         |k: usize, of: usize| 2.0 * std::f64::consts::PI * signed(k, grid.cells[of]) / extent[of];
-    // The sign of the shortest wave is not known: its odd terms are left out.
+    // The sign of the shortest wave is undetermined: its odd terms are left out.
     let shortest = |k: usize, of: usize| 2 * k == grid.cells[of];
     let spectrum: Vec<[Influence; 2]> = (0..columns * rows)
         .map(|c| {
@@ -254,7 +254,7 @@ fn waves(
             turned
         })
         .collect();
-    // A force on a cell is a pressure of one over its area there.
+    // A unit force on a cell is a pressure of one over the area of the cell.
     let scale = 1.0 / (grid.area(dimension) * (columns * rows) as f64);
     let mut out = vec![Influence::default(); columns * rows];
     for a in 0..dimension {
@@ -272,7 +272,7 @@ fn waves(
     out
 }
 
-/// The next number without prime factors above 5, of which transforms are fast.
+/// Returns the next number without prime factors above 5, for which transforms are fast.
 fn smooth(from: usize) -> usize {
     let simple = |mut n: usize| {
         for p in [2, 3, 5] {
@@ -318,7 +318,7 @@ impl Transforms {
         self.both(&self.backward, values);
     }
 
-    /// Along the rows, then along the columns.
+    /// Transforms along the rows, then along the columns.
     fn both(&self, transforms: &[Arc<dyn Fft<f64>>; 2], values: &mut [Complex64]) {
         let [columns, rows] = self.table;
         transforms[0].process(values);
@@ -348,15 +348,15 @@ mod tests {
         density: 7800.0,
     };
 
-    fn grid(cells: [usize; 2]) -> Grid {
-        Grid {
+    fn grid(cells: [usize; 2]) -> CellGrid {
+        CellGrid {
             from: [0.0; 2],
             size: [1e-3, 2e-3],
             cells,
         }
     }
 
-    /// Sums over pairs of cells and convolutions are the same, of any grid.
+    /// Sums over pairs of cells and convolutions are equal, for any grid.
     #[test]
     fn convolution_is_the_sum() {
         let reaches = [Reach::Infinite(1.0), Reach::Periodic(0.1)];

@@ -1,19 +1,20 @@
-//! A body that is large against what touches it, as an elastic half-space: its surface gives way to
-//! loads by the closed forms of Boussinesq, Cerruti and Flamant, at once and without inertia.
+//! An elastic half-space represents a body that is large compared with its contacts: its surface
+//! deforms under loads by the closed forms of Boussinesq, Cerruti and Flamant, instantaneously and
+//! without inertia.
 //!
 //! The displacement of its cells is u = F f, f the forces of contacts on them over the step, so
-//! that with q = u at the point of the step where contacts are found
+//! that with q = u at the time of detection in the step
 //!
 //! ```text
 //! v_free = -q/(h theta)        v+ = v_free + F p/(h^2 theta)        q + h theta v+ = F p/h
 //! ```
 //!
-//! On top of that the half-space moves with its holder far away, with a mass where it moves under
-//! forces. Where the surface rolls through the contact, the cells stay and material passes them:
-//! along the surface a step begins with u(x - V h), the displacement of what has come there, from
-//! the forces of the step before. Along the normal it begins with u(x): a gap is that of the place.
-//! The work of normal forces on what passes, f_n (u_n(x) - u_n(x - V h)), is that of what makes the
-//! surface roll.
+//! In addition the half-space moves with its distant holder, with a mass where it moves under
+//! forces. Where the surface rolls through the contact, the cells are fixed in space and material
+//! passes them: along the surface a step begins with u(x - V h), the displacement of the material
+//! that has arrived there, from the forces of the previous step. Along the normal it begins with
+//! u(x), since a gap belongs to a position. The work of normal forces on passing material, f_n
+//! (u_n(x) - u_n(x - V h)), is done by the drive of the rolling.
 //!
 //! Sources: K. L. Johnson, "Contact Mechanics" (1985), chapters 2, 3 and 8; J. J. Kalker,
 //! "Three-dimensional elastic bodies in rolling contact" (1990), chapter 4.
@@ -26,7 +27,7 @@ mod kernel;
 mod profile;
 
 pub use error::HalfSpaceError;
-pub use grid::Grid;
+pub use grid::CellGrid;
 pub use kernel::{Kernel, Reach};
 pub use profile::Profile;
 
@@ -38,23 +39,24 @@ use fretwork_core::bodies::{
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-/// Most cells: each that touches by its point is a body of its own.
+/// Largest number of cells: each cell that touches by its point is a separate body.
 const MAX_CELLS: usize = 1_000_000;
 
-/// Most coordinates of cells whose compliance is kept, as far as they were touched: 128 MB.
+/// Largest number of coordinates of cells whose compliance is kept, as far as they were touched:
+/// 128 MB.
 const MAX_KEPT: usize = 4_000;
 
-/// Which side of its surface a half-space fills.
+/// Side of its surface that a half-space fills.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fills {
-    /// What is below: its surface faces up, along the last axis.
+pub enum FilledSide {
+    /// The space below: its surface faces up, along the last axis.
     Below,
-    /// What is above.
+    /// The space above: its surface faces down.
     Above,
 }
 
-/// How the cells of a half-space touch. Where two meet one touches by its points and the other by
-/// its surface.
+/// How the cells of a half-space touch. Where two half-spaces meet one must touch by its points and
+/// the other by its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     /// The middle of each cell touches balls, pieces and surfaces.
@@ -64,50 +66,50 @@ pub enum Cells {
     Surface,
 }
 
-/// What a half-space is made of.
+/// Parameters of a half-space.
 #[derive(Clone, Debug)]
 pub struct HalfSpaceSpec<'a> {
-    /// What a user calls it.
+    /// Name in messages.
     pub name: &'a str,
-    /// Its material; the density has no effect.
+    /// Material; the density has no effect.
     pub material: Elasticity,
-    /// Where it is.
-    pub fills: Fills,
-    /// Where the origin of its plane and of the grid is (m).
+    /// Side of the surface that is solid.
+    pub fills: FilledSide,
+    /// Position of the origin of the plane and of the grid (m).
     pub position: [f64; 3],
-    /// The cells that may be loaded.
-    pub grid: Grid,
-    /// How far it reaches.
+    /// Cells that may be loaded.
+    pub grid: CellGrid,
+    /// Extent.
     pub reach: Reach,
-    /// Whether the surface repeats along x with the extent of its cells (2D), in a scene with that
-    /// period.
+    /// Whether the surface is periodic along x with the extent of its cells (2D), in a scene with
+    /// that period.
     pub repeats: bool,
-    /// Shape of its surface.
+    /// Shape of the surface.
     pub profile: Profile,
-    /// Mass that moves with it (kg; kg/m in 2D), zero for none.
+    /// Mass that moves with it (kg; kg/m in 2D); zero for none.
     pub mass: f64,
-    /// Its drive along each axis; a force (N; N/m in 2D) is that on the whole.
+    /// Drive along each axis; a force (N; N/m in 2D) acts on the whole.
     pub axes: &'a [Dof],
-    /// Velocity of its material along x through the cells (m/s).
+    /// Velocity of the material along x through the cells (m/s).
     pub rolling: Option<TimeFunction>,
-    /// How it touches.
+    /// How the cells touch.
     pub touching: Cells,
     /// Index of the material for interface laws.
     pub surface_material: u16,
 }
 
-/// The part of a half-space that is held.
+/// Name of the part of a half-space that is held.
 pub const HOLDER: &str = "holder";
 
-/// What does not change, shared by copies.
+/// Constant data, shared by copies.
 #[derive(Debug)]
 struct Fixed<S: Space> {
     name: String,
     material: Elasticity,
-    grid: Grid,
+    grid: CellGrid,
     reach: Reach,
     kernel: Kernel,
-    /// Places of the cells without load (m).
+    /// Positions of the cells without load (m).
     places: Vec<S::Vector>,
     /// Sign of the outward normal along the last axis.
     outward: f64,
@@ -116,20 +118,20 @@ struct Fixed<S: Space> {
     touching: Cells,
     surface_material: u16,
     repeats: bool,
-    /// Cells in the order of the vertices of the surface, and its facets. Where the surface
-    /// repeats, one past the last cell stands for the image of the first.
+    /// Cells in the order of the vertices of the surface, and its facets. Where the surface is
+    /// periodic, an index past the last cell represents the image of the first.
     vertices: Vec<u32>,
     facets: Vec<[u32; 3]>,
 }
 
 /// An elastic half-space.
 ///
-/// Its coordinates are the displacements of its cells along each axis, those of its holder, and the
+/// Coordinates are the displacements of the cells along each axis, those of the holder, and the
 /// distance rolled.
 #[derive(Clone, Debug)]
 pub struct HalfSpace<S: Space> {
     fixed: Arc<Fixed<S>>,
-    /// The current drive of its holder along each axis.
+    /// Current drive of the holder along each axis.
     axes: Vec<Dof>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
@@ -137,16 +139,16 @@ pub struct HalfSpace<S: Space> {
     force: Vec<f64>,
     /// Displacements and velocities at the start of the step.
     start: [Vec<f64>; 2],
-    /// Strain energy at the start of the step, and kinetic energy that a jump of imposed velocities
-    /// brought there (J).
+    /// Strain energy at the start of the step, and kinetic energy due to a jump of imposed
+    /// velocities there (J).
     stored: f64,
     jump: f64,
     step: Option<SystemStep<S>>,
-    /// The kernel of material that has come from a distance behind, and that distance (m).
+    /// Kernel of material that has arrived from a distance behind, and that distance (m).
     behind: Option<Arc<(f64, Kernel)>>,
-    /// Displacements of the material that has come to each cell of a surface that rolls (m).
+    /// Displacements of the material that has arrived at each cell of a rolling surface (m).
     passing: Vec<f64>,
-    /// The compliance of its cells for the length of the step, where there are not too many.
+    /// Compliance of the cells for the length of the step, where there are not too many.
     kept: Option<Arc<Compliance<S>>>,
 }
 
@@ -154,14 +156,14 @@ impl<S: Space> HalfSpace<S> {
     /// A half-space at rest and without load.
     ///
     /// # Errors
-    /// A dimension, a material or a setting is not possible; [`HalfSpaceError`] lists them.
+    /// A dimension, a material or a setting is invalid; [`HalfSpaceError`] lists the reasons.
     pub fn new(spec: HalfSpaceSpec) -> Result<Self, HalfSpaceError> {
         check::<S>(&spec)?;
         let HalfSpaceSpec { grid, material, .. } = spec;
         let up = S::D - 1;
         let outward = match spec.fills {
-            Fills::Below => 1.0,
-            Fills::Above => -1.0,
+            FilledSide::Below => 1.0,
+            FilledSide::Above => -1.0,
         };
         let place = |cell: usize| {
             let middle = grid.middle(cell);
@@ -179,7 +181,7 @@ impl<S: Space> HalfSpace<S> {
         let images = u32::from(spec.repeats);
         let mut vertices: Vec<u32> = (0..grid.len() as u32 + images).collect();
         let mut facets = grid.facets(S::D);
-        if spec.fills == Fills::Above {
+        if spec.fills == FilledSide::Above {
             match S::D {
                 2 => vertices.reverse(),
                 _ => facets.iter_mut().for_each(|f| f.swap(1, 2)),
@@ -227,7 +229,7 @@ impl<S: Space> HalfSpace<S> {
         Ok(body)
     }
 
-    /// Length with which its surface repeats along x (m).
+    /// Returns the length of the period of its surface along x (m).
     fn period(&self) -> Option<f64> {
         self.fixed.repeats.then(|| self.fixed.grid.extent()[0])
     }
@@ -243,17 +245,17 @@ impl<S: Space> HalfSpace<S> {
         }
     }
 
-    /// The cell that carries the frame of the surface.
+    /// Returns the cell that carries the frame of the surface.
     fn origin(&self) -> u32 {
         (self.fixed.grid.len() / 2) as u32
     }
 
-    /// Index of the first coordinate of the holder.
+    /// Returns the index of the first coordinate of the holder.
     fn held(&self) -> usize {
         self.fixed.grid.len() * S::D
     }
 
-    /// Index of the distance rolled.
+    /// Returns the index of the distance rolled.
     fn rolled(&self) -> usize {
         self.held() + S::D
     }
@@ -263,7 +265,7 @@ impl<S: Space> HalfSpace<S> {
         self.axes[axis].yields()
     }
 
-    /// Sign of a local axis in the world: the last is the inward normal.
+    /// Returns the sign of a local axis in the world: the last is the inward normal.
     fn sign(&self, axis: usize) -> f64 {
         if axis + 1 == S::D {
             -self.fixed.outward
@@ -272,7 +274,7 @@ impl<S: Space> HalfSpace<S> {
         }
     }
 
-    /// Displacements of all cells by forces on them, both by coordinate.
+    /// Returns the displacements of all cells due to forces on them, both by coordinate.
     fn displacements(&self, kernel: &Kernel, forces: &[f64]) -> Vec<f64> {
         let d = S::D;
         let cells = self.fixed.grid.len();
@@ -287,8 +289,8 @@ impl<S: Space> HalfSpace<S> {
             .collect()
     }
 
-    /// Blocks of the compliance of two cells in the last step (1/kg), with the inertia of the
-    /// holder; zero before the first.
+    /// Returns blocks of the compliance of two cells in the last step (1/kg), with the inertia of
+    /// the holder; zero before the first step.
     fn blocks(&self) -> impl Fn(u32, u32) -> S::Matrix {
         let scale = self.step.map(|s| 1.0 / (s.h * s.h * s.theta));
         let mut inertia = S::Vector::zero();
@@ -316,13 +318,13 @@ impl<S: Space> HalfSpace<S> {
         }
     }
 
-    /// Elastic displacement of a cell (m).
+    /// Returns the elastic displacement of a cell (m).
     fn elastic(&self, cell: u32) -> S::Vector {
         self.entries(&self.displacement, cell as usize)
     }
 
-    /// The entries of a vector of coordinates at a cell; at the holder where the cell is one past
-    /// the last.
+    /// Returns the entries of a vector of coordinates at a cell; at the holder where the cell is
+    /// one past the last.
     fn entries(&self, values: &[f64], cell: usize) -> S::Vector {
         let mut out = S::Vector::zero();
         for axis in 0..S::D {
@@ -331,7 +333,7 @@ impl<S: Space> HalfSpace<S> {
         out
     }
 
-    /// Force of the holder along an axis over the last step (N; N/m in 2D).
+    /// Returns the force of the holder along an axis over the last step (N; N/m in 2D).
     fn reaction(&self, axis: usize, step: &SystemStep<S>) -> f64 {
         let c = self.held() + axis;
         let drive = self.axes[axis].over(step.time, step.h);
@@ -342,14 +344,14 @@ impl<S: Space> HalfSpace<S> {
         self.fixed.mass * (change / step.h - step.gravity[axis]) - self.force[c]
     }
 
-    /// v_theta of a coordinate (m/s).
+    /// Returns v_theta of a coordinate (m/s).
     fn average(&self, coordinate: usize, theta: f64) -> f64 {
         let (v, w) = (self.start[1][coordinate], self.velocity[coordinate]);
         v + theta * (w - v)
     }
 
-    /// Velocities that are imposed along the holder's axes and by rolling, at the start and the end
-    /// of a step.
+    /// Returns the velocities imposed along the holder's axes and by rolling, at the start and the
+    /// end of a step.
     fn imposed(&self, step: &SystemStep<S>) -> Vec<(usize, [f64; 2])> {
         let SystemStep { time, h, theta, .. } = *step;
         let held = self.held();
@@ -366,7 +368,7 @@ impl<S: Space> HalfSpace<S> {
     }
 
     /// Where the surface rolls, gives each cell the displacement along the surface of the material
-    /// that is there now: it was a distance (m) behind before.
+    /// that is there now: before, it was a distance (m) behind.
     fn roll(&mut self, distance: f64) {
         if self.behind.as_ref().is_none_or(|b| b.0 != distance) {
             let Fixed {
@@ -408,7 +410,7 @@ fn check<S: Space>(spec: &HalfSpaceSpec) -> Result<(), HalfSpaceError> {
         .iter()
         .fold(0.0, |a: f64, b| a.max(*b));
     match spec.reach {
-        // Beyond that the compliance of a plane half-space is not positive.
+        // Below this depth the compliance of a plane half-space is not positive.
         Reach::Infinite(depth) if S::D == 2 && !(depth >= widest && depth.is_finite()) => {
             return Err(HalfSpaceError::Depth(depth, widest));
         }

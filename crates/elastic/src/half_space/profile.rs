@@ -1,19 +1,19 @@
-//! The shape of the surface of a half-space without load: heights that are small against what they
-//! extend over.
+//! The shape of the surface of a half-space without load: heights that are small compared with
+//! their lateral extent.
 
 use std::f64::consts::PI;
 
-/// Height above the plane, outward, by the place on it.
+/// Outward height above the plane, as a function of the position on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Profile {
     /// A plane.
     #[default]
     Flat,
-    /// -x^2/(2 R_x) - y^2/(2 R_y): the parabola that stands for a circle of these radii of
-    /// curvature (m); an infinite one is straight.
+    /// -x^2/(2 R_x) - y^2/(2 R_y): the parabola that approximates circles of these radii of
+    /// curvature (m); an infinite radius is straight.
     Paraboloid([f64; 2]),
-    /// A wave cos(2 pi x/L), in space cos(2 pi x/L) cos(2 pi y/L_y), of an amplitude (m) and
-    /// lengths (m); an infinite length is no wave.
+    /// A wave cos(2 pi x/L), in space cos(2 pi x/L) cos(2 pi y/L_y), with an amplitude (m) and
+    /// lengths (m); an infinite length is a factor of 1.
     Wave(f64, [f64; 2]),
     /// The height in the middle of each cell (m).
     Heights(Vec<f64>),

@@ -34,7 +34,7 @@ fn sample<S: Space>(strain: Strain, damping: f64) -> Sample<S> {
 }
 
 impl<S: Space> Sample<S> {
-    /// Displacements by the place without load.
+    /// Returns displacements as a function of the unloaded position.
     fn displaced(&self, to: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
         let mut q = vec![0.0; self.freedoms.total()];
         for (p, x) in self.mesh.points().iter().enumerate() {
@@ -47,7 +47,7 @@ impl<S: Space> Sample<S> {
     }
 }
 
-/// Some smooth displacement of a size.
+/// Returns some smooth displacement of a given size.
 fn waves(size: f64, phase: f64) -> impl Fn(Vector3<f64>) -> Vector3<f64> {
     move |x| {
         x + Vector3::new(
@@ -67,14 +67,14 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Free strains of some elements.
+/// Returns free strains of some elements.
 fn free<S: Space>(sample: &Sample<S>) -> Vec<f64> {
     let elements = sample.mesh.elements().enumerate();
     elements.map(|(e, _)| 0.02 * (e as f64).sin()).collect()
 }
 
-/// Largest difference of the tangent from central differences of the force, as a share of it, along
-/// some direction.
+/// Returns the largest relative difference of the tangent from central differences of the force,
+/// along some direction.
 fn tangent_error<S: Space>(strain: Strain, theta: f64, moved: f64) -> f64 {
     let sample = sample::<S>(strain, 1e-3);
     let [start, to] = [0.0, moved].map(|m| sample.displaced(waves(0.2, m)));
@@ -98,7 +98,7 @@ fn tangent_error<S: Space>(strain: Strain, theta: f64, moved: f64) -> f64 {
         .zip(&high)
         .map(|(a, b)| (b - a) / (2.0 * small * theta));
     let slope: Vec<f64> = slope.collect();
-    let tangent = sample.large.tangent(&step, &sample.stiffness, false);
+    let tangent = sample.large.tangent(&step, &sample.stiffness);
     let found = tangent.times(&direction);
     let off: Vec<f64> = found.iter().zip(&slope).map(|(a, b)| a - b).collect();
     norm(&off) / norm(&slope)
@@ -112,7 +112,7 @@ fn tangents_are_derivatives_of_the_force() {
             tangent_error::<Dim3>(strain, 1.0, 0.3),
         ];
         assert!(exact.iter().all(|e| *e < 1e-8), "{strain:?}: {exact:?}");
-        // At other theta the error is that of the change of F over the step.
+        // At other theta the error is proportional to the change of F over the step.
         let some = [0.3, 0.03].map(|moved| tangent_error::<Dim3>(strain, 0.5, moved));
         println!("{strain:?}: tangent off by {exact:?}, {some:?} at theta 1/2");
         assert!(
@@ -122,8 +122,8 @@ fn tangents_are_derivatives_of_the_force() {
     }
 }
 
-/// A body that turns feels nothing, whatever the angle of a step; in one of small strain that would
-/// be half of it.
+/// A rotating body has no forces, for any angle of a step; in small strain it would have forces at
+/// half of that angle.
 fn turns_freely<S: Space>(strain: Strain) {
     let sample = sample::<S>(strain, 1e-3);
     for [from, to] in [[0.0, 1e-3], [0.2, 1.2], [0.0, 1.57], [1.0, 4.14]] {
@@ -157,8 +157,8 @@ fn rotations_strain_nothing() {
     }
 }
 
-/// A uniform strain leaves no force at points inside, all elements have its stress, and no force or
-/// moment is left on the body.
+/// A uniform strain causes no force at inner points, all elements have its stress, and no resultant
+/// force or moment on the body.
 fn patch<S: Space>(strain: Strain) {
     let sample = sample::<S>(strain, 0.0);
     let f = Matrix3::new(1.2, 0.3, 0.0, -0.2, 0.8, 0.0, 0.0, 0.0, 1.0);
@@ -204,8 +204,8 @@ fn elements_that_turn_inside_out_are_found() {
     assert!(inverted(&vec![f64::NAN; sample.freedoms.total()]).is_some());
 }
 
-/// A body of uniform free strain that has it, turned by any angle, is without force, stress and
-/// energy.
+/// A body with a uniform free strain and the corresponding deformation, rotated by any angle, has
+/// no force, stress and energy.
 #[test]
 fn what_expands_freely_is_without_stress() {
     for strain in BOTH {
@@ -232,8 +232,8 @@ fn what_expands_freely_is_without_stress() {
     }
 }
 
-/// Forces are derivatives of the stored energy with any free strains, in the plane where the depth
-/// stays too.
+/// Forces are derivatives of the stored energy for any free strains, in the plane at constant depth
+/// too.
 #[test]
 fn forces_with_free_strains_are_derivatives_of_the_energy() {
     fn error<S: Space>(strain: Strain) -> f64 {

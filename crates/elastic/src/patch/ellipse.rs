@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// K and D = (K - E)/m of the parameter m = 1 - k², for an ellipse with the ratio k of its axes,
+/// Returns K and D = (K - E)/m for the parameter m = 1 - k², for an ellipse with the axis ratio k,
 /// above 0 and at most 1.
 ///
 /// The differences that Hertz' theory needs are taken from the series of the mean (M. Abramowitz,
@@ -31,7 +31,7 @@ pub(super) fn integrals(k: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Abramowitz and Stegun, table 17.1.
+    /// The values are those of Abramowitz and Stegun, table 17.1.
     #[test]
     fn tabulated_values() {
         for (m, first, second) in [

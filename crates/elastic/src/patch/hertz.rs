@@ -12,7 +12,7 @@ pub struct LinePatch {
     pub half_width: f64,
 }
 
-/// The patch of two bodies that touch in a point: a circle or an ellipse.
+/// Contact patch of two bodies that touch in a point: a circle or an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointPatch {
     /// Largest pressure (Pa).
@@ -21,22 +21,22 @@ pub struct PointPatch {
     pub along: f64,
     /// Semi-axis (m) in the direction of the second curvature.
     pub across: f64,
-    /// By how much distant points of the bodies approach each other (m).
+    /// Approach of distant points of the bodies (m).
     pub approach: f64,
 }
 
 impl PointPatch {
-    /// Area (m²).
+    /// Returns the area (m²).
     pub fn area(&self) -> f64 {
         PI * self.along * self.across
     }
 }
 
-/// Line contact: load (N/m), relative curvature 1/R1 + 1/R2 (1/m) and effective modulus (Pa), all
-/// positive.
+/// Returns the patch of a line contact from load (N/m), relative curvature 1/R1 + 1/R2 (1/m) and
+/// effective modulus (Pa), all positive.
 ///
-/// The approach of the bodies depends on their form at a distance, and is not given. Johnson, 4.43
-/// to 4.45.
+/// The approach of the bodies depends on their form at a distance, and is not computed. Source:
+/// Johnson, 4.43 to 4.45.
 pub fn line(load: f64, curvature: f64, modulus: f64) -> LinePatch {
     let half_width = (4.0 * load / (PI * modulus * curvature)).sqrt();
     LinePatch {
@@ -45,13 +45,14 @@ pub fn line(load: f64, curvature: f64, modulus: f64) -> LinePatch {
     }
 }
 
-/// Point contact: load (N), relative curvatures (1/m) in two directions across each other and
-/// effective modulus (Pa), all positive.
+/// Returns the patch of a point contact from load (N), relative curvatures (1/m) in two
+/// perpendicular directions and effective modulus (Pa), all positive.
 ///
-/// Exact for any ratio of curvatures, which must lie within 1e-12 and 1e12: Johnson, 4.24 to 4.32.
+/// The result is exact for any ratio of curvatures, which must lie between 1e-12 and 1e12. Source:
+/// Johnson, 4.24 to 4.32.
 pub fn point(load: f64, [along, across]: [f64; 2], modulus: f64) -> PointPatch {
     let (low, high) = (along.min(across), along.max(across));
-    // B/A of the axes' ratio k decreases from infinity to 1 as k rises to 1: bisection over log k.
+    // B/A decreases from infinity to 1 as the axis ratio k rises to 1: bisection over log k.
     let (mut narrow, mut wide) = ((1e-16f64).ln(), 0.0f64);
     let ratio = |k: f64| {
         let (first, d) = integrals(k);
@@ -149,8 +150,8 @@ mod tests {
         }
     }
 
-    /// A long ellipse is a line contact in its middle: p0 and half-width of the load per metre that
-    /// stands there, 3 P/(4 a).
+    /// A long ellipse is a line contact in its middle: p0 and half-width belong to the load per
+    /// metre at that place, 3 P/(4 a).
     #[test]
     fn a_long_ellipse_becomes_a_line() {
         let got = point(1e3, [1e-5, 10.0], MODULUS);
@@ -159,7 +160,7 @@ mod tests {
         near(got.pressure, middle.pressure, 1e-5);
     }
 
-    /// Turning the case turns the patch.
+    /// Exchanging the curvatures rotates the patch.
     #[test]
     fn directions_may_be_exchanged() {
         let (one, other) = (
@@ -170,7 +171,7 @@ mod tests {
         assert_eq!(one.pressure, other.pressure);
     }
 
-    /// Carter's case of the documentation: R 0.5 m, 178.9 N/mm, a = 1 mm.
+    /// The values are those of Carter's case in the documentation: R 0.5 m, 178.9 N/mm, a = 1 mm.
     #[test]
     fn a_line_has_the_closed_form() {
         let got = line(178.9e3, 2.0, 113.9e9);

@@ -1,8 +1,8 @@
-//! Contact patches in closed form: Hertz' pressure and size, where gross slip begins, and friction
-//! against creepage.
+//! Contact patches in closed form: Hertz' pressure and size, onset of gross slip, and friction as a
+//! function of creepage.
 //!
-//! Two smooth elastic bodies touch over a patch that is small against their radii. K. L. Johnson,
-//! Contact Mechanics (1985), has all of it but Kalker's coefficients: chapter 4 (Hertz), 7.2
+//! Two smooth elastic bodies touch over a patch that is small compared with their radii. Source of
+//! all but Kalker's coefficients is K. L. Johnson, Contact Mechanics (1985): chapter 4 (Hertz), 7.2
 //! (Cattaneo, Mindlin), 8.3 (Carter).
 
 mod ellipse;
@@ -24,13 +24,13 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Shear modulus (Pa).
+    /// Returns the shear modulus (Pa).
     pub fn shear(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
 }
 
-/// E* (Pa) of two bodies: 1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2 (Johnson, 4.19).
+/// Returns E* (Pa) of two bodies: 1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2 (Johnson, 4.19).
 pub fn effective_modulus(bodies: &[Solid; 2]) -> f64 {
     1.0 / bodies
         .iter()
@@ -38,9 +38,9 @@ pub fn effective_modulus(bodies: &[Solid; 2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Shear modulus (Pa) and Poisson's ratio of the two like bodies that are as compliant in shear as
-/// these two: 2/G = 1/G1 + 1/G2, 2 nu/G = nu1/G1 + nu2/G2 (J. J. Kalker, Three-dimensional elastic
-/// bodies in rolling contact, 1990, 1.1).
+/// Returns shear modulus (Pa) and Poisson's ratio of two equal bodies with the same compliance in
+/// shear as these two: 2/G = 1/G1 + 1/G2, 2 nu/G = nu1/G1 + nu2/G2 (J. J. Kalker, Three-dimensional
+/// elastic bodies in rolling contact, 1990, 1.1).
 pub fn like_bodies(bodies: &[Solid; 2]) -> Solid {
     let compliance = bodies.iter().map(|s| 1.0 / s.shear()).sum::<f64>() / 2.0;
     let poisson = bodies.iter().map(|s| s.poisson / s.shear()).sum::<f64>() / (2.0 * compliance);

@@ -1,21 +1,21 @@
-//! Partial slip under a tangential force (C. Cattaneo 1938, R. D. Mindlin 1949): where gross slip
-//! begins, and what sticks before it.
+//! Partial slip under a tangential force (C. Cattaneo 1938, R. D. Mindlin 1949): onset of gross
+//! slip, and the stick area before it.
 
 use super::PointPatch;
 use super::Solid;
 use super::ellipse::integrals;
 use std::f64::consts::PI;
 
-/// A point contact that is pushed along `along`, towards gross slip.
+/// A point contact under a tangential force along `along`, up to gross slip.
 ///
 /// Q is below mu P as long as distant points of the bodies are displaced by less than
-/// `displacement` relative to each other. Bodies of unlike steels, the traction across the push and
-/// its coupling with the pressure are left out, as in Mindlin's theory.
+/// `displacement` relative to each other. Different materials, tractions perpendicular to the
+/// force, and their coupling with the pressure are neglected, as in Mindlin's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartialSlip {
-    /// Displacement of distant points at which gross slip begins (m).
+    /// Displacement of distant points at the onset of gross slip (m).
     pub displacement: f64,
-    /// Force at which gross slip begins (N), mu P.
+    /// Force at the onset of gross slip (N), mu P.
     pub force: f64,
 }
 
@@ -28,7 +28,7 @@ impl PartialSlip {
     pub fn of(patch: &PointPatch, load: f64, mu: f64, bodies: &[Solid; 2]) -> Self {
         let long = patch.along.max(patch.across);
         let (first, d) = integrals(patch.along.min(patch.across) / long);
-        // The part of the directions that lies along the push.
+        // This is the component of the force direction along the long axis.
         let lengthwise = if patch.along >= patch.across {
             d
         } else {
@@ -45,14 +45,14 @@ impl PartialSlip {
         }
     }
 
-    /// Ratio of the axes of the stuck ellipse to those of the patch under a force `q` (N); 0 in
-    /// gross slip.
+    /// Returns the ratio of the axes of the stick area to those of the patch under a force `q` (N);
+    /// 0 in gross slip.
     pub fn stuck(&self, q: f64) -> f64 {
         (1.0 - (q / self.force).abs()).max(0.0).cbrt()
     }
 
-    /// Displacement of distant points (m) under a force `q` (N) that rises from zero; infinite in
-    /// gross slip.
+    /// Returns the displacement of distant points (m) under a force `q` (N) that rises from zero;
+    /// infinite in gross slip.
     pub fn displacement_under(&self, q: f64) -> f64 {
         let share = (q / self.force).abs();
         if share >= 1.0 {
@@ -61,17 +61,17 @@ impl PartialSlip {
         self.displacement * (1.0 - (1.0 - share).powf(2.0 / 3.0))
     }
 
-    /// Force (N) under a displacement of distant points (m) that rises from zero.
+    /// Returns the force (N) under a displacement of distant points (m) that rises from zero.
     pub fn force_at(&self, displacement: f64) -> f64 {
         let left = (1.0 - displacement.abs() / self.displacement).max(0.0);
         self.force * (1.0 - left.powf(1.5))
     }
 }
 
-/// Half-width of the strip that sticks over that of a line patch, under the share Q/(mu P)
+/// Returns the half-width of the stick strip over that of a line patch, for the share Q/(mu P)
 /// (Johnson, 7.27); 0 in gross slip.
 ///
-/// The displacement at which gross slip begins depends on the form of the bodies at a distance.
+/// The displacement at the onset of gross slip depends on the form of the bodies at a distance.
 pub fn stuck_strip(share: f64) -> f64 {
     (1.0 - share.abs()).max(0.0).sqrt()
 }
@@ -109,8 +109,8 @@ mod tests {
         );
     }
 
-    /// The displacement under a traction mu p, from Cerruti's solution (Johnson, 3.7.1) integrated
-    /// over the ellipse in polar coordinates about its middle.
+    /// Returns the displacement under a traction mu p, from Cerruti's solution (Johnson, 3.7.1)
+    /// integrated over the ellipse in polar coordinates about its middle.
     #[test]
     fn an_ellipse_begins_to_slip_at_the_displacement_of_its_traction() {
         let bodies = [STEEL, STEEL];

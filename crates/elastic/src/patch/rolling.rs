@@ -1,21 +1,21 @@
-//! Steady rolling with a longitudinal creepage: friction against creepage of line and point
-//! contacts.
+//! Steady rolling with a longitudinal creepage: friction as a function of creepage for line and
+//! point contacts.
 
 use super::{LinePatch, PointPatch, Solid, like_bodies};
 
-/// How the tangential force rises with the creepage, up to mu P where the whole patch slips.
+/// Increase of the tangential force with the creepage, up to mu P where the whole patch slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Creep {
-    /// Creepage from which the whole patch slips.
+    /// Creepage above which the whole patch slips.
     pub saturation: f64,
-    /// Power of 1 - Q/(mu P) = (1 - creepage/saturation)^power: 2 of a line (F. W. Carter 1926), 3
-    /// of an ellipse (P. J. Vermeulen, K. L. Johnson 1964).
+    /// Exponent in 1 - Q/(mu P) = (1 - creepage/saturation)^power: 2 for a line (F. W. Carter
+    /// 1926), 3 for an ellipse (P. J. Vermeulen, K. L. Johnson 1964).
     pub power: i32,
 }
 
 impl Creep {
-    /// Carter's line contact of like bodies with the relative curvature 1/R1 + 1/R2 (1/m): mu a/R
-    /// (Johnson, 8.25).
+    /// Returns Carter's line contact of equal bodies with the relative curvature 1/R1 + 1/R2 (1/m);
+    /// saturation is at mu a/R (Johnson, 8.25).
     pub fn of_line(patch: &LinePatch, curvature: f64, mu: f64) -> Self {
         Self {
             saturation: mu * patch.half_width * curvature,
@@ -23,9 +23,9 @@ impl Creep {
         }
     }
 
-    /// An ellipse under `load` (N) that rolls along `along`: the cubic of Vermeulen and Johnson
-    /// with Kalker's coefficient, 3 mu P/(G a b C11) at saturation (Z. Y. Shen, J. K. Hedrick, J.
-    /// A. Elkins 1983). `None` outside of Kalker's table.
+    /// Returns an elliptic contact under `load` (N) that rolls along `along`: the cubic of
+    /// Vermeulen and Johnson with Kalker's coefficient, 3 mu P/(G a b C11) at saturation (Z. Y.
+    /// Shen, J. K. Hedrick, J. A. Elkins 1983). `None` outside Kalker's table.
     pub fn of_point(patch: &PointPatch, load: f64, mu: f64, bodies: &[Solid; 2]) -> Option<Self> {
         let like = like_bodies(bodies);
         let c11 = kalker_c11(patch.along / patch.across, like.poisson)?;
@@ -36,7 +36,7 @@ impl Creep {
         })
     }
 
-    /// Q/(mu P) at a creepage, from -1 to 1.
+    /// Returns Q/(mu P) at a creepage, from -1 to 1.
     pub fn share(&self, creepage: f64) -> f64 {
         let left = (1.0 - (creepage / self.saturation).abs()).max(0.0);
         (1.0 - left.powi(self.power)) * creepage.signum()
@@ -73,9 +73,9 @@ const LONG: [[f64; 3]; 10] = [
     [3.40, 4.12, 5.20],
 ];
 
-/// Kalker's coefficient C11 of the ratio of semi-axes, along over across, from 0.1 to 10, and
-/// Poisson's ratio from 0 to 0.5; `None` outside. Linear between rows, and a parabola of 1/C11
-/// through the three Poisson's ratios.
+/// Returns Kalker's coefficient C11 for the ratio of semi-axes, along over across, from 0.1 to 10,
+/// and Poisson's ratio from 0 to 0.5; `None` outside. It is linear between rows, and a parabola of
+/// 1/C11 through the three Poisson's ratios.
 pub fn kalker_c11(ratio: f64, poisson: f64) -> Option<f64> {
     if !(0.0..=0.5).contains(&poisson) || !(0.1..=10.0).contains(&ratio) {
         return None;
@@ -90,7 +90,7 @@ pub fn kalker_c11(ratio: f64, poisson: f64) -> Option<f64> {
     let part = place - row as f64;
     let compliance =
         |column: usize| 1.0 / (table[row][column] * (1.0 - part) + table[row + 1][column] * part);
-    // Lagrange's polynomials of the nodes 0, 1/4, 1/2 in x = 4 nu.
+    // These are Lagrange's polynomials of the nodes 0, 1/4, 1/2 in x = 4 nu.
     let x = 4.0 * poisson;
     let weights = [
         (x - 1.0) * (x - 2.0) / 2.0,
@@ -117,8 +117,8 @@ mod tests {
         poisson: 0.3,
     };
 
-    /// A patch short along the rolling is a strip: C11 tends to pi²/(4 (1 - nu)), Kalker's
-    /// asymptote.
+    /// For a patch that is short along the rolling (a strip) C11 tends to pi²/(4 (1 - nu)),
+    /// Kalker's asymptote.
     #[test]
     fn a_short_patch_tends_to_the_strip() {
         for poisson in [0.0, 0.25, 0.5] {
@@ -144,7 +144,7 @@ mod tests {
         assert!((slope / expected - 1.0).abs() < 1e-5, "{slope} {expected}");
     }
 
-    /// A circle with nu = 1/4, 4.12 in the table: full slip from 3 mu P/(4.12 G a²) on.
+    /// For a circle with nu = 1/4 the table gives 4.12: full slip begins at 3 mu P/(4.12 G a²).
     #[test]
     fn saturation_by_hand() {
         let soft = Solid {

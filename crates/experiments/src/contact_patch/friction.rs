@@ -1,4 +1,4 @@
-//! The friction coefficient of the patch: given, or that of runs with other seeds.
+//! The friction coefficient of the patch: given, or from runs with different seeds.
 
 use super::question::{Question, range};
 use super::range::Range;
@@ -9,9 +9,9 @@ use serde::Serialize;
 /// A friction coefficient with its interval.
 #[derive(Clone, Debug, Serialize)]
 pub struct Friction {
-    /// The coefficient: of runs, their mean and the sum of both half-widths below.
+    /// The coefficient; for runs their mean and the sum of both half-widths below.
     pub coefficient: Range,
-    /// Number of runs that it is from; 0 if it was given.
+    /// Number of runs; 0 if the coefficient was given.
     pub runs: usize,
     /// Half-width of the 95 % interval of the mean over runs (Student), or over the cycles of a
     /// single run.
@@ -21,7 +21,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// The coefficient that a question gives, or that of its runs; `None` without either.
+    /// Returns the coefficient that a question gives, or that of its runs; `None` without either.
     pub(super) fn of(question: &Question) -> Result<Option<Self>, String> {
         match (&question.friction, question.runs.as_slice()) {
             (None, []) => Ok(None),

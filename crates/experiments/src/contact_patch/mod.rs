@@ -1,5 +1,6 @@
-//! From load, radii and moduli to the contact patch: its pressure and size, where gross slip
-//! begins, friction and wear against creepage, and what a window of a third body in it should have.
+//! From load, radii and moduli to the contact patch: its pressure and size, the onset of gross
+//! slip, friction and wear as functions of creepage, and the parameters of a window of a third body
+//! in it.
 //!
 //! ```
 //! use fretwork_experiments::contact_patch::{Question, answer};
@@ -40,7 +41,7 @@ use serde::Serialize;
 pub struct Answer {
     /// `line`, `circle` or `ellipse`.
     pub shape: &'static str,
-    /// Load (N; N/m of a line).
+    /// Load (N; N/m for a line).
     pub load: f64,
     /// Names of the two bodies or their materials.
     pub bodies: [String; 2],
@@ -52,7 +53,7 @@ pub struct Answer {
     pub strength: Option<Strength>,
     /// The friction coefficient, where one was given.
     pub friction: Option<Friction>,
-    /// Where gross slip begins under a tangential force or displacement.
+    /// Onset of gross slip under a tangential force or displacement.
     pub tangential: Option<Tangential>,
     /// Rolling with a creepage.
     pub rolling: Option<Rolling>,
@@ -60,7 +61,7 @@ pub struct Answer {
     pub wear: Option<Wear>,
     /// The window of a third body in the middle of the patch.
     pub window: Window,
-    /// Where the theory does not hold, or an answer needs more.
+    /// Warnings where the theory does not hold, or an answer needs more input.
     pub warnings: Vec<String>,
 }
 
@@ -73,21 +74,22 @@ pub struct Patch {
     pub mean_pressure: f64,
     /// Semi-axis along the motion (m).
     pub semi_axis: f64,
-    /// Semi-axis across it (m); `None` for a line.
+    /// Semi-axis perpendicular to the motion (m); `None` for a line.
     pub semi_axis_across: Option<f64>,
     /// Area (m²); `None` for a line.
     pub area: Option<f64>,
-    /// Approach of distant points (m); of a line it depends on the form of the bodies at a
+    /// Approach of distant points (m); for a line it depends on the form of the bodies at a
     /// distance.
     pub approach: Option<f64>,
 }
 
-/// Largest pressures that the softer body bears.
+/// Largest pressures that the softer body can carry.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Strength {
     /// Yield stress (Pa).
     pub yield_stress: f64,
-    /// Whether it is estimated from the hardness, H/2.8 (D. Tabor, The Hardness of Metals, 1951).
+    /// Whether the yield stress is estimated from the hardness, H/2.8 (D. Tabor, The Hardness of
+    /// Metals, 1951).
     pub estimated: bool,
     /// Largest pressure at which nothing yields (Pa): 1.6 Y of a point, 1.79 Y of a line (Johnson,
     /// 6.2).
@@ -100,7 +102,7 @@ pub struct Strength {
     pub hardness: Option<f64>,
 }
 
-/// The patch by the theory that applies to it.
+/// The theory that applies to the patch.
 enum Theory {
     Line(LinePatch),
     Point(PointPatch),
@@ -121,7 +123,7 @@ impl Contact {
         [self.bodies[0].solid, self.bodies[1].solid]
     }
 
-    /// Semi-axis along the motion (m).
+    /// Returns the semi-axis along the motion (m).
     fn semi_axis(&self) -> f64 {
         match &self.theory {
             Theory::Line(line) => line.half_width,
@@ -141,10 +143,10 @@ impl Contact {
     }
 }
 
-/// Answers a question; the map of wear over T gamma/A is that of the law `t-gamma` among `laws`.
+/// Answers a question; the map of wear over T gamma/A is that of the law `t-gamma` in `laws`.
 ///
 /// # Errors
-/// A sentence about what is wrong or missing.
+/// Returns a sentence on invalid or missing input.
 pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> {
     let (load, line) = question.load()?;
     let bodies = question.bodies(line)?;

@@ -14,23 +14,23 @@ pub struct Question {
     /// Load: a force, or a force per length for a line contact.
     pub load: String,
     /// Radii of the two bodies in the direction of motion: `flat` for a plane, negative where
-    /// concave; one alone is against a plane.
+    /// concave; with a single radius the other body is a plane.
     pub radius: Vec<String>,
-    /// Radii across it; those of `radius` without any.
+    /// Radii perpendicular to the motion; by default those of `radius`.
     pub across: Vec<String>,
-    /// Materials of the two bodies by name; one alone is that of both.
+    /// Materials of the two bodies by name; a single name is for both.
     pub material: Vec<String>,
-    /// Young's moduli, in place of those of the materials.
+    /// Young's moduli, which replace those of the materials.
     pub young: Vec<String>,
-    /// Poisson's ratios, in place of those of the materials.
+    /// Poisson's ratios, which replace those of the materials.
     pub poisson: Vec<String>,
-    /// Hardnesses, in place of those of the materials.
+    /// Hardnesses, which replace those of the materials.
     pub hardness: Vec<String>,
     /// Yield stress of the softer body; by default of its material, or its hardness over 2.8.
     pub yield_stress: Option<String>,
     /// Friction coefficient: `0.4`, `0.40+-0.03` or `0.3..0.5`.
     pub friction: Option<String>,
-    /// Folders of runs whose friction coefficients are taken, with their interval.
+    /// Folders of runs from which friction coefficients are read, with their interval.
     pub runs: Vec<PathBuf>,
     /// Tangential force: a force, or a force per length for a line contact.
     pub force: Option<String>,
@@ -40,7 +40,7 @@ pub struct Question {
     pub creepage: Option<String>,
     /// Speed of rolling.
     pub speed: Option<String>,
-    /// Archard's coefficient K, as `friction`.
+    /// Archard's coefficient K, in the form of `friction`.
     pub wear: Option<String>,
     /// Width of the window of a third body; by default a fiftieth of the patch.
     pub window: Option<String>,
@@ -49,15 +49,15 @@ pub struct Question {
 /// One of the two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
-    /// Its material, or a name for it without one.
+    /// Name of its material, or a name for it without one.
     pub name: String,
-    /// Curvature along the motion and across it (1/m).
+    /// Curvature along the motion and perpendicular to it (1/m).
     pub curvature: [f64; 2],
-    /// Its elasticity.
+    /// Elasticity.
     pub solid: Solid,
     /// Hardness (Pa).
     pub hardness: Option<f64>,
-    /// Yield stress (Pa) of its material.
+    /// Yield stress of its material (Pa).
     pub yield_stress: Option<f64>,
 }
 
@@ -78,13 +78,13 @@ pub(super) fn positive(what: &str, text: &str, unit: &str) -> Result<f64, String
     }
 }
 
-/// The friction coefficient that is given as a range.
+/// Returns the friction coefficient given as a range.
 pub(super) fn range(what: &str, text: &str) -> Result<Range, String> {
     Range::parse(text).map_err(|e| format!("{what}: {e}"))
 }
 
 impl Question {
-    /// The load, and whether it is one per length.
+    /// Returns the load, and whether it is per length.
     pub(super) fn load(&self) -> Result<(f64, bool), String> {
         if self.load.trim().is_empty() {
             return Err(
@@ -165,7 +165,7 @@ impl Question {
     }
 }
 
-/// The hardness (Pa) of a text such as `260 HBW` or `2.5 GPa`.
+/// Returns the hardness (Pa) of a text such as `260 HBW` or `2.5 GPa`.
 fn hardness(text: &str) -> Result<f64, String> {
     let (value, unit) = match text.trim().split_once(' ') {
         Some((value, unit)) => (value.parse().ok(), unit),
@@ -182,7 +182,7 @@ fn hardness(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The entry of a body in a list; a single entry is for both bodies.
+/// Returns the entry of a body in a list; a single entry is for both bodies.
 fn of_side<'a>(what: &str, list: &'a [String], side: usize) -> Result<Option<&'a str>, String> {
     match list {
         [] => Ok(None),
@@ -195,7 +195,7 @@ fn of_side<'a>(what: &str, list: &'a [String], side: usize) -> Result<Option<&'a
     }
 }
 
-/// Curvatures (1/m) of the two bodies; a single one is against a plane.
+/// Returns the curvatures (1/m) of the two bodies; with a single one the other body is a plane.
 fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
     let mut out = [0.0; 2];
     if radii.len() > 2 {
@@ -214,7 +214,7 @@ fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
     Ok(out)
 }
 
-/// A material of a folder `materials` here or above, or of the program.
+/// Returns a material of a folder `materials` here or above, or of the program.
 fn read(name: &str) -> Result<Material, String> {
     let library = MaterialLibrary::beside(Path::new("case.ron"));
     let source = library.read(name).map_err(|e| match e {
@@ -223,7 +223,7 @@ fn read(name: &str) -> Result<Material, String> {
             let near = missing.nearest.map(|n| format!("; did you mean `{n}`?"));
             format!(
                 "material: there is no file `{name}.ron` in {}{}; there are {}",
-                missing.looked,
+                missing.searched,
                 near.unwrap_or_default(),
                 missing.available
             )

@@ -24,10 +24,10 @@ impl Range {
         }
     }
 
-    /// A pure number as one writes it: `A`, `A+-B`, or `A..B`, whose value is the geometric mean.
+    /// Parses a pure number as written: `A`, `A+-B`, or `A..B`, whose value is the geometric mean.
     ///
     /// # Errors
-    /// A sentence, if it is no positive range.
+    /// Returns a sentence, if it is not a positive range.
     pub fn parse(text: &str) -> Result<Self, String> {
         let pure = |part: &str| quantity(part, "").map_err(|e| e.message);
         let out = if let Some((low, high)) = text.split_once("..") {
@@ -56,12 +56,12 @@ impl Range {
         Ok(out)
     }
 
-    /// Whether it has an interval.
+    /// Returns whether the range has an interval.
     pub fn is_wide(&self) -> bool {
         self.low < self.high
     }
 
-    /// The range of a function that is monotone in each of two ranges.
+    /// Returns the range of a function that is monotonic in each of two ranges.
     pub fn of(a: &Self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let ends = [
             f(a.low, b.low),

@@ -18,14 +18,15 @@ pub(super) struct WindowRun {
     pub numerical: Option<f64>,
     /// First bodies with their specific wear rates (m³/(N m)).
     wear: Vec<(String, f64)>,
-    /// Half-width of the error of wear by step, tolerance and coupling, as a share.
+    /// Relative half-width of the error of wear by step, tolerance and coupling.
     wear_error: Option<f64>,
 }
 
 /// Reads the runs in these folders.
 ///
 /// # Errors
-/// A sentence about the first folder without the summary of a complete run with a friction test.
+/// Returns a sentence on the first folder without the summary of a complete run with a friction
+/// test.
 pub(super) fn read(folders: &[PathBuf]) -> Result<Vec<WindowRun>, String> {
     folders.iter().map(|f| of(f)).collect()
 }
@@ -55,8 +56,8 @@ fn of(folder: &Path) -> Result<WindowRun, String> {
 }
 
 impl WindowRun {
-    /// Takes the main result of friction, the specific wear rates in the list of bodies, and the
-    /// error of the worn volume. None without friction.
+    /// Reads the main result of friction, the specific wear rates in the list of bodies, and the
+    /// error of the worn volume. `None` without friction.
     fn of(summary: &Value) -> Option<Self> {
         let catalogue = Catalogue::of(summary);
         let shown = catalogue.shown(summary, Role::Secondary);
@@ -84,14 +85,14 @@ impl WindowRun {
     }
 }
 
-/// The largest of a number that all runs have.
+/// Returns the largest of a number that all runs have.
 pub(super) fn largest(runs: &[WindowRun], of: impl Fn(&WindowRun) -> Option<f64>) -> Option<f64> {
     runs.iter().map(of).try_fold(0.0f64, |a, b| Some(a.max(b?)))
 }
 
-/// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over
-/// the runs, with Student's 95 % interval and the numerical error; of a single run with the latter
-/// alone. Which body wears may differ from sample to sample where the sum does not.
+/// Returns the specific wear rate (m³/(N m)) of each first body, and of all together: the mean over
+/// the runs, with Student's 95 % interval and the numerical error; for a single run with the latter
+/// only. Which body wears may differ from sample to sample while the sum does not.
 pub(super) fn wear_rates(runs: &[WindowRun]) -> Vec<(String, Range)> {
     let Some(first) = runs.first() else {
         return Vec::new();

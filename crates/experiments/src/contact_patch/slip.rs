@@ -12,15 +12,15 @@ use serde::Serialize;
 pub struct Tangential {
     /// Force at which gross slip begins (N; N/m), mu P.
     pub slip_force: Range,
-    /// Displacement of distant points at which it begins (m); of a line it depends on the form of
-    /// the bodies at a distance.
+    /// Displacement of distant points at the onset of gross slip (m); for a line it depends on the
+    /// form of the bodies at a distance.
     pub slip_displacement: Option<Range>,
-    /// Under the force or displacement that was requested: Q/(mu P), 1 in gross slip.
+    /// Ratio Q/(mu P) under the requested force or displacement, 1 in gross slip.
     pub share: Option<Range>,
-    /// Semi-axis of the part that sticks over that of the patch; 0 in gross slip.
+    /// Ratio of the semi-axis of the stick area to that of the patch; 0 in gross slip.
     pub stuck: Option<Range>,
-    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was
-    /// requested: 0 in partial slip.
+    /// Amplitude of the slip in the middle of the patch (m), under the requested displacement: 0 in
+    /// partial slip.
     pub local_slip: Option<Range>,
 }
 
@@ -88,9 +88,9 @@ impl Tangential {
 /// Rolling with a longitudinal creepage.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rolling {
-    /// Creepage from which the whole patch slips.
+    /// Creepage above which the whole patch slips.
     pub saturation: Range,
-    /// The creepage that was requested.
+    /// Requested creepage.
     pub creepage: Option<f64>,
     /// Tangential force over load at this creepage.
     pub adhesion: Option<Range>,
@@ -98,9 +98,9 @@ pub struct Rolling {
     pub force: Option<Range>,
     /// Work of friction per metre rolled (J/m; J/m²): force times creepage, T gamma.
     pub energy: Option<Range>,
-    /// Speed of slip (m/s), in the mean over the pressure.
+    /// Slip velocity (m/s), as a mean weighted by the pressure.
     pub slip_speed: Option<Range>,
-    /// Slip of a point as it passes the patch (m), in the mean over the pressure.
+    /// Slip of a point as it passes the patch (m), as a mean weighted by the pressure.
     pub slip_distance: Option<Range>,
 }
 
@@ -165,12 +165,12 @@ pub struct Window {
     pub pressure: f64,
     /// Load in two dimensions (N/m): pressure times width.
     pub load: f64,
-    /// By what share the pressure at its edges is below that in the middle.
+    /// Relative difference of the pressure at its edges from that in the middle.
     pub pressure_drop: f64,
-    /// By how much the gap of the undeformed bodies grows from the middle to its edges (m).
+    /// Increase of the gap of the undeformed bodies from the middle to its edges (m).
     pub gap: f64,
-    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; `None` where neither
-    /// was requested.
+    /// Slip (m): the amplitude in fretting, or the slip of one passage in rolling; `None` where
+    /// neither was requested.
     pub slip: Option<Range>,
 }
 

@@ -4,7 +4,7 @@ use super::{Answer, Range};
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
 
-/// A number with its interval, in the unit of its middle.
+/// Formats a number with its interval, in the unit of its value.
 fn ranged(range: &Range, unit: &str) -> String {
     let middle = quantity(range.value, unit);
     match range.is_wide() {

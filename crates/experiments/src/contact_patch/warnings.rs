@@ -1,9 +1,9 @@
-//! Limits of Hertz' theory, and what an answer leaves open.
+//! Limits of Hertz' theory, and open points of an answer.
 
 use super::{Answer, Contact, Question};
 
-/// Largest semi-axis over a radius: beyond it the parabola of Hertz' theory is off by more than
-/// about a percent.
+/// Ratio of the largest semi-axis to a radius above which the parabola of Hertz' theory has an
+/// error of more than about one per cent.
 const FLAT: f64 = 0.1;
 
 pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec<String> {
@@ -18,7 +18,7 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
                     a * curvature.abs(),
                     body.name
                 );
-                // Both directions of a sphere are one.
+                // For a sphere both directions are the same.
                 if !out.contains(&warning) {
                     out.push(warning);
                 }
@@ -53,8 +53,8 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
         }
     }
     let [one, other] = contact.solids();
-    // Dundurs' second constant: tangential displacements under pressure, which the theories here
-    // leave out.
+    // Dundurs' second constant describes tangential displacements under pressure, which the
+    // theories here neglect.
     let soft = |s: &fretwork_elastic::patch::Solid| (1.0 - 2.0 * s.poisson) / s.shear();
     let stiff = |s: &fretwork_elastic::patch::Solid| 2.0 * (1.0 - s.poisson) / s.shear();
     let beta = (soft(&one) - soft(&other)) / (stiff(&one) + stiff(&other));

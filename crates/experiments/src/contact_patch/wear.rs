@@ -11,25 +11,25 @@ use serde::Serialize;
 /// Wear while rolling with a creepage.
 #[derive(Clone, Debug, Serialize)]
 pub struct Wear {
-    /// By Archard's law, of each body with a hardness.
+    /// Wear of each body with a hardness by Archard's law.
     pub archard: Vec<BodyWear>,
-    /// By the map of the law `t-gamma`; `None` for a line contact, which has no area.
+    /// Wear by the map of the law `t-gamma`; `None` for a line contact, which has no area.
     pub energy_map: Option<EnergyMap>,
-    /// Of each first body of the runs from which the friction coefficient is, by its specific wear
-    /// rate there.
+    /// Wear of each first body of the runs that give the friction coefficient, by its specific wear
+    /// rate in these runs.
     pub window: Vec<WindowWear>,
 }
 
 /// Wear of the patch by the specific wear rate of a first body of a window.
 #[derive(Clone, Debug, Serialize)]
 pub struct WindowWear {
-    /// Its name in the case.
+    /// Name of the body in the case.
     pub body: String,
     /// Specific wear rate (m³/(N m)), volume over load times slip of the window.
     pub specific_rate: Range,
-    /// Volume per metre rolled (m³/m; m³/m² of a line).
+    /// Volume per metre rolled (m³/m; m³/m² for a line).
     pub volume: Range,
-    /// Depth (m) by which a point wears as it passes the patch, the mean over the width of the
+    /// Depth (m) by which a point wears as it passes the patch, as a mean over the width of the
     /// patch.
     pub depth_per_passage: Range,
 }
@@ -37,16 +37,15 @@ pub struct WindowWear {
 /// Wear of a body by Archard's law.
 #[derive(Clone, Debug, Serialize)]
 pub struct BodyWear {
-    /// Its name.
+    /// Name of the body.
     pub body: String,
-    /// k = K/H (1/Pa).
+    /// Coefficient k = K/H (1/Pa).
     pub coefficient: Range,
-    /// Volume per metre rolled (m³/m; m³/m² of a line).
+    /// Volume per metre rolled (m³/m; m³/m² for a line).
     pub volume: Range,
-    /// Depth (m): of a body that turns, per metre that it rolls, the mean over the width of the
-    /// patch.
+    /// Depth (m) per metre rolled, for a rolling body, as a mean over the width of the patch.
     pub depth_per_metre: Option<Range>,
-    /// Depth (m) of a straight body per passage, the mean over the width of the patch.
+    /// Depth (m) per passage, for a straight body, as a mean over the width of the patch.
     pub depth_per_passage: Option<Range>,
 }
 
@@ -55,9 +54,9 @@ pub struct BodyWear {
 pub struct EnergyMap {
     /// T gamma/A (Pa).
     pub energy_per_area: Range,
-    /// `mild`, `severe` or `catastrophic` at the middle of the interval.
+    /// Regime at the middle of the interval: `mild`, `severe` or `catastrophic`.
     pub regime: &'static str,
-    /// Mass per metre rolled and area (kg/m³).
+    /// Mass per rolled length and area (kg/m³).
     pub mass_per_area: Range,
     /// Volume per metre rolled (m³/m).
     pub volume: Range,
@@ -85,8 +84,8 @@ impl Wear {
         if let Some(k) = k.filter(|k| k.high > 1.0) {
             return Err(format!("wear: K = {} is above 1", k.high));
         }
-        // Within the interval of the friction coefficient, the energy over it: the load times the
-        // slip.
+        // Within the interval of the friction coefficient, energy over coefficient is the load
+        // times the slip.
         let slipped = Range {
             low: energy.high / friction.coefficient.high,
             value: energy.value / friction.coefficient.value,
@@ -123,7 +122,8 @@ fn carried_over(contact: &Contact, runs: &[runs::WindowRun], slipped: &Range) ->
     runs::wear_rates(runs).into_iter().map(of).collect()
 }
 
-/// Width of the patch across the motion (m); 1 of a line, whose rates are per metre.
+/// Returns the width of the patch perpendicular to the motion (m); 1 for a line, whose rates are
+/// per metre.
 fn width(contact: &Contact) -> f64 {
     match &contact.theory {
         Theory::Line(_) => 1.0,
@@ -131,7 +131,7 @@ fn width(contact: &Contact) -> f64 {
     }
 }
 
-/// V = K/H times load and slip, of each body with its own hardness.
+/// Returns V = K/H times load and slip, for each body with its own hardness.
 fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
     let of = |body: &super::Body| {
         let hardness = body.hardness?;
@@ -152,7 +152,8 @@ fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
 }
 
 impl EnergyMap {
-    /// The map of the shipped law, with its default parameters, over the energy per metre (J/m).
+    /// Evaluates the map of the shipped law, with its default parameters, at an energy per metre
+    /// (J/m).
     fn of(energy: &Range, area: f64, laws: &SearchPath) -> Result<Self, String> {
         let plugin = laws.find(Kind::WEAR, "t-gamma");
         let plugin = plugin.map_err(|e| e.to_string())?;
@@ -205,7 +206,7 @@ impl Map {
         }
     }
 
-    /// Mass per metre and area (kg/m³).
+    /// Returns the mass per rolled length and area (kg/m³).
     fn mass(&self, x: f64) -> f64 {
         match self.regime(x) {
             "mild" => self.mild * x,
@@ -220,8 +221,8 @@ mod tests {
     use super::*;
     use fretwork_core::laws::BuiltInLaws;
 
-    /// The regimes by hand, in N/mm² and ug/(m mm²): R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J
-    /// 218 (2004) 467-478.
+    /// The regimes follow by hand, in N/mm² and ug/(m mm²), from R. Lewis, R. S. Dwyer-Joyce, Proc.
+    /// IMechE J 218 (2004) 467-478.
     #[test]
     fn the_map_is_that_of_the_law() {
         let shipped = BuiltInLaws::new(fretwork_laws::plugins());
@@ -231,7 +232,7 @@ mod tests {
             (20.0, "severe", 55.0),
             (100.0, "catastrophic", 55.0 + 61.9 * 22.8),
         ] {
-            // Of an area of 100 mm².
+            // The area is 100 mm².
             let map = EnergyMap::of(&Range::certain(x * 100.0), 1e-4, &laws).unwrap();
             assert_eq!(map.regime, regime);
             assert!((map.mass_per_area.value * 1e3 / mass - 1.0).abs() < 1e-12);

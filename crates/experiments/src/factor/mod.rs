@@ -1,5 +1,5 @@
-//! What varies in an experiment: a factor turns a number of its range, or a level, into changes of
-//! the case.
+//! Factors of an experiment: each converts a number of its range, or a level, to changes of the
+//! case.
 
 mod spec;
 
@@ -8,22 +8,22 @@ pub use spec::FactorSpec;
 use crate::expression::number;
 use fretwork_math::design::scale::Scale;
 
-/// Label of the value that a case has, where its file does not give it.
+/// Label of the value of the case, where its file does not give it.
 pub const AS_IN_THE_CASE: &str = "as in the case";
 
-/// A value that a factor takes.
+/// A value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// Its text in tables.
+    /// Text in tables.
     pub label: String,
-    /// Its number, if it is one.
+    /// Number, if the level is one.
     pub number: Option<f64>,
-    /// `key.path=value` for the case.
+    /// Changes of the case, `key.path=value`.
     pub sets: Vec<String>,
 }
 
 impl Level {
-    /// A value of some keys, from its text.
+    /// Creates a value of some keys from its text.
     pub fn of(keys: &[String], text: &str) -> Self {
         Self {
             label: text.trim_matches('"').to_owned(),
@@ -41,12 +41,12 @@ impl Level {
         }
     }
 
-    /// Whether it is the unchanged value of a case that does not state it.
+    /// Returns whether this is the unchanged value of a case that does not give it.
     pub fn is_unknown(&self) -> bool {
         self.label == AS_IN_THE_CASE && self.number.is_none() && self.sets.is_empty()
     }
 
-    /// Whether it is the same number, or without numbers the same text.
+    /// Returns whether both are the same number, or without numbers the same text.
     pub fn equals(&self, other: &Self) -> bool {
         match (self.number, other.number) {
             (Some(a), Some(b)) => a == b,
@@ -55,14 +55,14 @@ impl Level {
     }
 }
 
-/// Which values a factor takes.
+/// Values of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// Numbers of a range.
     Range {
-        /// Its ends, and how they are spread.
+        /// Ends of the range, and its scale.
         scale: Scale,
-        /// How many there are in designs of levels.
+        /// Number of levels in designs of levels.
         levels: Option<u16>,
     },
     /// Listed values.
@@ -74,19 +74,19 @@ pub enum Values {
 pub struct Factor {
     /// Name in tables and figures.
     pub name: String,
-    /// The keys that take its value; none for named alternatives.
+    /// Keys that take the value of the factor; empty for named alternatives.
     pub keys: Vec<String>,
     /// SI unit, where the file gives it, since no key has one.
     pub unit: String,
-    /// Its values.
+    /// Values of the factor.
     pub values: Values,
 }
 
-/// Digits of a number of a range: more would be noise of the last bit in tables.
+/// Number of digits of a number of a range: more would show rounding errors in tables.
 const DIGITS: usize = 10;
 
 impl Factor {
-    /// A column of a table of points: its name, or the key that it sets.
+    /// Creates a factor from a column of a table of points: its name, or the key that it sets.
     pub fn of_column(key: &str, values: Vec<String>) -> Self {
         let keys = vec![key.to_owned()];
         let listed = values.iter().map(|text| Level::of(&keys, text)).collect();
@@ -98,7 +98,7 @@ impl Factor {
         }
     }
 
-    /// Its levels; `None` for a range without a number of them.
+    /// Returns the levels of the factor; `None` for a range without a number of levels.
     pub fn levels(&self) -> Option<Vec<Level>> {
         match &self.values {
             Values::Listed(values) => Some(values.clone()),
@@ -109,8 +109,8 @@ impl Factor {
         }
     }
 
-    /// The value at a place from 0 to 1: of a range by its scale, with both ends; of listed values
-    /// in equal parts.
+    /// Returns the value at a position from 0 to 1: for a range by its scale, with both ends; for
+    /// listed values in equal parts.
     pub fn at(&self, place: f64) -> Level {
         match &self.values {
             Values::Listed(values) => {
@@ -121,10 +121,11 @@ impl Factor {
         }
     }
 
-    /// The value of a table: a number of the range, a level by its label, or any value of its key.
+    /// Returns the value for a text of a table: a number of the range, a level by its label, or any
+    /// value of its key.
     ///
     /// # Errors
-    /// The factor does not take it.
+    /// The factor does not have this value.
     pub fn named(&self, text: &str) -> Result<Level, String> {
         let name = &self.name;
         let value = Level::of(&self.keys, text);
@@ -142,7 +143,7 @@ impl Factor {
                 _ => Ok(value),
             },
             Values::Listed(values) => {
-                // Equal numbers are one level, however they are spelled.
+                // Equal numbers are one level, in any spelling.
                 let known = values
                     .iter()
                     .find(|v| v.label == value.label)
@@ -174,7 +175,7 @@ impl Factor {
         }
     }
 
-    /// The level of a number, with all its digits.
+    /// Returns the level of a number, with all its digits.
     pub fn exactly(&self, x: f64) -> Level {
         // A field of floats takes a number with a point.
         match number(x) {
@@ -220,7 +221,7 @@ mod tests {
         assert_eq!(one.number, Some(0.5));
     }
 
-    /// Whole numbers and listed values have equal parts of the way from 0 to 1.
+    /// Whole numbers and listed values have equal parts of the interval from 0 to 1.
     #[test]
     fn places_are_shared_equally() {
         let three = range(WHOLE, 3);

@@ -17,11 +17,11 @@ pub enum FactorSpec {
         /// Name in tables and figures; the key by default.
         #[serde(default)]
         name: Option<String>,
-        /// The key, or several that take the same value; none for a factor that is used by its name
-        /// in `set`.
+        /// The key, or several keys with the same value; empty for a factor that is used by its
+        /// name in `set`.
         #[serde(default)]
         key: CaseKeys,
-        /// The values, as a case has them.
+        /// Values, as a case has them.
         values: Vec<Box<RawValue>>,
         /// SI unit of a factor without a key.
         #[serde(default)]
@@ -32,18 +32,18 @@ pub enum FactorSpec {
         /// Name in tables and figures; the key by default.
         #[serde(default)]
         name: Option<String>,
-        /// The key, or several that take the same value; none for a factor that is used by its name
-        /// in `set`.
+        /// The key, or several keys with the same value; empty for a factor that is used by its
+        /// name in `set`.
         #[serde(default)]
         key: CaseKeys,
         /// Lower end.
         low: f64,
         /// Upper end.
         high: f64,
-        /// How numbers are spread.
+        /// Distribution of the numbers.
         #[serde(default)]
         scale: RangeScale,
-        /// How many of them, from end to end, where the design is made of levels.
+        /// Number of values, from end to end, where the design consists of levels.
         #[serde(default)]
         levels: Option<u16>,
         /// SI unit of a factor without a key.
@@ -63,21 +63,21 @@ pub enum FactorSpec {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OptionSpec {
-    /// Its name.
+    /// Name of the alternative.
     pub name: String,
-    /// `key.path=value`; none for the case as it is.
+    /// Changes `key.path=value`; empty for the case itself.
     #[serde(default)]
     pub set: Vec<String>,
 }
 
-/// What is wrong with a factor: the end of the path of its key in the file, and why.
+/// An invalid field of a factor: the end of the path of its key in the file, and the reason.
 type Wrong = (String, String);
 
 impl FactorSpec {
-    /// The factor, which stands at `path` of the file.
+    /// Returns the factor that is at `path` of the file.
     ///
     /// # Errors
-    /// A range that is none, a value that is given twice, no values.
+    /// A range is empty, a value is given twice, or there are no values.
     pub fn factor(&self, source: &Source, path: &str) -> Result<Factor, InputError> {
         let (name, keys, unit) = match self {
             Self::Values {
@@ -165,14 +165,14 @@ impl FactorSpec {
     }
 }
 
-/// Positions of the first two that are equal.
+/// Returns the positions of the first two equal elements.
 fn repeated<T>(list: &[T], same: impl Fn(&T, &T) -> bool) -> Option<(usize, usize)> {
     let first = |k: usize| (0..k).find(|&i| same(&list[i], &list[k]));
     (1..list.len()).find_map(|k| Some((first(k)?, k)))
 }
 
 impl RangeScale {
-    /// The scale of a range between these ends.
+    /// Returns the scale of a range between these ends.
     pub fn between(self, low: f64, high: f64) -> Scale {
         match self {
             Self::Linear => Scale::Linear {

@@ -1,18 +1,19 @@
-//! Curves that turn back, as loops do: their branches laid one behind the other, so that abscissae
-//! increase.
+//! Curves that reverse, such as loops: their branches are placed one after the other, so that
+//! abscissae increase.
 //!
-//! Points of a measured and of a simulated loop belong together if they lie on the same branch at
-//! the same abscissa. The way along the loop would not do: measured points seldom lie at the turns,
-//! and the way between them leaves these out.
+//! Points of a measured and of a simulated loop correspond if they lie on the same branch at the
+//! same abscissa. The path length along the loop would not work: measured points seldom lie at the
+//! reversals, so that the path between them omits these.
 
-/// Share of the reach of a loop by which it must move back until it counts as turned.
+/// Share of the extent of a loop by which it must move back to count as reversed.
 const TURNED: f64 = 0.05;
 
-/// Distance of branches over the reach of the loop.
+/// Distance of branches over the extent of the loop.
 const DISTANCE: f64 = 4.0;
 
-/// The abscissae of a loop laid out, with the number of the branch of each point: branch k, from 0,
-/// has `4 k reach + x` where x rises along it and `4 k reach - x` where it falls.
+/// Returns the abscissae of a loop after placement, with the number of the branch of each point:
+/// branch k, from 0, has `4 k reach + x` where x increases along it and `4 k reach - x` where it
+/// decreases.
 pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
     let rises = x
         .iter()
@@ -26,7 +27,7 @@ pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
         if sign * v >= sign * x[farthest] {
             farthest = k;
         } else if sign * (x[farthest] - v) > TURNED * reach {
-            // It turned at the farthest point: what came after it is on the next branch.
+            // The loop reversed at the farthest point: later points are on the next branch.
             sign = -sign;
             branch += 1;
             for later in farthest + 1..k {
@@ -45,8 +46,7 @@ pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
 mod tests {
     use super::*;
 
-    /// A loop sampled without its turning points stands at the same places as one sampled by
-    /// many.
+    /// A loop sampled without its turning points has the same placement as one with many points.
     #[test]
     fn branches_stand_one_behind_the_other() {
         let x = [0.0, 0.6, 1.0, 0.98, 0.3, -0.9, -1.0, 0.2];
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(branches, [0, 0, 0, 1, 1, 1, 1, 2]);
         let laid_out = |x: &[f64]| laid_out(x, 1.0).0;
         assert_eq!(laid_out(&[0.6, 0.3, -0.9, 0.2]), [-0.6, -0.3, 0.9, 4.2]);
-        // Noise is no turn.
+        // Noise is not a reversal.
         assert_eq!(laid_out(&[0.0, 0.5, 0.49, 0.8]), [0.0, 0.5, 0.49, 0.8]);
         assert!(laid_out(&[]).is_empty());
     }

@@ -1,5 +1,5 @@
-//! Values of all tests at points of the parameters: runs of their cases, over seeds, several at a
-//! time.
+//! Values of all tests at points of the parameters, from runs of their cases over seeds, several at
+//! a time.
 
 use super::measured;
 use super::model::Model;
@@ -7,7 +7,7 @@ use super::spec::{FitFile, TestSpec};
 use crate::changes::Changes;
 use crate::factor::Factor;
 use crate::runs::available::{AvailableQuantities, columns};
-use crate::runs::launcher::{Launcher, Patience, Run};
+use crate::runs::launcher::{Launcher, Run, WaitLimits};
 use crate::runs::output::OutputName;
 use crate::runs::pool::each;
 use crate::runs::stored::{Status, summary};
@@ -24,21 +24,21 @@ use std::time::Duration;
 #[derive(Debug)]
 struct Test {
     launcher: Launcher,
-    /// Its first seed.
+    /// First seed.
     seed: u64,
     changes: Changes,
     simulated: Simulated,
 }
 
-/// What is taken of a run.
+/// Values that are read from a run.
 #[derive(Debug)]
 enum Simulated {
     Curve(Box<Model>),
     Value(OutputName),
 }
 
-/// A point of the parameters with one seed of all tests: simulated values at all measured places,
-/// or why there are none.
+/// A point of the parameters with one seed of all tests: simulated values at all measured
+/// positions, or the reason why there are none.
 pub type Sample = Result<Vec<f64>, String>;
 
 /// A curve, or why a run gave none.
@@ -47,17 +47,17 @@ type RunCurve = Result<(Vec<f64>, Vec<f64>), String>;
 /// The tests of a fit.
 #[derive(Debug)]
 pub struct Tests {
-    /// What is measured.
+    /// Measured values.
     pub target: Target,
     /// The region of the parameters.
     pub bounds: Bounds,
-    /// Whether the seeds of any case change its scene.
+    /// Whether the seed of any case changes its scene.
     pub random: bool,
     factors: Vec<Factor>,
     tests: Vec<Test>,
     /// Whether measured specimens scatter as runs do from seed to seed.
     pub specimen_scatters: bool,
-    /// Limit of the time of a run.
+    /// Time limit of a run.
     pub limit: Option<Duration>,
 }
 
@@ -66,7 +66,7 @@ impl Tests {
     /// their ranges.
     ///
     /// # Errors
-    /// What is wrong with the fit, a case or a measurement.
+    /// Returns what is wrong with the fit, a case or a measurement.
     pub fn new(read: &FitFile, folder: &Path, program: &Program) -> Result<Self, Error> {
         let spec = &read.spec;
         let factors: Vec<Factor> = spec.parameters.iter().map(|p| p.factor()).collect();
@@ -145,7 +145,7 @@ impl Tests {
         Ok(tests)
     }
 
-    /// Refuses a range whose ends a case does not take.
+    /// Refuses a range if a case rejects one of its ends.
     fn check_ends(&self, read: &FitFile, search: &SearchPath) -> Result<(), Error> {
         for (p, factor) in self.factors.iter().enumerate() {
             for end in [0.0, 1.0] {
@@ -169,9 +169,9 @@ impl Tests {
         Ok(())
     }
 
-    /// Runs points of parameter values, each with these seeds, and with the step of the cases over
-    /// `finer`; a row of samples per point. None is left out, except those that `stop` prevents,
-    /// which have no sample.
+    /// Runs points of parameter values, each with these seeds, and with the step of the cases
+    /// divided by `finer`; returns a row of samples per point. Only runs that `stop` prevents have
+    /// no sample.
     ///
     /// # Errors
     /// A run cannot be started, or nothing can be written.
@@ -207,7 +207,7 @@ impl Tests {
             .collect())
     }
 
-    /// The values of all tests for one seed, from what each of them gave.
+    /// Returns the values of all tests for one seed, from their runs.
     fn sample(&self, runs: &[Option<Option<RunCurve>>]) -> Option<Sample> {
         let mut curves = Vec::new();
         for one in runs {
@@ -232,7 +232,7 @@ impl Tests {
         &self.tests[test].launcher.case
     }
 
-    /// One run, with its step over `finer` and rows at the same times; `None` if it was
+    /// Makes one run, with its step divided by `finer` and rows at the same times; `None` if it was
     /// interrupted.
     fn run_test(
         &self,
@@ -262,12 +262,12 @@ impl Tests {
             sets,
             seed: test.seed.wrapping_add(seed),
         };
-        let patience = Patience {
+        let wait = WaitLimits {
             deadline: None,
             limit: self.limit.map(|l| l * finer),
             stop,
         };
-        let Some(ended) = launcher.run(&run, patience)? else {
+        let Some(ended) = launcher.run(&run, wait)? else {
             return Ok(None);
         };
         if let Status::Slow(s) = ended.status {

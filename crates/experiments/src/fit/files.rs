@@ -16,7 +16,11 @@ use std::path::Path;
 /// The file cannot be written.
 pub fn write_evaluations(tests: &Tests, found: &SearchResult, out: &Path) -> Result<(), Error> {
     let path = out.join("evaluations.csv");
-    csv::write(&evaluations(tests, found), &path, csv::Numbers::Exponents)
+    csv::write(
+        &evaluations(tests, found),
+        &path,
+        csv::NumberFormat::Exponents,
+    )
 }
 
 /// Writes the other files of a fit into its folder; returns its JSON.
@@ -35,7 +39,11 @@ pub fn write(
     let path = out.join("fit.json");
     std::fs::write(&path, format!("{json}\n")).map_err(|e| Error::write(&path, &e))?;
     let curves = curves(tests, found, outcome);
-    csv::write(&curves, &out.join("curves.csv"), csv::Numbers::Exponents)?;
+    csv::write(
+        &curves,
+        &out.join("curves.csv"),
+        csv::NumberFormat::Exponents,
+    )?;
     let page = sheet(read, tests, found, outcome).write(&out.join("fit.html"));
     page.map_err(|e| Error::Failed(e.to_string()))?;
     draw(read, tests, found, outcome, &out.join("fit.png"))?;
@@ -95,7 +103,7 @@ fn json(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) 
     })
 }
 
-/// All points that were run, with the reason where one failed.
+/// Returns all points that were run, with the reason where one failed.
 fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     let all = &found.evaluations;
     let mut columns = vec![
@@ -122,7 +130,7 @@ fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     Table { columns }
 }
 
-/// Measured and fitted values side by side.
+/// Returns measured and fitted values in columns.
 fn curves(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Table {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let target = &tests.target;

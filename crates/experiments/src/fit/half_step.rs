@@ -12,8 +12,8 @@ use fretwork_math::statistics::interval::Mean;
 use std::sync::atomic::Ordering;
 
 /// Share of the half-width of its interval by which a parameter may move: with a method of first
-/// order it is then wrong by a quarter of the half-width, and an interval of 95 % holds the truth
-/// in 92 %.
+/// order its error is then a quarter of the half-width, and an interval of 95 % contains the true
+/// value in 92 %.
 const SMALL: f64 = 0.125;
 
 /// Repeats the runs at the estimate with half their step; `None` if it was interrupted.

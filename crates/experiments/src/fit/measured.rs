@@ -8,18 +8,19 @@ use fretwork_math::fit::residuals::Measurement;
 use fretwork_scene::sample::table::number;
 use std::path::Path;
 
-/// The heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot be
-/// read.
+/// Returns the heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot
+/// be read.
 pub fn heading(path: &Path, column: &str) -> String {
     let mut headings = read(path).map_or(Vec::new(), |t| t.headings).into_iter();
     let own = headings.find(|h| without_unit(h) == column);
     own.unwrap_or_else(|| column.to_owned())
 }
 
-/// Reads a measured curve, and its largest distance from 0, which sets the distance of branches.
+/// Reads a measured curve, and its largest distance from 0, which determines the distance of
+/// branches.
 ///
 /// # Errors
-/// A file, column or number that is not there.
+/// A file, column or number is missing.
 pub fn curve(
     name: &str,
     spec: &MeasuredSpec,

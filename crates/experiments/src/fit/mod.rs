@@ -1,9 +1,10 @@
-//! Fits: parameters of a case, such as those of a law, for which its runs give measured curves.
+//! Fits: parameters of a case, such as those of a law, for which its runs reproduce measured
+//! curves.
 //!
-//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a
-//! run, [`branches`] lays loops out, [`evaluate`] runs points of the parameters over their seeds,
-//! [`search`] looks for the best one, [`outcome`] says how well the measurements determine it, and
-//! [`half_step`] how the time step changes it. [`page`] and [`files`] report it.
+//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] computes the corresponding
+//! curve of a run, [`branches`] places the branches of loops, [`evaluate`] runs points of the
+//! parameters over their seeds, [`search`] finds the best one, [`outcome`] determines intervals,
+//! and [`half_step`] the effect of the time step. [`page`] and [`files`] report it.
 
 mod branches;
 pub mod evaluate;
@@ -23,6 +24,6 @@ use crate::folder::Owner;
 /// The owner of folders of fits.
 pub const OWNER: Owner = Owner {
     command: "fretwork fit",
-    mark: "fit.lock",
+    lock_file: "fit.lock",
     files: &["fit.json"],
 };

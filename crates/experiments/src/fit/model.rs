@@ -1,4 +1,4 @@
-//! The curve that a run gives, from its statistics.
+//! The curve of a run, from its statistics.
 
 use super::branches::laid_out;
 use super::spec::{AlongSpec, ModelSpec, RowsSpec};
@@ -9,7 +9,7 @@ use std::path::Path;
 /// The name of the length of a step in expressions (s).
 const TIME_STEP: &str = "time_step";
 
-/// Appended to the name of a column for its value in the first row that is used.
+/// Suffix of the name of a column for its value in the first row that is used.
 const START: &str = "_start";
 
 /// A curve as expressions in columns.
@@ -26,10 +26,10 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of a case whose statistics have these columns.
+    /// Creates the model of a case whose statistics have these columns.
     ///
     /// # Errors
-    /// Which of its two expressions is wrong (`x`, `y` or `rows`), and why.
+    /// Returns which of its expressions is invalid (`x`, `y` or `rows`), and why.
     pub fn new(spec: &ModelSpec, columns: &[String]) -> Result<Self, (&'static str, String)> {
         let starts = columns.iter().map(|c| format!("{c}{START}"));
         let names = columns.iter().cloned().chain(starts);
@@ -58,16 +58,16 @@ impl Model {
         })
     }
 
-    /// This model for a measured curve whose coordinates reach up to `reach` from 0.
+    /// Returns this model for a measured curve whose coordinates extend up to `reach` from 0.
     pub fn reaching(self, reach: f64) -> Self {
         Self { reach, ..self }
     }
 
-    /// Abscissae that increase, and values, from the table of statistics of a run with this step
-    /// (s).
+    /// Returns increasing abscissae, and values, from the table of statistics of a run with this
+    /// step (s).
     ///
     /// # Errors
-    /// Why there is none, as a sentence.
+    /// Returns why there is no curve, as a sentence.
     pub fn curve(&self, statistics: &Path, time_step: f64) -> Result<(Vec<f64>, Vec<f64>), String> {
         let rows = self.read(statistics)?;
         let first = rows
@@ -94,7 +94,7 @@ impl Model {
         if self.along == AlongSpec::Branches {
             (xs, branches) = laid_out(&xs, self.reach);
         }
-        // No smoothing across a turning point, where a loop is steepest.
+        // Values are not smoothed across a turning point, where a loop is steepest.
         let mut rest = ys.as_slice();
         let mut ys = Vec::with_capacity(xs.len());
         for branch in branches.chunk_by(|a, b| a == b) {
@@ -102,7 +102,7 @@ impl Model {
             ys.extend(smoothed(own, self.smooth));
             rest = after;
         }
-        // Keeps only points that advance: small steps back are noise of the motion.
+        // Only points that advance are kept: small steps back are noise of the motion.
         let mut curve = (Vec::new(), Vec::new());
         for (x, y) in xs.into_iter().zip(ys) {
             if curve.0.last().is_none_or(|last| x > *last) {
@@ -120,7 +120,7 @@ impl Model {
         }
     }
 
-    /// Rows of the columns in the order of the names.
+    /// Reads the rows of the columns in the order of the names.
     fn read(&self, statistics: &Path) -> Result<Vec<Vec<f64>>, String> {
         let missing = |e: &dyn std::fmt::Display| format!("{}: {e}", statistics.display());
         let mut reader = csv::Reader::from_path(statistics).map_err(|e| missing(&e))?;
@@ -162,8 +162,8 @@ impl Model {
     }
 }
 
-/// Continues a list at both ends by the distance of its last two: rows stand between the ends of a
-/// run, a row apart.
+/// Extends a list at both ends by the difference of its last two entries: rows are between the ends
+/// of a run, one interval apart.
 fn continue_ends(list: &mut Vec<f64>) {
     if let [first, second, ..] = list[..] {
         list.insert(0, 2.0 * first - second);
@@ -173,7 +173,7 @@ fn continue_ends(list: &mut Vec<f64>) {
     }
 }
 
-/// Means over an odd number of neighbours, fewer at the ends.
+/// Returns means over an odd number of neighbours, fewer at the ends.
 fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
     let mean = |k: usize| {
         let reach = (width / 2).min(k).min(values.len() - 1 - k);

@@ -1,5 +1,4 @@
-//! What the measurements say of the parameters: estimates with intervals, from runs around the best
-//! point.
+//! Estimates of the parameters with intervals, from runs around the best point.
 
 use super::search::{Evaluation, Search, SearchResult, Stage};
 use crate::Error;
@@ -7,17 +6,17 @@ use fretwork_math::fit::identify::{self as mathematics, Data, Identification, Ru
 use fretwork_math::fit::residuals::over_seeds;
 use serde::Serialize;
 
-/// Half-width of the first neighbourhood, of the range of each parameter.
+/// Half-width of the first neighbourhood, relative to the range of each parameter.
 const FIRST: f64 = 0.1;
 
 /// Smallest and largest half-width of a neighbourhood.
 const NARROWEST: f64 = 2e-3;
 const WIDEST: f64 = 0.25;
 
-/// A neighbourhood fits intervals that are up to this factor wider or narrower.
+/// Factor by which intervals may be wider or narrower than a neighbourhood that fits them.
 const ALIKE: f64 = 3.0;
 
-/// Neighbourhoods that are tried.
+/// Largest number of neighbourhoods that are tried.
 const ROUNDS: u64 = 4;
 
 /// A fit.
@@ -28,20 +27,20 @@ pub struct Outcome {
     /// Number of the evaluation at the estimate; of the best point if the estimate fits worse or
     /// its runs fail.
     pub best: usize,
-    /// Whether the runs at the estimate fit as well as the best point, and the runs around it are
-    /// as wide as the intervals.
+    /// Whether the runs at the estimate fit as well as the best point, and the neighbourhood fits
+    /// the intervals.
     pub settled: bool,
-    /// Effect of half the step on the estimates, if the fit asks for it.
+    /// Effect of half the step on the estimates, if the fit requests it.
     pub half_step: Option<HalfStep>,
 }
 
 /// Effect of half the step of the runs on the estimates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HalfStep {
-    /// How far the estimates move.
+    /// The estimates move.
     Moves {
-        /// Parameters with half the step; `None` for one at an end of its range, and for one that
-        /// is not determined.
+        /// Parameters with half the step; `None` for a parameter at an end of its range, and for
+        /// one that is not determined.
         parameters: Vec<Option<Moved>>,
         /// Parameters that move by more than an eighth of the half-width of their intervals, and
         /// more than runs scatter.
@@ -54,7 +53,7 @@ pub enum HalfStep {
 /// A parameter with half the step, with its interval of 95 % over the seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moved {
-    /// Its value.
+    /// Value of the parameter.
     pub value: f64,
     /// Lower end.
     pub low: f64,
@@ -63,7 +62,7 @@ pub struct Moved {
 }
 
 impl Outcome {
-    /// Values of the parameters.
+    /// Returns the values of the parameters.
     pub fn values(&self) -> Vec<f64> {
         self.identification
             .estimates
@@ -73,9 +72,8 @@ impl Outcome {
     }
 }
 
-/// Runs points around the best one, in a neighbourhood as wide as the intervals that follow from
-/// them, and says what the measurements determine; `None` if no point gave all curves, or if it was
-/// interrupted.
+/// Runs points around the best one, in a neighbourhood as wide as the resulting intervals, and
+/// determines the estimates; `None` if no point gave all curves, or if it was interrupted.
 ///
 /// # Errors
 /// A run cannot be started, or too few of the runs around the best point succeed.
@@ -105,8 +103,8 @@ pub fn identify(search: &Search<'_>, found: &mut SearchResult) -> Result<Option<
         if search.stop.load(std::sync::atomic::Ordering::Relaxed) {
             return Ok(None);
         }
-        // The estimate is where the runs around say that the least squares are; it may not be if
-        // these are too far around.
+        // The estimate is the minimum according to the surrounding runs; it may be wrong if these
+        // are too far away.
         let better = found.least(first..found.evaluations.len());
         let squares = |k: usize| found.evaluations[k].chi_squared.unwrap_or(f64::INFINITY);
         let mut accepted = false;
@@ -138,7 +136,7 @@ pub fn identify(search: &Search<'_>, found: &mut SearchResult) -> Result<Option<
         }))
 }
 
-/// One run for each seed of each point that gave all curves.
+/// Returns one run for each seed of each point that gave all curves.
 fn runs(evaluations: &[Evaluation]) -> Vec<Run> {
     let of = |e: &Evaluation| -> Vec<Run> {
         let values = e.samples.iter().filter_map(|s| s.as_ref().ok());
@@ -169,7 +167,7 @@ fn from_runs(search: &Search<'_>, runs: &[Run], minimum: &[f64]) -> Result<Ident
         .map_err(|e| Error::Failed(e.to_string()))
 }
 
-/// Half-widths of the intervals in the unit cube.
+/// Returns the half-widths of the intervals in the unit cube.
 pub fn half_widths(search: &Search<'_>, known: &Identification) -> Vec<f64> {
     let low: Vec<f64> = known.estimates.iter().map(|e| e.interval.low).collect();
     let high: Vec<f64> = known.estimates.iter().map(|e| e.interval.high).collect();
@@ -185,8 +183,8 @@ pub fn half_widths(search: &Search<'_>, known: &Identification) -> Vec<f64> {
         .collect()
 }
 
-/// Mean over the seeds of an evaluation, and the standard deviation of one run where there are
-/// several.
+/// Returns the mean over the seeds of an evaluation, and the standard deviation of one run where
+/// there are several.
 pub fn mean_of(evaluation: &Evaluation) -> Option<(Vec<f64>, Option<Vec<f64>>)> {
     let rows: Vec<Vec<f64>> = evaluation
         .samples

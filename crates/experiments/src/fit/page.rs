@@ -1,4 +1,5 @@
-//! What a fit says: lines for the terminal, the page `fit.html` and the picture `fit.png`.
+//! Results of a fit for a reader: lines for the terminal, the page `fit.html` and the picture
+//! `fit.png`.
 
 use super::evaluate::Tests;
 use super::measured::heading;
@@ -12,10 +13,10 @@ use fretwork_view::{Axis, Block, Chart, DrawError, Series, Sheet, Style, draw_pa
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Correlation from which the report calls two parameters hard to distinguish.
+/// Correlation above which the report calls two parameters hard to distinguish.
 const HIGH: f64 = 0.9;
 
-/// What a fit consists of.
+/// Describes the parts of a fit.
 pub fn consists_of(read: &FitFile, tests: &Tests) -> String {
     let mut out = format!("{}: {}\n", read.path.display(), title(read));
     for test in tests.target.tests() {
@@ -117,7 +118,7 @@ fn verdict(read: &FitFile, found: &SearchResult, outcome: &Outcome) -> Vec<Strin
     out
 }
 
-/// A value with its interval.
+/// Formats a value with its interval.
 fn value_text(e: &ParameterEstimate, unit: &str) -> String {
     let unit = if unit.is_empty() {
         String::new()
@@ -144,7 +145,7 @@ fn value_text(e: &ParameterEstimate, unit: &str) -> String {
     }
 }
 
-/// A parameter with half the step, with its interval if runs scatter.
+/// Formats a parameter with half the step, with its interval if runs scatter.
 fn moved_text(moved: Moved) -> String {
     let Moved { value, low, high } = moved;
     match low < high {
@@ -186,7 +187,7 @@ pub fn answer(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Out
     out.trim_end().to_owned()
 }
 
-/// Axes of a test: names of abscissae and values.
+/// Returns the axes of a test: names of abscissae and values.
 fn axes(read: &FitFile, test: usize) -> (String, String) {
     match &read.spec.tests[test] {
         TestSpec::Curve { measured, .. } => {
@@ -198,8 +199,8 @@ fn axes(read: &FitFile, test: usize) -> (String, String) {
     }
 }
 
-/// Measured and fitted points of a test: places, measured, standard deviations, fitted, scatter of
-/// one run.
+/// Measured and fitted points of a test: positions, measured values, standard deviations, fitted
+/// values, scatter of one run.
 type TestPoints = Vec<(f64, f64, f64, f64, f64)>;
 
 fn points(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Vec<TestPoints> {
@@ -350,7 +351,7 @@ fn search_blocks(found: &SearchResult) -> Vec<Block> {
     ]
 }
 
-/// Measured and fitted curves of each test, with two standard deviations.
+/// Returns charts of the measured and fitted curves of each test, with two standard deviations.
 fn charts(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Vec<Chart> {
     let all = points(tests, found, outcome).into_iter().enumerate();
     let chart = |(t, points): (usize, TestPoints)| {

@@ -2,8 +2,8 @@
 //! them, with as many seeds as distinguish the points; at the end runs around the best point, from
 //! which its intervals follow.
 //!
-//! All choices follow from the seed of the search, and runs are kept by what determines them: the
-//! same command goes on after an interruption, and makes no run twice.
+//! All choices follow from the seed of the search, and runs are stored by all that determines them:
+//! the same command continues after an interruption, and makes no run twice.
 
 use super::evaluate::{Sample, Tests};
 use super::spec::SearchSpec;
@@ -15,17 +15,17 @@ use fretwork_math::fit::seeds::SeedsPerPoint;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Latin hypercubes of which the one with the widest distances is taken.
+/// Number of Latin hypercubes of which the one with the widest distances is used.
 const TRIES: usize = 20;
 
-/// The search ends where the sums of squares of its points differ by less: a difference of one is
-/// one standard deviation of a parameter.
+/// Difference of the sums of squares of its points below which the search ends: a difference of one
+/// is one standard deviation of a parameter.
 const FLAT: f64 = 0.02;
 
-/// The search ends where it moves parameters by less than this share of their ranges.
+/// Share of their ranges below which changes of the parameters end the search.
 const CLOSE: f64 = 1e-3;
 
-/// Points of a local design for each coefficient of a quadratic in the parameters.
+/// Number of points of a local design for each coefficient of a quadratic in the parameters.
 const PER_COEFFICIENT: usize = 3;
 
 /// A point that was run.
@@ -33,15 +33,15 @@ const PER_COEFFICIENT: usize = 3;
 pub struct Evaluation {
     /// Values of the parameters.
     pub values: Vec<f64>,
-    /// Its place in the unit cube.
+    /// Position in the unit cube.
     pub place: Vec<f64>,
-    /// Numbers of its seeds.
+    /// Range of its seeds.
     pub seeds: Range<u64>,
-    /// Simulated values by seed, or why a run gave none.
+    /// Simulated values by seed, or the reason why a run gave none.
     pub samples: Vec<Sample>,
     /// Sum of squares of the mean over the seeds; `None` if a run failed.
     pub chi_squared: Option<f64>,
-    /// Which part of the search made it.
+    /// Stage of the search in which it was made.
     pub stage: Stage,
 }
 
@@ -54,7 +54,7 @@ pub enum Stage {
     Generation(u32),
     /// The candidates for the best point, with all seeds.
     Candidates,
-    /// Around the best point.
+    /// Points around the best one.
     Local,
     /// The best point with half the step.
     HalfStep,
@@ -73,12 +73,12 @@ impl Stage {
     }
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, Default)]
 pub struct SearchResult {
     /// All points in the order of their runs.
     pub evaluations: Vec<Evaluation>,
-    /// Number of the best point among them.
+    /// Index of the best point among them.
     pub best: Option<usize>,
     /// Why the search ended, as a sentence.
     pub ended: String,
@@ -88,13 +88,13 @@ pub struct SearchResult {
 pub struct Search<'a> {
     /// The tests.
     pub tests: &'a Tests,
-    /// How it goes.
+    /// Settings of the search.
     pub spec: SearchSpec,
     /// Smallest and largest number of seeds of a point.
     pub seeds: (u16, u16),
-    /// Runs at a time.
+    /// Number of parallel runs.
     pub jobs: usize,
-    /// Whether it is to stop.
+    /// Whether the search must stop.
     pub stop: &'a AtomicBool,
     /// Called with the progress of the search.
     pub watch: &'a (dyn Fn(&Progress) + Sync),
@@ -115,12 +115,12 @@ pub enum Progress {
     Begins(Stage, usize),
     /// A run ended.
     Run,
-    /// A stage ended: least sum of squares so far, failed points of the stage.
+    /// A stage ended: smallest sum of squares so far, number of failed points of the stage.
     Ended(Stage, Option<f64>, usize),
 }
 
 impl Search<'_> {
-    /// Searches; what was found until `stop` is set is returned too.
+    /// Runs the search; results up to the time when `stop` is set are returned too.
     ///
     /// # Errors
     /// A run cannot be started, or all of the region fails.
@@ -162,8 +162,7 @@ impl Search<'_> {
             value: FLAT,
         });
         let mut seeds = SeedsPerPoint::new(fewest, most);
-        // Each generation has seeds of its own, so that the minimum is not that of one set of
-        // samples.
+        // Each generation has its own seeds, so that the minimum is not that of one set of samples.
         let mut next = most as u64;
         found.ended = format!("after {} generations", self.spec.generations);
         for generation in 1..=self.spec.generations {
@@ -266,7 +265,8 @@ impl Search<'_> {
         Ok(first..found.evaluations.len())
     }
 
-    /// Runs a point again with half the step: simulated values by seed, or why there are none.
+    /// Runs a point again with half the step: simulated values by seed, or the reason why there are
+    /// none.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -289,7 +289,7 @@ impl Search<'_> {
         Ok(samples)
     }
 
-    /// Seeds of a point: one for a model without randomness.
+    /// Returns the numbers of seeds of a point: one for a model without randomness.
     fn seeds_of_points(&self) -> (usize, usize) {
         match self.tests.random {
             true => (usize::from(self.seeds.0), usize::from(self.seeds.1)),
@@ -344,7 +344,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Chi-squared of the mean over the seeds.
+    /// Returns chi-squared of the mean over the seeds.
     fn chi_squared(&self, samples: &[Sample]) -> Option<f64> {
         let rows: Option<Vec<Vec<f64>>> =
             samples.iter().map(|s| s.as_ref().ok().cloned()).collect();
@@ -352,7 +352,7 @@ impl Search<'_> {
         self.tests.target.chi_squared(&mean).ok()
     }
 
-    /// Chi-squared of each seed alone.
+    /// Returns chi-squared of each seed separately.
     fn by_seed(&self, evaluation: &Evaluation) -> Vec<Option<f64>> {
         let one = |s: &Sample| {
             let values = s.as_ref().ok()?;
@@ -363,13 +363,13 @@ impl Search<'_> {
 }
 
 impl SearchResult {
-    /// Number of points that failed.
+    /// Returns the number of points that failed.
     pub fn failed(&self) -> usize {
         let failed = self.evaluations.iter().filter(|e| e.chi_squared.is_none());
         failed.count()
     }
 
-    /// The evaluation with the least sum of squares in a part of them.
+    /// Returns the evaluation with the smallest sum of squares in a range of them.
     pub fn least(&self, part: Range<usize>) -> Option<usize> {
         let known = part.filter_map(|k| Some((k, self.evaluations[k].chi_squared?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)

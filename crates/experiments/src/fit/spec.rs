@@ -30,25 +30,25 @@ pub struct FitSpec {
     /// Title.
     #[serde(default)]
     pub title: Option<String>,
-    /// Measurements, each with the case that stands for it.
+    /// Measurements, each with the case that represents it.
     pub tests: Vec<TestSpec>,
     /// Parameters that are fitted.
     pub parameters: Vec<ParameterSpec>,
     /// Pairs of names: the first parameter is at most the second.
     #[serde(default)]
     pub order: Vec<(String, String)>,
-    /// Seeds of each point: with how many the search begins, and how many it may take where points
+    /// Number of seeds of each point at the start of the search, and largest number where points
     /// cannot be distinguished.
     #[serde(default = "seeds")]
     pub seeds: (u16, u16),
-    /// Whether the measured specimens scatter as runs do from seed to seed: their scatter then
-    /// joins the error of the measurement.
+    /// Whether the measured specimens scatter as runs do from seed to seed: their scatter is then
+    /// added to the error of the measurement.
     #[serde(default)]
     pub specimen_scatters: bool,
-    /// Whether each test counts as much as a single value, however many it has.
+    /// Whether each test has the weight of a single value, for any number of its values.
     #[serde(default)]
     pub balanced: bool,
-    /// How the search goes.
+    /// Settings of the search.
     #[serde(default)]
     pub search: SearchSpec,
     /// Whether the runs at the estimate are repeated with half the step.
@@ -65,17 +65,17 @@ pub struct FitSpec {
     pub residual: f64,
 }
 
-/// A test: a measurement and how a case gives it.
+/// A test: a measurement and the corresponding output of a case.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TestSpec {
     /// A measured curve.
     Curve {
-        /// Its name.
+        /// Name of the test.
         name: String,
         /// The case, relative to the file of the fit.
         case: PathBuf,
-        /// `key.path=value` of its runs; with `${...}` in the value what follows from the
+        /// Changes of its runs, `key.path=value`; `${...}` in a value is computed from the
         /// parameters, by their names.
         #[serde(default)]
         set: Vec<String>,
@@ -86,24 +86,24 @@ pub enum TestSpec {
     },
     /// A measured number.
     Value {
-        /// Its name.
+        /// Name of the test.
         name: String,
         /// The case, relative to the file of the fit.
         case: PathBuf,
-        /// `key.path=value` of its runs, as for a curve.
+        /// Changes of its runs, `key.path=value`, as for a curve.
         #[serde(default)]
         set: Vec<String>,
-        /// A number of `summary.json`, or `statistics.COLUMN`.
+        /// Output: a number of `summary.json`, or `statistics.COLUMN`.
         output: String,
-        /// Its measured value.
+        /// Measured value.
         measured: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the measured value.
         sigma: f64,
     },
 }
 
 impl TestSpec {
-    /// Name, case and changes of any test.
+    /// Returns name, case and changes of any test.
     pub fn common(&self) -> (&str, &Path, &[String]) {
         match self {
             Self::Curve {
@@ -116,7 +116,7 @@ impl TestSpec {
     }
 }
 
-/// Where a measured curve stands.
+/// File and columns of a measured curve.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredSpec {
@@ -126,9 +126,9 @@ pub struct MeasuredSpec {
     pub x: String,
     /// Heading of the values, without unit.
     pub y: String,
-    /// How well the values are known, and how closely the fit should follow them.
+    /// Standard deviation of the values, which determines how closely the fit follows them.
     pub sigma: SigmaSpec,
-    /// Least and largest abscissa that is used; all by default.
+    /// Smallest and largest abscissa that is used; all by default.
     #[serde(default)]
     pub within: Option<(f64, f64)>,
 }
@@ -144,8 +144,8 @@ pub enum SigmaSpec {
     OfLargest(f64),
 }
 
-/// How a run gives a curve: expressions in the columns of `statistics.csv`; `COLUMN_start` is the
-/// value at the first row that is used.
+/// Curve of a run: expressions in the columns of `statistics.csv`; `COLUMN_start` is the value at
+/// the first row that is used.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelSpec {
@@ -153,13 +153,13 @@ pub struct ModelSpec {
     pub x: String,
     /// Values, in the unit of the measured ones.
     pub y: String,
-    /// Which rows are used.
+    /// Rows that are used.
     #[serde(default)]
     pub rows: RowsSpec,
-    /// Rows over which values are averaged, an odd number.
+    /// Number of rows over which values are averaged, an odd number.
     #[serde(default = "one")]
     pub smooth: u16,
-    /// How a curve that turns back is compared.
+    /// Comparison of a curve that reverses.
     #[serde(default)]
     pub along: AlongSpec,
 }
@@ -167,24 +167,25 @@ pub struct ModelSpec {
 /// Rows of the statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 pub enum RowsSpec {
-    /// All.
+    /// All rows.
     #[default]
     All,
-    /// From a time on (s).
+    /// Rows from a time on (s).
     From(f64),
-    /// Between two times (s).
+    /// Rows between two times (s).
     Between(f64, f64),
-    /// Those of the last complete cycle of a friction test.
+    /// Rows of the last complete cycle of a friction test.
     LastCycle,
 }
 
-/// How points of two curves belong together.
+/// Correspondence of points of two curves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum AlongSpec {
-    /// By the abscissa, which increases.
+    /// Points correspond by the abscissa, which increases.
     #[default]
     Abscissa,
-    /// By branch and abscissa, for loops: the measured one must begin on the same branch.
+    /// Points correspond by branch and abscissa, for loops: the measured loop must begin on the
+    /// same branch.
     Branches,
 }
 
@@ -192,26 +193,26 @@ pub enum AlongSpec {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterSpec {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// The key of all cases that takes it, or several; none for one that is used by its name in
-    /// `set` of the tests.
+    /// Key, or keys, of all cases that take the value of the parameter; empty for a parameter that
+    /// is used by its name in `set` of the tests.
     #[serde(default)]
     pub key: CaseKeys,
     /// Lower limit.
     pub low: f64,
     /// Upper limit.
     pub high: f64,
-    /// How it is spread.
+    /// Distribution of its values.
     #[serde(default)]
     pub scale: RangeScale,
-    /// Unit for the reader.
+    /// Unit for display.
     #[serde(default)]
     pub unit: String,
 }
 
 impl ParameterSpec {
-    /// The factor that it is.
+    /// Returns the parameter as a factor.
     pub fn factor(&self) -> Factor {
         Factor {
             name: self.name.clone(),
@@ -225,15 +226,15 @@ impl ParameterSpec {
     }
 }
 
-/// How the search goes.
+/// Settings of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SearchSpec {
-    /// Points of the Latin hypercube that it begins with; 10 for each parameter by default.
+    /// Number of points of the initial Latin hypercube; 10 for each parameter by default.
     pub points: Option<u32>,
-    /// Points of a generation; by the number of parameters by default.
+    /// Number of points of a generation; by default from the number of parameters.
     pub population: Option<u32>,
-    /// Most generations.
+    /// Largest number of generations.
     pub generations: u32,
     /// Seed of the search.
     pub seed: u64,
@@ -262,7 +263,7 @@ fn seeds() -> (u16, u16) {
 pub type FitFile = SpecFile<FitSpec>;
 
 impl FitSpec {
-    /// Limits of accepted runs.
+    /// Returns the limits of accepted runs.
     pub fn limits(&self) -> Limits {
         Limits {
             unconverged: self.unconverged,
@@ -270,7 +271,7 @@ impl FitSpec {
         }
     }
 
-    /// Names of the parameters.
+    /// Returns the names of the parameters.
     pub fn names(&self) -> Vec<&str> {
         self.parameters.iter().map(|p| p.name.as_str()).collect()
     }

@@ -1,4 +1,4 @@
-//! Outputs that a case has, determined before anything runs.
+//! Outputs of a case, determined before anything runs.
 
 use super::output::{OutputName, listed};
 use fretwork_observe::quantity::{Catalogue, Findings, Role, renamed, unit};
@@ -12,7 +12,7 @@ use serde_json::Value;
 /// The outputs of a case.
 #[derive(Clone, Debug)]
 pub struct AvailableQuantities {
-    /// What its runs report, as of the start.
+    /// Reports of its runs, as known at the start.
     found: Findings,
     /// Columns of the statistics.
     columns: Vec<Column>,
@@ -21,7 +21,7 @@ pub struct AvailableQuantities {
 }
 
 impl AvailableQuantities {
-    /// The outputs of a case and its scene.
+    /// Determines the outputs of a case and its scene.
     pub fn of(case: &Case, built: &Built) -> Self {
         Self {
             found: standard::declared(case, built.simulation.view()),
@@ -30,7 +30,7 @@ impl AvailableQuantities {
         }
     }
 
-    /// Names of the default outputs: the main results that the case has.
+    /// Returns the names of the default outputs: the main results that the case has.
     pub fn usual(&self) -> Vec<String> {
         let all = self.found.all().iter();
         let main = all.filter(|q| q.role == Role::Headline && q.lacks.is_none());
@@ -39,7 +39,8 @@ impl AvailableQuantities {
         main.into_iter().map(|q| q.name()).collect()
     }
 
-    /// What the case lacks for an output: for itself, the group it is in, or all that is in it.
+    /// Returns what the case lacks for an output: for itself, the group that contains it, or
+    /// everything in it.
     fn lack(&self, name: &str) -> Option<&'static str> {
         let mut at_or_below = false;
         let mut why = None;
@@ -60,7 +61,7 @@ impl AvailableQuantities {
         why
     }
 
-    /// SI unit of an output, `1` for pure numbers; empty where it is known of a run only.
+    /// Returns the SI unit of an output, `1` for pure numbers; empty if only a run gives it.
     pub fn unit(&self, output: &OutputName) -> String {
         let unit = match output.column_name() {
             Some(name) => {
@@ -83,7 +84,7 @@ impl AvailableQuantities {
     /// Checks that runs of the case have an output.
     ///
     /// # Errors
-    /// A sentence that says what the case lacks, with the nearest name and the existing ones.
+    /// Returns a sentence on what the case lacks, with the nearest name and the existing ones.
     pub fn check(&self, output: &OutputName) -> Result<(), String> {
         if let Some(column) = output.column_name() {
             let names: Vec<String> = self.columns.iter().map(|c| c.name.clone()).collect();
@@ -122,7 +123,7 @@ impl AvailableQuantities {
             if within(&own, name) {
                 return Err(output.is_group());
             }
-            // Filled by a run only: what may stand there is declared.
+            // The value is known after a run only; its schema is declared.
             if within(name, &own) && (q.value.is_null() || q.value.is_array()) {
                 return match self.found.expects(name) {
                     Some(false) => unknown(),
@@ -130,7 +131,7 @@ impl AvailableQuantities {
                 };
             }
         }
-        // A list of which the start has other entries than the end.
+        // The list has other entries at the start than at the end.
         match self.found.expects(name) {
             Some(true) => Ok(()),
             _ => unknown(),
@@ -144,12 +145,12 @@ fn within(path: &str, group: &str) -> bool {
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Names of the measures of a case.
+/// Returns the names of the measures of a case.
 pub fn measure_names(case: &Case) -> Vec<&str> {
     case.measures.iter().map(MeasureSpec::name).collect()
 }
 
-/// Columns of the statistics of a case.
+/// Returns the columns of the statistics of a case.
 pub fn columns(case: &Case, built: &Built) -> Vec<Column> {
     standard::observers(case, built.simulation.view(), 0.0).columns()
 }

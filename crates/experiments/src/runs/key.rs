@@ -7,18 +7,19 @@ use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Characters of a key.
+/// Number of characters of a key.
 const LENGTH: usize = 24;
 
-/// Maker of keys for one program with one search path of plugins.
+/// Creates keys for one program with one search path of plugins.
 #[derive(Clone, Debug)]
 pub struct Keys {
     program: Sha256,
 }
 
 impl Keys {
-    /// For this program, with these arguments of plugins for its command line, `--plugin-path DIR`;
-    /// libraries in these folders and in those of `FRETWORK_PLUGIN_PATH` count by their content.
+    /// Creates the keys of this program with these arguments of plugins for its command line,
+    /// `--plugin-path DIR`; libraries in these folders and in those of `FRETWORK_PLUGIN_PATH`
+    /// contribute by their content.
     ///
     /// # Errors
     /// The path of the program cannot be determined, or its file cannot be read.
@@ -43,13 +44,13 @@ impl Keys {
         Ok(Self { program: hash })
     }
 
-    /// Key of the program and its plugins alone.
+    /// Returns the key of the program and its plugins.
     pub fn of_program(&self) -> String {
         hex(&self.program.clone().finalize())[..LENGTH].to_owned()
     }
 
-    /// Key of a run: equal for two runs of one program whose cases say the same, however they are
-    /// written. A case that cannot be read has a key of its text.
+    /// Returns the key of a run: equal for two runs of one program whose cases have equal contents,
+    /// in any notation. A case that cannot be read has a key of its text.
     pub fn of_run(&self, case: &Path, sets: &[String]) -> String {
         let mut hash = self.program.clone();
         let mut add = |part: &[u8]| {

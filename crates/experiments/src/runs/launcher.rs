@@ -3,7 +3,7 @@
 
 use super::key::Keys;
 use super::perturbation::Perturbation;
-use super::stored::{Finished, Limits, StoredRun, interrupted};
+use super::stored::{FinishedRun, Limits, StoredRun, interrupted};
 use crate::{Error, Program, load};
 use fretwork_core::program;
 use std::fs::{File, TryLockError};
@@ -12,7 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Changes that switch off output of the case which an experiment does not need.
+/// Changes that switch off output of the case that an experiment does not need.
 const NUMBERS_ONLY: [&str; 4] = [
     "output.frames=0",
     "output.views=0",
@@ -20,43 +20,43 @@ const NUMBERS_ONLY: [&str; 4] = [
     "output.checkpoint=Never",
 ];
 
-/// The file in the folder of a run that is locked while it is made.
+/// File in the folder of a run that is locked while it is made.
 const LOCK: &str = "run.lock";
 
-/// A run of a case: what it changes, and its seed.
+/// A run of a case: changes and seed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// `key.path=value`, as `--set` takes them; the last of a key counts.
+    /// Changes `key.path=value`, as `--set` takes them; the last of a key is used.
     pub sets: Vec<String>,
-    /// Its seed.
+    /// Seed.
     pub seed: u64,
 }
 
-/// How long to wait for a run.
+/// Time limits of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Patience<'a> {
-    /// When it is interrupted: nothing of it is stored.
+pub struct WaitLimits<'a> {
+    /// Time at which the run is interrupted; nothing of it is then stored.
     pub deadline: Option<Instant>,
-    /// How long it may take: one that takes longer is stopped, and stored as too slow.
+    /// Longest duration: a run that takes longer is stopped, and stored as too slow.
     pub limit: Option<Duration>,
-    /// Interrupts it when it is set.
+    /// Whether to interrupt the run.
     pub stop: &'a AtomicBool,
 }
 
-impl Patience<'_> {
+impl WaitLimits<'_> {
     /// Whether the run is to be interrupted.
     fn is_over(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|d| Instant::now() > d)
     }
 }
 
-/// Which files of a run are kept.
+/// Files of a run that are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 pub enum Keep {
-    /// Its numbers: summary, statistics and tables.
+    /// Numbers only: summary, statistics and tables.
     #[default]
     Numbers,
-    /// All that the case writes, and its report.
+    /// All files that the case writes, and the report.
     All,
 }
 
@@ -71,11 +71,11 @@ pub struct Launcher {
     pub plugins: Vec<String>,
     /// Folder in which runs are stored.
     pub folder: PathBuf,
-    /// Limits beyond which they are not trusted.
+    /// Limits beyond which runs are not trusted.
     pub limits: Limits,
-    /// Distinction of the runs if the seed changes nothing.
+    /// Perturbation that distinguishes runs if the seed changes nothing.
     pub perturbation: Option<Perturbation>,
-    /// Which files are kept.
+    /// Files that are kept.
     pub keep: Keep,
     /// Threads of each run.
     pub threads: u16,
@@ -83,7 +83,8 @@ pub struct Launcher {
 }
 
 impl Launcher {
-    /// A launcher for a case with `--set` arguments of all runs, which stores in a folder.
+    /// Creates a launcher for a case with `--set` arguments of all runs, which stores runs in a
+    /// folder.
     ///
     /// # Errors
     /// The path of the program cannot be determined.
@@ -112,48 +113,48 @@ impl Launcher {
         self.perturbation = (!random).then_some(Perturbation { first });
     }
 
-    /// Key of the case as it is and the program.
+    /// Returns the key of the case itself and the program.
     pub fn fingerprint(&self) -> String {
         self.keys.of_run(&self.case, &self.sets)
     }
 
-    /// Key of the program and its plugins.
+    /// Returns the key of the program and its plugins.
     pub fn program(&self) -> String {
         self.keys.of_program()
     }
 
-    /// Folder of a run.
+    /// Returns the folder of a run.
     pub fn place(&self, run: &Run) -> PathBuf {
         let key = self.keys.of_run(&self.case, &self.all_sets(run));
         self.folder.join(key)
     }
 
-    /// Stored result of an earlier run, assessed by the current limits.
-    pub fn stored(&self, run: &Run) -> Option<Finished> {
+    /// Returns the stored result of an earlier run, assessed by the current limits.
+    pub fn stored(&self, run: &Run) -> Option<FinishedRun> {
         self.stored_in(&self.place(run))
     }
 
-    /// Stored result of the run in a folder, unless a repetition may end differently.
-    pub fn stored_in(&self, place: &Path) -> Option<Finished> {
+    /// Returns the stored result of the run in a folder, unless a repetition may end differently.
+    pub fn stored_in(&self, place: &Path) -> Option<FinishedRun> {
         self.ended_in(place).filter(|run| !run.temporary)
     }
 
-    /// How the run in a folder ended last, also if a repetition may end differently.
-    pub fn ended_in(&self, place: &Path) -> Option<Finished> {
+    /// Returns how the run in a folder ended last, even if a repetition may end differently.
+    pub fn ended_in(&self, place: &Path) -> Option<FinishedRun> {
         let text = std::fs::read_to_string(place.join("run.json")).ok()?;
         let run: StoredRun = serde_json::from_str(&text).ok()?;
         Some(run.assess(&self.limits))
     }
 
-    /// Makes a run; `None` if it was interrupted. If another process makes it, waits for that and
-    /// takes its result.
+    /// Makes a run; `None` if it was interrupted. If another process is making it, waits for that
+    /// process and uses its result.
     ///
     /// # Errors
     /// The process cannot be started, or the folder cannot be written.
-    pub fn run(&self, run: &Run, patience: Patience<'_>) -> Result<Option<Finished>, Error> {
+    pub fn run(&self, run: &Run, wait: WaitLimits<'_>) -> Result<Option<FinishedRun>, Error> {
         let place = self.place(run);
         let fail = |e: std::io::Error| Error::write(&place, &e);
-        let Some(_lock) = lock(&place, patience)? else {
+        let Some(_lock) = lock(&place, wait)? else {
             return Ok(None);
         };
         if let Some(stored) = self.stored_in(&place) {
@@ -167,12 +168,12 @@ impl Launcher {
             if let Some(code) = child.try_wait().map_err(fail)? {
                 break Some(code);
             }
-            let slow = patience.limit.is_some_and(|l| started.elapsed() > l);
-            if slow || patience.is_over() {
+            let slow = wait.limit.is_some_and(|l| started.elapsed() > l);
+            if slow || wait.is_over() {
                 // The process may have ended by itself meanwhile.
                 let _ = child.kill();
                 let _ = child.wait();
-                if !slow || patience.stop.load(Ordering::Relaxed) {
+                if !slow || wait.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
                 break None;
@@ -184,7 +185,7 @@ impl Launcher {
         // Ctrl-C reaches the child process too, possibly before this program; the run then counts
         // as interrupted.
         let done = code.is_some_and(|c| c.success());
-        if !done && (patience.stop.load(Ordering::Relaxed) || interrupted(&place)) {
+        if !done && (wait.stop.load(Ordering::Relaxed) || interrupted(&place)) {
             return Ok(None);
         }
         let elapsed = started.elapsed().as_secs_f64();
@@ -204,7 +205,7 @@ impl Launcher {
         Ok(Some(left.assess(&self.limits)))
     }
 
-    /// The `--set` arguments of a run, all of them, the last of which counts.
+    /// Returns all `--set` arguments of a run, of which the last for a key is used.
     fn all_sets(&self, run: &Run) -> Vec<String> {
         let mut all = [self.sets.as_slice(), &run.sets].concat();
         let perturbation = self.perturbation.filter(|p| p.of(run.seed));
@@ -247,7 +248,7 @@ impl Launcher {
 }
 
 /// Waits until no other process makes the run in a folder; `None` if the wait was ended.
-fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
+fn lock(place: &Path, wait: WaitLimits<'_>) -> Result<Option<File>, Error> {
     std::fs::create_dir_all(place).map_err(|e| Error::write(place, &e))?;
     let path = place.join(LOCK);
     let mut options = File::options();
@@ -259,7 +260,7 @@ fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(Some(file)),
             Err(TryLockError::WouldBlock) => {}
         }
-        if patience.is_over() {
+        if wait.is_over() {
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(50));

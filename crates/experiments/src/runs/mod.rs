@@ -1,10 +1,10 @@
-//! Runs of a case in separate processes, each kept under a key of all that determines it, so that
+//! Runs of a case in separate processes, each stored under a key of all that determines it, so that
 //! none is made twice.
 //!
-//! [`launcher`] starts them, [`stored`] says how they ended, [`key`] names them, [`trial`] times a
-//! few steps of one, [`pool`] makes several at once; [`output`] reads the numbers that they
-//! leave, [`available`] says which a case has. [`randomness`] says whether the seed of a case
-//! matters, [`perturbation`] distinguishes runs where it does not.
+//! [`launcher`] starts runs, [`stored`] evaluates how they ended, [`key`] names them, [`trial`]
+//! times a few steps of one, [`pool`] makes several at once; [`output`] reads the numbers that they
+//! leave, [`available`] lists those that a case has. [`randomness`] determines whether the seed of
+//! a case matters, [`perturbation`] distinguishes runs where it does not.
 
 pub mod available;
 pub mod key;

@@ -1,4 +1,4 @@
-//! Numbers that a run leaves: from `summary.json` or a column of `statistics.csv`.
+//! Numbers in the output of a run: from `summary.json` or a column of `statistics.csv`.
 
 use fretwork_observe::quantity::find;
 use fretwork_scene::source::nearest;
@@ -7,16 +7,16 @@ use std::path::Path;
 
 /// Location of a number.
 #[derive(Clone, Debug, PartialEq)]
-enum Place {
-    /// In `summary.json`, by its path.
+enum NumberLocation {
+    /// A path in `summary.json`.
     Summary(Vec<String>),
     /// A column of the statistics, and its reduction to a number.
-    Column(String, Take),
+    Column(String, Reduction),
 }
 
 /// Reduction of a column to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Take {
+enum Reduction {
     /// The mean over the last half of the rows.
     Mean,
     /// The largest value.
@@ -27,20 +27,20 @@ enum Take {
     Last,
 }
 
-/// A number that a run leaves, by its name.
+/// Name of a number in the output of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputName {
     /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with
     /// `:mean` of the last half of the rows, `:max`, `:min` or `:last`.
     pub name: String,
-    place: Place,
+    place: NumberLocation,
 }
 
 impl OutputName {
     /// Parses a name.
     ///
     /// # Errors
-    /// What is wrong with it, as the end of a sentence.
+    /// Returns what is wrong with it, as the end of a sentence.
     pub fn parse(name: &str) -> Result<Self, String> {
         let name = name.trim();
         if name.is_empty() {
@@ -49,18 +49,18 @@ impl OutputName {
         let place = match name.strip_prefix("statistics.") {
             Some(column) => {
                 let (column, take) = match column.rsplit_once(':') {
-                    None => (column, Take::Mean),
-                    Some((c, "mean")) => (c, Take::Mean),
-                    Some((c, "max")) => (c, Take::Max),
-                    Some((c, "min")) => (c, Take::Min),
-                    Some((c, "last")) => (c, Take::Last),
+                    None => (column, Reduction::Mean),
+                    Some((c, "mean")) => (c, Reduction::Mean),
+                    Some((c, "max")) => (c, Reduction::Max),
+                    Some((c, "min")) => (c, Reduction::Min),
+                    Some((c, "last")) => (c, Reduction::Last),
                     Some((_, other)) => {
                         return Err(format!("`:{other}` is not one of :mean, :max, :min, :last"));
                     }
                 };
-                Place::Column(column.to_owned(), take)
+                NumberLocation::Column(column.to_owned(), take)
             }
-            None => Place::Summary(name.split('.').map(str::to_owned).collect()),
+            None => NumberLocation::Summary(name.split('.').map(str::to_owned).collect()),
         };
         Ok(Self {
             name: name.to_owned(),
@@ -68,28 +68,28 @@ impl OutputName {
         })
     }
 
-    /// Its column of the statistics, if it is one.
+    /// Returns its column of the statistics, if it is one.
     pub fn column_name(&self) -> Option<&str> {
         match &self.place {
-            Place::Summary(_) => None,
-            Place::Column(name, _) => Some(name),
+            NumberLocation::Summary(_) => None,
+            NumberLocation::Column(name, _) => Some(name),
         }
     }
 
-    /// Its value in the folder of a run; `None` if the run has none (null).
+    /// Returns its value in the folder of a run; `None` if the run has none (null).
     pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
         match &self.place {
-            Place::Summary(path) => {
+            NumberLocation::Summary(path) => {
                 let found = find(summary, &path.join("."))?;
                 found.as_f64().filter(|x| x.is_finite())
             }
-            Place::Column(name, take) => {
+            NumberLocation::Column(name, take) => {
                 let values = column(&folder.join("statistics.csv"), name)?;
                 let found = match take {
-                    Take::Last => values.last().copied(),
-                    Take::Max => values.iter().copied().reduce(f64::max),
-                    Take::Min => values.iter().copied().reduce(f64::min),
-                    Take::Mean => {
+                    Reduction::Last => values.last().copied(),
+                    Reduction::Max => values.iter().copied().reduce(f64::max),
+                    Reduction::Min => values.iter().copied().reduce(f64::min),
+                    Reduction::Mean => {
                         let half = &values[values.len() / 2..];
                         Some(half.iter().sum::<f64>() / half.len() as f64)
                     }
@@ -99,9 +99,9 @@ impl OutputName {
         }
     }
 
-    /// Whether it is a result of one of these measures, known at the end of a run.
+    /// Returns whether it is a result of one of these measures, known at the end of a run.
     pub(super) fn measured(&self, measures: &[&str]) -> bool {
-        let Place::Summary(path) = &self.place else {
+        let NumberLocation::Summary(path) = &self.place else {
             return false;
         };
         let [group, name] = path.as_slice() else {
@@ -114,7 +114,7 @@ impl OutputName {
         group == "measures" && measures.iter().any(begins)
     }
 
-    /// Error message for the name of a group.
+    /// Returns the error message for the name of a group.
     pub(super) fn is_group(&self) -> String {
         format!(
             "it is not a number but a group; name one of its entries, as {}.NAME",
@@ -122,11 +122,12 @@ impl OutputName {
         )
     }
 
-    /// Error message for an output that a case does not have, with the nearest existing one.
+    /// Returns the error message for an output that a case does not have, with the nearest existing
+    /// one.
     pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
         let close = nearest(wanted, names.iter().map(String::as_str))
             .or_else(|| {
-                // Compare the last component alone, since parents may have been omitted.
+                // Only the last component is compared, since parents may have been omitted.
                 let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
                 names.iter().find(last).map(String::as_str)
             })
@@ -138,7 +139,7 @@ impl OutputName {
     }
 }
 
-/// List of the existing outputs.
+/// Lists the existing outputs.
 pub(super) fn listed(names: &[String], prefix: &str) -> String {
     let more = if prefix.is_empty() {
         ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
@@ -151,7 +152,7 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
     format!("there are {}{more}", names.join(", "))
 }
 
-/// Names of the columns, without units.
+/// Returns the names of the columns, without units.
 fn header(path: &Path) -> Vec<String> {
     let Ok(mut reader) = csv::Reader::from_path(path) else {
         return Vec::new();
@@ -163,7 +164,8 @@ fn header(path: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// Unit of a column of a table of statistics, `1` for pure numbers; `None` without such a column.
+/// Returns the unit of a column of a table of statistics, `1` for pure numbers; `None` without such
+/// a column.
 pub fn column_unit(path: &Path, name: &str) -> Option<String> {
     let mut reader = csv::Reader::from_path(path).ok()?;
     let headings = reader.headers().ok()?.clone();
@@ -175,7 +177,8 @@ pub fn column_unit(path: &Path, name: &str) -> Option<String> {
         })
 }
 
-/// Values of a column; only complete rows are read, since the table may still be written to.
+/// Returns the values of a column; only complete rows are read, since the table may still be
+/// written to.
 pub fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
     let place = header(path).iter().position(|n| n == name)?;
     let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;

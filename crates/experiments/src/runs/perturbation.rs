@@ -1,10 +1,10 @@
-//! Runs of a case without random numbers, distinguished by a change of the step far below its
-//! error, in place of seeds.
+//! Runs of a case without random numbers, distinguished by a change of the step far below its error
+//! instead of by seeds.
 
 /// Relative increase of the step for the second run; twice this for the third, and so on.
 pub const RELATIVE_PERTURBATION: f64 = 1e-10;
 
-/// Distinction of the runs of a case without random numbers.
+/// Perturbation that distinguishes the runs of a case without random numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perturbation {
     /// Seed of the unperturbed run.
@@ -12,12 +12,12 @@ pub struct Perturbation {
 }
 
 impl Perturbation {
-    /// Whether the run with this seed has a step of its own.
+    /// Returns whether the run with this seed has a perturbed step.
     pub fn of(&self, seed: u64) -> bool {
         seed != self.first
     }
 
-    /// Step of the run with this seed (s), of a setting with this step.
+    /// Returns the step of the run with this seed (s), for a setting with this step.
     pub fn step(&self, step: f64, seed: u64) -> f64 {
         step * (1.0 + RELATIVE_PERTURBATION * seed.wrapping_sub(self.first) as f64)
     }

@@ -15,8 +15,8 @@ pub fn workers(jobs: usize, work: &(dyn Fn() + Sync)) {
     });
 }
 
-/// Does work for each item with some workers, in the order of the items; results stand in that
-/// order too. Items that were not begun when `stop` was set, or after an error, have none.
+/// Processes each item with some workers, in the order of the items; results have that order too.
+/// Items that were not begun when `stop` was set, or after an error, have none.
 ///
 /// # Errors
 /// The first error of the work.
@@ -78,7 +78,7 @@ mod tests {
         };
         let message = each(&items, 4, &stop, &fails).unwrap_err().to_string();
         assert_eq!(message, "seven");
-        // Items in the queue are left when `stop` is set.
+        // Items in the queue are skipped when `stop` is set.
         let stops = |x: &u64| {
             stop.store(*x == 3, Ordering::Relaxed);
             Ok(())

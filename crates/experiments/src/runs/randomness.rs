@@ -1,18 +1,22 @@
-//! Whether the seed of a case changes its scene.
+//! Test whether the seed of a case changes its scene.
 
 use crate::load;
 use fretwork_core::in_dimension;
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 
 use crate::Error;
 use std::fmt::Write;
 
-/// Whether another seed gives another scene; it does if it gives none.
+/// Returns whether another seed gives another scene; also true if another seed gives no scene.
 ///
 /// # Errors
 /// The case does not take a seed.
-pub fn seed_matters(loaded: &Loaded, scene: &Built, search: &SearchPath) -> Result<bool, Error> {
+pub fn seed_matters(
+    loaded: &LoadedCase,
+    scene: &Built,
+    search: &SearchPath,
+) -> Result<bool, Error> {
     let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
     let sets = [loaded.source.sets(), &[other_seed]].concat();
     let other = load(&loaded.path, &sets)?;
@@ -22,7 +26,7 @@ pub fn seed_matters(loaded: &Loaded, scene: &Built, search: &SearchPath) -> Resu
     })
 }
 
-/// Hash of the positions, shapes and velocities, which a seed may change.
+/// Returns a hash of the positions, shapes and velocities, which a seed may change.
 fn drawn(built: &Built) -> u64 {
     let mut hash = Hasher(0xcbf2_9ce4_8422_2325);
     // Writing to the hash never fails.

@@ -1,4 +1,4 @@
-//! How a run ended: what is stored of it, and what it is worth by given limits.
+//! Stored results of a run, and their assessment by given limits.
 
 use super::launcher::Run;
 use super::output::column;
@@ -11,20 +11,20 @@ use std::path::Path;
 /// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
-    /// It finished, and can be compared.
+    /// The run finished, and can be compared.
     Done,
-    /// Its case was refused: reason.
+    /// The case was refused, for this reason.
     Refused(String),
-    /// It failed: reason.
+    /// The run failed, for this reason.
     Failed(String),
-    /// It finished, and is beyond the limits: reason.
+    /// The run finished beyond the limits, for this reason.
     Rejected(String),
-    /// It was stopped after this many seconds, since it took longer than it may.
+    /// The run was stopped after this many seconds, at its time limit.
     Slow(f64),
 }
 
 impl Status {
-    /// Reason why there is nothing to compare, unless it is done or was too slow.
+    /// Returns the reason why there is nothing to compare, unless the run is done or was too slow.
     pub fn failure(&self) -> Option<String> {
         match self {
             Self::Refused(why) => Some(format!("refused: {why}")),
@@ -62,22 +62,22 @@ pub(super) struct StoredRun {
     seconds: f64,
     wall: f64,
     visits: f64,
-    /// Words of the reasons why the run says that it is not trustworthy.
+    /// Keywords of the reasons why the run reports that it is not trustworthy.
     #[serde(default)]
     doubts: Vec<String>,
-    /// Seconds after which it was stopped, since it took longer than it may.
+    /// Seconds after which it was stopped at its time limit.
     #[serde(default)]
     slow: Option<f64>,
 }
 
 /// A run that ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finished {
+pub struct FinishedRun {
     /// Outcome.
     pub status: Status,
     /// Whether a failure may be temporary: the next study tries again.
     pub temporary: bool,
-    /// What was run.
+    /// The run.
     pub run: Run,
     /// Processor time of the steps (s).
     pub seconds: f64,
@@ -85,21 +85,21 @@ pub struct Finished {
     pub wall: f64,
     /// Contacts times iterations, summed over the steps: a machine-independent measure of cost.
     pub visits: f64,
-    /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none
-    /// of one that is.
+    /// Keywords of the reasons why the run reports that it is not trustworthy, such as `NOT SMALL
+    /// STRAIN`; empty for a trustworthy run.
     pub doubts: Vec<String>,
 }
 
-impl Finished {
-    /// Whether it says something of the case: also that it is refused, or takes too long. Otherwise
-    /// it was ended by a signal, could not write, or left nothing.
+impl FinishedRun {
+    /// Returns whether the outcome depends on the case: also if it is refused, or takes too long.
+    /// Otherwise the run was ended by a signal, could not write, or left nothing.
     pub fn is_result(&self) -> bool {
         !self.temporary || matches!(self.status, Status::Slow(_) | Status::Refused(_))
     }
 }
 
 impl StoredRun {
-    /// Reads what a run left in its folder; `exit` is `None` if it did not end by itself.
+    /// Reads the files that a run left in its folder; `exit` is `None` if it did not end by itself.
     pub fn read(place: &Path, run: &Run, exit: Option<i32>, elapsed: f64) -> Self {
         let summary = summary(place);
         let course = Course::of(&summary);
@@ -131,8 +131,8 @@ impl StoredRun {
         }
     }
 
-    /// Whether a repetition may end differently: the run was refused (files may have changed),
-    /// stopped, ended by a signal, could not write, or left nothing.
+    /// Returns whether a repetition may end differently: the run was refused (files may have
+    /// changed), stopped, ended by a signal, could not write, or left nothing.
     pub fn temporary(&self) -> bool {
         match self.exit {
             _ if self.slow.is_some() => true,
@@ -142,8 +142,8 @@ impl StoredRun {
         }
     }
 
-    /// What it is worth.
-    pub fn assess(self, limits: &Limits) -> Finished {
+    /// Assesses the run by limits.
+    pub fn assess(self, limits: &Limits) -> FinishedRun {
         let temporary = self.temporary();
         let status = match self.exit {
             _ if self.slow.is_some() => Status::Slow(self.slow.unwrap_or_default()),
@@ -154,7 +154,7 @@ impl StoredRun {
             -1 => Status::Failed("ended by a signal".into()),
             _ => Status::Failed(self.said),
         };
-        Finished {
+        FinishedRun {
             status,
             temporary,
             run: Run {
@@ -168,7 +168,7 @@ impl StoredRun {
         }
     }
 
-    /// Reason why a finished run is not trusted.
+    /// Returns the reason why a finished run is not trusted.
     fn rejection(&self, limits: &Limits) -> Option<String> {
         let Some(steps) = self.steps else {
             return Some("it wrote no summary".into());
@@ -195,18 +195,18 @@ impl StoredRun {
     }
 }
 
-/// Whether a run reports that a signal ended it.
+/// Returns whether a run reports that a signal ended it.
 pub(super) fn interrupted(place: &Path) -> bool {
     summary(place)["interrupted"] == Value::Bool(true)
 }
 
-/// The words in capitals that a reason begins with; the reason itself where there are none.
+/// Returns the words in capitals with which a reason begins; the reason itself if there are none.
 fn words(reason: &str) -> String {
     let first = reason.split(':').next().unwrap_or(reason);
     first.trim().to_owned()
 }
 
-/// Summary of a run; null if there is none.
+/// Returns the summary of a run; null if there is none.
 pub fn summary(place: &Path) -> Value {
     std::fs::read_to_string(place.join("summary.json"))
         .ok()
@@ -214,15 +214,15 @@ pub fn summary(place: &Path) -> Value {
         .unwrap_or(Value::Null)
 }
 
-/// Half-width of the error of step, tolerance and coupling that a run estimates of an output, as
-/// far as it does.
+/// Returns the half-width of the error of step, tolerance and coupling that a run estimates for an
+/// output, as far as it does.
 pub fn numerical_error(catalogue: &Catalogue, output: &str) -> Option<f64> {
     let estimate = catalogue.entry(output)?.estimate.as_ref()?;
     let known: Vec<f64> = estimate.settings().map(|(_, half)| half).collect();
     (!known.is_empty()).then(|| known.iter().sum())
 }
 
-/// Contacts times iterations over all steps, estimated from the rows of the statistics.
+/// Returns contacts times iterations over all steps, estimated from the rows of the statistics.
 fn visits(place: &Path, steps: f64) -> f64 {
     let path = place.join("statistics.csv");
     let both = column(&path, "contacts").zip(column(&path, "iterations"));
@@ -236,7 +236,8 @@ fn visits(place: &Path, steps: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A stored run is assessed by the current limits; what may be temporary is made again.
+    /// A stored run is assessed by the current limits; a run with a possibly temporary failure is
+    /// made again.
     #[test]
     fn a_stored_run_is_assessed_by_todays_limits() {
         let run = |exit, said: &str| StoredRun {

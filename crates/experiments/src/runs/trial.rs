@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 /// Wall time for which steps are timed.
 const WATCHED: Duration = Duration::from_millis(500);
 
-/// Wall time that the first step of a scene with deformable bodies may take before: it forms what
-/// later steps keep.
+/// Wall time that the first step of a scene with deformable bodies may take before the timing: it
+/// computes data that later steps keep.
 const FIRST: Duration = Duration::from_secs(4);
 
 /// Limit on the number of timed steps.
@@ -59,8 +59,8 @@ pub struct RunTime {
 }
 
 impl Trial {
-    /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the
-    /// time is up, so that even the largest scene does not block the program.
+    /// Steps a scene for a short time in a separate thread. The thread is abandoned when the time
+    /// is up, so that even the largest scene does not block the program.
     pub fn of(case: &Case, built: Built) -> Self {
         let mut simulation = built.simulation;
         let steps = most_steps(case);
@@ -129,13 +129,14 @@ impl Trial {
         out
     }
 
-    /// The steps that are used: the first ones build neighbour lists and have no warm start.
+    /// Returns the steps that are used: the first ones build neighbour lists and have no warm
+    /// start.
     fn used(&self) -> &[Timed] {
         &self.timed[self.timed.len() / 2..]
     }
 
-    /// Seconds per step. An unfinished step that has taken much longer than the others counts with
-    /// its time so far.
+    /// Returns seconds per step. An unfinished step that has taken much longer than the others
+    /// counts with its time so far.
     fn step(&self) -> f64 {
         let (mean, n) = (self.mean(|t| t.seconds), self.used().len() as f64);
         if self.stuck() {
@@ -145,7 +146,7 @@ impl Trial {
         }
     }
 
-    /// Whether the unfinished step has taken much longer than the others.
+    /// Returns whether the unfinished step has taken much longer than the others.
     fn stuck(&self) -> bool {
         self.pending > 10.0 * self.mean(|t| t.seconds).max(1e-3)
     }
@@ -154,14 +155,14 @@ impl Trial {
         self.used().iter().map(f).sum::<f64>() / self.used().len() as f64
     }
 
-    /// Ratio of the contacts in a dense packing to the current ones: two per disk and three per
-    /// sphere, half of the four and six neighbours of each.
+    /// Returns the ratio of the contacts in a dense packing to the current ones: two per disk and
+    /// three per sphere, half of the four and six neighbours of each.
     fn growth(&self) -> f64 {
         let dense = (self.grains * self.dimension) as f64;
         (dense / self.mean(|t| t.contacts as f64).max(1.0)).max(1.0)
     }
 
-    /// Duration of the run on one thread; `None` if a step failed.
+    /// Returns the duration of the run on one thread; `None` if a step failed.
     pub fn run_time(&self) -> Option<RunTime> {
         if self.failure.is_some() {
             return None;
@@ -181,7 +182,7 @@ impl Trial {
         })
     }
 
-    /// Report line.
+    /// Returns the line of the report.
     pub fn text(&self) -> String {
         let Some(time) = self.run_time() else {
             return format!(

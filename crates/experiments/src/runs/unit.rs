@@ -4,8 +4,8 @@ use super::output::{OutputName, column_unit};
 use fretwork_observe::quantity::Catalogue;
 use std::path::Path;
 
-/// SI unit of a quantity by the files of a run, `1` for pure numbers; empty where the run does not
-/// have it.
+/// Returns the SI unit of a quantity by the files of a run, `1` for pure numbers; empty where the
+/// run does not have it.
 pub fn unit_of(quantity: &OutputName, catalogue: &Catalogue, folder: &Path) -> String {
     let unit = match quantity.column_name() {
         Some(column) => column_unit(&folder.join("statistics.csv"), column),

@@ -1,4 +1,4 @@
-//! What `fretwork study` says: what a study consists of, and what its runs left.
+//! Texts of `fretwork study`: the parts of a study, and the results of its runs.
 
 use super::files::PARQUET;
 use super::forecast::Forecast;
@@ -11,7 +11,7 @@ use crate::table::Cell;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// What a study consists of, and the forecast for runs that are to be made with parallel jobs.
+/// Describes the parts of a study, and the forecast for the remaining runs with parallel jobs.
 pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: usize) -> String {
     let mut out = format!("{}: {}\n", plan.file.display(), plan.title);
     for (k, factor) in plan.factors.iter().enumerate() {
@@ -87,7 +87,7 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
     Some((&low.label, &high.label))
 }
 
-/// Each run with its changes of the case.
+/// Lists each run with its changes of the case.
 pub fn points(plan: &Plan) -> String {
     let line = |p: Point| {
         let sets: Vec<String> = p.run.sets.iter().map(|s| format!("--set '{s}'")).collect();
@@ -96,8 +96,8 @@ pub fn points(plan: &Plan) -> String {
     plan.points().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// What `study check` prints, as JSON; times are in seconds on one worker, null where they are not
-/// known.
+/// Returns the output of `study check` as JSON; times are in seconds on one worker, null where
+/// unknown.
 pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points: bool) -> String {
     let factors: Vec<Value> = plan.factors.iter().enumerate().map(|(k, factor)| {
         json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": plan.labels(k)})
@@ -119,7 +119,7 @@ pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points:
     serde_json::to_string_pretty(&whole).unwrap_or_default()
 }
 
-/// What a table holds and where it is, with a picture where one was drawn.
+/// Describes the content of a table and its file, with a picture where one was drawn.
 pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     let counts = rows.counts();
     let mut out = format!("{} of {} runs done", counts.done, counts.all);
@@ -156,7 +156,8 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     out
 }
 
-/// The names of the texts in the summary of the first run that is done, which `regimes` may name.
+/// Returns the names of the texts in the summary of the first completed run, which `regimes` may
+/// name.
 fn first_texts(plan: &Plan, rows: &Rows) -> Vec<String> {
     let Some(run) = rows.done().next() else {
         return Vec::new();

@@ -14,12 +14,12 @@ use std::collections::HashMap;
 /// One value of each factor.
 pub type Setting = Vec<Level>;
 
-/// Settings of a design in their order; `own` is the value of a factor that the case has. Rows of a
-/// table may add factors: columns that are keys.
+/// Returns the settings of a design in their order; `own` is the value of a factor in the case.
+/// Rows of a table may add factors: columns that are keys.
 ///
 /// # Errors
-/// A range without levels in a design of levels, more points than a design has, a table that does
-/// not fit.
+/// A range has no levels in a design of levels, a design has too many points, or a table does not
+/// fit.
 pub fn settings(
     read: &StudyFile,
     factors: &mut Vec<Factor>,
@@ -71,7 +71,7 @@ fn levels(read: &StudyFile, factors: &[Factor]) -> Result<Vec<Vec<Level>>, Input
     each.collect()
 }
 
-/// The case as it is, then each level of each factor alone.
+/// Returns the case itself, then each level of each factor separately.
 fn one_at_a_time(base: Setting, levels: &[Vec<Level>]) -> Vec<Setting> {
     let mut all = vec![base.clone()];
     for (k, values) in levels.iter().enumerate() {
@@ -84,7 +84,7 @@ fn one_at_a_time(base: Setting, levels: &[Vec<Level>]) -> Vec<Setting> {
     all
 }
 
-/// The rows of a file: a column is a factor by its name, or a key.
+/// Returns the rows of a file: a column is a factor by its name, or a key.
 fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Setting>, Error> {
     let csv::Texts {
         headings: names,
@@ -117,7 +117,7 @@ fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Settin
         factors.push(of_spec.unwrap_or_else(|| Factor::of_column(name, column())));
     }
     let mut all = Vec::new();
-    // Equal numbers of a column are one level, as the first of them is spelled.
+    // Equal numbers of a column are one level, in the spelling of the first.
     let mut spelled: HashMap<(usize, u64), Level> = HashMap::new();
     for (line, row) in rows.iter().enumerate() {
         let values = factors
@@ -127,7 +127,7 @@ fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Settin
             .map(|(k, (factor, text))| {
                 let named = factor.named(text);
                 let value = named.map_err(|why| refused(format!("point {}: {why}", line + 1)))?;
-                // Minus zero is zero.
+                // Minus zero equals zero.
                 let bits = value.number.map(|x| (x + 0.0).to_bits());
                 Ok(match bits {
                     Some(bits) => spelled.entry((k, bits)).or_insert(value).clone(),

@@ -2,14 +2,14 @@
 
 use super::plan::{Plan, Point};
 use crate::Error;
-use crate::runs::launcher::Patience;
+use crate::runs::launcher::WaitLimits;
 use crate::runs::pool::each;
-use crate::runs::stored::Finished;
+use crate::runs::stored::FinishedRun;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// Runs that are still to be made, each once however many points need it.
+/// Returns the runs that are still to be made, each once even if several points need it.
 pub fn missing(plan: &Plan) -> Vec<Point> {
     let mut seen = BTreeSet::new();
     let open = plan.points().filter(|point| {
@@ -19,8 +19,8 @@ pub fn missing(plan: &Plan) -> Vec<Point> {
     open.collect()
 }
 
-/// Makes runs, several at a time; returns how many ended, each of which `watch` is called with. It
-/// ends early, without an error, when `stop` is set.
+/// Makes runs, several at a time, and calls `watch` with each; returns how many ended. It ends
+/// early, without an error, when `stop` is set.
 ///
 /// # Errors
 /// A run cannot be started.
@@ -30,15 +30,15 @@ pub fn execute(
     jobs: usize,
     limit: Option<Duration>,
     stop: &AtomicBool,
-    watch: &(dyn Fn(&Point, &Finished) + Sync),
+    watch: &(dyn Fn(&Point, &FinishedRun) + Sync),
 ) -> Result<usize, Error> {
-    let patience = Patience {
+    let wait = WaitLimits {
         deadline: None,
         limit,
         stop,
     };
     let one = |point: &Point| {
-        let ended = plan.launcher.run(&point.run, patience)?;
+        let ended = plan.launcher.run(&point.run, wait)?;
         if let Some(run) = &ended {
             watch(point, run);
         }

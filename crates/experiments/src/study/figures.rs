@@ -6,7 +6,7 @@ use super::plan::Plan;
 use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels};
 use std::path::Path;
 
-/// Panels of a picture.
+/// Largest number of panels of a picture.
 const PANELS: usize = 12;
 
 /// Draws responses and maps of regimes; returns whether there is anything to draw.
@@ -16,7 +16,7 @@ const PANELS: usize = 12;
 pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, DrawError> {
     let maps = analysis.regimes.iter();
     let mut charts: Vec<Chart> = maps.filter_map(|r| regime_chart(plan, r)).collect();
-    // All outputs over the first factor, then over the next.
+    // All outputs are drawn over the first factor, then over the next.
     for factor in 0..plan.factors.len() {
         for output in &analysis.outputs {
             let own = output.responses.iter().find(|r| r.factor == factor);
@@ -32,7 +32,7 @@ pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, DrawE
     Ok(true)
 }
 
-/// An output over a factor, with its intervals.
+/// Returns a chart of an output over a factor, with its intervals.
 pub(super) fn response_chart(plan: &Plan, output: &OutputAnalysis, response: &Response) -> Chart {
     let name = title_of(&output.name);
     let mut chart = Chart::new(
@@ -66,7 +66,7 @@ fn axis(plan: &Plan, factor: usize) -> Axis {
     }
 }
 
-/// Where in the plane of two factors each regime shows.
+/// Returns a chart of the regimes in the plane of two factors.
 pub(super) fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
     let map = regimes.map.as_ref()?;
     let (first, second) = map.axes;

@@ -13,11 +13,11 @@ use std::collections::BTreeSet;
 /// The table as a Parquet file, where the crate has the feature `parquet`.
 pub(super) const PARQUET: &str = "table.parquet";
 
-/// Writes what the runs of a study say into its folder; returns whether there is a picture.
+/// Writes the results of a study into its folder; returns whether there is a picture.
 ///
 /// # Errors
-/// A file cannot be written, or all runs in the folder are of something else: tables are left as
-/// they are.
+/// A file cannot be written, or all runs in the folder belong to something else: tables are then
+/// not changed.
 pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
     let others = other_runs(plan, rows);
     if rows.counts().missing == plan.count() && others > 0 {
@@ -28,24 +28,24 @@ pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
         )));
     }
     let path = |name: &str| plan.out.join(name);
-    csv::write(&rows.table, &path("table.csv"), csv::Numbers::Plain)?;
+    csv::write(&rows.table, &path("table.csv"), csv::NumberFormat::Plain)?;
     #[cfg(feature = "parquet")]
     crate::table::parquet::write(&rows.table, &path(PARQUET))?;
     let analysis = Analysis::of(plan, &plan.design, rows);
     let settings = settings(plan, &analysis);
-    csv::write(&settings, &path("settings.csv"), csv::Numbers::Plain)?;
+    csv::write(&settings, &path("settings.csv"), csv::NumberFormat::Plain)?;
     let page = sheet(plan, rows, &analysis).write(&path("study.html"));
     page.map_err(|e| Error::Failed(e.to_string()))?;
     let picture = path("study.png");
     let drawn = draw(plan, &analysis, &picture)?;
     if !drawn {
-        // A picture of an earlier state would be mistaken for one of this.
+        // A picture of an earlier state would be mistaken for one of the present state.
         let _ = std::fs::remove_file(&picture);
     }
     Ok(drawn)
 }
 
-/// Number of runs in the folder that are no points of the study by this program.
+/// Returns the number of runs in the folder that are not points of the study by this program.
 fn other_runs(plan: &Plan, rows: &Rows) -> usize {
     let count = rows.table.rows();
     let own: BTreeSet<&str> = (0..count).map(|k| rows.table.text("folder", k)).collect();

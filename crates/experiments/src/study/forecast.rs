@@ -1,33 +1,32 @@
-//! How long the runs of a study will take.
+//! Expected duration of the runs of a study.
 
 use super::plan::{Plan, Point};
 use crate::load;
 use crate::runs::trial::{RunTime, Trial};
 use fretwork_core::laws::SearchPath;
 
-/// What a run takes besides its steps: start, reading, files (s).
+/// Duration of a run outside its steps: start, reading, files (s).
 const STARTING: f64 = 0.1;
 
-/// Points that are tried.
+/// Number of points that are tried.
 const TRIED: usize = 3;
 
 /// Expected duration of runs (s).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Forecast {
-    /// Best estimate of all together on one worker; `None` where a single step takes too long to
-    /// time.
+    /// Best estimate of the total on one worker; `None` where a single step takes too long to time.
     pub about: Option<f64>,
     /// Lower bound.
     pub least: f64,
     /// Upper bound.
     pub most: f64,
-    /// Whether it is from runs of this study that ended.
+    /// Whether it is based on completed runs of this study.
     pub measured: bool,
 }
 
 impl Forecast {
-    /// From the runs of the study that ended, or else from a few steps of the first, the middle and
-    /// the last of these points; one that the case refuses does not count.
+    /// Computes the forecast from completed runs of the study, or otherwise from a few steps of the
+    /// first, the middle and the last of these points; points that the case refuses are skipped.
     pub fn of(plan: &Plan, open: &[Point], search: &SearchPath) -> Self {
         if open.is_empty() {
             return Self {

@@ -1,11 +1,11 @@
-//! Studies: one case run at many points of its factors, here or by another engine, and gathered in
-//! one table.
+//! Studies: one case run at many points of its factors, here or by another engine, with the results
+//! in one table.
 //!
-//! [`spec`] is the file, [`design`] says at which points, [`plan`] has the numbered runs,
-//! [`forecast`] what they will take, [`execute`] makes them on this machine and [`export`] writes
-//! what other engines take, [`rows`] gathers them in a table, [`analysis`] says what it shows, for
-//! the [`settings`], the [`page`] and the [`figures`]; [`files`] writes them, [`answers`] says it
-//! on a terminal.
+//! [`spec`] reads the file, [`design`] determines the points, [`plan`] numbers the runs,
+//! [`forecast`] estimates their duration, [`execute`] makes them on this machine and [`export`]
+//! writes scripts for other engines, [`rows`] collects them in a table, [`analysis`] evaluates it
+//! for the [`settings`], the [`page`] and the [`figures`]; [`files`] writes them, [`answers`]
+//! formats them for a terminal.
 
 mod analysis;
 pub mod answers;
@@ -28,6 +28,6 @@ use crate::folder::Owner;
 /// The owner of folders of studies.
 pub const OWNER: Owner = Owner {
     command: "fretwork study",
-    mark: "study.lock",
+    lock_file: "study.lock",
     files: &["study.json"],
 };

@@ -10,22 +10,23 @@ use crate::runs::output::OutputName;
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
-use fretwork_scene::{Built, InputError, Loaded};
+use fretwork_scene::{Built, InputError, LoadedCase};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// Levels that are built before a run; of more, only the text is checked.
+/// Largest number of levels whose case is built before a run; if there are more, only the text is
+/// checked.
 const BUILT: usize = 60;
 
 /// A run of a study.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its number, from 1.
+    /// Number of the run, from 1.
     pub number: usize,
-    /// Number of its setting, from 1.
+    /// Number of the setting, from 1.
     pub setting: usize,
-    /// What is run.
+    /// The run.
     pub run: Run,
 }
 
@@ -36,40 +37,40 @@ pub struct Plan {
     pub title: String,
     /// The file of the study.
     pub file: PathBuf,
-    /// Its folder.
+    /// Folder of the results.
     pub out: PathBuf,
-    /// What varies.
+    /// Factors.
     pub factors: Vec<Factor>,
     /// One value of each factor, for each setting.
     pub settings: Vec<Setting>,
-    /// What follows from the factors, for each setting.
+    /// Changes computed from the factors, for each setting.
     derived: Vec<Vec<String>>,
     units: Vec<String>,
     /// Seeds of each setting.
     pub seeds: Vec<u64>,
     /// Whether the seed changes the scene.
     pub random: bool,
-    /// What is compared.
+    /// Outputs that are compared.
     pub outputs: Vec<OutputName>,
-    /// SI units of the outputs by the case, `1` for pure numbers; empty where only runs know them.
+    /// SI units of the outputs by the case, `1` for pure numbers; empty where only runs have them.
     pub output_units: Vec<String>,
-    /// Texts of the summary that are mapped.
+    /// Texts of the summary that are mapped as regimes.
     pub regimes: Vec<String>,
     /// Design of the study.
     pub design: DesignSpec,
     /// Names of the measures of the case.
     pub measures: Vec<String>,
-    /// Who makes the runs.
+    /// Launcher of the runs.
     pub launcher: Launcher,
-    /// The case with what all runs change.
-    pub base: Loaded,
-    known: Known,
+    /// The case with the changes of all runs.
+    pub base: LoadedCase,
+    known: StudyFacts,
 }
 
-/// What was found out about a study before, so that each of its points need not find it again.
+/// Stored results of the preparation of a study, so that each of its points need not repeat it.
 #[derive(Debug, Serialize, Deserialize, PartialEq)]
-struct Known {
-    /// Key of the case, of the program, and text of the study.
+struct StudyFacts {
+    /// Keys of the case and of the program, and text of the study.
     fingerprint: String,
     random: bool,
     outputs: Vec<String>,
@@ -77,32 +78,33 @@ struct Known {
     units: Vec<String>,
 }
 
-/// The file of what is known.
+/// Name of the file with these results.
 const KNOWN: &str = "study.json";
 
-impl Known {
+impl StudyFacts {
     fn read(file: &Path) -> Option<Self> {
         serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
     }
 }
 
-/// Where a study is made.
+/// Folders of a study.
 #[derive(Debug)]
 pub struct Location<'a> {
     /// Folder of its results.
     pub out: &'a Path,
-    /// Folder of its runs, which other studies may share; `runs` in that of the results by default.
+    /// Folder of its runs, which other studies may share; by default `runs` in the folder of the
+    /// results.
     pub cache: Option<&'a Path>,
-    /// What is needed of the program.
+    /// The program that makes the runs.
     pub program: &'a Program,
 }
 
 impl Plan {
-    /// Plans a study. What takes long is taken from `study.json` of its folder, if
-    /// [`keep`](Self::keep) left it there.
+    /// Plans a study. Results that take long are read from `study.json` in its folder, if
+    /// [`keep`](Self::keep) wrote them.
     ///
     /// # Errors
-    /// The study, its case, an output or a level that the case refuses.
+    /// The study or its case is invalid, or the case refuses an output or a level.
     pub fn new(read: &StudyFile, place: Location<'_>) -> Result<Self, Error> {
         let spec = &read.spec;
         let case = read.beside(&spec.case);
@@ -132,7 +134,7 @@ impl Plan {
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
-        let known = Known::read(&place.out.join(KNOWN));
+        let known = StudyFacts::read(&place.out.join(KNOWN));
         let known = match known.filter(|k| k.fingerprint == fingerprint) {
             Some(known) => known,
             None => {
@@ -140,7 +142,7 @@ impl Plan {
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
                 let (outputs, units) = outputs(read, &base, &scene)?;
-                Known {
+                StudyFacts {
                     units,
                     fingerprint,
                     random,
@@ -175,13 +177,14 @@ impl Plan {
         })
     }
 
-    /// Keeps what took long in `study.json` of its folder, if there is one, for the next call.
+    /// Writes results that took long to `study.json` in its folder, if there is one, for the next
+    /// call.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn keep(&self) -> Result<(), Error> {
         let file = self.out.join(KNOWN);
-        if self.out.is_dir() && Known::read(&file).as_ref() != Some(&self.known) {
+        if self.out.is_dir() && StudyFacts::read(&file).as_ref() != Some(&self.known) {
             let text = serde_json::to_string_pretty(&self.known).unwrap_or_default();
             std::fs::write(&file, text).map_err(|e| Error::write(&file, &e))?;
         }
@@ -207,32 +210,32 @@ impl Plan {
         })
     }
 
-    /// All runs.
+    /// Iterates over all runs.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         (1..=self.count()).filter_map(|k| self.point(k))
     }
 
-    /// SI unit of a factor, if the case has one for its key; empty otherwise.
+    /// Returns the SI unit of a factor, if the case has one for its key; empty otherwise.
     pub fn unit_of(&self, factor: usize) -> String {
         self.units.get(factor).cloned().unwrap_or_default()
     }
 
-    /// Labels that a factor takes, in the order of its first settings.
+    /// Returns the labels of a factor, in the order of its first settings.
     pub fn labels(&self, factor: usize) -> Vec<&str> {
         let mut seen = HashSet::new();
         let all = self.settings.iter().map(|s| s[factor].label.as_str());
         all.filter(|label| seen.insert(*label)).collect()
     }
 
-    /// Whether all values of a factor are numbers; that of the case as it is may be unknown, where
-    /// it is a default that the file does not give.
+    /// Returns whether all values of a factor are numbers; that of the case itself may be unknown,
+    /// where it is a default that the file does not give.
     pub fn is_numeric(&self, factor: usize) -> bool {
         let levels = self.settings.iter().map(|s| &s[factor]);
         let mut given = levels.filter(|level| !level.is_unknown()).peekable();
         given.peek().is_some() && given.all(|level| level.number.is_some())
     }
 
-    /// What a run is, in words: `friction 0.2, speed 1.0, seed 4`.
+    /// Describes a run: `friction 0.2, speed 1.0, seed 4`.
     pub fn words(&self, point: &Point) -> String {
         let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
         let mut words: Vec<String> = values
@@ -245,7 +248,7 @@ impl Plan {
     }
 }
 
-/// Names of columns that the table of runs has itself.
+/// Names of the table's own columns.
 const OWN_COLUMNS: [&str; 11] = [
     "point",
     "setting",
@@ -266,8 +269,8 @@ fn sets_of(setting: &Setting, derived: &[String]) -> Vec<String> {
     own.chain(derived).cloned().collect()
 }
 
-/// Refuses two factors of one name, names that the table has itself, keys that a study sets, and
-/// factors that change nothing.
+/// Refuses two factors of the same name, names of the table's own columns, keys that a study sets,
+/// and factors without effect.
 fn check_factors(
     read: &StudyFile,
     factors: &[Factor],
@@ -301,7 +304,8 @@ fn check_factors(
     Ok(())
 }
 
-/// SI units of the factors: those of their keys, or what the study says where there is none.
+/// Returns the SI units of the factors: those of their keys, or where there is none those that the
+/// study gives.
 fn units(
     read: &StudyFile,
     factors: &[Factor],
@@ -322,7 +326,7 @@ fn units(
     factors.iter().enumerate().map(of).collect()
 }
 
-/// The value of a factor that the case has: no changes.
+/// Returns the value of a factor in the case, without changes.
 fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
     let of_key = |key: &String| inputs.iter().find(|i| i.path == *key);
     let own = factor.keys.first().and_then(of_key);
@@ -338,10 +342,10 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
     }
 }
 
-/// The outputs that are asked for, or those that the case has, with their units.
+/// Returns the requested outputs, or those that the case has, with their units.
 fn outputs(
     read: &StudyFile,
-    base: &Loaded,
+    base: &LoadedCase,
     scene: &Built,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
     let available = AvailableQuantities::of(&base.case, scene);
@@ -370,11 +374,11 @@ fn outputs(
     Ok((all, units))
 }
 
-/// Builds the first setting, and reads, and builds if they are few, the case with each level alone,
-/// so that a wrong one is refused before any run.
+/// Builds the first setting, and reads the case with each level separately, and builds it if there
+/// are few, so that an invalid level is refused before any run.
 fn check_levels(
     read: &StudyFile,
-    base: &Loaded,
+    base: &LoadedCase,
     factors: &[Factor],
     first: &[String],
     search: &SearchPath,

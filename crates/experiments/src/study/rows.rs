@@ -1,11 +1,11 @@
-//! The table of a study: a row for each run, with what was asked, what came out and how it ended,
-//! failed runs too.
+//! The table of a study: a row for each run, including failed ones, with its factors, its outputs
+//! and how it ended.
 
 use super::plan::Plan;
 use crate::factor::Level;
-use crate::runs::stored::{Finished, Status, numerical_error, summary};
+use crate::runs::stored::{FinishedRun, Status, numerical_error, summary};
 use crate::runs::unit::unit_of;
-use crate::table::{Cell, Column, Table, Type};
+use crate::table::{Cell, Column, ColumnType, Table};
 use fretwork_observe::quantity::Catalogue;
 use serde_json::Value as Json;
 
@@ -23,30 +23,30 @@ pub struct Rows {
     statuses: Vec<&'static str>,
 }
 
-/// How many runs ended in which way.
+/// Numbers of runs by their end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Runs.
+    /// All runs.
     pub all: usize,
-    /// Done and trusted.
+    /// Runs that are done and trusted.
     pub done: usize,
-    /// Refused, failed, or beyond the limits of the study.
+    /// Runs that were refused, failed, or are beyond the limits of the study.
     pub failed: usize,
-    /// Not made yet.
+    /// Runs that are not made yet.
     pub missing: usize,
 }
 
-/// A run of the study as it is on disk.
+/// A run of the study as stored.
 struct RunRow {
-    run: Option<Finished>,
+    run: Option<FinishedRun>,
     summary: Json,
-    /// What the numbers of the summary are.
+    /// Descriptions of the numbers of the summary.
     catalogue: Catalogue,
     place: std::path::PathBuf,
 }
 
 impl Rows {
-    /// Gathers the runs of a study that are there.
+    /// Reads the stored runs of a study.
     pub fn of(plan: &Plan) -> Self {
         let points: Vec<_> = plan.points().collect();
         let row = |p: &super::plan::Point| {
@@ -87,7 +87,7 @@ impl Rows {
         }
         let text =
             |name: &str, f: &dyn Fn(&RunRow) -> String| Column::text(name, rows.iter().map(f));
-        let of_run = |f: fn(&Finished) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
+        let of_run = |f: fn(&FinishedRun) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
         for regime in &plan.regimes {
             columns.push(text(regime, &|r| regime_of(&r.summary, regime)));
         }
@@ -116,7 +116,7 @@ impl Rows {
         }
     }
 
-    /// How the runs ended.
+    /// Returns the numbers of runs by their end.
     pub fn counts(&self) -> Counts {
         let count = |word: &str| self.statuses.iter().filter(|s| **s == word).count();
         let (all, done, missing) = (self.statuses.len(), count(DONE), count(NOT_RUN));
@@ -133,12 +133,12 @@ impl Rows {
         self.statuses.get(run) == Some(&DONE)
     }
 
-    /// Numbers of the runs that are done and trusted, from 0.
+    /// Iterates over the indices of the runs that are done and trusted.
     pub fn done(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.statuses.len()).filter(|k| self.is_done(*k))
     }
 
-    /// Those of some columns in which no run that is done has anything.
+    /// Returns the columns among `names` that are empty in all completed runs.
     pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
         let empty = |name: &&str| self.done().all(|run| self.table.text(name, run).is_empty());
         match self.counts().done {
@@ -147,7 +147,7 @@ impl Rows {
         }
     }
 
-    /// In place of a mean of a setting none of whose runs is done: how they ended.
+    /// Describes how the runs of a setting ended, which replaces the mean if none is done.
     pub fn without_result(&self, setting: usize, seeds: usize) -> String {
         let mut words: Vec<&str> = Vec::new();
         for word in &self.statuses[setting * seeds..(setting + 1) * seeds] {
@@ -158,7 +158,8 @@ impl Rows {
         words.join(", ")
     }
 
-    /// The values of an output by run; `None` where there is no run that is done and trusted.
+    /// Returns the values of an output by run; `None` where there is no run that is done and
+    /// trusted.
     pub fn trusted(&self, name: &str) -> Vec<Option<f64>> {
         let cells = self.table.column(name).map_or(&[][..], |c| &c.cells);
         let value = |(k, cell): (usize, &Cell)| match cell {
@@ -169,7 +170,7 @@ impl Rows {
     }
 }
 
-/// Values of a factor as numbers, if all are, otherwise as texts.
+/// Returns the values of a factor as numbers, if all are, otherwise as texts.
 pub(super) fn factor_column<'a>(
     plan: &Plan,
     factor: usize,
@@ -181,13 +182,13 @@ pub(super) fn factor_column<'a>(
         false => Column {
             name: name.clone(),
             unit: plan.unit_of(factor),
-            kind: Type::Text,
+            kind: ColumnType::Text,
             cells: levels.map(|l| Cell::Text(l.label.clone())).collect(),
         },
     }
 }
 
-/// A text of a summary, up to the first sign that ends a name.
+/// Returns a text of a summary, up to the first character that ends a name.
 fn regime_of(summary: &Json, name: &str) -> String {
     let found = name.split('.').try_fold(summary, |v, part| v.get(part));
     let text = found.and_then(Json::as_str).unwrap_or_default();
@@ -195,8 +196,8 @@ fn regime_of(summary: &Json, name: &str) -> String {
     text[..end].trim().to_owned()
 }
 
-/// Status of a run and its reason.
-pub fn status(run: Option<&Finished>) -> (&'static str, String) {
+/// Returns the status of a run and its reason.
+pub fn status(run: Option<&FinishedRun>) -> (&'static str, String) {
     let Some(run) = run else {
         return (NOT_RUN, String::new());
     };

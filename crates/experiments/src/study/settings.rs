@@ -6,8 +6,8 @@ use super::rows::factor_column;
 use crate::table::{Column, Table};
 use fretwork_math::statistics::interval::Mean;
 
-/// The table of settings: values of the factors, and means over the seeds with half-widths of 95 %,
-/// scatter and counts.
+/// Returns the table of settings: values of the factors, and means over the seeds with half-widths
+/// of 95 %, scatter and numbers of runs.
 pub fn settings(plan: &Plan, analysis: &Analysis) -> Table {
     let count = plan.settings.len();
     let numbers = (1..=count).map(|k| Some(k as f64));

@@ -8,7 +8,7 @@ use fretwork_scene::source::{InputError, Source};
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// A study as its file says it.
+/// A study as given in its file.
 ///
 /// ```ron
 /// (
@@ -29,28 +29,28 @@ pub struct StudySpec {
     pub title: Option<String>,
     /// The case, relative to the file of the study.
     pub case: PathBuf,
-    /// `key.path=value` of all runs, as `--set` takes them; with `${...}` in the value what follows
-    /// from the factors, by their names: `bodies.top.mass=${2 * density}`.
+    /// Changes of all runs, `key.path=value`, as `--set` takes them; `${...}` in a value is
+    /// computed from the factors, by their names: `bodies.top.mass=${2 * density}`.
     #[serde(default)]
     pub set: Vec<String>,
-    /// What varies.
+    /// Factors.
     pub factors: Vec<FactorSpec>,
-    /// At which points.
+    /// Design: the points at which runs are made.
     #[serde(default)]
     pub design: DesignSpec,
-    /// Seeds of each point, from the case's own upwards.
+    /// Number of seeds of each point, from the case's own upwards.
     #[serde(default = "one")]
     pub seeds: u16,
-    /// Numbers that are compared: names of `summary.json`, or `statistics.COLUMN`; friction, damage
-    /// and wear by default, as far as the case has them.
+    /// Numbers that are compared: names of `summary.json`, or `statistics.COLUMN`; by default
+    /// friction, damage and wear, as far as the case has them.
     #[serde(default)]
     pub outputs: Vec<String>,
     /// Texts of `summary.json` by which runs are classified on a map, such as `fretting.regime` or
-    /// `findings.layer_regime`; of a sentence what stands before its first colon, comma or
-    /// semicolon.
+    /// `findings.layer_regime`; of a sentence the part before its first colon, comma or semicolon
+    /// is used.
     #[serde(default)]
     pub regimes: Vec<String>,
-    /// Which files of each run are kept.
+    /// Files of each run that are kept.
     #[serde(default)]
     pub keep: Keep,
     /// Threads of each run.
@@ -64,16 +64,17 @@ pub struct StudySpec {
     pub residual: f64,
 }
 
-/// At which points of its factors a case is run.
+/// Points of its factors at which a case is run.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum DesignSpec {
     /// Every combination of levels.
     #[default]
     Grid,
-    /// The case as it is, and each level of each factor alone.
+    /// The case itself, and each level of each factor separately.
     OneAtATime,
-    /// Points of which each factor has one in each of as many equal parts of its range.
+    /// Points of a Latin hypercube: each factor has one value in each of as many equal parts of its
+    /// range.
     LatinHypercube {
         /// Number of points.
         points: u32,
@@ -97,8 +98,8 @@ pub enum DesignSpec {
         #[serde(default)]
         seed: u64,
     },
-    /// The rows of a CSV file, relative to the file of the study; its columns are named as factors,
-    /// or are keys.
+    /// The rows of a CSV file, relative to the file of the study; its columns are names of factors,
+    /// or keys.
     Table {
         /// The file.
         file: PathBuf,
@@ -109,7 +110,7 @@ pub enum DesignSpec {
 pub type StudyFile = SpecFile<StudySpec>;
 
 impl StudySpec {
-    /// Limits of accepted runs.
+    /// Returns the limits of accepted runs.
     pub fn limits(&self) -> Limits {
         Limits {
             unconverged: self.unconverged,

@@ -1,15 +1,15 @@
 //! Texts in cells of CSV files, which spreadsheets open.
 
-/// Characters by which a formula begins.
+/// Characters with which a formula begins.
 const FORMULA: [char; 7] = ['=', '+', '-', '@', '\t', '\r', '\n'];
 
-/// Whether a text begins like a formula, also behind apostrophes: those would be taken off.
+/// Returns whether a text begins like a formula, also after apostrophes, which would be removed.
 fn begins(text: &str) -> bool {
     text.trim_start_matches('\'').starts_with(FORMULA)
 }
 
-/// A text as a cell that no spreadsheet takes for a formula: one that begins like a formula, and is
-/// no number, gets an apostrophe.
+/// Returns a text as a cell that no spreadsheet interprets as a formula: a text that begins like a
+/// formula, and is not a number, gets an apostrophe.
 pub fn guarded(text: &str) -> String {
     let formula = begins(text) && text.parse::<f64>().is_err();
     if formula {

@@ -1,24 +1,24 @@
-//! CSV files: tables that are written, points and measured curves that are read.
+//! CSV files: writing tables, reading points and measured curves.
 
 use super::cells::{guarded, unguarded};
-use super::{Cell, Table, Type};
+use super::{Cell, ColumnType, Table};
 use crate::Error;
 use std::path::Path;
 
-/// How numbers that are not whole are written.
+/// Format of numbers that are not whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Numbers {
-    /// With the fewest digits that read back to the same number: `0.001`.
+pub enum NumberFormat {
+    /// The fewest digits that read back to an equal number: `0.001`.
     Plain,
-    /// With exponents: `1e-3`.
+    /// Scientific notation: `1e-3`.
     Exponents,
 }
 
-/// Writes a table; headings have units, `wear.Qs [kg/s]`, and what is not known is empty.
+/// Writes a table; headings have units, `wear.Qs [kg/s]`, and unknown values are empty.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> {
+pub fn write(table: &Table, path: &Path, numbers: NumberFormat) -> Result<(), Error> {
     let text = || -> csv::Result<()> {
         let mut out = csv::Writer::from_path(path)?;
         out.write_record(table.columns.iter().map(|c| match c.unit.as_str() {
@@ -27,7 +27,9 @@ pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> 
         }))?;
         for k in 0..table.rows() {
             out.write_record(table.columns.iter().map(|c| match &c.cells[k] {
-                Cell::Number(x) if numbers == Numbers::Exponents && c.kind == Type::Real => {
+                Cell::Number(x)
+                    if numbers == NumberFormat::Exponents && c.kind == ColumnType::Real =>
+                {
                     format!("{x:e}")
                 }
                 Cell::Number(x) => format!("{x}"),
@@ -40,16 +42,16 @@ pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> 
     text().map_err(|e| Error::write(path, &e))
 }
 
-/// A file that was read.
+/// Content of a file.
 #[derive(Debug)]
 pub struct Texts {
-    /// Headings as they stand, `stress [MPa]`.
+    /// Headings as in the file, `stress [MPa]`.
     pub headings: Vec<String>,
     /// Rows, with a text for each column.
     pub rows: Vec<Vec<String>>,
 }
 
-/// A heading without its unit.
+/// Returns a heading without its unit.
 pub fn without_unit(heading: &str) -> &str {
     heading.split(" [").next().unwrap_or(heading).trim()
 }

@@ -12,13 +12,13 @@ pub enum Cell {
     Number(f64),
     /// A text.
     Text(String),
-    /// Nothing: not run, or the run has no such value.
+    /// No value: not run, or the run has no such value.
     Unknown,
 }
 
-/// What the cells of a column are.
+/// Type of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
+pub enum ColumnType {
     /// Numbers.
     Real,
     /// Whole numbers.
@@ -30,18 +30,18 @@ pub enum Type {
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
     /// SI unit, `1` for pure numbers; empty for texts.
     pub unit: String,
-    /// What its cells are.
-    pub kind: Type,
+    /// Type of the cells.
+    pub kind: ColumnType,
     /// One cell for each row.
     pub cells: Vec<Cell>,
 }
 
 impl Column {
-    /// Numbers in a unit; `None` is not known.
+    /// Creates a column of numbers in a unit; `None` is unknown.
     pub fn real(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -54,20 +54,20 @@ impl Column {
                 none if none.is_empty() => "1".to_owned(),
                 unit => unit,
             },
-            kind: Type::Real,
+            kind: ColumnType::Real,
             cells: values.into_iter().map(cell).collect(),
         }
     }
 
-    /// Whole numbers; `None` is not known.
+    /// Creates a column of whole numbers; `None` is unknown.
     pub fn whole(name: impl Into<String>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
         Self {
-            kind: Type::Whole,
+            kind: ColumnType::Whole,
             ..Self::real(name, "", values)
         }
     }
 
-    /// Texts; an empty one is not known.
+    /// Creates a column of texts; an empty text is unknown.
     pub fn text(name: impl Into<String>, texts: impl IntoIterator<Item = String>) -> Self {
         let cell = |text: String| match text.is_empty() {
             true => Cell::Unknown,
@@ -76,12 +76,12 @@ impl Column {
         Self {
             name: name.into(),
             unit: String::new(),
-            kind: Type::Text,
+            kind: ColumnType::Text,
             cells: texts.into_iter().map(cell).collect(),
         }
     }
 
-    /// The text of a row; of what is no text nothing.
+    /// Returns the text of a row; empty for other types.
     pub fn text_of(&self, row: usize) -> &str {
         match self.cells.get(row) {
             Some(Cell::Text(text)) => text,
@@ -90,10 +90,10 @@ impl Column {
     }
 }
 
-/// Columns of one length.
+/// Columns of the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Its columns.
+    /// Columns of the table.
     pub columns: Vec<Column>,
 }
 
@@ -108,7 +108,7 @@ impl Table {
         self.columns.iter().find(|c| c.name == name)
     }
 
-    /// The text of a row in the column of a name; nothing where there is none.
+    /// Returns the text of a row in the column of a name; empty if there is none.
     pub fn text(&self, name: &str, row: usize) -> &str {
         self.column(name).map_or("", |c| c.text_of(row))
     }

@@ -1,7 +1,7 @@
-//! The table of a study as a Parquet file. Units stand in the metadata of the file, under `units`
-//! as JSON.
+//! The table of a study as a Parquet file. Units are in the metadata of the file, under `units` as
+//! JSON.
 
-use super::{Cell, Column, Table, Type as Kind};
+use super::{Cell, Column, ColumnType, Table};
 use crate::Error;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -15,7 +15,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes a table; what is not known is null.
+/// Writes a table; unknown values are null.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -51,12 +51,12 @@ fn write_to(table: &Table, file: File) -> Result<(), ParquetError> {
     Ok(())
 }
 
-/// Each column may have nulls.
+/// Returns the type of a column, which may have nulls.
 fn field(column: &Column) -> Result<TypePtr, ParquetError> {
     let (physical, logical) = match column.kind {
-        Kind::Real => (Physical::DOUBLE, None),
-        Kind::Whole => (Physical::INT64, None),
-        Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        ColumnType::Real => (Physical::DOUBLE, None),
+        ColumnType::Whole => (Physical::INT64, None),
+        ColumnType::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
     };
     let field = Type::primitive_type_builder(&column.name, physical)
         .with_repetition(Repetition::OPTIONAL)
@@ -84,17 +84,17 @@ fn write_column(
         })
     };
     match column.kind {
-        Kind::Real => {
+        ColumnType::Real => {
             let values: Vec<f64> = numbers().collect();
             to.typed::<DoubleType>()
                 .write_batch(&values, Some(&known), None)?;
         }
-        Kind::Whole => {
+        ColumnType::Whole => {
             let values: Vec<i64> = numbers().map(|x| x as i64).collect();
             to.typed::<Int64Type>()
                 .write_batch(&values, Some(&known), None)?;
         }
-        Kind::Text => {
+        ColumnType::Text => {
             let texts = column.cells.iter().filter_map(|c| match c {
                 Cell::Text(text) => Some(ByteArray::from(text.as_str())),
                 _ => None,
@@ -113,8 +113,7 @@ mod tests {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
-    /// What the reader of the same library gives back; tests/program/study reads files with another
-    /// reader.
+    /// This test reads the file with the same library; tests/program/study uses another reader.
     #[test]
     fn a_table_comes_back_with_nulls_and_units() {
         let table = Table {

@@ -6,16 +6,16 @@
 //! place of seeds, and errors have intervals.
 
 use super::combination::Combination;
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use super::plan::Trade;
 use crate::Error;
-use crate::runs::launcher::Patience;
+use crate::runs::launcher::WaitLimits;
 use crate::runs::perturbation::RELATIVE_PERTURBATION;
 use crate::runs::stored::{Status, summary};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Smallest noticed difference, as a fraction of the wanted error.
+/// Smallest difference that is noticed, as a fraction of the wanted error.
 const NOTICED: f64 = 0.01;
 
 /// Largest fraction of the budget for the two runs.
@@ -33,7 +33,7 @@ impl Trade {
             return Ok(());
         }
         let own = Combination::own(&self.parameters);
-        let patience = Patience {
+        let wait = WaitLimits {
             deadline: Some(self.started + self.budget.mul_f64(SHARE)),
             limit: None,
             stop,
@@ -48,7 +48,7 @@ impl Trade {
                 }
                 continue;
             }
-            let Some(finished) = self.launcher.run(&run, patience)? else {
+            let Some(finished) = self.launcher.run(&run, wait)? else {
                 self.notes.push(format!(
                     "Whether contacts are chaotic was not tested: two runs take more than {:.0} % of the budget.",
                     100.0 * SHARE
@@ -85,13 +85,13 @@ impl Trade {
     }
 }
 
-/// Description of an output's difference between two runs, if it is noticed.
+/// Describes an output's difference between two runs, if it is noticed.
 fn difference(output: &Output, one: &Path, other: &Path) -> Option<String> {
     let [a, b] = [one, other].map(|place| output.quantity.read(&summary(place), place));
     let (a, b) = (a?, b?);
     let wanted = match output.wanted {
-        Wanted::Relative(w) => w * a.abs(),
-        Wanted::Absolute(w) => w,
+        ErrorTarget::Relative(w) => w * a.abs(),
+        ErrorTarget::Absolute(w) => w,
     };
     ((a - b).abs() > NOTICED * wanted)
         .then(|| format!("`{}` from {a:.6e} to {b:.6e}", output.name()))

@@ -1,6 +1,6 @@
 //! A setting of a trade: one level for every varied parameter.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 
 /// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -17,7 +17,7 @@ impl Combination {
         Self(parameters.iter().map(|k| k.reference).collect())
     }
 
-    /// This setting with another level of one parameter.
+    /// Returns this setting with another level of one parameter.
     pub fn with(&self, parameter: usize, level: usize) -> Self {
         let mut levels = self.0.clone();
         levels[parameter] = level;
@@ -31,7 +31,8 @@ impl Combination {
             .collect()
     }
 
-    /// Name of the setting by its differences from the case: `step 5e-5, tolerance 1e-3`.
+    /// Returns the name of the setting by its differences from the case: `step 5e-5, tolerance
+    /// 1e-3`.
     pub fn name(&self, parameters: &[Varied]) -> String {
         let named = |k: usize| {
             let parameter = &parameters[k];
@@ -42,7 +43,7 @@ impl Combination {
             return parts.join(", ");
         }
         // The form of the case is named where other forms are compared with it.
-        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == Sense::Form);
+        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == ParameterEffect::Form);
         let forms: Vec<String> = forms.map(named).collect();
         match forms.is_empty() {
             true => "the case's own".to_owned(),
@@ -50,7 +51,7 @@ impl Combination {
         }
     }
 
-    /// The `--set` arguments for this setting.
+    /// Returns the `--set` arguments for this setting.
     pub fn sets(&self, parameters: &[Varied]) -> Vec<String> {
         let changed = self.changed(parameters);
         changed

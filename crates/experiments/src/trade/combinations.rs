@@ -1,17 +1,17 @@
-//! Combinations of levels that were cheaper alone; first those predicted, from the single
-//! parameters, to meet the wanted error.
+//! Combinations of levels that are cheaper than the case's own, first those predicted, from the
+//! single parameters, to meet the wanted error.
 
 use super::combination::Combination;
 use super::compare::Row;
 use super::frontier::frontier;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Trade;
 
 /// Limit on the number of combinations.
 const COMBINATIONS: usize = 8;
 
 impl Trade {
-    /// Settings that change several parameters, composed of levels that were cheaper alone.
+    /// Returns settings that change several parameters to levels that are cheaper individually.
     pub(super) fn combinations(&self) -> Vec<Combination> {
         let found = self.compare();
         let own = Combination::own(&self.parameters);
@@ -22,10 +22,10 @@ impl Trade {
         else {
             return Vec::new();
         };
-        // Signed errors as fractions of the wanted error, with intervals.
+        // These are signed errors as fractions of the wanted error, with intervals.
         let scaled = |row: &Row| -> Option<Vec<(f64, f64)>> {
             let each = row.errors.iter().zip(&self.outputs).map(|(e, o)| {
-                let (Wanted::Relative(w) | Wanted::Absolute(w)) = o.wanted;
+                let (ErrorTarget::Relative(w) | ErrorTarget::Absolute(w)) = o.wanted;
                 let e = e.as_ref()?;
                 Some((e.error.mean / w, e.error.half_width? / w))
             });
@@ -84,7 +84,8 @@ impl Trade {
         let on = frontier(&plane);
         let mut kept = on.into_iter();
         points.retain(|_| kept.next().unwrap_or(false));
-        // First those predicted to meet the wanted error, cheapest first; then the nearest to it.
+        // First come those predicted to meet the wanted error, cheapest first; then the nearest to
+        // it.
         points.sort_by(|a, b| {
             let key = |p: &(Combination, f64, f64)| if p.2 <= 1.0 { (0, p.1) } else { (1, p.2) };
             let (x, y) = (key(a), key(b));

@@ -3,10 +3,10 @@
 
 use super::combination::Combination;
 use super::frontier::frontier;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
-use crate::runs::stored::{Finished, Status, summary};
+use super::varied::{ParameterEffect, Varied};
+use crate::runs::stored::{FinishedRun, Status, summary};
 use fretwork_math::statistics::interval::Mean;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,15 +42,15 @@ pub struct OwnError {
 pub struct Row {
     /// The setting.
     pub setting: Combination,
-    /// Its name.
+    /// Name of the setting.
     pub name: String,
     /// Number of seeds that ran.
     pub seeds: usize,
     /// Reason why it cannot be used, if any.
     pub failed: Option<String>,
-    /// Runs that say that they are not trustworthy.
+    /// Number of runs that report that they are not trustworthy.
     pub doubted: usize,
-    /// Words of their reasons, in order.
+    /// Keywords of their reasons, in order.
     pub doubts: BTreeSet<String>,
     /// Processor time of the steps per run (s).
     pub seconds: f64,
@@ -75,7 +75,8 @@ pub struct Comparison {
 }
 
 impl Row {
-    /// How many of its runs say that they are not trustworthy, and why; `None` where all are.
+    /// Describes how many of its runs report that they are not trustworthy, and why; `None` where
+    /// all are trustworthy.
     pub fn not_trustworthy(&self) -> Option<String> {
         let words: Vec<&str> = self.doubts.iter().map(String::as_str).collect();
         let (doubted, seeds) = (self.doubted, self.seeds);
@@ -140,13 +141,13 @@ impl Trade {
         }
     }
 
-    fn runs(&self, setting: &Combination) -> impl Iterator<Item = (u64, &Finished)> {
+    fn runs(&self, setting: &Combination) -> impl Iterator<Item = (u64, &FinishedRun)> {
         let from = (setting.clone(), 0);
         let to = (setting.clone(), u64::MAX);
         self.done.range(from..=to).map(|((_, seed), r)| (*seed, r))
     }
 
-    /// Values of an output by seed.
+    /// Returns the values of an output by seed.
     fn values(&self, setting: &Combination, output: usize) -> BTreeMap<u64, f64> {
         let good = self.runs(setting).filter(|(_, r)| r.status == Status::Done);
         good.filter_map(|(seed, r)| {
@@ -166,7 +167,7 @@ impl Trade {
         }
     }
 
-    /// Differences seed by seed, as errors.
+    /// Returns the differences seed by seed, as errors.
     fn error(
         &self,
         o: usize,
@@ -176,8 +177,8 @@ impl Trade {
         let output = &self.outputs[o];
         let base: Vec<f64> = against.values().copied().collect();
         let scale = match output.wanted {
-            Wanted::Absolute(_) => 1.0,
-            Wanted::Relative(_) => {
+            ErrorTarget::Absolute(_) => 1.0,
+            ErrorTarget::Relative(_) => {
                 let size = match output.exact {
                     Some(x) => x,
                     None => self.mean(&base)?.mean,
@@ -262,7 +263,7 @@ impl Trade {
         of: &dyn Fn(&Combination, usize) -> BTreeMap<u64, f64>,
         own: &[Option<OwnError>],
     ) -> Row {
-        let runs: Vec<(u64, &Finished)> = self.runs(setting).collect();
+        let runs: Vec<(u64, &FinishedRun)> = self.runs(setting).collect();
         let n = runs.len().max(1) as f64;
         let failed = runs.iter().find_map(|(seed, r)| match &r.status {
             Status::Slow(s) => Some(format!("slower than the reference, stopped after {s:.0} s")),
@@ -320,10 +321,13 @@ impl Trade {
 /// be multiplied by a large factor.
 const NEAREST: f64 = 1.5;
 
-/// The level next to the reference's, of an ordered parameter: the first that is coarse enough for
-/// the estimate, otherwise the next one.
+/// Returns the level next to the reference's, for an ordered parameter: the first that is coarse
+/// enough for the estimate, otherwise the next one.
 pub fn neighbour(parameter: &Varied) -> Option<usize> {
-    let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
+    let ordered = matches!(
+        parameter.sense,
+        ParameterEffect::Step | ParameterEffect::Tolerance
+    );
     let mut coarser = parameter.reference + 1..parameter.levels.len();
     let next = coarser.clone().next().filter(|_| ordered)?;
     coarser
@@ -331,14 +335,14 @@ pub fn neighbour(parameter: &Varied) -> Option<usize> {
         .or(Some(next))
 }
 
-/// Ratio of a level to the reference's level.
+/// Returns the ratio of a level to the reference's level.
 fn ratio(parameter: &Varied, level: usize) -> Option<f64> {
     Some(parameter.levels.get(level)?.number? / parameter.levels.get(parameter.reference)?.number?)
 }
 
-/// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own
-/// error. For first order e(rh) - e(h) = (r - 1) e(h), so 1/(r - 1), and at least 1 up to r = 2.
-/// `None` if the levels are too close.
+/// Returns the factor on the difference from a level `ratio` times as coarse that bounds the
+/// reference's own error. For first order e(rh) - e(h) = (r - 1) e(h), hence 1/(r - 1), and at
+/// least 1 up to r = 2. `None` if the levels are too close.
 fn weight(ratio: f64) -> Option<f64> {
     match ratio {
         r if r >= 2.0 => Some(1.0),
@@ -348,20 +352,20 @@ fn weight(ratio: f64) -> Option<f64> {
 }
 
 /// A formatted error: `-0.8 +- 0.3 %`.
-pub struct ShownError<'a>(pub &'a Mean, pub Wanted);
+pub struct ShownError<'a>(pub &'a Mean, pub ErrorTarget);
 
 impl std::fmt::Display for ShownError<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mean = self.0;
         let half = match (mean.half_width, self.1) {
             (Some(0.0), _) => String::new(),
-            (Some(h), Wanted::Relative(_)) => format!(" +- {}", share(h)),
-            (Some(h), Wanted::Absolute(_)) => format!(" +- {h:.1e}"),
+            (Some(h), ErrorTarget::Relative(_)) => format!(" +- {}", share(h)),
+            (Some(h), ErrorTarget::Absolute(_)) => format!(" +- {h:.1e}"),
             (None, _) => " +- ?".into(),
         };
         match self.1 {
-            Wanted::Relative(_) => write!(f, "{}{half} %", share(mean.mean)),
-            Wanted::Absolute(_) => write!(f, "{:.2e}{half}", mean.mean),
+            ErrorTarget::Relative(_) => write!(f, "{}{half} %", share(mean.mean)),
+            ErrorTarget::Absolute(_) => write!(f, "{:.2e}{half}", mean.mean),
         }
     }
 }
@@ -401,12 +405,12 @@ mod tests {
     fn levels_too_near_are_passed_over() {
         let level = |x: f64| Level::of(&[], &x.to_string());
         let levels = [1.0, 1.1, 2.0].map(level).into();
-        let mut parameter = Varied::new("step", Sense::Step, levels, Some(0));
+        let mut parameter = Varied::new("step", ParameterEffect::Step, levels, Some(0));
         assert_eq!(neighbour(&parameter), Some(2));
         parameter.levels.pop();
         assert_eq!(neighbour(&parameter), Some(1));
         assert_eq!(ratio(&parameter, 1).and_then(weight), None);
-        parameter.sense = Sense::Choice;
+        parameter.sense = ParameterEffect::Choice;
         assert_eq!(neighbour(&parameter), None);
     }
 }

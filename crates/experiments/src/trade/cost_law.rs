@@ -2,27 +2,27 @@
 
 use super::combination::Combination;
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
-use crate::runs::launcher::Patience;
+use crate::runs::launcher::WaitLimits;
 use crate::runs::output::column;
-use crate::runs::stored::{Finished, Status};
+use crate::runs::stored::{FinishedRun, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Cost = own (h0/h) (tol0/tol)^power, times the factor of each other form of the case.
+/// Cost of a setting: own (h0/h) (tol0/tol)^power, times the factor of each other form of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CostLaw {
     /// Duration of the case's own setting (s).
     pub own: f64,
     /// Exponent of the cost in the inverse of the tolerance.
     pub power: f64,
-    /// Cost of a form of the case over that of its own: parameter, level, factor.
+    /// Ratio of the cost of a form of the case to that of its own: parameter, level, factor.
     #[serde(default)]
     pub forms: Vec<(usize, usize, f64)>,
-    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is a
-    /// guess, and not stored.
+    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is
+    /// uncertain, and not stored.
     pub measured: bool,
 }
 
@@ -38,8 +38,8 @@ impl Default for CostLaw {
 }
 
 impl Trade {
-    /// Runs the case's own setting, its other forms and the finest setting for a short while each.
-    /// A run that ends within that time is done.
+    /// Runs the case's own setting, its other forms and the finest setting for a short time each. A
+    /// run that ends within that time counts as done.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -59,15 +59,16 @@ impl Trade {
         let mut forms = Vec::new();
         for (k, parameter) in parameters.iter().enumerate() {
             let others = (0..parameter.levels.len()).filter(|l| *l != parameter.own);
-            for level in others.filter(|_| parameter.sense == Sense::Form) {
+            for level in others.filter(|_| parameter.sense == ParameterEffect::Form) {
                 forms.push((k, level, seconds(&own.with(k, level))? / base.max(1e-3)));
             }
         }
-        let fine = shrink(&finest, &parameters, Sense::Tolerance);
+        let fine = shrink(&finest, &parameters, ParameterEffect::Tolerance);
         let power = if fine < 1.0 && own != finest {
             let other = factor(&forms, &finest);
-            let ratio =
-                seconds(&finest)? / base * shrink(&finest, &parameters, Sense::Step) / other;
+            let ratio = seconds(&finest)? / base
+                * shrink(&finest, &parameters, ParameterEffect::Step)
+                / other;
             (ratio.ln() / (1.0 / fine).ln()).clamp(0.0, 1.0)
         } else {
             0.0
@@ -81,7 +82,7 @@ impl Trade {
         Ok(())
     }
 
-    /// Duration of a setting (s), and whether it was measured.
+    /// Returns the duration of a setting (s), and whether it was measured.
     fn probe_setting(
         &mut self,
         setting: &Combination,
@@ -92,25 +93,25 @@ impl Trade {
         if let Some(run) = self.launcher.stored(&run) {
             return Ok((run.wall, true));
         }
-        let all = self.steps / shrink(setting, &self.parameters, Sense::Step);
+        let all = self.steps / shrink(setting, &self.parameters, ParameterEffect::Step);
         let table = self.launcher.place(&run).join("statistics.csv");
         let mut guess = f64::INFINITY;
         // Rows are written in batches: without one, the probe is repeated once with more time.
         for longer in [1, 3] {
             let started = Instant::now();
-            let patience = Patience {
+            let wait = WaitLimits {
                 deadline: Some(started + longer * each),
                 limit: None,
                 stop,
             };
-            let ended = self.launcher.run(&run, patience)?;
+            let ended = self.launcher.run(&run, wait)?;
             let ended_at = std::time::SystemTime::now();
             if let Some(finished) = ended {
                 let wall = finished.wall;
                 self.done.insert((setting.clone(), run.seed), finished);
                 return Ok((wall, true));
             }
-            // Steps are timed from the creation of the table; the time before is a constant.
+            // Steps are timed from the creation of the table; the time before it is constant.
             let begun = std::fs::metadata(&table).and_then(|m| m.created()).ok();
             let stepping = begun.and_then(|t| ended_at.duration_since(t).ok());
             let stepping = stepping.unwrap_or_else(|| started.elapsed()).as_secs_f64();
@@ -123,10 +124,10 @@ impl Trade {
         Ok((guess, false))
     }
 
-    /// Duration of a run (s): that of its other seeds, or the cost law, multiplied by its mean
-    /// error so far.
+    /// Returns the duration of a run (s): that of its other seeds, or the cost law, multiplied by
+    /// its mean error so far.
     pub fn seconds(&self, setting: &Combination) -> f64 {
-        let ended = |r: &&Finished| r.status == Status::Done;
+        let ended = |r: &&FinishedRun| r.status == Status::Done;
         let of = |setting: &Combination| -> Vec<f64> {
             let own = self.done.iter().filter(|((s, _), _)| s == setting);
             own.map(|(_, r)| r).filter(ended).map(|r| r.wall).collect()
@@ -135,7 +136,7 @@ impl Trade {
         if !same.is_empty() {
             return same.iter().sum::<f64>() / same.len() as f64;
         }
-        // Correct by the case's own setting if it ran, otherwise by all that ran.
+        // The correction uses the case's own setting if it ran, otherwise all settings that ran.
         let own = Combination::own(&self.parameters);
         let ratios = |only: bool| -> Vec<f64> {
             self.done
@@ -151,16 +152,16 @@ impl Trade {
         self.cost_law(setting) * off.exp()
     }
 
-    /// Duration from the probes alone (s).
+    /// Returns the duration according to the probes alone (s).
     pub fn cost_law(&self, setting: &Combination) -> f64 {
-        let step = shrink(setting, &self.parameters, Sense::Step);
-        let tolerance = shrink(setting, &self.parameters, Sense::Tolerance);
+        let step = shrink(setting, &self.parameters, ParameterEffect::Step);
+        let tolerance = shrink(setting, &self.parameters, ParameterEffect::Tolerance);
         let law = &self.cost;
         law.own.max(1e-3) / step * tolerance.powf(-law.power) * factor(&law.forms, setting)
     }
 }
 
-/// Product of the cost factors of a setting's forms.
+/// Returns the product of the cost factors of a setting's forms.
 fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
     let here = forms
         .iter()
@@ -168,8 +169,9 @@ fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
     here.map(|(_, _, factor)| factor).product()
 }
 
-/// Ratio of the case's own step or tolerance to that of the setting; 1 if it is not varied.
-fn shrink(setting: &Combination, parameters: &[Varied], sense: Sense) -> f64 {
+/// Returns the ratio of the case's own step or tolerance to that of the setting; 1 if it is not
+/// varied.
+fn shrink(setting: &Combination, parameters: &[Varied], sense: ParameterEffect) -> f64 {
     let of = |(k, level): (&Varied, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
         Some(number(*level)? / number(k.own)?)

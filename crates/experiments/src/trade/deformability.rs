@@ -1,12 +1,12 @@
-//! The preset `deformability`: the forms of one case by what may deform in it, from rigid contacts
-//! to grains of finite elements.
+//! The preset `deformability`: forms of one case that differ in which bodies deform, from rigid
+//! contacts to grains of finite elements.
 //!
-//! A level is a list of `--set` arguments. Numbers that a form needs are those of the scene: `mu`
-//! of its contact laws, properties of its materials. A form that needs numbers which the scene does
-//! not have is left out.
+//! A level is a list of `--set` arguments. Numbers that a form needs come from the scene: `mu` of
+//! its contact laws, properties of its materials. A form whose numbers the scene does not have is
+//! left out.
 
 use super::variant::field;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::Level;
 use fretwork_core::bodies::Dof;
@@ -20,22 +20,22 @@ use fretwork_scene::material::Material;
 use fretwork_scene::source::Source;
 use std::collections::BTreeMap;
 
-/// Restitution of a compliant contact whose rigid law has none: nearly critical damping
-/// (docs/compliant.md).
+/// Restitution of a compliant contact that replaces a rigid law without restitution: nearly
+/// critical damping (docs/compliant.md).
 const RESTITUTION: f64 = 0.1;
 
-/// Position correction of rigid contacts that replace springs: these do not sink, rigid ones do, by
-/// the tolerance of each step.
+/// Position correction of rigid contacts that replace springs: springs do not sink, rigid contacts
+/// do, by the tolerance of each step.
 const CORRECTION: f64 = 0.05;
 
-/// What a scene has that its forms are made from.
+/// Properties of a scene from which its forms are made.
 #[derive(Debug)]
 pub struct Deformability {
     /// The contact laws, in the order of the interfaces.
     contacts: Vec<ContactLaw>,
-    /// The materials of the grains that are rigid bodies.
+    /// Materials of the grains that are rigid bodies.
     grains: Vec<Grains>,
-    /// How the error of a step is measured.
+    /// Norm of the error of a step.
     norm: Norm,
 }
 
@@ -51,12 +51,12 @@ struct ContactLaw {
 #[derive(Debug)]
 struct Grains {
     material: String,
-    /// Time in which a wave crosses a grain of the mean radius (s); or what their file lacks.
+    /// Time in which a wave crosses a grain of the mean radius (s), or the missing properties.
     crossing: Result<f64, String>,
 }
 
 impl Deformability {
-    /// Reads it from a built scene.
+    /// Reads the properties from a built scene.
     pub fn of(case: &Case, built: &Built) -> Self {
         let s = &built.simulation;
         let contacts = s.laws().iter().map(|interface| {
@@ -74,7 +74,7 @@ impl Deformability {
         let balls = balls.map(|b| (b.body, b.material, b.radius));
         let pieces = s.pieces().into_iter();
         let pieces = pieces.map(|p| (p.body, p.material, p.size));
-        // Sum of the radii and their number, by material.
+        // These are the sum of the radii and their number, by material.
         let mut radii: BTreeMap<u16, (f64, f64)> = BTreeMap::new();
         for (_, material, radius) in balls.chain(pieces).filter(|x| is_grain[x.0 as usize]) {
             let sum = radii.entry(material).or_default();
@@ -104,8 +104,8 @@ impl Deformability {
     }
 }
 
-/// Young's modulus in the text of a material's file, which has Poisson's ratio too; or what it
-/// lacks.
+/// Returns Young's modulus from the text of a material's file, which must have Poisson's ratio too;
+/// or the missing properties.
 fn young(text: &str, name: &str) -> Result<f64, String> {
     let material: Material = Source::from_text(name, text)
         .parse()
@@ -119,11 +119,11 @@ fn young(text: &str, name: &str) -> Result<f64, String> {
     property("young", "Pa")
 }
 
-/// The forms of a case from the one that assumes least to rigid contacts; the first is the
-/// reference, since lower ones leave out what it has.
+/// Returns the forms of a case from the one with the fewest assumptions to rigid contacts; the
+/// first is the reference, since the others neglect some of its effects.
 ///
 /// # Errors
-/// There is one form only: a sentence that says why.
+/// There is one form only; the sentence gives the reason.
 pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     let bodies_deform = !case.half_spaces.is_empty() || !case.elastic.is_empty();
     let springs = scene.contacts.iter().any(|c| c.compliant);
@@ -152,7 +152,7 @@ pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     let every: Vec<usize> = (0..case.interfaces.len()).collect();
     forms.push(("compliant", below(compliant_contacts(case, scene))));
     forms.push(("rigid", below(rigid_contacts(case, scene, &every, true))));
-    let mut parameter = Varied::new("deformability", Sense::Form, Vec::new(), Some(0));
+    let mut parameter = Varied::new("deformability", ParameterEffect::Form, Vec::new(), Some(0));
     for (label, form) in forms {
         let sets = match form {
             _ if label == own => {
@@ -171,7 +171,7 @@ pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     Ok(parameter)
 }
 
-/// Whether there is something to compare.
+/// Checks that there is something to compare.
 fn several(parameter: &Varied) -> Result<(), String> {
     if parameter.levels.len() > 1 {
         return Ok(());
@@ -185,10 +185,10 @@ fn several(parameter: &Varied) -> Result<(), String> {
     ))
 }
 
-/// Takes out the levels whose case is refused, with the reason.
+/// Removes the levels whose case is refused, and records the reason.
 ///
 /// # Errors
-/// None is left beside the case's own.
+/// No level is left except the case's own.
 pub fn keep_accepted(
     parameter: &mut Varied,
     accept: impl Fn(&[String]) -> Result<(), String>,
@@ -210,7 +210,7 @@ pub fn keep_accepted(
     several(parameter).map_err(|why| Error::Usage(format!("--setting deformability: {why}")))
 }
 
-/// Where an interface is in the case, for `--set`.
+/// Returns the path of an interface in the case, for `--set`.
 fn place(k: usize, spec: &InterfaceSpec) -> String {
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let plain = spec.name.chars().all(word) && spec.name.parse::<u64>().is_err();
@@ -220,7 +220,7 @@ fn place(k: usize, spec: &InterfaceSpec) -> String {
     }
 }
 
-/// A contact law and its parameters in place of those of an interface.
+/// Replaces the contact law and its parameters in an interface.
 fn contact(k: usize, spec: &InterfaceSpec, law: &str, values: &[(&str, f64)]) -> Vec<String> {
     let at = place(k, spec);
     let values: Vec<String> = values
@@ -233,7 +233,7 @@ fn contact(k: usize, spec: &InterfaceSpec, law: &str, values: &[(&str, f64)]) ->
     ]
 }
 
-/// Rigid contacts in place of springs, at some interfaces.
+/// Replaces springs by rigid contacts in some interfaces.
 fn rigid_contacts(
     case: &Case,
     scene: &Deformability,
@@ -258,7 +258,8 @@ fn rigid_contacts(
     if sets.is_empty() {
         return Ok(sets);
     }
-    // Heat over that of slip is a measure for springs; rigid contacts are tested by their balance.
+    // Energy over the heat of slip is a measure for springs; rigid contacts are tested by their
+    // balance.
     if scene.norm == Norm::Power {
         if case.solver.norm.is_some() {
             sets.push("solver.norm=Balance".to_owned());
@@ -274,7 +275,7 @@ fn rigid_contacts(
     Ok(sets)
 }
 
-/// Springs of the materials' moduli in place of rigid contacts.
+/// Replaces rigid contacts by springs with the materials' moduli.
 fn compliant_contacts(case: &Case, scene: &Deformability) -> Result<Vec<String>, String> {
     let mut sets = Vec::new();
     for (k, spec) in case.interfaces.iter().enumerate() {
@@ -300,8 +301,8 @@ fn compliant_contacts(case: &Case, scene: &Deformability) -> Result<Vec<String>,
     Ok(sets)
 }
 
-/// Grains that deform in place of rigid ones, with rigid contacts: the elasticity of a grain is
-/// then that of its elements, and a spring at its contacts would count it twice.
+/// Replaces rigid grains by deformable ones with rigid contacts: the elasticity of a grain is then
+/// that of its elements, and a spring at its contacts would count it twice.
 fn deforming_grains(case: &Case, scene: &Deformability) -> Result<Vec<String>, String> {
     let soft = scene
         .grains
@@ -335,7 +336,7 @@ fn deforming_grains(case: &Case, scene: &Deformability) -> Result<Vec<String>, S
     Ok(sets)
 }
 
-/// Rigid grains in place of those that deform.
+/// Replaces deformable grains by rigid ones.
 fn rigid_grains(case: &Case) -> Vec<String> {
     match case.elastic_grains.is_empty() {
         true => Vec::new(),
@@ -343,7 +344,7 @@ fn rigid_grains(case: &Case) -> Vec<String> {
     }
 }
 
-/// Rigid first bodies in place of half-spaces, which is exact for planes.
+/// Replaces half-spaces by rigid first bodies, which is exact for planes.
 fn rigid_first_bodies(case: &Case) -> Result<Vec<String>, String> {
     if let Some(body) = case.elastic.first() {
         return Err(format!(

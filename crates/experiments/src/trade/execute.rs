@@ -2,31 +2,31 @@
 
 use super::combination::Combination;
 use super::plan::Trade;
-use super::varied::Sense;
+use super::varied::ParameterEffect;
 use crate::Error;
-use crate::runs::launcher::{Launcher, Patience, Run};
+use crate::runs::launcher::{Launcher, Run, WaitLimits};
 use crate::runs::pool::workers;
-use crate::runs::stored::{Finished, Status};
+use crate::runs::stored::{FinishedRun, Status};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// Factor on the reference's duration after which another run is stopped as too slow. Wall time is
+/// Ratio to the reference's duration above which another run is stopped as too slow. Wall time is
 /// used, which other programs may affect.
 const PATIENCE: f64 = 3.0;
 
-/// Event for a progress display, of a setting and a seed.
+/// Event for a progress display, with a setting and a seed.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// A run begins, with its expected duration (s).
     Begins(&'a str, u64, f64),
     /// A run ended.
-    Ended(&'a str, u64, &'a Finished),
+    Ended(&'a str, u64, &'a FinishedRun),
 }
 
 /// Called with every event.
-pub type Watch<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
+pub type OnEvent<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
 
 impl Trade {
     /// Runs the settings. It ends early, without an error, when the budget is spent or `stop` is
@@ -34,7 +34,7 @@ impl Trade {
     ///
     /// # Errors
     /// A run cannot be started, or no reference could be run.
-    pub fn execute(&mut self, stop: &AtomicBool, watch: Watch<'_>) -> Result<(), Error> {
+    pub fn execute(&mut self, stop: &AtomicBool, watch: OnEvent<'_>) -> Result<(), Error> {
         self.run_reference(stop, watch)?;
         let first = self.first();
         self.batch(&first, stop, watch)?;
@@ -47,11 +47,12 @@ impl Trade {
         Ok(())
     }
 
-    /// Runs the reference, a coarser one where it fails.
-    fn run_reference(&mut self, stop: &AtomicBool, watch: Watch<'_>) -> Result<(), Error> {
+    /// Runs the reference, or a coarser one if it fails.
+    fn run_reference(&mut self, stop: &AtomicBool, watch: OnEvent<'_>) -> Result<(), Error> {
         loop {
             let reference = Combination::reference(&self.parameters);
-            // Runs stopped as too slow for a finer reference may be the reference now.
+            // Runs that were stopped as too slow compared with a finer reference may be the
+            // reference now.
             self.done
                 .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
             self.batch(std::slice::from_ref(&reference), stop, watch)?;
@@ -70,7 +71,11 @@ impl Trade {
                 .filter(|&k| self.parameters[k].may_be_coarser())
                 .max_by_key(|&k| {
                     let sense = self.parameters[k].sense;
-                    (sense == Sense::Tolerance, sense != Sense::Form, k)
+                    (
+                        sense == ParameterEffect::Tolerance,
+                        sense != ParameterEffect::Form,
+                        k,
+                    )
                 });
             let Some(k) = coarser else {
                 return Err(Error::Failed(format!(
@@ -89,7 +94,7 @@ impl Trade {
         &mut self,
         settings: &[Combination],
         stop: &AtomicBool,
-        watch: Watch<'_>,
+        watch: OnEvent<'_>,
     ) -> Result<(), Error> {
         let reference = Combination::reference(&self.parameters);
         let mut queue = VecDeque::new();
@@ -114,12 +119,12 @@ impl Trade {
         workers(jobs, &|| {
             while let Some(job) = take(&shared, &reference, stop) {
                 watch(&Event::Begins(&job.name, job.run.seed, job.expected));
-                let patience = Patience {
+                let wait = WaitLimits {
                     deadline,
                     limit: job.limit,
                     stop,
                 };
-                let ended = job.launcher.run(&job.run, patience);
+                let ended = job.launcher.run(&job.run, wait);
                 let Ok(mut guard) = shared.lock() else { return };
                 match ended {
                     Ok(Some(run)) => {
@@ -158,17 +163,18 @@ struct Job {
 
 type Shared<'a> = Mutex<(&'a mut Trade, VecDeque<(Combination, u64)>)>;
 
-/// The next run that fits into the remaining time by the forecast; a setting is started only if all
-/// its seeds fit. The reference is always started, since nothing can be compared without it.
+/// Returns the next run that fits into the remaining time by the forecast; a setting is started
+/// only if all its seeds fit. The reference is always started, since nothing can be compared
+/// without it.
 fn take(shared: &Shared<'_>, reference: &Combination, stop: &AtomicBool) -> Option<Job> {
     let mut guard = shared.lock().ok()?;
     let (trade, queue) = &mut *guard;
     loop {
         let (setting, seed) = queue.pop_front()?;
         let left = trade.left();
-        let failed = |r: &Finished| r.status != Status::Done;
+        let failed = |r: &FinishedRun| r.status != Status::Done;
         let known = |s: &Combination| trade.done.range((s.clone(), 0)..=(s.clone(), u64::MAX));
-        // A setting with one failed seed is rejected, so its other seeds need not run.
+        // A setting with one failed seed is rejected, so that its other seeds need not run.
         if known(&setting).any(|(_, r)| failed(r)) {
             continue;
         }

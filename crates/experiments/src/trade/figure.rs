@@ -2,16 +2,17 @@
 
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use super::plan::Trade;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels, quantity};
 use std::path::Path;
 
 const GREY: (u8, u8, u8) = (120, 120, 120);
 const RED: (u8, u8, u8) = (190, 30, 45);
-/// Largest number of settings with their own legend entry; more are grouped by what they change.
+/// Largest number of settings with their own legend entry; if there are more, they are grouped by
+/// what they change.
 const NAMED: usize = 8;
 /// One colour per group of settings, in the order of their first appearance.
 const COLOURS: [(u8, u8, u8); 8] = [
@@ -47,27 +48,27 @@ pub fn draw(trade: &Trade, found: &Comparison, path: &Path) -> Result<bool, Draw
 /// Settings that ran, with their errors of the output of a panel.
 type SettingErrors<'a> = Vec<(&'a Row, &'a OutputError)>;
 
-/// What a panel shows: the errors of one output.
+/// A panel with the errors of one output.
 struct Panel<'a> {
     trade: &'a Trade,
     output: &'a Output,
     reference: Combination,
     /// All settings with a finite error.
     good: SettingErrors<'a>,
-    /// Those whose error is one from the reference or from the exact value.
+    /// Settings whose error is relative to the reference or the exact value.
     others: SettingErrors<'a>,
     /// Factor of errors, 100 for those in per cent.
     factor: f64,
-    /// Errors below it are drawn at it, since the axis is logarithmic.
+    /// Smallest error that is drawn; smaller ones are drawn at it, since the axis is logarithmic.
     floor: f64,
 }
 
 fn panel(trade: &Trade, found: &Comparison, o: usize) -> Chart {
     let output = &trade.outputs[o];
-    let (Wanted::Relative(wanted) | Wanted::Absolute(wanted)) = output.wanted;
+    let (ErrorTarget::Relative(wanted) | ErrorTarget::Absolute(wanted)) = output.wanted;
     let (factor, unit) = match output.wanted {
-        Wanted::Relative(_) => (100.0, "%"),
-        Wanted::Absolute(_) => (1.0, ""),
+        ErrorTarget::Relative(_) => (100.0, "%"),
+        ErrorTarget::Absolute(_) => (1.0, ""),
     };
     let name = output.name().replace('_', " ");
     let y = Axis::new(format!("error of {name}"), unit).log();
@@ -126,7 +127,7 @@ impl Panel<'_> {
         line
     }
 
-    /// Errors with their intervals, a series for each setting or for each group of them.
+    /// Returns errors with their intervals, a series for each setting or for each group of them.
     fn settings(&self, each: bool) -> Vec<Series> {
         let mut groups: Vec<(String, SettingErrors<'_>)> = Vec::new();
         for &(row, e) in &self.others {
@@ -162,7 +163,7 @@ impl Panel<'_> {
         series.collect()
     }
 
-    /// The reference's own error, where it is known and there is no exact value.
+    /// Returns the reference's own error, where it is known and there is no exact value.
     fn own_error(&self) -> Option<Series> {
         let (r, e) = self.good.iter().find(|(r, e)| {
             r.setting == self.reference && self.output.exact.is_none() && e.bound.is_finite()
@@ -192,7 +193,7 @@ fn subtitle(trade: &Trade, output: &Output, found: &Comparison, o: usize) -> Str
     format!("{against}, {seeds}")
 }
 
-/// Four significant digits or decimals.
+/// Formats with four significant digits or decimals.
 fn shown(x: f64) -> String {
     if (1e-3..1e6).contains(&x.abs()) {
         format!("{x:.4}")
@@ -201,8 +202,8 @@ fn shown(x: f64) -> String {
     }
 }
 
-/// A setting by the values of all parameters that vary: what stands in the case may change, a
-/// figure says what was run.
+/// Names a setting by the values of all parameters that vary: the case may change, while a figure
+/// must show what was run.
 fn named(parameters: &[Varied], setting: &Combination) -> String {
     let varied = parameters
         .iter()
@@ -223,14 +224,14 @@ fn named(parameters: &[Varied], setting: &Combination) -> String {
 
 fn value(parameter: &Varied, level: &Level) -> String {
     match (parameter.sense, level.number) {
-        (Sense::Step, Some(x)) => quantity(x, "s", 2),
-        (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
+        (ParameterEffect::Step, Some(x)) => quantity(x, "s", 2),
+        (ParameterEffect::Tolerance, Some(x)) => quantity(x, "", 1),
         _ => level.label.clone(),
     }
 }
 
-/// Group of a setting among many: the case's own by its values, others by the parameter they
-/// change.
+/// Returns the group of a setting among many: for the case's own by its values, for others by the
+/// parameter they change.
 fn group(trade: &Trade, row: &Row) -> String {
     match row.setting.changed(&trade.parameters).as_slice() {
         [] => format!("as in the case: {}", named(&trade.parameters, &row.setting)),
@@ -251,8 +252,8 @@ mod tests {
         };
         for own in [0, 1] {
             let parameters = [
-                parameter("time.step", Sense::Step, own),
-                parameter("solver.tolerance", Sense::Tolerance, own),
+                parameter("time.step", ParameterEffect::Step, own),
+                parameter("solver.tolerance", ParameterEffect::Tolerance, own),
             ];
             let name = named(&parameters, &Combination(vec![0, 1]));
             assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");

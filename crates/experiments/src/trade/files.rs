@@ -3,12 +3,12 @@
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
 use super::figure::draw;
-use super::output::Wanted;
+use super::output::ErrorTarget;
 use super::plan::Findings;
 use super::plan::Trade;
 use super::verdict::Verdict;
 use crate::Error;
-use crate::table::{Column, Table, Type, csv};
+use crate::table::{Column, ColumnType, Table, csv};
 use fretwork_math::statistics::interval::CONFIDENCE;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -26,12 +26,12 @@ pub fn write(trade: &Trade, answer: &Findings, out: &Path) -> Result<(String, bo
     csv::write(
         &settings(trade, found),
         &out.join("trade.csv"),
-        csv::Numbers::Exponents,
+        csv::NumberFormat::Exponents,
     )?;
     let picture = out.join("trade.png");
     let drawn = draw(trade, found, &picture)?;
     if !drawn {
-        // A picture of an earlier trade would be mistaken for one of this.
+        // A picture of an earlier trade would be mistaken for one of this trade.
         let _ = std::fs::remove_file(&picture);
     }
     Ok((json, drawn))
@@ -46,8 +46,8 @@ fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool)
         .zip(&found.own)
         .map(|(o, own)| {
             let (kind, wanted) = match o.wanted {
-                Wanted::Relative(w) => ("relative", w),
-                Wanted::Absolute(w) => ("absolute", w),
+                ErrorTarget::Relative(w) => ("relative", w),
+                ErrorTarget::Absolute(w) => ("absolute", w),
             };
             json!({
                 "name": o.name(), "wanted": wanted, "error": kind, "exact": o.exact,
@@ -103,8 +103,8 @@ fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool)
     })
 }
 
-/// One row per setting; errors are fractions of the reference's value or in the output's unit, as
-/// requested.
+/// Returns one row per setting; errors are fractions of the reference's value or in the output's
+/// unit, as requested.
 fn settings(trade: &Trade, found: &Comparison) -> Table {
     let rows = &found.rows;
     let reference = Combination::reference(&trade.parameters);
@@ -144,7 +144,7 @@ fn settings(trade: &Trade, found: &Comparison) -> Table {
             of("_at_most", &|e| Some(e.at_most)),
             of("_at_most_with_reference", &|e| Some(e.bound)),
             Column {
-                kind: Type::Whole,
+                kind: ColumnType::Whole,
                 ..of("_frontier", &|e| flag(e.on_frontier))
             },
         ]);

@@ -1,7 +1,7 @@
 //! Pareto frontier: settings for which no other is both cheaper and more accurate.
 
-/// Which of the points (cost, error) are not dominated: a point is dominated if another is no worse
-/// in both and better in one. Points that are not finite are never on the frontier.
+/// Returns which of the points (cost, error) are not dominated: a point is dominated if another is
+/// no worse in both and better in one. Points that are not finite are never on the frontier.
 pub fn frontier(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let beats = |a: &(f64, f64), b: &(f64, f64)| {

@@ -1,13 +1,13 @@
 //! The option `--vary key.path=a,b,c`: any value of the case with listed levels.
 
 use super::ordered::{steps, tolerances};
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use crate::{Error, load};
-use fretwork_scene::{Loaded, invisible_characters};
+use fretwork_scene::{LoadedCase, invisible_characters};
 
 /// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
-pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<Varied, Error> {
+pub(super) fn listed(loaded: &LoadedCase, tolerance: f64, argument: &str) -> Result<Varied, Error> {
     let form = || {
         Error::Usage(format!(
             "--vary {argument}: expected key.path=a,b,c with two values or more, the finest first"
@@ -36,7 +36,7 @@ pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<
     };
     let levels: Vec<Level> = values.iter().map(level).collect();
     let before = loaded.source.sets();
-    // Compares the text of the case before and after: a value that does not change it is the case's
+    // The texts of the case before and after are compared: a value without effect is the case's
     // own.
     let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {
@@ -66,7 +66,12 @@ pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<
         }
         _ => {}
     }
-    Ok(Varied::new(key.trim(), Sense::Listed, levels, own))
+    Ok(Varied::new(
+        key.trim(),
+        ParameterEffect::Listed,
+        levels,
+        own,
+    ))
 }
 
 fn split(text: &str) -> Vec<String> {

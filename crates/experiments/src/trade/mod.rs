@@ -3,12 +3,12 @@
 //!
 //! A [`request`] is checked ([`refuse`]) and becomes a trade: [`presets`], [`listed`] and
 //! [`variant`] make the [`varied`] [`parameters`], [`ordered`] the levels of a step or a tolerance,
-//! [`deformability`] those that change what deforms. [`plan`] says which settings run, by their
-//! [`cost_law`], [`execute`] runs them, [`combinations`] adds promising combinations of levels,
-//! [`chaos`] tests whether runs scatter where the seed changes nothing. [`output`] says which
-//! numbers are compared and how well, [`compare`] compares them with the reference, [`frontier`]
-//! finds the non-dominated settings, [`verdict`] the cheapest one for a wanted error, and
-//! [`table`], [`files`] and [`figure`] report the result.
+//! [`deformability`] those that change which bodies deform. [`plan`] determines which settings run,
+//! by their [`cost_law`], [`execute`] runs them, [`combinations`] adds promising combinations of
+//! levels, [`chaos`] tests whether runs scatter where the seed changes nothing. [`output`]
+//! describes the numbers that are compared and their wanted errors, [`compare`] compares them with
+//! the reference, [`frontier`] finds the non-dominated settings, [`verdict`] the cheapest one for a
+//! wanted error, and [`table`], [`files`] and [`figure`] report the result.
 
 mod chaos;
 mod combination;
@@ -43,6 +43,6 @@ use crate::folder::Owner;
 /// The owner of folders of trades.
 pub const OWNER: Owner = Owner {
     command: "fretwork trade",
-    mark: "trade.lock",
+    lock_file: "trade.lock",
     files: &["plan.json", "trade.json"],
 };

@@ -1,12 +1,13 @@
-//! Levels of a step or a tolerance, from the finest up, with what else they change.
+//! Levels of a step or a tolerance, from the finest up, with their further changes.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::factor::Level;
 use fretwork_scene::case::Case;
 
 /// Formats a number so that RON can read it.
 fn digits(x: f64) -> String {
-    // Powers of two of a decimal number have rounding noise at the end, which 12 digits remove.
+    // Products of a decimal number with powers of two have rounding errors at the end, which 12
+    // digits remove.
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
     if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
         format!("{rounded:e}")
@@ -24,11 +25,11 @@ pub(super) fn number(key: &str, x: f64) -> Level {
     }
 }
 
-/// Positive values including the case's own, from the finest up, each with the arguments of its
-/// level.
+/// Returns positive values including the case's own, from the finest up, each with the arguments of
+/// its level.
 fn ordered(
     name: &str,
-    sense: Sense,
+    sense: ParameterEffect,
     own: f64,
     mut values: Vec<f64>,
     level: impl Fn(f64) -> Level,
@@ -45,9 +46,9 @@ fn ordered(
 
 pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {
     let every = case.output.every as f64 * case.time.step;
-    ordered("step", Sense::Step, case.time.step, values, |h| {
+    ordered("step", ParameterEffect::Step, case.time.step, values, |h| {
         let mut level = number("time.step", h);
-        // Keeps the case's interval between statistics rows in time.
+        // The interval in time between rows of the statistics is that of the case.
         let rows = (every / h).round().max(1.0);
         if rows != case.output.every as f64 {
             level.sets.push(format!("output.every={rows}"));
@@ -57,10 +58,10 @@ pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {
 }
 
 pub(super) fn tolerances(case: &Case, own: f64, values: Vec<f64>) -> Varied {
-    ordered("tolerance", Sense::Tolerance, own, values, |t| {
+    ordered("tolerance", ParameterEffect::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
         if t < own {
-            // First-order methods need proportionally more iterations in the worst case.
+            // In the worst case methods of first order need proportionally more iterations.
             let most = f64::from(case.solver.max_iterations) * own / t;
             let most = most.min(f64::from(u32::MAX)).round();
             level.sets.push(format!("solver.max_iterations={most}"));

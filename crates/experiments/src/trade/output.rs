@@ -1,4 +1,4 @@
-//! Outputs that a study compares, each with the error wanted.
+//! Outputs that a trade compares, each with the wanted error.
 
 use crate::Error;
 use crate::runs::output::OutputName;
@@ -6,10 +6,10 @@ use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
 
 /// The wanted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
+pub enum ErrorTarget {
     /// A fraction of the reference's value.
     Relative(f64),
-    /// In the unit of the output.
+    /// An error in the unit of the output.
     Absolute(f64),
 }
 
@@ -19,7 +19,7 @@ pub struct Output {
     /// The number.
     pub quantity: OutputName,
     /// The error wanted.
-    pub wanted: Wanted,
+    pub wanted: ErrorTarget,
     /// Exact value, for example from a closed form; if absent, errors are measured against the
     /// reference.
     pub exact: Option<f64>,
@@ -69,20 +69,20 @@ impl Output {
         Ok(Self {
             quantity,
             wanted: if relative {
-                Wanted::Relative(value)
+                ErrorTarget::Relative(value)
             } else {
-                Wanted::Absolute(value)
+                ErrorTarget::Absolute(value)
             },
             exact,
         })
     }
 
-    /// Its name.
+    /// Returns the name of the output.
     pub fn name(&self) -> &str {
         &self.quantity.name
     }
 
-    /// The error of a command line that names an output for which there is a reason to refuse it.
+    /// Creates the error for an argument that names an output which is refused.
     pub fn refused(&self, why: &str) -> Error {
         Error::Usage(format!("--output {}: {why}", self.name()))
     }
@@ -95,13 +95,13 @@ mod tests {
     #[test]
     fn reads_what_is_asked_for() {
         let one = Output::parse("friction_coefficient=2%").unwrap();
-        assert_eq!(one.wanted, Wanted::Relative(0.02));
+        assert_eq!(one.wanted, ErrorTarget::Relative(0.02));
         assert_eq!(
             Output::parse("wear.Qs").unwrap().wanted,
-            Wanted::Relative(0.01)
+            ErrorTarget::Relative(0.01)
         );
         let absolute = Output::parse("energy_residual_relative=1e-3").unwrap();
-        assert_eq!(absolute.wanted, Wanted::Absolute(1e-3));
+        assert_eq!(absolute.wanted, ErrorTarget::Absolute(1e-3));
         for wrong in [
             "a=",
             "a=b%",

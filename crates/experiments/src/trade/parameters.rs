@@ -4,10 +4,10 @@ use super::deformability::keep_accepted;
 use super::presets::{Solving, presets};
 use super::request::Request;
 use super::variant::variants;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::{Error, load};
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::Loaded;
+use fretwork_scene::LoadedCase;
 
 /// The varied parameters, each level of which gives a case that can be built.
 ///
@@ -15,7 +15,7 @@ use fretwork_scene::Loaded;
 /// An argument or a level is wrong.
 pub fn parameters(
     request: &Request,
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     search: &SearchPath,
     solving: &Solving,
 ) -> Result<Vec<Varied>, Error> {
@@ -25,7 +25,7 @@ pub fn parameters(
     if !only_variants {
         all.extend(presets(loaded, solving, &request.presets, &request.vary)?);
     }
-    all.sort_by_key(|k| k.sense != Sense::Form);
+    all.sort_by_key(|k| k.sense != ParameterEffect::Form);
     for forms in all.iter_mut().filter(|k| k.name == "deformability") {
         let before = request.sets.clone();
         keep_accepted(forms, |sets| {
@@ -39,15 +39,16 @@ pub fn parameters(
     Ok(all)
 }
 
-/// Refuses a tolerance beside forms of the case that have another one.
+/// Refuses a varied tolerance together with forms of the case that have different tolerances.
 fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
     let sets = |k: &Varied, key: &str| {
         let mut sets = k.levels.iter().flat_map(|l| &l.sets);
         sets.any(|set| set.split('=').next().is_some_and(|k| k.trim() == key))
     };
-    let form =
-        |k: &&Varied| k.sense == Sense::Form && (sets(k, "solver.tolerance") || sets(k, "solver"));
-    let varied = |k: &&Varied| k.sense != Sense::Form && sets(k, "solver.tolerance");
+    let form = |k: &&Varied| {
+        k.sense == ParameterEffect::Form && (sets(k, "solver.tolerance") || sets(k, "solver"))
+    };
+    let varied = |k: &&Varied| k.sense != ParameterEffect::Form && sets(k, "solver.tolerance");
     let mut all = parameters.iter();
     let (Some(form), Some(varied)) = (parameters.iter().find(form), all.find(varied)) else {
         return Ok(());
@@ -58,7 +59,7 @@ fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
     )))
 }
 
-/// Builds the case with each value of a `--vary`, so that a wrong one is refused before any run.
+/// Builds the case with each value of a `--vary`, so that an invalid one is refused before any run.
 fn check_varied_cases(
     request: &Request,
     search: &SearchPath,
@@ -78,7 +79,7 @@ fn check_varied_cases(
     Ok(())
 }
 
-/// Whether a `--set` and a `--vary` have the same key.
+/// Returns whether a `--set` and a `--vary` have the same key.
 fn same_key(set: &str, vary: &str) -> bool {
     let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
     key(set) == key(vary)

@@ -10,11 +10,11 @@ use super::combination::Combination;
 use super::compare::{Comparison, neighbour};
 use super::cost_law::CostLaw;
 use super::output::Output;
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use super::verdict::{Verdict, verdicts};
 use crate::Error;
 use crate::runs::launcher::{Launcher, Run};
-use crate::runs::stored::Finished;
+use crate::runs::stored::FinishedRun;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -22,9 +22,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Runs by setting and seed.
-pub type Ledger = BTreeMap<(Combination, u64), Finished>;
+pub type RunsBySetting = BTreeMap<(Combination, u64), FinishedRun>;
 
-/// A trade, as far as it has come.
+/// Current state of a trade.
 #[derive(Debug)]
 pub struct Trade {
     /// Title of the case.
@@ -46,7 +46,7 @@ pub struct Trade {
     /// Time budget.
     pub budget: Duration,
     /// Finished runs.
-    pub done: Ledger,
+    pub done: RunsBySetting,
     /// Expected cost of a setting.
     pub cost: CostLaw,
     /// Number of runs reused from an earlier trade in the same folder.
@@ -61,7 +61,7 @@ pub struct Trade {
     pub started: Instant,
 }
 
-/// What a later trade in the same folder continues.
+/// Stored part of a trade, with which a later trade in the same folder continues.
 #[derive(Debug, Serialize, Deserialize)]
 struct StoredPlan {
     fingerprint: String,
@@ -83,7 +83,7 @@ pub struct Findings {
 }
 
 impl Trade {
-    /// The results of the runs so far; `interrupted` if more were planned.
+    /// Returns the results of the runs so far; `interrupted` if more were planned.
     pub fn answer(&self, interrupted: bool) -> Findings {
         let found = self.compare();
         Findings {
@@ -143,19 +143,25 @@ impl Trade {
         }
         self.probe(stop)?;
         self.fresh = self.done.len();
-        // Coarsen tolerance and step alternately, the tolerance first. Another form is the last to
-        // go: what it assumes is no question of accuracy.
+        // Tolerance and step are coarsened alternately, the tolerance first. Other forms are
+        // dropped last: their assumptions are not a matter of accuracy.
         while self.work(&self.first()) > 0.6 * self.budget.as_secs_f64() {
             let finest = self.parameters.iter_mut().filter(|k| k.may_be_coarser());
-            let finest = finest
-                .min_by_key(|k| (k.sense == Sense::Form, k.reference, k.sense == Sense::Step));
+            let finest = finest.min_by_key(|k| {
+                (
+                    k.sense == ParameterEffect::Form,
+                    k.reference,
+                    k.sense == ParameterEffect::Step,
+                )
+            });
             let Some(finest) = finest else { break };
             finest.reference += 1;
         }
         self.write_plan(stop)
     }
 
-    /// Levels finer than the reference's that were dropped because of the budget or a failed run.
+    /// Returns the levels finer than the reference's that were dropped because of the budget or a
+    /// failed run.
     pub fn dropped(&self) -> Vec<String> {
         let ran = |k: usize, l: usize| self.done.keys().any(|(s, _)| s.0[k] == l);
         let mut all = Vec::new();
@@ -169,7 +175,7 @@ impl Trade {
         all
     }
 
-    /// Stores the plan, unless it rests on a guess or on interrupted probes.
+    /// Stores the plan, unless it is based on an uncertain cost law or interrupted probes.
     pub(super) fn write_plan(&self, stop: &AtomicBool) -> Result<(), Error> {
         if !self.cost.measured || stop.load(Ordering::Relaxed) {
             return Ok(());
@@ -187,7 +193,7 @@ impl Trade {
         }
     }
 
-    /// Expected duration of settings over all seeds with parallel jobs (s).
+    /// Returns the expected duration of settings over all seeds with parallel jobs (s).
     pub fn work(&self, settings: &[Combination]) -> f64 {
         let one = |s: &Combination| self.seconds(s);
         settings.iter().map(one).sum::<f64>() * self.seeds.len() as f64 / self.jobs as f64
@@ -203,8 +209,8 @@ impl Trade {
         unique(all)
     }
 
-    /// Settings that change one parameter of the case's own setting, near levels first; no level
-    /// finer than the reference's.
+    /// Returns settings that change one parameter of the case's own setting, near levels first; no
+    /// level finer than the reference's.
     pub fn one_at_a_time(&self) -> Vec<Combination> {
         let own = Combination::own(&self.parameters);
         let most = self.parameters.iter().map(|k| k.levels.len()).max();
@@ -228,7 +234,7 @@ impl Trade {
         unique(all)
     }
 
-    /// Remaining budget (s).
+    /// Returns the remaining budget (s).
     pub(super) fn left(&self) -> f64 {
         (self.budget.as_secs_f64() - self.started.elapsed().as_secs_f64()).max(0.0)
     }

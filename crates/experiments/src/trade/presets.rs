@@ -1,4 +1,4 @@
-//! What a trade varies by name: a preset derives its levels from the case's own value.
+//! Parameters that a trade varies by name: a preset derives its levels from the case's own value.
 //!
 //! The reference has the finest level that the budget allows for ordered parameters (step,
 //! tolerance), the first level of a `--vary`, and the case's own value of the others: at equal
@@ -7,13 +7,13 @@
 use super::deformability::{Deformability, forms};
 use super::listed::listed;
 use super::ordered::{number, steps, tolerances};
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::{AS_IN_THE_CASE, Level};
 use fretwork_core::laws::Kind;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Coupling;
-use fretwork_scene::Loaded;
+use fretwork_scene::LoadedCase;
 use fretwork_scene::case::{Case, GrainSpec};
 use fretwork_scene::source::nearest;
 
@@ -39,30 +39,31 @@ pub const PRESETS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Whether a preset is varied by default; the number of grains changes the problem itself, not only
-/// the accuracy, and a run that chooses its settings is compared with them where that is asked for;
-/// another deformability is another model.
+/// Whether a preset is varied by default. Not varied by default are the number of grains, which
+/// changes the problem itself, the accuracy of a run that chooses its settings, and the
+/// deformability, which is another model.
 fn wanted_by_default(name: &str) -> bool {
     !matches!(name, "grains" | "accuracy" | "deformability")
 }
 
-/// Properties of the scene on which levels depend: how it is solved, and what may deform in it.
+/// Properties of the scene on which levels depend: its solvers, and its deformable bodies.
 #[derive(Debug)]
 pub struct Solving {
-    /// The solvers that support it.
+    /// Solvers that support the scene.
     pub methods: Vec<Method>,
-    /// Its tolerance.
+    /// Tolerance of the scene.
     pub tolerance: f64,
-    /// What its forms are made from.
+    /// Properties from which its forms are made.
     pub deformability: Deformability,
 }
 
-/// The parameters requested by name, or the default ones of the case, and those of `--vary`.
+/// Returns the parameters requested by name, or the default ones of the case, and those of
+/// `--vary`.
 ///
 /// # Errors
 /// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
 pub fn presets(
-    loaded: &Loaded,
+    loaded: &LoadedCase,
     solving: &Solving,
     names: &[String],
     vary: &[String],
@@ -110,8 +111,8 @@ fn unknown(name: &str) -> Error {
     ))
 }
 
-/// Levels of a preset, or the reason why it does not apply to the case.
-fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, String> {
+/// Returns the levels of a preset, or the reason why it does not apply to the case.
+fn preset(loaded: &LoadedCase, solving: &Solving, name: &str) -> Result<Varied, String> {
     let case = &loaded.case;
     let (levels, own) = match name {
         "step" => {
@@ -152,11 +153,11 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, Stri
     };
     Ok(Varied {
         reference: own,
-        ..Varied::new(name, Sense::Choice, levels, Some(own))
+        ..Varied::new(name, ParameterEffect::Choice, levels, Some(own))
     })
 }
 
-/// Levels of a choice, and the index of the case's own.
+/// Levels without an order, and the index of the case's own.
 type Choices = (Vec<Level>, usize);
 
 fn solver_levels(case: &Case, methods: &[Method]) -> Result<Choices, String> {
@@ -203,14 +204,14 @@ fn coupling_levels(case: &Case) -> Result<Choices, String> {
     Ok((levels, own))
 }
 
-/// The case with step and tolerance as they are, and with those that the run chooses for an
+/// Returns the case with its step and tolerance, and with those that the run chooses for an
 /// accuracy.
 fn accuracy_levels(case: &Case) -> Choices {
     let level = |label: &str, set: String| Level::named(label, vec![set]);
     let mut levels = vec![level("fixed", "accuracy=None".into())];
     let shares = ["0.03", "0.01", "0.003", "0.001"];
     levels.extend(shares.map(|share| level(share, format!("accuracy={share}"))));
-    // What the case asks for may be another result, within other bounds.
+    // The case may request another result, within other bounds.
     let own = case.accuracy.as_ref().map_or(0, |_| levels.len());
     if case.accuracy.is_some() {
         levels.push(Level::named(AS_IN_THE_CASE, Vec::new()));
@@ -223,7 +224,7 @@ fn sweeps(method: Method) -> bool {
     matches!(method, Method::Auto | Method::Nlgs | Method::Anderson)
 }
 
-/// The first grains with a count, and that count.
+/// Returns the first grains with a count, and that count.
 fn counted(case: &Case) -> Option<(usize, usize)> {
     let count = |g: &GrainSpec| match g {
         GrainSpec::Lattice { count, .. } => Some(*count),

@@ -10,8 +10,8 @@ use crate::runs::trial::Trial;
 use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 
-/// The requested outputs, or the default ones, with their exact values where given; an error if the
-/// case does not have one.
+/// Returns the requested outputs, or the default ones, with their exact values where given; an
+/// error if the case does not have one.
 ///
 /// # Errors
 /// An output or an exact value is wrong.
@@ -82,7 +82,8 @@ pub fn budget(request: &Request, case: &Case, scene: Built) -> Result<(), Error>
     if one <= budget {
         return Ok(());
     }
-    // The case's own setting, a reference and two neighbours at half the step, over all seeds.
+    // The runs are the case's own setting, a reference and two neighbours at half the step, over
+    // all seeds.
     let usual = one * 8.0 * f64::from(request.seeds);
     Err(Error::Usage(format!(
         "--budget {}: one run of the case as it is takes {}; give --budget {:.0}m or more, or a shorter case (--set time.end=...)",

@@ -4,7 +4,7 @@ use super::combination::Combination;
 use super::cost_law::CostLaw;
 use super::deformability::Deformability;
 use super::output::Output;
-use super::plan::{Ledger, Trade};
+use super::plan::{RunsBySetting, Trade};
 use super::presets::Solving;
 use super::varied::Varied;
 use super::{OWNER, parameters, refuse};
@@ -13,9 +13,9 @@ use crate::runs::launcher::Launcher;
 use crate::runs::stored::Limits;
 use crate::{Error, Program, build, load};
 use fretwork_core::solve::local::solver::Method;
-use fretwork_scene::methods::{Demands, Service};
+use fretwork_scene::methods::{SolverRequirements, SolverSupport};
 use fretwork_scene::most_steps::most_steps;
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 use fretwork_store::folder_lock::FolderLock;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -30,11 +30,11 @@ pub struct Request {
     pub case: PathBuf,
     /// `--set` arguments of all runs.
     pub sets: Vec<String>,
-    /// Outputs with the errors wanted, `NAME=ERROR`; those that the case has by default.
+    /// Outputs with the wanted errors, `NAME=ERROR`; by default those that the case has.
     pub outputs: Vec<String>,
     /// Exact values of outputs, `NAME=VALUE`.
     pub exact: Vec<String>,
-    /// Names of presets; those that suit the case by default.
+    /// Names of presets; by default those that suit the case.
     pub presets: Vec<String>,
     /// Values of the case with their levels, `KEY.PATH=A,B,C`.
     pub vary: Vec<String>,
@@ -53,11 +53,11 @@ pub struct Request {
 }
 
 impl Request {
-    /// Checks the request and makes the first runs: whether contacts are chaotic, and what
-    /// settings cost. Returns the lock on the folder of the results too.
+    /// Checks the request and makes the first runs, which show whether contacts are chaotic, and
+    /// what settings cost. Also returns the lock on the folder of the results.
     ///
     /// # Errors
-    /// The case or an argument is wrong, the budget is below one run, or nothing can be run.
+    /// The case or an argument is invalid, the budget is below one run, or nothing can be run.
     pub fn begin(
         &self,
         program: &Program,
@@ -66,7 +66,7 @@ impl Request {
         let started = Instant::now();
         let loaded = load(&self.case, &self.sets)?;
         let (scene, random) = build(&loaded, program)?;
-        let first = Facts::of(&loaded, &scene);
+        let first = SceneFacts::of(&loaded, &scene);
         let outputs = refuse::outputs(self, &first.available)?;
         let parameters = parameters::parameters(self, &loaded, &program.search, &first.solving)?;
         if parameters.is_empty() {
@@ -97,10 +97,10 @@ impl Request {
         Ok((trade, lock))
     }
 
-    /// The trade before its first run, with the notes that its options call for.
+    /// Returns the trade before its first run, with notes on its options.
     fn trade(
         &self,
-        loaded: &Loaded,
+        loaded: &LoadedCase,
         launcher: Launcher,
         parameters: Vec<Varied>,
         outputs: Vec<Output>,
@@ -136,7 +136,7 @@ impl Request {
             steps: most_steps(&loaded.case) as f64,
             jobs: self.jobs.into(),
             budget: self.budget,
-            done: Ledger::new(),
+            done: RunsBySetting::new(),
             cost: CostLaw::default(),
             reused: 0,
             fresh: 0,
@@ -148,16 +148,17 @@ impl Request {
 }
 
 /// Properties of a scene that a trade needs.
-struct Facts {
+struct SceneFacts {
     solving: Solving,
     available: AvailableQuantities,
 }
 
-impl Facts {
-    fn of(loaded: &Loaded, built: &Built) -> Self {
-        let demands = Demands::of(built.simulation.view());
-        let serves =
-            |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
+impl SceneFacts {
+    fn of(loaded: &LoadedCase, built: &Built) -> Self {
+        let requirements = SolverRequirements::of(built.simulation.view());
+        let serves = |m: &Method| {
+            *m == loaded.case.solver.method || requirements.support(*m) == SolverSupport::Serves
+        };
         Self {
             available: AvailableQuantities::of(&loaded.case, built),
             solving: Solving {

@@ -1,15 +1,15 @@
-//! Report of a study on a terminal.
+//! Report of a trade on a terminal.
 
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row, ShownError, share};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use super::plan::{Findings, Trade};
 use super::verdict::{amount, three};
 use crate::duration::seconds;
 use crate::shell;
 use std::fmt::Write as _;
 
-/// The forecast that is printed before the runs.
+/// Returns the forecast that is printed before the runs.
 pub fn forecast(trade: &Trade) -> String {
     let (first, one_at_a_time) = (trade.first(), trade.one_at_a_time());
     let seeds = trade.seeds.len();
@@ -73,7 +73,7 @@ pub fn text(trade: &Trade, answer: &Findings) -> String {
     out
 }
 
-/// The runs that a trade left out, and why.
+/// Returns the runs that a trade left out, and why.
 pub fn incomplete(trade: &Trade, interrupted: bool) -> String {
     let left_out = trade.left_out.iter();
     let names: Vec<String> = left_out.map(|s| s.name(&trade.parameters)).collect();
@@ -96,7 +96,7 @@ pub fn incomplete(trade: &Trade, interrupted: bool) -> String {
     format!("INCOMPLETE, {why}.{what} The same command continues from here.")
 }
 
-/// One line for each setting: cost, and the errors of the outputs.
+/// Adds one line for each setting: cost, and the errors of the outputs.
 fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
     let reference = Combination::reference(&trade.parameters);
     let label = |row: &Row| {
@@ -116,8 +116,8 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
     );
     for o in &trade.outputs {
         let unit = match o.wanted {
-            Wanted::Relative(_) => " (%)",
-            Wanted::Absolute(_) => "",
+            ErrorTarget::Relative(_) => " (%)",
+            ErrorTarget::Absolute(_) => "",
         };
         let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name()));
     }
@@ -158,7 +158,7 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
     }
 }
 
-/// The error of an output in a row; of the reference its own error.
+/// Formats the error of an output in a row; for the reference its own error.
 fn error_cell(error: Option<&OutputError>, output: &Output, of_reference: bool) -> String {
     let Some(e) = error else {
         return "no value  ".into();
@@ -178,7 +178,7 @@ fn error_cell(error: Option<&OutputError>, output: &Output, of_reference: bool) 
     format!("own <= {own}{mark}")
 }
 
-/// The value of each output in the reference, and how far it may be off.
+/// Adds the value of each output in the reference, and its largest error.
 fn push_outputs(out: &mut String, trade: &Trade, found: &Comparison) {
     for (own, o) in found.own.iter().zip(&trade.outputs) {
         let Some(own) = own else {
@@ -200,7 +200,7 @@ fn push_outputs(out: &mut String, trade: &Trade, found: &Comparison) {
             out,
             "{}: {:.6} in the reference{scatter}{truth}",
             o.name(),
-            Shown(own.value.mean)
+            SignificantDigits(own.value.mean)
         );
         if o.exact.is_none() {
             let known = if own.at_most.is_finite() {
@@ -217,7 +217,7 @@ fn push_outputs(out: &mut String, trade: &Trade, found: &Comparison) {
     }
 }
 
-/// The command that runs a setting.
+/// Returns the command that runs a setting.
 fn command(trade: &Trade, sets: &[String]) -> String {
     let launcher = &trade.launcher;
     let mut words = vec!["run".to_owned(), launcher.case.display().to_string()];
@@ -229,9 +229,9 @@ fn command(trade: &Trade, sets: &[String]) -> String {
 }
 
 /// A number with significant digits.
-struct Shown(f64);
+struct SignificantDigits(f64);
 
-impl std::fmt::Display for Shown {
+impl std::fmt::Display for SignificantDigits {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.0 != 0.0 && !(1e-3..1e5).contains(&self.0.abs()) {
             write!(f, "{:.4e}", self.0)

@@ -1,17 +1,17 @@
 //! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the
 //! coarsest.
 
-use super::varied::{Sense, Varied};
+use super::varied::{ParameterEffect, Varied};
 use crate::Error;
 use crate::factor::Level;
 use crate::load;
 use fretwork_scene::case::Case;
 use fretwork_scene::source::{Source, Tree};
-use fretwork_scene::{InputError, Loaded};
+use fretwork_scene::{InputError, LoadedCase};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// The text of a field of a struct, on one line; `None` if the text leaves it out.
+/// Returns the text of a field of a struct, on one line; `None` if the text omits it.
 pub fn field(text: &str, name: &str) -> Option<String> {
     let tree = Tree::of(text);
     let node = tree.find(text, &[name.to_owned()]).ok()?;
@@ -29,7 +29,8 @@ fn fields(text: &str) -> BTreeSet<String> {
     keys.map(|key| text[key].to_owned()).collect()
 }
 
-/// The case without its name, description, seed and output files, which a trade does not compare.
+/// Returns the case without its name, description, seed and output files, which a trade does not
+/// compare.
 fn compared(case: &Case) -> Case {
     let mut case = case.clone();
     (case.name, case.doc, case.seed) = (String::new(), String::new(), 0);
@@ -37,12 +38,12 @@ fn compared(case: &Case) -> Case {
     case
 }
 
-/// The parameter `variant`, if there are any.
+/// Returns the parameter `variant`, if there are any variants.
 ///
 /// # Errors
-/// An argument is malformed or given twice, its file is wrong, lies elsewhere, or cannot be reached
-/// from the case by `--set`.
-pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>, Error> {
+/// An argument is malformed or given twice, its file is invalid, lies elsewhere, or cannot be
+/// reached from the case by `--set`.
+pub fn variants(loaded: &LoadedCase, arguments: &[String]) -> Result<Option<Varied>, Error> {
     let mut levels: Vec<Level> = Vec::new();
     for argument in arguments {
         let wrong = |why: &str| Error::Usage(format!("--variant {argument}: {why}"));
@@ -75,11 +76,16 @@ pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>,
         return Ok(None);
     }
     let own = levels.iter().position(|l| l.sets.is_empty());
-    Ok(Some(Varied::new("variant", Sense::Form, levels, own)))
+    Ok(Some(Varied::new(
+        "variant",
+        ParameterEffect::Form,
+        levels,
+        own,
+    )))
 }
 
-/// The `--set` arguments that make another case of this one.
-fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError> {
+/// Returns the `--set` arguments that change this case to another one.
+fn difference(loaded: &LoadedCase, other: &LoadedCase) -> Result<Vec<String>, InputError> {
     let (mine, wanted) = (compared(&loaded.case), compared(&other.case));
     let texts = (mine.to_ron()?, wanted.to_ron()?);
     let before = loaded.source.sets();

@@ -1,7 +1,7 @@
 //! The cheapest setting for a wanted error, and the confidence in it.
 
 use super::compare::{Comparison, OutputError, Row, share};
-use super::output::{Output, Wanted};
+use super::output::{ErrorTarget, Output};
 use fretwork_math::statistics::interval::{Mean, seeds_for};
 
 /// Verdict for a wanted error.
@@ -18,7 +18,7 @@ pub struct Verdict {
     pub text: String,
 }
 
-/// One verdict per output, and one for all together if there are several.
+/// Returns one verdict per output, and one for all together if there are several.
 pub fn verdicts(found: &Comparison, outputs: &[Output], random: bool) -> Vec<Verdict> {
     let mut sets: Vec<Vec<usize>> = (0..outputs.len()).map(|o| vec![o]).collect();
     if outputs.len() > 1 {
@@ -30,15 +30,15 @@ pub fn verdicts(found: &Comparison, outputs: &[Output], random: bool) -> Vec<Ver
 }
 
 fn limit(output: &Output) -> f64 {
-    let (Wanted::Relative(w) | Wanted::Absolute(w)) = output.wanted;
+    let (ErrorTarget::Relative(w) | ErrorTarget::Absolute(w)) = output.wanted;
     w
 }
 
-/// An error of an output, with its unit.
+/// Formats an error of an output with its unit.
 pub fn amount(x: f64, output: &Output) -> String {
     match output.wanted {
-        Wanted::Relative(_) => format!("{} %", share(x)),
-        Wanted::Absolute(_) => format!("{x:.1e}"),
+        ErrorTarget::Relative(_) => format!("{} %", share(x)),
+        ErrorTarget::Absolute(_) => format!("{x:.1e}"),
     }
 }
 
@@ -66,7 +66,7 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
     }
 }
 
-/// An output that is zero in all runs: they agree because nothing happened.
+/// Describes an output that is zero in all runs: they agree because nothing happened.
 fn idle_output(found: &Comparison, outputs: &[Output], set: &[usize]) -> Option<usize> {
     let zero = |v: &Mean| v.mean == 0.0 && v.scatter.is_none_or(|s| s == 0.0);
     let mut set = set.iter().copied();
@@ -80,8 +80,8 @@ fn idle_output(found: &Comparison, outputs: &[Output], set: &[usize]) -> Option<
     })
 }
 
-/// The cheapest row within the wanted errors, whether that includes the reference's own error, and
-/// the text.
+/// Returns the cheapest row within the wanted errors, whether that includes the reference's own
+/// error, and the text.
 fn cheapest(
     found: &Comparison,
     outputs: &[Output],
@@ -90,7 +90,7 @@ fn cheapest(
 ) -> (Option<usize>, bool, String) {
     let all = |row: &Row, good: &dyn Fn(&OutputError, f64) -> bool| {
         let mut each = set.iter();
-        // What its own runs call untrustworthy is not recommended.
+        // A setting whose own runs report that they are not trustworthy is not recommended.
         row.failed.is_none()
             && row.doubted == 0
             && each.all(|&o| {
@@ -103,8 +103,8 @@ fn cheapest(
     let reference_known = set
         .iter()
         .all(|&o| found.own[o].as_ref().is_some_and(|x| x.at_most.is_finite()));
-    // Rows are ordered from the cheapest. First those proven with the reference's own error, then
-    // those relative to the reference alone.
+    // Rows are ordered from the cheapest. First come those proven with the reference's own error,
+    // then those relative to the reference alone.
     let proved = reference_known
         .then(|| found.rows.iter().position(|r| all(r, &|e, w| e.bound <= w)))
         .flatten();
@@ -142,7 +142,7 @@ fn cheapest(
     }
 }
 
-/// A setting with its cost and its errors.
+/// Describes a setting with its cost and its errors.
 fn describe_row(row: &Row, outputs: &[Output], set: &[usize], random: bool) -> String {
     let errors = set.iter().filter_map(|&o| {
         let (e, output) = (row.errors[o].as_ref()?, &outputs[o]);
@@ -163,7 +163,7 @@ fn describe_row(row: &Row, outputs: &[Output], set: &[usize], random: bool) -> S
     format!("{}: {}; {}", row.name, speed(row), errors.join("; "))
 }
 
-/// How far the reference itself may be off.
+/// Describes the largest error of the reference itself.
 fn reference_errors(found: &Comparison, outputs: &[Output], set: &[usize]) -> String {
     let errors = set.iter().filter_map(|&o| {
         let (x, output) = (found.own[o].as_ref()?, &outputs[o]);
@@ -184,7 +184,7 @@ fn bounds(found: &Comparison, outputs: &[Output], set: &[usize], k: usize) -> St
     each.collect::<Vec<_>>().join(" and ")
 }
 
-/// `6.3 times faster than the reference (5.9 to 6.7)`.
+/// Formats a speed as `6.3 times faster than the reference (5.9 to 6.7)`.
 pub fn speed(row: &Row) -> String {
     match &row.faster {
         Some((x, Some((low, high)))) if *low <= 1.0 && *high >= 1.0 => format!(
@@ -213,7 +213,7 @@ pub fn speed(row: &Row) -> String {
     }
 }
 
-/// Two or three significant digits.
+/// Formats with two or three significant digits.
 pub fn three(x: f64) -> String {
     match x {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -222,7 +222,7 @@ pub fn three(x: f64) -> String {
     }
 }
 
-/// Reason why no setting meets the wanted error.
+/// Returns the reason why no setting meets the wanted error.
 fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> String {
     let Some(reference) = found.reference.map(|k| &found.rows[k]) else {
         return "the reference did not run to its end; give more --budget".into();
@@ -271,8 +271,8 @@ fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: boo
     )
 }
 
-/// That the scatter hides the error, and how many seeds would show it. More seeds only narrow the
-/// interval; the mean and the reference's own error remain.
+/// Returns the sentence that the scatter hides the error, and how many seeds would show it. More
+/// seeds only narrow the interval; the mean and the reference's own error remain.
 fn hidden_by_scatter(e: &OutputError, output: &Output, own: f64) -> String {
     let (scatter, wanted) = (e.error.scatter.unwrap_or(0.0), limit(output));
     let own = if own.is_finite() { own } else { 0.0 };

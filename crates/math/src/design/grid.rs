@@ -3,21 +3,21 @@
 use super::DesignError;
 
 /// Largest number of points of a grid.
-pub const MOST_POINTS: usize = 1_000_000;
+pub const MAX_POINTS: usize = 1_000_000;
 
-/// All combinations of the levels of factors, of which factor i has `levels[i]`: one row of level
-/// numbers per combination. The first factor varies slowest, as nested loops in the order of the
-/// factors would have it. No factors give one empty row, a factor without levels gives no rows.
+/// Returns all combinations of the levels of factors, of which factor i has `levels[i]`: one row of
+/// level numbers per combination. The first factor varies slowest, as in nested loops in the order
+/// of the factors. Without factors there is one empty row; a factor without levels gives no rows.
 ///
 /// # Errors
 ///
-/// More than [`MOST_POINTS`] combinations.
+/// There are more than [`MAX_POINTS`] combinations.
 pub fn full_factorial(levels: &[usize]) -> Result<Vec<Vec<usize>>, DesignError> {
     let points: f64 = levels.iter().map(|l| *l as f64).product();
-    if points > MOST_POINTS as f64 {
+    if points > MAX_POINTS as f64 {
         return Err(DesignError::Grid {
             points,
-            most: MOST_POINTS,
+            most: MAX_POINTS,
         });
     }
     let mut rows = vec![Vec::with_capacity(levels.len())];

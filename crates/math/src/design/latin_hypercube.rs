@@ -3,20 +3,21 @@
 //!
 //! McKay, Beckman, Conover: A comparison of three methods for selecting values of input variables
 //! in the analysis of output from a computer code, Technometrics 21 (1979) 239. The choice by the
-//! least distance is that of Johnson, Moore, Ylvisaker: Minimax and maximin distance designs, J.
+//! smallest distance is that of Johnson, Moore, Ylvisaker: Minimax and maximin distance designs, J.
 //! Statistical Planning and Inference 26 (1990) 131.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// A Latin hypercube of `points` points (rows) in [0, 1)^`factors`, random within the intervals.
+/// Returns a Latin hypercube of `points` points (rows) in [0, 1)^`factors`, random within the
+/// intervals.
 pub fn latin_hypercube(points: usize, factors: usize, seed: u64) -> Vec<Vec<f64>> {
     draw(points, factors, &mut Pcg64::seed_from_u64(seed))
 }
 
-/// Of `tries` Latin hypercubes the one whose closest two points are farthest apart (one at least is
-/// made). The first try is that of [`latin_hypercube`]. The distances take a time of `tries` x
+/// Returns the one of `tries` Latin hypercubes (at least one) whose closest two points are farthest
+/// apart. The first try is that of [`latin_hypercube`]. The time is proportional to `tries` x
 /// `points`^2 x `factors`.
 pub fn maximin_latin_hypercube(
     points: usize,
@@ -53,7 +54,7 @@ fn draw(points: usize, factors: usize, rng: &mut Pcg64) -> Vec<Vec<f64>> {
     rows
 }
 
-/// Smallest squared distance of two of the points; infinite for fewer than two.
+/// Returns the smallest squared distance of two of the points; infinite for fewer than two.
 fn least_distance_squared(rows: &[Vec<f64>]) -> f64 {
     let squared =
         |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum() };
@@ -101,7 +102,7 @@ mod tests {
         );
     }
 
-    /// The maximum over more tries is no smaller, and over many it is larger.
+    /// The maximum over more tries is not smaller, and over many it is larger.
     #[test]
     fn more_tries_spread_the_points() {
         let distance = |tries| least_distance_squared(&maximin_latin_hypercube(12, 2, 1, tries));

@@ -1,7 +1,7 @@
 //! Designs: the points at which a study evaluates its model.
 //!
-//! Points of the unit cube [0, 1)^k, a row each, which [`scale::Scale`] maps to the values of
-//! factors; the same seed gives the same points. What a study asks decides the design:
+//! Points of the unit cube [0, 1)^k, one per row, which [`scale::Scale`] maps to the values of
+//! factors; the same seed gives the same points. The design depends on the question:
 //!
 //! - [`grid`]: all combinations of given levels, for effects and interactions by analysis of
 //!   variance;
@@ -17,7 +17,7 @@ pub mod sobol;
 
 use thiserror::Error;
 
-/// Why there is no such design.
+/// Reason why a design does not exist.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DesignError {
     /// A grid has more points than any study computes.
@@ -35,9 +35,9 @@ pub enum DesignError {
         "a Sobol sequence of {points} points in {dimensions} dimensions: there are at most {most_points} points in {most_dimensions} dimensions (for Sobol indices, two for each factor)"
     )]
     Sobol {
-        /// Points asked for.
+        /// Requested number of points.
         points: usize,
-        /// Dimensions asked for.
+        /// Requested number of dimensions.
         dimensions: usize,
         /// Largest number of points.
         most_points: usize,

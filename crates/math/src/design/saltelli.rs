@@ -2,28 +2,31 @@
 //!
 //! Two independent sets A and B of n points (here halves of a scrambled Sobol sequence of twice the
 //! dimension), and for each factor i the set A_B^(i): the points of A with the coordinate i of B.
-//! Saltelli et al., Comput. Phys. Commun. 181 (2010) 259. The outputs go to
-//! [`sobol_indices`](crate::sensitivity::sobol_indices::sobol_indices) in the order of the rows.
+//! Saltelli et al., Comput. Phys. Commun. 181 (2010) 259.
+//! [`sobol_indices`](crate::sensitivity::sobol_indices::sobol_indices) takes the outputs in the
+//! order of the rows.
 
 use super::{DesignError, sobol::sobol};
 
-/// Rows of one base point: A, one per factor, B.
+/// Returns the number of rows of one base point: A, one per factor, B.
 pub fn rows_per_base(factors: usize) -> usize {
     factors + 2
 }
 
-/// The `bases` x (`factors` + 2) points in [0, 1)^`factors`. Row i (k + 2) is A_i, the next k are
-/// A_B^(1)_i to A_B^(k)_i, the last is B_i. More base points from the same seed begin with these
-/// rows. A power of two of base points is best.
+/// Returns the `bases` x (`factors` + 2) points in [0, 1)^`factors`. Row i (k + 2) is A_i, the next
+/// k are A_B^(1)_i to A_B^(k)_i, the last is B_i. A larger number of base points from the same seed
+/// begins with these rows. The number should be a power of two.
 ///
 /// # Errors
 ///
-/// More than [`MOST_POINTS`](super::sobol::MOST_POINTS) base points, or more than 128 factors.
+/// There are more than [`MAX_POINTS`](super::sobol::MAX_POINTS) base points, or more than 128
+/// factors.
 pub fn saltelli(bases: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
     Ok(saltelli_from(&sobol(bases, 2 * factors, seed)?))
 }
 
-/// Saltelli's rows from given base points, each of which has the coordinates of A, then those of B.
+/// Returns Saltelli's rows from given base points, each of which has the coordinates of A, then
+/// those of B.
 pub fn saltelli_from(bases: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = Vec::new();
     for both in bases {

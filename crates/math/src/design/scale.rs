@@ -1,4 +1,4 @@
-//! From the unit interval to the values of a factor.
+//! Maps the unit interval to the values of a factor.
 
 use super::DesignError;
 
@@ -33,7 +33,7 @@ impl Scale {
     ///
     /// # Errors
     ///
-    /// A sentence that says which end is wrong.
+    /// Returns a sentence on the invalid end.
     pub fn check(&self) -> Result<(), DesignError> {
         let reason = match *self {
             Self::Linear { from, to } | Self::Logarithmic { from, to }
@@ -58,7 +58,7 @@ impl Scale {
         match *self {
             Self::Linear { from, to } => (from + unit * (to - from)).clamp(from, to),
             Self::Logarithmic { from, to } => {
-                // From the nearer end, so that both ends are exact.
+                // Computing from the nearer end makes both ends exact.
                 let span = libm::log(to / from);
                 let value = if unit < 0.5 {
                     from * libm::exp(unit * span)
@@ -74,8 +74,8 @@ impl Scale {
         }
     }
 
-    /// The place of a value, in [0, 1]; whole numbers in the middle of their share. Values outside
-    /// have the place of the nearer end.
+    /// Returns the position of a value, in [0, 1]; whole numbers are in the middle of their part.
+    /// Values outside have the position of the nearer end.
     pub fn place(&self, value: f64) -> f64 {
         let place = match *self {
             Self::Linear { from, to } => (value - from) / (to - from),
@@ -89,8 +89,8 @@ impl Scale {
         place.clamp(0.0, 1.0)
     }
 
-    /// `count` values at equal steps, from one end to the other; one value is the middle, whole
-    /// numbers may be fewer.
+    /// Returns `count` values at equal steps, from one end to the other; a single value is the
+    /// middle, whole numbers may be fewer.
     pub fn levels(&self, count: usize) -> Vec<f64> {
         let place = |i: usize| match count {
             1 => 0.5,

@@ -9,25 +9,25 @@
 use super::DesignError;
 
 /// Largest number of points of a sequence.
-pub const MOST_POINTS: usize = 1 << 16;
+pub const MAX_POINTS: usize = 1 << 16;
 
 /// Largest number of dimensions of a sequence.
-pub const MOST_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
+pub const MAX_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
 
-/// The first `points` points (rows) of the scrambled sequence in [0, 1)^`factors`, with 24 bits per
-/// coordinate. More points from the same seed begin with these. A number of points that is a power
-/// of two has the best strata.
+/// Returns the first `points` points (rows) of the scrambled sequence in [0, 1)^`factors`, with 24
+/// bits per coordinate. A larger number of points from the same seed begins with these. A power of
+/// two has the best strata.
 ///
 /// # Errors
 ///
-/// More than [`MOST_POINTS`] points or [`MOST_DIMENSIONS`] factors.
+/// There are more than [`MAX_POINTS`] points or [`MAX_DIMENSIONS`] factors.
 pub fn sobol(points: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
-    if points > MOST_POINTS || factors > MOST_DIMENSIONS {
+    if points > MAX_POINTS || factors > MAX_DIMENSIONS {
         return Err(DesignError::Sobol {
             points,
             dimensions: factors,
-            most_points: MOST_POINTS,
-            most_dimensions: MOST_DIMENSIONS,
+            most_points: MAX_POINTS,
+            most_dimensions: MAX_DIMENSIONS,
         });
     }
     let seed = folded(seed);
@@ -37,7 +37,7 @@ pub fn sobol(points: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, 
         .collect())
 }
 
-/// The 32 bits of a seed that the sequence has: seeds below 2^32 as they are.
+/// Returns the 32 bits of a seed that the sequence uses: seeds below 2^32 are not changed.
 fn folded(seed: u64) -> u32 {
     (seed ^ (seed >> 32)) as u32
 }

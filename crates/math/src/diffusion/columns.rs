@@ -4,8 +4,7 @@ use crate::diffusion::node::add;
 use crate::diffusion::{DiffusionError, Node, Store};
 use std::ops::Range;
 
-/// Beyond this number D h/w^2 a step leaves no difference between neighbours that rounding does not
-/// hide.
+/// Value of D h/w^2 above which a step leaves no difference between neighbours beyond rounding.
 const EVEN: f64 = 1e10;
 
 /// The pieces of a surface along one of its axes.
@@ -13,19 +12,20 @@ const EVEN: f64 = 1e10;
 pub struct ColumnAxis {
     /// Number of pieces.
     pub count: u32,
-    /// Width of each (m).
+    /// Width of each piece (m).
     pub width: f64,
-    /// Whether the last is a neighbour of the first; otherwise no heat flows through either end.
+    /// Whether the last piece is a neighbour of the first; otherwise no heat flows through either
+    /// end.
     pub periodic: bool,
 }
 
 /// Half-spaces of one material and one grid below the pieces of a surface, between which heat flows
-/// sideways: at each depth dT/dt = D (d2T/dx2 + d2T/dy2), in finite volumes of the widths of the
-/// pieces.
+/// tangentially: at each depth dT/dt = D (d2T/dx2 + d2T/dy2), in finite volumes of the widths of
+/// the pieces.
 ///
-/// The flow along the depth and that along each axis of the surface are steps of their own, one
-/// after another (G. Strang, SIAM J. Numer. Anal. 5 (1968) 506-517): each is implicit, keeps the
-/// heat, and with theta = 1 the range of the temperatures. The answer of a step is that of all
+/// The flow along the depth and that along each axis of the surface are separate steps, one after
+/// another (G. Strang, SIAM J. Numer. Anal. 5 (1968) 506-517): each is implicit, conserves heat
+/// and, with theta = 1, stays within the range of the temperatures. The result equals that of all
 /// directions at once where D h/w^2 is small, with the diffusivity D, the step h and the width w.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
@@ -38,15 +38,15 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// D h/w^2 along the axis where it is largest, for a step (s).
+    /// Returns D h/w^2 along the axis where it is largest, for a step (s).
     pub fn number(&self, h: f64) -> f64 {
         let each = self.axes.iter().filter(|a| a.count > 1);
         each.map(|a| self.diffusivity * h / (a.width * a.width))
             .fold(0.0, f64::max)
     }
 
-    /// Lets heat flow along the axes for a step (s), in their order or in reverse; returns the heat
-    /// that nodes store by it (J), which is rounding.
+    /// Lets heat flow along the axes for a step (s), in their order or in reverse; returns the
+    /// change of the stored heat (J), which is rounding.
     pub(crate) fn conduct(&self, nodes: &mut [Node], h: f64, theta: f64, reverse: bool) -> f64 {
         let mut order: Vec<usize> = (0..self.axes.len()).collect();
         if reverse {
@@ -78,7 +78,7 @@ impl Columns {
     }
 
     /// # Errors
-    /// A number that may not occur, or nodes that are no half-spaces of one grid.
+    /// Fails for an invalid number, or nodes that are not half-spaces with the same grid.
     pub(crate) fn check(&self, nodes: &[Node]) -> Result<(), DiffusionError> {
         let refuse = |what, node, value, expected| {
             Err(DiffusionError::Number {
@@ -118,19 +118,19 @@ impl Columns {
     }
 }
 
-/// (1 + theta r L) d = -r L T along a line of pieces, with the second difference L and r = D h/w^2:
-/// the same matrix at each depth.
+/// Solves (1 + theta r L) d = -r L T along a line of pieces, with the second difference L and r = D
+/// h/w^2: the same matrix at each depth.
 struct Line {
-    /// r.
+    /// Number r.
     number: f64,
-    /// The neighbour of the first piece on the other side, where the line is closed.
+    /// Whether the line is closed, so that the first piece is a neighbour of the last.
     closed: bool,
     /// Off-diagonal of the matrix, positive.
     beside: f64,
     /// Inverse pivots of the elimination.
     inverse: Vec<f64>,
-    /// What to take from each piece per difference of the two ends where the line is closed (J.
-    /// Sherman, W. J. Morrison, Ann. Math. Stat. 21 (1950) 124-127); empty for one with ends.
+    /// Correction of each piece per difference of the two ends where the line is closed (J.
+    /// Sherman, W. J. Morrison, Ann. Math. Stat. 21 (1950) 124-127); empty for a line with ends.
     closing: Vec<f64>,
 }
 
@@ -143,8 +143,8 @@ impl Line {
         };
         let closed = periodic && count > 2;
         let beside = theta * number;
-        // The line with ends; what closes it is beside (e_first - e_last)(e_first - e_last)^T, of
-        // rank one.
+        // The matrix is that of the line with ends, plus beside (e_first - e_last)(e_first -
+        // e_last)^T, of rank one, if it is closed.
         let mut diagonal = vec![1.0 + 2.0 * beside; count];
         (diagonal[0], diagonal[count - 1]) = (1.0 + beside, 1.0 + beside);
         let mut inverse = Vec::with_capacity(count);
@@ -170,8 +170,8 @@ impl Line {
         line
     }
 
-    /// Solves for all depths at once, right-hand sides of a piece one after another, without what
-    /// closes the line.
+    /// Solves for all depths at once, with the right-hand sides of a piece one after another,
+    /// without the part that closes the line.
     fn solve(&self, change: &mut [f64], points: usize) {
         let count = self.inverse.len();
         for k in 0..count {
@@ -203,8 +203,8 @@ impl Line {
         }
     }
 
-    /// Changes the temperatures of a line that starts at a node and goes on by a stride; returns
-    /// the heat that is stored by it (J).
+    /// Changes the temperatures of a line that starts at a node and continues by a stride; returns
+    /// the stored heat (J).
     fn conduct(&self, nodes: &mut [Node], place: (usize, usize), change: &mut Vec<f64>) -> f64 {
         let (start, stride) = place;
         let count = self.inverse.len();
@@ -218,8 +218,8 @@ impl Line {
         change.resize(count * points, 0.0);
         let mut before = first.clone();
         for k in 0..count {
-            // Flow through the face between a piece and the next, which the last has only on a
-            // closed line.
+            // This is the flow through the face between a piece and the next; the last piece has
+            // one only on a closed line.
             let next = match k + 1 == count {
                 false => (k + 1, temperature(nodes, k + 1)),
                 true if self.closed => (0, first.clone()),
@@ -257,7 +257,7 @@ impl Line {
 }
 
 impl crate::diffusion::HalfSpace {
-    /// Adds changes of temperature (K) at all depths; returns the heat that is stored by that (J).
+    /// Adds changes of temperature (K) at all depths; returns the stored heat (J).
     fn change(&mut self, change: &[f64]) -> f64 {
         let mut stored = 0.0;
         let each = self.temperature.iter_mut().zip(&mut self.lost);

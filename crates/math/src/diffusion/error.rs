@@ -1,28 +1,28 @@
-//! What makes a diffusion problem impossible to solve.
+//! Reasons why a diffusion problem cannot be solved.
 
 use thiserror::Error;
 
-/// Why a diffusion problem has no solution, or none was found.
+/// Reason why a diffusion problem has no solution, or none was found.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DiffusionError {
-    /// A number that may not occur.
+    /// A number is invalid.
     #[error("{what} of node {node} is {value:e}; expected {expected}")]
     Number {
-        /// What the number is.
+        /// Name of the number.
         what: &'static str,
         /// The node.
         node: usize,
-        /// Its value.
+        /// Value of the number.
         value: f64,
-        /// What it may be.
+        /// Valid values.
         expected: &'static str,
     },
-    /// A conductance that may not occur.
+    /// A conductance is invalid.
     #[error("the conductance between nodes {} and {} is {value:e}; it must be finite and not negative", nodes[0], nodes[1])]
     Conductance {
         /// Nodes of the edge.
         nodes: [usize; 2],
-        /// Its value.
+        /// Value of the conductance.
         value: f64,
     },
     /// A source into nodes from which no path leads anywhere.
@@ -32,7 +32,7 @@ pub enum DiffusionError {
     NoOutlet {
         /// The first node of the component.
         node: usize,
-        /// What flows in.
+        /// Total source.
         source_rate: f64,
     },
     /// The linear system could not be solved.

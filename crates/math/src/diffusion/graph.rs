@@ -11,17 +11,17 @@ pub struct Edge {
     pub conductance: f64,
 }
 
-/// Nodes with the conductances that join them.
+/// Nodes and the conductances between them.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     /// Number of nodes.
     pub nodes: usize,
-    /// Conductances, in an order that decides the last bits of results. Two edges of one pair add
-    /// up; an edge of a node to itself does nothing.
+    /// Conductances, in an order that determines the last bits of results. Two edges of the same
+    /// pair are added; an edge of a node to itself has no effect.
     pub edges: Vec<Edge>,
-    /// Conductances of the elements of meshes, in the same units. They may be negative, as across
-    /// an obtuse angle, where all of a mesh together take no heat from a lower temperature to a
-    /// higher one.
+    /// Conductances of the elements of meshes, in the same units. They may be negative, as opposite
+    /// an obtuse angle; a whole mesh still conducts no heat from a lower temperature to a higher
+    /// one.
     pub elements: Vec<Edge>,
 }
 
@@ -35,7 +35,7 @@ impl Graph {
         }
     }
 
-    /// All conductances, of edges and of elements.
+    /// Iterates over all conductances, of edges and of elements.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Edge> {
         self.edges.iter().chain(&self.elements)
     }
@@ -43,7 +43,7 @@ impl Graph {
     /// Checks that conductances are finite and those of edges not negative, and that nodes exist.
     ///
     /// # Errors
-    /// The first conductance that is not.
+    /// Returns the first invalid conductance.
     pub fn check(&self) -> Result<(), DiffusionError> {
         let is_valid = |e: &Edge| {
             e.conductance.is_finite() && e.nodes.iter().all(|n| (*n as usize) < self.nodes)
@@ -59,7 +59,7 @@ impl Graph {
         }
     }
 
-    /// Number of the component of each node: nodes that conductances above zero join.
+    /// Returns the number of the component of each node: nodes connected by positive conductances.
     pub fn components(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.nodes).collect();
         fn root(parent: &mut [usize], mut k: usize) -> usize {

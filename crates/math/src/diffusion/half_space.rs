@@ -17,15 +17,15 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid whose first spacing is given (m), each further one longer by a factor, down to a
-    /// depth (m) below which no heat flows. `conductivity` is in W/(m K), `capacity` the heat
-    /// capacity of volume rho c in J/(m^3 K).
+    /// Creates a grid whose first spacing is given (m), each further one longer by a factor, down
+    /// to a depth (m) below which no heat flows. `conductivity` is in W/(m K), `capacity` is the
+    /// volumetric heat capacity rho c in J/(m^3 K).
     ///
     /// The spacing of the surface should be below sqrt(D h), the depth above 4 sqrt(D t), with the
     /// diffusivity D = conductivity/capacity, the step h and the duration t.
     ///
     /// # Errors
-    /// A number that is not above zero, or a factor below one.
+    /// A number is not positive, or the factor is below one.
     pub fn graded(
         conductivity: f64,
         capacity: f64,
@@ -87,23 +87,23 @@ impl Grid {
 /// A half-space below a piece of surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
-    /// Its grid.
+    /// Grid over the depth.
     pub grid: Grid,
     /// Area of the piece (m^2; m in 2D).
     pub area: f64,
     /// Temperature of each point (K), that of the surface first.
     pub temperature: Vec<f64>,
-    /// What rounding took from each so far (K).
+    /// Rounding errors of each temperature so far (K).
     pub(crate) lost: Vec<f64>,
 }
 
-/// What the depth adds to the equation of the surface, and how the temperatures of the depth follow
-/// from it.
+/// Contribution of the depth to the equation of the surface, and data for the temperatures at
+/// depth.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Eliminated {
-    /// Added to the diagonal of the surface (W/K).
+    /// Term added to the diagonal of the surface (W/K).
     pub diagonal: f64,
-    /// Added to the right-hand side of the surface (W).
+    /// Term added to the right-hand side of the surface (W).
     pub right: f64,
     /// For each point below the surface the inverse of its pivot and its right-hand side, both
     /// eliminated from below (K/W, W).
@@ -111,7 +111,7 @@ pub(crate) struct Eliminated {
 }
 
 impl HalfSpace {
-    /// A half-space of one temperature (K).
+    /// Creates a half-space with a uniform temperature (K).
     pub fn new(grid: Grid, area: f64, temperature: f64) -> Self {
         Self {
             temperature: vec![temperature; grid.points()],
@@ -121,8 +121,8 @@ impl HalfSpace {
         }
     }
 
-    /// Whether it is a later state of a half-space, which may be as deep as another: it has a
-    /// temperature at each point of its grid.
+    /// Returns whether this is a later state of a half-space, which may have another depth: it has
+    /// a temperature at each point of its grid.
     pub(crate) fn fits(&self, first: &Self) -> bool {
         let (points, grid) = (self.grid.points(), &self.grid);
         [
@@ -135,7 +135,7 @@ impl HalfSpace {
             && self.temperature.iter().all(|t| t.is_finite())
     }
 
-    /// Heat stored since a reference temperature (J).
+    /// Returns the heat stored relative to a reference temperature (J).
     pub fn heat(&self, reference: f64) -> f64 {
         let each = self.grid.capacity.iter().zip(&self.temperature);
         self.area * each.map(|(c, t)| c * (t - reference)).sum::<f64>()
@@ -156,8 +156,8 @@ impl HalfSpace {
             let pivot = area * grid.capacity[k] / w + below_diagonal;
             let right = inflow - outflow + below_right;
             if k > 0 {
-                // The point joins the one above by g: its own equation is (pivot + g) d_k = right +
-                // g d_(k-1).
+                // A conductance g connects the point to the one above: its own equation is (pivot +
+                // g) d_k = right + g d_(k-1).
                 let g = area * grid.conductance[k - 1];
                 let inverse = 1.0 / (pivot + g);
                 points[k] = (inverse, right);
@@ -174,8 +174,8 @@ impl HalfSpace {
         }
     }
 
-    /// Changes the temperatures, given the change of the surface at theta of the step (K); gives
-    /// the heat that is stored by that (J).
+    /// Changes the temperatures, given the change of the surface at theta of the step (K); returns
+    /// the stored heat (J).
     pub(crate) fn advance(&mut self, eliminated: &Eliminated, surface: f64, theta: f64) -> f64 {
         let mut change = surface;
         let mut stored = 0.0;

@@ -2,7 +2,7 @@
 
 use crate::diffusion::Edge;
 
-/// Rows of a slice: C of SELL-C-sigma.
+/// Number of rows of a slice: C of SELL-C-sigma.
 const LANES: usize = 4;
 
 /// One value for each row of a slice.
@@ -22,7 +22,7 @@ struct Neighbours {
     conductance: Lanes,
 }
 
-/// diag(own) + L, with the Laplacian L of the edges between unknowns.
+/// Matrix diag(own) + L, with the Laplacian L of the edges between unknowns.
 ///
 /// Rows are sorted by ascending number of stored neighbours, and a slice of four is stored
 /// neighbour by neighbour (SELL-C-sigma: M. Kreutzer et al., SIAM J. Sci. Comput. 36 (2014)
@@ -42,8 +42,8 @@ pub(crate) struct Matrix {
 }
 
 impl Matrix {
-    /// A matrix of the diagonal without the edges, and of the edges between unknowns; self-loops
-    /// are ignored.
+    /// Creates a matrix from the diagonal without the edges, and from the edges between unknowns;
+    /// self-loops are ignored.
     pub fn new(own: &[f64], edges: &[Edge]) -> Self {
         let mut counts = vec![0u32; own.len()];
         for_pairs(edges, |[a, b], _, again| {
@@ -127,8 +127,8 @@ impl Matrix {
         self.rows.iter().map(|row| values[*row as usize]).collect()
     }
 
-    /// Sets `out` to A x and returns x.A x. Differences are formed first, so that what leaves one
-    /// unknown arrives in the other to the last bit.
+    /// Sets `out` to A x and returns x.A x. Differences are formed first, so that the flow out of
+    /// one unknown equals the flow into the other to the last bit.
     pub fn product(&self, x: &[Lanes], out: &mut [Lanes]) -> f64 {
         let of = x.as_flattened();
         let mut begin = 0;
@@ -154,8 +154,8 @@ impl Matrix {
         sum(all)
     }
 
-    /// Pairs of rows with conductances between them, the larger row first; a pair may occur several
-    /// times, and its conductances add up.
+    /// Iterates over pairs of rows with conductances between them, the larger row first; a pair may
+    /// occur several times, and its conductances are added.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let begins = std::iter::once(&0).chain(&self.ends);
         let slices = begins.zip(&self.ends).enumerate();

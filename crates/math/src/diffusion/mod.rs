@@ -1,11 +1,11 @@
-//! Diffusion on graphs: heat or electric current between nodes that conductances join.
+//! Diffusion on graphs: heat or electric current between nodes that are connected by conductances.
 //!
-//! Numbers in, numbers out: the crate knows neither contacts nor laws. A [`Graph`] holds the
-//! conductances of one instant; [`step`] advances the temperatures of nodes with heat capacities
-//! implicitly in time, [`steady`] finds the potentials of nodes without any. A node may stand for
+//! Numbers in, numbers out: the crate knows neither contacts nor laws. A [`Graph`] has the
+//! conductances at one time; [`step`] advances the temperatures of nodes with heat capacities
+//! implicitly in time, [`steady`] finds the potentials of nodes without any. A node may represent
 //! the surface of a [`HalfSpace`], whose depth is resolved by a graded grid and eliminated exactly
-//! from the system of the nodes; heat also flows sideways between the half-spaces of neighbouring
-//! pieces of a surface, the [`Columns`].
+//! from the system of the nodes; heat also flows tangentially between the half-spaces of
+//! neighbouring pieces of a surface, the [`Columns`].
 //!
 //! The equations are, with temperatures T (K), capacities C (J/K), conductances G (W/K) and sources
 //! Q (W),
@@ -14,8 +14,8 @@
 //! C_i dT_i/dt = sum_j G_ij (T_j - T_i) + Q_i
 //! ```
 //!
-//! or with potentials V (V), conductances (S) and currents I (A) the same without the left side. In
-//! two dimensions all of C, G and Q are per metre of depth.
+//! and the same with potentials V (V), conductances (S) and currents I (A), without the left side.
+//! In two dimensions C, G and Q are per metre of depth.
 //!
 //! ```
 //! use fretwork_math::diffusion::{Edge, Graph, Node, Store, step};

@@ -1,12 +1,12 @@
-//! What a node stores.
+//! Storage of heat in a node.
 
 use crate::diffusion::half_space::HalfSpace;
 use serde::{Deserialize, Serialize};
 
-/// Where the heat of a node goes.
+/// Store of the heat of a node.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Store {
-    /// Its temperature is given; any heat flows in or out.
+    /// The temperature of the node is given; any heat flows in or out.
     Fixed,
     /// A heat capacity (J/K), with one temperature.
     Lumped(f64),
@@ -17,18 +17,17 @@ pub enum Store {
 /// A node of a graph.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// Temperature (K); of a half-space that of its surface.
+    /// Temperature (K); for a half-space that of its surface.
     pub temperature: f64,
-    /// What stores its heat.
+    /// Store of its heat.
     pub store: Store,
     /// Conductance to surroundings (W/K), by convection or radiation; zero for none.
     pub surroundings: f64,
     /// Temperature of the surroundings (K).
     pub ambient: f64,
-    /// What rounding took from the temperature so far (K), so that many small changes add up.
+    /// Rounding error of the temperature so far (K), so that many small changes add up.
     pub(crate) lost: f64,
-    /// Change of the temperature in the last step (K/s), from which the next one begins to look for
-    /// its own.
+    /// Change of the temperature in the last step (K/s), the initial guess for the next step.
     pub(crate) rate: f64,
 }
 
@@ -45,7 +44,7 @@ impl Node {
         }
     }
 
-    /// Whether it is a later state of a node: with the same kind of store, and a finite
+    /// Returns whether this is a later state of a node: with the same kind of store, and a finite
     /// temperature.
     pub fn fits(&self, first: &Self) -> bool {
         let store = match (&self.store, &first.store) {
@@ -61,7 +60,8 @@ impl Node {
         add(&mut self.temperature, &mut self.lost, by);
     }
 
-    /// Heat stored since a reference temperature (J); 0 where the temperature is fixed.
+    /// Returns the heat stored relative to a reference temperature (J); 0 where the temperature is
+    /// fixed.
     pub fn heat(&self, reference: f64) -> f64 {
         match &self.store {
             Store::Fixed => 0.0,
@@ -71,7 +71,7 @@ impl Node {
     }
 }
 
-/// Adds to a sum whose rounding is kept (W. Kahan, Commun. ACM 8 (1965) 40).
+/// Adds to a sum with compensation of rounding (W. Kahan, Commun. ACM 8 (1965) 40).
 pub(crate) fn add(sum: &mut f64, lost: &mut f64, by: f64) {
     let by = by + *lost;
     let new = *sum + by;

@@ -5,14 +5,14 @@ use crate::diffusion::{DiffusionError, Edge};
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
-/// Share of the right-hand side to which residuals are reduced.
+/// Ratio of residuals to the right-hand side at convergence.
 const TOLERANCE: f64 = 1e-13;
-/// Accuracy of a solution that is [completed](System::complete), as a share of its largest value.
+/// Accuracy of a solution that is [completed](System::complete), relative to its largest value.
 const COMPLETED: f64 = 1e-6;
-/// Iterations of conjugate gradients after which the system is factorised.
+/// Number of iterations of conjugate gradients after which the system is factorised.
 const MOST: usize = 150;
 
-/// (diag(own) + L) x = right, with the Laplacian L of the edges between unknowns.
+/// System (diag(own) + L) x = right, with the Laplacian L of the edges between unknowns.
 #[derive(Debug)]
 pub(crate) struct System {
     matrix: Matrix,
@@ -21,8 +21,8 @@ pub(crate) struct System {
 }
 
 impl System {
-    /// A system of the diagonal without the edges, the edges between unknowns and the right-hand
-    /// side.
+    /// Creates a system from the diagonal without the edges, the edges between unknowns and the
+    /// right-hand side.
     pub fn new(own: &[f64], edges: &[Edge], right: &[f64]) -> Self {
         let matrix = Matrix::new(own, edges);
         Self {
@@ -31,8 +31,8 @@ impl System {
         }
     }
 
-    /// Solves it by conjugate gradients with the diagonal as preconditioner, and where these take
-    /// long by a sparse Cholesky factorisation.
+    /// Solves the system by conjugate gradients with the diagonal as preconditioner, and if these
+    /// converge slowly by a sparse Cholesky factorisation.
     ///
     /// # Errors
     /// The matrix cannot be factorised.
@@ -69,7 +69,7 @@ impl System {
             None => self.factorise()?,
         };
         let mut left = self.residual(&x);
-        // Where conductances exceed the diagonal by far, the solution is the better one alone.
+        // Where conductances exceed the diagonal by far, the solution alone is more accurate.
         let keeps = small(&x, &left);
         let each = left.as_flattened_mut().iter_mut();
         for (left, own) in each.zip(self.matrix.own().as_flattened()) {
@@ -93,8 +93,9 @@ impl System {
         left
     }
 
-    /// Conjugate gradients with the diagonal as preconditioner, until the residual is rounding or
-    /// `enough` of solution and residual; `None` if they do not converge in time.
+    /// Iterates with conjugate gradients, with the diagonal as preconditioner, until the residual
+    /// is rounding or `enough` accepts solution and residual; `None` if they do not converge in
+    /// time.
     fn gradients(
         &self,
         mut x: Vec<Lanes>,
@@ -150,12 +151,12 @@ impl System {
         let n = diagonal.len();
         let nodes = self.matrix.unknowns();
         let fail = |reason: String| DiffusionError::Linear { nodes, reason };
-        // A node without anything keeps its value.
+        // A node without capacity and edges keeps its value.
         let diagonal = diagonal.iter().enumerate();
         let mut entries: Vec<Triplet<usize, usize, f64>> = diagonal
             .map(|(k, d)| Triplet::new(k, k, if *d > 0.0 { *d } else { 1.0 }))
             .collect();
-        // Entries of one place add up.
+        // Entries at the same position are added.
         let pairs = self.matrix.pairs();
         entries.extend(pairs.map(|(row, other, g)| Triplet::new(row, other, -g)));
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries)
@@ -180,7 +181,7 @@ impl System {
     }
 }
 
-/// r.D^-1 r, with the diagonal D.
+/// Returns r.D^-1 r, with the diagonal D.
 fn size(r: &[Lanes], inverse: &[Lanes]) -> f64 {
     let mut all = Lanes::default();
     for (r, d) in r.iter().zip(inverse) {

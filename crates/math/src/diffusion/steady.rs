@@ -6,20 +6,19 @@ use crate::diffusion::{DiffusionError, Edge, Graph};
 /// A steady state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Steady {
-    /// Potential of each node (V). Nodes that no path joins to a fixed one have 0.
+    /// Potential of each node (V); 0 for nodes without a path to a fixed one.
     pub potential: Vec<f64>,
     /// Current through each edge from its first node to its second (A).
     pub current: Vec<f64>,
-    /// Current that each fixed node gives (A); 0 for the others.
+    /// Current supplied by each fixed node (A); 0 for the others.
     pub given: Vec<f64>,
 }
 
-/// Finds the potentials of nodes that conductances join, where `fixed` is the potential of those
-/// that are held (V) and `injected` the current that is put into the others (A).
+/// Finds the potentials of connected nodes, where `fixed` is the potential of those that are held
+/// (V) and `injected` the current into the others (A).
 ///
 /// # Errors
-/// A conductance or number that may not occur; current into nodes from which no path leads to a
-/// fixed one.
+/// A conductance or number is invalid, or current flows into nodes without a path to a fixed one.
 pub fn steady(
     graph: &Graph,
     fixed: &[Option<f64>],
@@ -54,7 +53,7 @@ pub fn steady(
             source_rate: put_in[node],
         });
     }
-    // A floating component is held at its first node, at 0.
+    // A floating component has the potential 0 at its first node.
     let value = |k: usize| match fixed[k] {
         Some(v) => Some(v),
         None if floats(k) && component[k] == k => Some(0.0),

@@ -7,18 +7,18 @@ use crate::diffusion::{Columns, DiffusionError, Edge, Graph, Node, Store};
 /// The heat of a step (J; J/m in 2D): `sources` + `surroundings` = `stored` + `fixed` + `residual`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
-    /// Put in by sources, also into nodes of fixed temperature.
+    /// Heat supplied by sources, including sources in nodes of fixed temperature.
     pub sources: f64,
-    /// Taken in from surroundings.
+    /// Heat received from surroundings.
     pub surroundings: f64,
-    /// Stored in nodes.
+    /// Heat stored in nodes.
     pub stored: f64,
-    /// Gone into nodes of fixed temperature.
+    /// Heat received by nodes of fixed temperature.
     pub fixed: f64,
-    /// What does not add up: rounding, of temperatures T by T 1e-16, so that through a conductance
-    /// G to a node of fixed temperature G h T 1e-16 may flow unseen.
+    /// Residual, by rounding of temperatures T by T 1e-16, so that the heat G h T 1e-16 through a
+    /// conductance G to a node of fixed temperature may be lost.
     pub residual: f64,
-    /// Through each of the edges that are no elements, from its second node to its first.
+    /// Heat through each edge that is not an element, from its second node to its first.
     pub through: Vec<f64>,
 }
 
@@ -26,13 +26,12 @@ pub struct Balance {
 /// are constant over it; returns the heat of the step.
 ///
 /// The scheme is (C/h) (T' - T) = -L (T + theta (T' - T)) + Q. With theta = 1 it is of first order,
-/// and no temperature leaves the range of the others without sources, whatever the step; with
-/// theta = 1/2 it is of second order, and oscillates for steps beyond the thermal times of
-/// contacts.
+/// and without sources no temperature leaves the range of the others, for any step; with theta =
+/// 1/2 it is of second order, and oscillates for steps beyond the thermal times of contacts.
 ///
 /// # Errors
-/// A conductance, capacity or source that may not occur, a theta outside of 1/2 to 1, a system that
-/// cannot be solved. Temperatures are then as before.
+/// A conductance, capacity or source is invalid, theta is outside 1/2 to 1, or the system cannot be
+/// solved. Temperatures are then not changed.
 pub fn step(
     nodes: &mut [Node],
     graph: &Graph,
@@ -43,12 +42,12 @@ pub fn step(
     step_with_columns(nodes, (graph, &[]), sources, h, theta)
 }
 
-/// A [`step`] with flow between the half-spaces of neighbouring pieces of surfaces. The flow comes
-/// after all else for theta = 1; for a smaller theta half of it comes before and half after, which
-/// keeps the order of the scheme.
+/// Makes a [`step`] with flow between the half-spaces of neighbouring pieces of surfaces. The flow
+/// comes after all else for theta = 1; for a smaller theta half of it comes before and half after,
+/// which keeps the order of the scheme.
 ///
 /// # Errors
-/// As [`step`], and columns that do not fit their nodes.
+/// Returns the errors of [`step`], and an error for columns that do not fit their nodes.
 pub fn step_with_columns(
     nodes: &mut [Node],
     (graph, columns): (&Graph, &[Columns]),
@@ -110,7 +109,8 @@ fn solve(
         own[u] += node.surroundings;
         right[u] += sources[k] + node.surroundings * (node.ambient - node.temperature);
     }
-    // Contiguous, since nodes are large: first at the start of the step, then at theta of it.
+    // Temperatures are copied to be contiguous, since nodes are large: first at the start of the
+    // step, then at theta of it.
     let mut reached: Vec<f64> = nodes.iter().map(|node| node.temperature).collect();
     // Where all nodes are unknowns, edges between nodes are those between unknowns.
     let all_unknown = list.len() == nodes.len() && graph.elements.is_empty();
@@ -162,8 +162,8 @@ fn solve(
     ))
 }
 
-/// The solution of a step: changes of the unknowns at theta of the step, and the temperatures of
-/// all nodes there.
+/// Solution of a step: changes of the unknowns at theta of the step, and the temperatures of all
+/// nodes there.
 struct Solved<'a> {
     list: &'a [usize],
     change: &'a [f64],

@@ -1,10 +1,9 @@
-//! The region of the parameters of a fit: a box, and parameters of which one must not exceed
-//! another.
+//! The region of the parameters of a fit: a box, with order relations between parameters.
 //!
-//! A search works in unit coordinates without limits. A coordinate outside [0, 1] is mirrored at
-//! the ends of its range until it lies within, and parameters in the wrong order change places: the
-//! function that the search sees is continuous and repeats the region as in mirrors, so that a
-//! minimum at a limit is a minimum for the search too, and no penalty needs a weight.
+//! A search uses unlimited unit coordinates. A coordinate outside [0, 1] is reflected at the ends
+//! of its range until it is inside, and parameters in the wrong order are exchanged: the function
+//! that the search sees is continuous and a reflected repetition of the region, so that a minimum
+//! at a limit is also a minimum for the search, and no penalty with a weight is needed.
 
 use crate::design::scale::Scale;
 use thiserror::Error;
@@ -12,13 +11,13 @@ use thiserror::Error;
 /// A parameter with its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its range, linear or logarithmic.
+    /// Range of the parameter, linear or logarithmic.
     pub scale: Scale,
 }
 
-/// Why the region is wrong.
+/// Reason why the region is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BoundsError {
     /// A range is wrong.
@@ -26,23 +25,23 @@ pub enum BoundsError {
     Range {
         /// The parameter.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
     /// An order names a parameter that does not exist.
     #[error("an order names parameter number {0}, but there are only {1}")]
     Unknown(usize, usize),
-    /// Orders go round in a circle.
+    /// Orders are circular.
     #[error("the orders of {0} go round in a circle: leave one out")]
     Circle(String),
-    /// No values meet an order.
+    /// No values satisfy an order.
     #[error(
         "{small} must not exceed {large}, but its smallest value lies above the largest of {large}"
     )]
     Empty {
         /// The parameter that must not be larger.
         small: String,
-        /// The other.
+        /// The other parameter.
         large: String,
     },
 }
@@ -54,18 +53,18 @@ pub struct Bounds {
     /// Pairs (a, b) with the value of a at most that of b, sorted so that a pair that ends in a
     /// comes before those that start there.
     orders: Vec<(usize, usize)>,
-    /// Smallest and largest values that the orders leave.
+    /// Smallest and largest values that the orders permit.
     ranges: Vec<(f64, f64)>,
 }
 
 impl Bounds {
-    /// The region of `parameters` where for each pair (a, b) of `orders` (numbers of parameters)
-    /// the value of a is at most that of b.
+    /// Creates the region of `parameters` where for each pair (a, b) of `orders` (numbers of
+    /// parameters) the value of a is at most that of b.
     ///
     /// # Errors
     ///
-    /// A range of whole numbers or without extent, orders that name no parameter, go round or
-    /// cannot be met.
+    /// A range has whole numbers or is empty, or orders name no parameter, are circular or cannot
+    /// be satisfied.
     pub fn new(parameters: Vec<Parameter>, orders: &[(usize, usize)]) -> Result<Self, BoundsError> {
         let count = parameters.len();
         let mut ranges = Vec::with_capacity(count);
@@ -122,12 +121,13 @@ impl Bounds {
         self.parameters.len()
     }
 
-    /// Whether there is no parameter.
+    /// Returns whether there are no parameters.
     pub fn is_empty(&self) -> bool {
         self.parameters.is_empty()
     }
 
-    /// Values of the parameters at a point of unlimited unit coordinates; they lie in the region.
+    /// Returns the values of the parameters at a point of unlimited unit coordinates; they are in
+    /// the region.
     pub fn values(&self, point: &[f64]) -> Vec<f64> {
         let scales = self.parameters.iter().map(|p| p.scale);
         let mut values: Vec<f64> = scales.zip(point).map(|(s, u)| s.at(mirrored(*u))).collect();
@@ -135,11 +135,11 @@ impl Bounds {
         values
     }
 
-    /// Brings values into the region: those in the wrong order change places until all are in
-    /// order, then each goes to the nearest value that its range and the order leave. Values in the
-    /// region stay as they are.
+    /// Brings values into the region: those in the wrong order are exchanged until all are in
+    /// order, then each is moved to the nearest value that its range and the order permit. Values
+    /// in the region are not changed.
     pub fn repair(&self, values: &mut [f64]) {
-        // A chain of ordered pairs is sorted after at most one round a pair.
+        // A chain of ordered pairs is sorted after at most one round per pair.
         for _ in 0..self.orders.len() {
             for &(a, b) in &self.orders {
                 if values[a] > values[b] {
@@ -156,27 +156,27 @@ impl Bounds {
         }
     }
 
-    /// Unit coordinates, in [0, 1], of values of the parameters.
+    /// Returns the unit coordinates, in [0, 1], of values of the parameters.
     pub fn point(&self, values: &[f64]) -> Vec<f64> {
         let scales = self.parameters.iter().map(|p| p.scale);
         scales.zip(values).map(|(s, v)| s.place(*v)).collect()
     }
 
-    /// The point of the region, in unit coordinates within [0, 1], that has the values of a point
-    /// of unlimited coordinates.
+    /// Returns the point of the region, in unit coordinates within [0, 1], that has the values of a
+    /// point of unlimited coordinates.
     pub fn folded(&self, point: &[f64]) -> Vec<f64> {
         self.point(&self.values(point))
     }
 }
 
-/// A coordinate mirrored at 0 and 1 until it lies between.
+/// Returns a coordinate reflected at 0 and 1 until it is inside.
 fn mirrored(coordinate: f64) -> f64 {
     let turn = coordinate.rem_euclid(2.0);
     if turn > 1.0 { 2.0 - turn } else { turn }
 }
 
-/// The orders sorted by how many others come before them; parameters that are below nothing come
-/// first.
+/// Returns the orders sorted by how many others come before them; parameters without a smaller one
+/// come first.
 fn bounds_order(
     parameters: &[Parameter],
     orders: &[(usize, usize)],
@@ -248,7 +248,7 @@ mod tests {
         }
     }
 
-    /// Without orders: the mirror images of a point have its values, and the mapping is continuous
+    /// Without orders the reflections of a point have its values, and the mapping is continuous
     /// across the ends.
     #[test]
     fn mirrors_at_the_ends() {

@@ -1,9 +1,10 @@
 //! Fits of parameters to measured curves.
 //!
-//! A fit asks [`cma_es`] for points, maps them by [`bounds`] to values of parameters, runs these
-//! (some seeds each, how many says [`seeds`]), compares the curves with the measured ones by
-//! [`residuals`], and reports the sums of squares to the search. From all these runs [`identify`]
-//! then says how well the data determine each parameter, and which combinations not at all.
+//! A fit gets points from [`cma_es`], maps them by [`bounds`] to values of parameters, makes runs
+//! with these values (with the number of seeds that [`seeds`] proposes), compares the curves with
+//! the measured ones by [`residuals`], and returns the sums of squares to the search. From all
+//! these runs [`identify`] then determines how well the data determine each parameter, and which
+//! combinations they do not determine.
 
 pub mod bounds;
 pub mod cma_es;

@@ -9,8 +9,8 @@
 //!
 //! with the weight g_j of the test, 1 unless set otherwise. If the model describes the measurement
 //! and the weights are 1, chi^2 is about the number of values less that of parameters. The variance
-//! of simulated values is left out: it follows the parameters, and noisy ones would seem to fit
-//! well.
+//! of simulated values is not included: it depends on the parameters, so that noisy ones would
+//! appear to fit well.
 
 use thiserror::Error;
 
@@ -23,7 +23,7 @@ pub struct Measurement {
     pub x: Vec<f64>,
     /// Values.
     pub y: Vec<f64>,
-    /// Standard deviation of each value: of the measurement, and of what the model does not aim to
+    /// Standard deviation of each value: of the measurement, and of effects that the model does not
     /// describe.
     pub sigma: Vec<f64>,
     /// Factor of the squares of this test.
@@ -39,7 +39,7 @@ pub struct Curve<'a> {
     pub y: &'a [f64],
 }
 
-/// Why curves cannot be compared.
+/// Reason why curves cannot be compared.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ResidualError {
     /// The measurement is wrong.
@@ -47,7 +47,7 @@ pub enum ResidualError {
     Measurement {
         /// Name of the test.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
     /// The simulated curve is wrong.
@@ -55,10 +55,11 @@ pub enum ResidualError {
     Simulated {
         /// Name of the test.
         name: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
-    /// Another number of curves than tests, or of values than measured.
+    /// The number of curves is not that of the tests, or the number of values not that of the
+    /// measured ones.
     #[error("{found} where {expected} are measured")]
     Count {
         /// Expected number.
@@ -72,19 +73,19 @@ pub enum ResidualError {
 /// curve.
 const OVERHANG: f64 = 1e-9;
 
-/// All measurements of a fit. Vectors of values have those of the first test first.
+/// All measurements of a fit. Vectors of values begin with those of the first test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     tests: Vec<Measurement>,
 }
 
 impl Target {
-    /// Checks and takes the measurements.
+    /// Checks the measurements and creates the target.
     ///
     /// # Errors
     ///
-    /// Lists of unequal length, no values, values that are not finite, a sigma or weight that is
-    /// not positive.
+    /// Lists have different lengths, there are no values, values are not finite, or a sigma or
+    /// weight is not positive.
     pub fn new(tests: Vec<Measurement>) -> Result<Self, ResidualError> {
         for test in &tests {
             let lengths = [test.x.len(), test.y.len(), test.sigma.len()];
@@ -114,8 +115,8 @@ impl Target {
         Ok(Self { tests })
     }
 
-    /// Weights the residuals so that each test counts as much as a single value, whatever its
-    /// number of values.
+    /// Weights the residuals so that each test has the weight of a single value, for any number of
+    /// values.
     pub fn balanced(mut self) -> Self {
         for test in &mut self.tests {
             test.weight = 1.0 / test.y.len() as f64;
@@ -128,7 +129,7 @@ impl Target {
         &self.tests
     }
 
-    /// Measured values of all tests.
+    /// Returns the measured values of all tests.
     pub fn measured(&self) -> Vec<f64> {
         self.tests
             .iter()
@@ -136,7 +137,7 @@ impl Target {
             .collect()
     }
 
-    /// Standard deviations of all values.
+    /// Returns the standard deviations of all values.
     pub fn sigma(&self) -> Vec<f64> {
         self.tests
             .iter()
@@ -144,7 +145,7 @@ impl Target {
             .collect()
     }
 
-    /// The weight of each value's test.
+    /// Returns the weight of each value's test.
     pub fn weights(&self) -> Vec<f64> {
         self.tests
             .iter()
@@ -152,11 +153,11 @@ impl Target {
             .collect()
     }
 
-    /// Simulated values at the measured abscissae, from one curve per test.
+    /// Returns the simulated values at the measured abscissae, from one curve per test.
     ///
     /// # Errors
     ///
-    /// Another number of curves, or a curve that [`resample`] cannot use.
+    /// The number of curves is wrong, or [`resample`] cannot use a curve.
     pub fn simulated(&self, curves: &[Curve<'_>]) -> Result<Vec<f64>, ResidualError> {
         if curves.len() != self.tests.len() {
             return Err(ResidualError::Count {
@@ -175,12 +176,12 @@ impl Target {
         Ok(values)
     }
 
-    /// Simulated less measured values, in standard deviations, each times the root of its test's
-    /// weight: chi^2 is the sum of their squares.
+    /// Returns simulated less measured values, in standard deviations, each times the root of its
+    /// test's weight: chi^2 is the sum of their squares.
     ///
     /// # Errors
     ///
-    /// Another number of values than measured.
+    /// The number of values is not that of the measured ones.
     fn residuals(&self, simulated: &[f64]) -> Result<Vec<f64>, ResidualError> {
         let (measured, sigma, weights) = (self.measured(), self.sigma(), self.weights());
         if simulated.len() != measured.len() {
@@ -198,18 +199,18 @@ impl Target {
     ///
     /// # Errors
     ///
-    /// Another number of values than measured.
+    /// The number of values is not that of the measured ones.
     pub fn chi_squared(&self, simulated: &[f64]) -> Result<f64, ResidualError> {
         Ok(self.residuals(simulated)?.iter().map(|r| r * r).sum())
     }
 }
 
-/// Values of a curve at other abscissae, by linear interpolation.
+/// Returns the values of a curve at other abscissae, by linear interpolation.
 ///
 /// # Errors
 ///
-/// A sentence: abscissae that do not increase, values that are not finite, or abscissae outside the
-/// curve.
+/// Returns a sentence: abscissae do not increase, values are not finite, or abscissae are outside
+/// the curve.
 pub fn resample(curve: Curve<'_>, at: &[f64]) -> Result<Vec<f64>, String> {
     let (x, y) = (curve.x, curve.y);
     if x.len() != y.len() {
@@ -263,8 +264,8 @@ pub struct OverSeeds {
     pub seeds: usize,
 }
 
-/// Means and variances over seeds, a row of values each; `None` for no rows or rows of unequal
-/// length.
+/// Returns means and variances over seeds, given one row of values per seed; `None` for no rows or
+/// rows of different lengths.
 pub fn over_seeds(rows: &[Vec<f64>]) -> Option<OverSeeds> {
     let width = rows.first()?.len();
     if rows.iter().any(|r| r.len() != width) {
@@ -300,8 +301,8 @@ mod tests {
         }
     }
 
-    /// f = 2 x on [0, 2], measured 1 at 0.25 and 3 at 1.5 with sigma 0.5, and one value 7 +- 1
-    /// simulated as 9: residuals -1, 0, 2.
+    /// For f = 2 x on [0, 2], measured 1 at 0.25 and 3 at 1.5 with sigma 0.5, and one value 7 +- 1
+    /// simulated as 9, the residuals are -1, 0, 2.
     #[test]
     fn sums_over_all_tests() {
         let target = Target::new(vec![

@@ -1,30 +1,31 @@
-//! How many seeds a point of a search needs.
+//! Number of seeds for a point of a search.
 //!
-//! A search goes by the order of its points; what it needs is that the differences between points
-//! stand out from the noise of their means. As in UH-CMA-ES (Hansen, Niederberger, Guzzella,
-//! Koumoutsakos, IEEE Trans. Evol. Comput. 13 (2009) 180) the number of runs per point grows by 1.5
-//! while the order is uncertain, and falls slowly while it is certain. There the measure is the
-//! change of ranks when some points are run again; here all points of a generation have the same
-//! seeds, so that the analysis of variance by points and seeds measures it without further runs:
+//! A search uses the order of its points, so that the differences between points must exceed the
+//! noise of their means. As in UH-CMA-ES (Hansen, Niederberger, Guzzella, Koumoutsakos, IEEE Trans.
+//! Evol. Comput. 13 (2009) 180) the number of runs per point grows by 1.5 while the order is
+//! uncertain, and falls slowly while it is certain. There the measure is the change of ranks when
+//! some points are run again; here all points of a generation have the same seeds, so that the
+//! analysis of variance by points and seeds measures it without further runs:
 //!
 //! ```text
 //! reliability = 1 - MS_noise / MS_points,
 //! ```
 //!
-//! the share of the variance of the points' means that is not noise. What a seed does to all points
-//! alike does not count. Each generation should have other seeds: with the same ones throughout,
-//! the search finds the minimum of these seeds.
+//! the share of the variance of the points' means that is not noise. An effect of a seed that is
+//! common to all points does not count. Each generation should have other seeds: with the same ones
+//! throughout, the search finds the minimum of these seeds.
 
-/// Below this reliability more seeds are taken.
+/// Reliability below which more seeds are used.
 const UNCERTAIN: f64 = 0.5;
 
-/// Above this reliability fewer seeds are taken.
+/// Reliability above which fewer seeds are used.
 const CERTAIN: f64 = 0.8;
 
 /// Factor for more seeds, and its fourth root for fewer (the paper's choice).
 const GROWTH: f64 = 1.5;
 
-/// Uncertain generations with the largest number of seeds after which the search can go no further.
+/// Number of uncertain generations with the largest number of seeds after which the search can make
+/// no further progress.
 const EXHAUSTED: usize = 5;
 
 /// The number of seeds per point, adapted after each generation.
@@ -37,10 +38,10 @@ pub struct SeedsPerPoint {
 }
 
 impl SeedsPerPoint {
-    /// From `smallest`, with which it starts, to `largest` seeds; the same number twice does not
-    /// change. One seed says nothing of noise, so that the smallest number should be two or more,
-    /// except for a model without randomness. Numbers out of order are put in order, none is taken
-    /// as one.
+    /// Creates the number from `smallest`, with which it starts, to `largest` seeds; if both are
+    /// equal, it does not change. With one seed the noise is unknown, so that the smallest number
+    /// should be two or more, except for a model without randomness. Numbers in the wrong order are
+    /// exchanged, zero is replaced by one.
     pub fn new(smallest: usize, largest: usize) -> Self {
         let smallest = smallest.max(1);
         Self {
@@ -51,15 +52,15 @@ impl SeedsPerPoint {
         }
     }
 
-    /// Seeds for each point of the next generation.
+    /// Returns the number of seeds for each point of the next generation.
     pub fn count(&self) -> usize {
         (self.now.round() as usize).clamp(self.smallest, self.largest)
     }
 
-    /// Takes the values of a generation: a row per point, with the value for each seed, the same
-    /// seeds in the same order. Points with a failed run (`None`) are left out. Returns the
-    /// reliability; `None` with one seed or fewer than three whole points, and the number then
-    /// stays.
+    /// Adds the values of a generation: one row per point, with the value for each seed, with the
+    /// same seeds in the same order. Points with a failed run (`None`) are left out. Returns the
+    /// reliability; `None` with one seed or fewer than three complete points, and the number then
+    /// does not change.
     pub fn update(&mut self, values: &[Vec<Option<f64>>]) -> Option<f64> {
         let reliability = reliability(values)?;
         if reliability < UNCERTAIN {
@@ -78,14 +79,14 @@ impl SeedsPerPoint {
         Some(reliability)
     }
 
-    /// Whether the points of the last generations differ by no more than their noise, with the
-    /// largest number of seeds: the search has reached what these seeds can resolve.
+    /// Returns whether the points of the last generations differ by no more than their noise, with
+    /// the largest number of seeds: the search has reached the resolution of these seeds.
     pub fn exhausted(&self) -> bool {
         self.uncertain >= EXHAUSTED
     }
 }
 
-/// The share of the variance of the points' means that is not noise, from 0 to 1.
+/// Returns the share of the variance of the points' means that is not noise, from 0 to 1.
 fn reliability(values: &[Vec<Option<f64>>]) -> Option<f64> {
     let rows: Vec<Vec<f64>> = values
         .iter()
@@ -126,8 +127,8 @@ mod tests {
     use crate::statistics::random::normal;
     use rand::SeedableRng;
 
-    /// Points that differ with variance 1, noise of variance 4 in 4 seeds, and a large part of each
-    /// seed that all share: half of the variance of means is noise.
+    /// Points differ with variance 1, with noise of variance 4 in 4 seeds, and a large common part
+    /// of each seed: half of the variance of means is noise.
     #[test]
     fn reliability_is_the_share_without_noise() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(2);

@@ -12,8 +12,8 @@
 //! F_A   = (SS_A / df_A) / (SS_E / df_E)
 //! ```
 //!
-//! What is left of SS_total are interactions of three and more factors. Without repeated seeds they
-//! take the place of the noise, if there are any. Combinations with unequal numbers of runs are
+//! The remainder of SS_total are interactions of three and more factors. Without repeated seeds
+//! they replace the noise, if there are any. Combinations with different numbers of runs are
 //! treated by Yates' method of unweighted means: n is the harmonic mean of the numbers.
 
 use super::SensitivityError;
@@ -23,7 +23,7 @@ use crate::statistics::distribution::fisher_upper;
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
-    /// The factor, or the two whose interaction this is.
+    /// The factor, or the two factors of an interaction.
     pub factors: Vec<usize>,
     /// Sum of squares.
     pub squares: f64,
@@ -37,14 +37,14 @@ pub struct Effect {
     pub p: Option<f64>,
 }
 
-/// What the effects are compared with.
+/// Error with which the effects are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorTerm {
     /// The noise between seeds of a combination.
     Seeds,
     /// Interactions of three and more factors: an upper bound of the noise.
     HigherInteractions,
-    /// Nothing: neither repeated seeds nor three factors.
+    /// None: there are neither repeated seeds nor three factors.
     Unknown,
 }
 
@@ -59,7 +59,7 @@ pub struct Anova {
     pub noise_share: f64,
     /// The noise, where seeds are repeated.
     pub noise: Option<Noise>,
-    /// What the effects are compared with.
+    /// Error with which the effects are compared.
     pub error_term: ErrorTerm,
     /// Sum of squares of all runs.
     pub total: f64,
@@ -70,8 +70,8 @@ pub struct Anova {
 ///
 /// # Errors
 ///
-/// Rows of unequal length, another number of outputs, a combination without any run that succeeded,
-/// or equal outputs.
+/// Rows have different lengths, the number of outputs is wrong, a combination has no successful
+/// run, or all outputs are equal.
 pub fn anova(
     levels: &[usize],
     rows: &[Vec<usize>],
@@ -160,7 +160,7 @@ impl Table<'_> {
         })
     }
 
-    /// Mean of the combinations with each level of a factor.
+    /// Returns the mean of the combinations with each level of a factor.
     fn level_means(&self, factor: usize) -> Vec<f64> {
         self.means_by(self.levels[factor], |row| row[factor])
     }
@@ -200,8 +200,8 @@ mod tests {
     use crate::statistics::random::normal;
     use rand::SeedableRng;
 
-    /// Life of batteries by material and temperature (Montgomery, Design and Analysis of
-    /// Experiments, table 5.1), with the published analysis (table 5.5).
+    /// The data are the life of batteries by material and temperature (Montgomery, Design and
+    /// Analysis of Experiments, table 5.1), with the published analysis (table 5.5).
     #[test]
     fn battery_lives_by_montgomery() {
         let cells: [[f64; 4]; 9] = [

@@ -1,4 +1,4 @@
-//! How much the mean output changes over the levels of each factor.
+//! Change of the mean output over the levels of each factor.
 
 use super::SensitivityError;
 use super::points::{Points, mean};
@@ -7,20 +7,20 @@ use super::points::{Points, mean};
 #[derive(Clone, Debug, PartialEq)]
 pub struct MainEffect {
     /// Mean over the combinations with each level, in the order of the levels. Each combination
-    /// counts by the mean of its seeds, so that all count the same.
+    /// contributes the mean of its seeds, so that all have the same weight.
     pub means: Vec<f64>,
     /// Largest less smallest mean.
     pub range: f64,
 }
 
-/// The main effects of all factors, from runs whose row has the level of each factor. Seeds of a
-/// combination are repeated rows; `None` is a run that failed. The design need not be complete, but
-/// where levels occur with different levels of the other factors their means differ for that reason
-/// too.
+/// Returns the main effects of all factors, from runs whose row has the level of each factor. Seeds
+/// of a combination are repeated rows; `None` is a failed run. The design need not be complete, but
+/// where levels occur with different levels of the other factors, their means differ for that
+/// reason too.
 ///
 /// # Errors
 ///
-/// Rows of unequal length, another number of outputs, or no run that succeeded.
+/// Rows have different lengths, the number of outputs is wrong, or no run succeeded.
 pub fn main_effects(
     rows: &[Vec<usize>],
     outputs: &[Option<f64>],

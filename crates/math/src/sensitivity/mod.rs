@@ -1,4 +1,4 @@
-//! Which factors an output depends on, and by how much.
+//! Dependence of an output on factors.
 //!
 //! - [`sobol_indices`]: shares of the variance over the whole range of all factors, from the points
 //!   of [`saltelli`](crate::design::saltelli);
@@ -7,8 +7,8 @@
 //! - [`regression`]: standardised coefficients of a linear model, and [`ranks`]: rank correlations,
 //!   from any points.
 //!
-//! Outputs scatter with the seed of a run. [`points`] gathers the seeds of a point, and the
-//! analyses separate this noise from the effects of factors.
+//! Outputs scatter with the seed of a run. [`points`] groups the seeds of a point, and the analyses
+//! separate this noise from the effects of factors.
 
 pub mod anova;
 pub mod main_effects;
@@ -19,7 +19,7 @@ pub mod sobol_indices;
 
 use thiserror::Error;
 
-/// Why an analysis is not possible.
+/// Reason why an analysis is not possible.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SensitivityError {
     /// The numbers of inputs and outputs do not match.
@@ -27,31 +27,31 @@ pub enum SensitivityError {
         "{outputs} outputs for {inputs} runs: give one output per run, none for a run that failed"
     )]
     Length {
-        /// Runs expected.
+        /// Number of expected runs.
         inputs: usize,
-        /// Outputs given.
+        /// Number of given outputs.
         outputs: usize,
     },
-    /// Rows of unequal length.
+    /// Rows have different lengths.
     #[error("run {run} has {found} factors where the first has {expected}")]
     Ragged {
         /// Number of the run, from 0.
         run: usize,
-        /// Factors of the first run.
+        /// Number of factors of the first run.
         expected: usize,
-        /// Factors of this run.
+        /// Number of factors of this run.
         found: usize,
     },
-    /// Too few runs that did not fail.
+    /// There are too few successful runs.
     #[error(
         "{complete} complete {what}, at least {needed} are needed: run more points, or find out why runs fail"
     )]
     Few {
-        /// What is counted.
+        /// Name of the counted items.
         what: &'static str,
-        /// How many there are.
+        /// Available number.
         complete: usize,
-        /// How many it takes.
+        /// Required number.
         needed: usize,
     },
     /// The output is the same in all runs.
@@ -62,19 +62,19 @@ pub enum SensitivityError {
         "{missing} of {cells} combinations of levels have no run that succeeded: an analysis of variance needs all of them"
     )]
     Cells {
-        /// Combinations without a value.
+        /// Number of combinations without a value.
         missing: usize,
-        /// All combinations.
+        /// Number of all combinations.
         cells: usize,
     },
-    /// Factors that vary together.
+    /// Factors vary together.
     #[error(
         "the factors of these points cannot be distinguished: one does not vary, or some vary together"
     )]
     Dependent,
 }
 
-/// Whether the rows have one length and there is an output for each.
+/// Checks that the rows have one length and there is an output for each.
 fn check_lengths<T>(rows: &[Vec<T>], outputs: usize) -> Result<usize, SensitivityError> {
     if rows.len() != outputs {
         return Err(SensitivityError::Length {

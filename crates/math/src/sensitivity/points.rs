@@ -1,4 +1,4 @@
-//! Runs gathered by point: the seeds of a point give its mean and the noise.
+//! Runs grouped by point: the seeds of a point give its mean and the noise.
 
 use super::{SensitivityError, check_lengths};
 
@@ -7,7 +7,7 @@ use super::{SensitivityError, check_lengths};
 pub struct Noise {
     /// Variance of one run, pooled over the points.
     pub variance: f64,
-    /// Degrees of freedom: runs less points.
+    /// Degrees of freedom: number of runs less number of points.
     pub degrees: usize,
 }
 
@@ -16,19 +16,19 @@ pub struct Noise {
 pub struct Points<T> {
     /// Each point once, in the order of its first run.
     pub rows: Vec<Vec<T>>,
-    /// Outputs of each point's runs that succeeded; at least one.
+    /// Outputs of each point's successful runs; at least one.
     pub outputs: Vec<Vec<f64>>,
-    /// Runs that failed.
+    /// Number of failed runs.
     pub failed: usize,
 }
 
 impl<T: PartialEq + Clone> Points<T> {
-    /// Gathers runs (`rows`, one each, the point without the seed) with their outputs. Runs with
+    /// Groups runs (`rows`, one each, the point without the seed) with their outputs. Runs with
     /// equal rows are seeds of one point; points without any output are left out.
     ///
     /// # Errors
     ///
-    /// Rows of unequal length, or another number of outputs.
+    /// Rows have different lengths, or the number of outputs is wrong.
     pub fn gather(rows: &[Vec<T>], outputs: &[Option<f64>]) -> Result<Self, SensitivityError> {
         check_lengths(rows, outputs.len())?;
         let mut points = Self {
@@ -52,7 +52,7 @@ impl<T: PartialEq + Clone> Points<T> {
         Ok(points)
     }
 
-    /// Mean output of each point.
+    /// Returns the mean output of each point.
     pub fn means(&self) -> Vec<f64> {
         self.outputs.iter().map(|v| mean(v)).collect()
     }
@@ -68,20 +68,20 @@ impl<T: PartialEq + Clone> Points<T> {
         })
     }
 
-    /// Harmonic mean of the number of runs of a point: the noise of a point's mean has on average
-    /// the variance of one run divided by it.
+    /// Returns the harmonic mean of the number of runs of a point: the noise of a point's mean has
+    /// on average the variance of one run divided by it.
     pub fn runs_per_point(&self) -> f64 {
         let inverse: f64 = self.outputs.iter().map(|v| 1.0 / v.len() as f64).sum();
         self.outputs.len() as f64 / inverse
     }
 }
 
-/// Mean of a list that is not empty.
+/// Returns the mean of a list that is not empty.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Sum of the squared differences from the mean.
+/// Returns the sum of the squared differences from the mean.
 pub(super) fn squares(values: &[f64]) -> f64 {
     let centre = mean(values);
     values.iter().map(|v| (v - centre).powi(2)).sum()

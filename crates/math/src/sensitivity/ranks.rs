@@ -13,20 +13,21 @@ use crate::statistics::interval::{CONFIDENCE, Interval};
 /// The rank correlation of one factor with the output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankCorrelation {
-    /// From -1 to 1; 0 for a factor that does not vary.
+    /// Correlation from -1 to 1; 0 for a factor that does not vary.
     pub value: f64,
-    /// Interval of 95 %, from four points.
+    /// Interval of 95 %, for four points or more.
     pub interval: Option<Interval>,
     /// Probability of such a correlation if the factor has no effect.
     pub p: Option<f64>,
 }
 
-/// The rank correlation of each factor with the mean output of the points; rows and outputs as for
-/// [`regression`](super::regression::regression).
+/// Returns the rank correlation of each factor with the mean output of the points; rows and outputs
+/// are those of [`regression`](super::regression::regression).
 ///
 /// # Errors
 ///
-/// Rows of unequal length, another number of outputs, fewer than three points, or equal outputs.
+/// Rows have different lengths, the number of outputs is wrong, there are fewer than three points,
+/// or all outputs are equal.
 pub fn rank_correlations(
     rows: &[Vec<f64>],
     outputs: &[Option<f64>],
@@ -66,7 +67,7 @@ impl RankCorrelation {
         }
         let value = (product / size).clamp(-1.0, 1.0);
         let t = value * ((n - 2.0) / (1.0 - value * value)).sqrt();
-        // At a full correlation the transformation has no finite value.
+        // At a correlation of 1 or -1 the transformation is not finite.
         let interval = (n > 3.0 && value.abs() < 1.0)
             .then(|| normal_quantile(0.5 + 0.5 * CONFIDENCE))
             .flatten();
@@ -88,12 +89,12 @@ impl RankCorrelation {
     }
 }
 
-/// Largest number of points whose orders are all tried; for more, Student's distribution is close
-/// enough.
+/// Largest number of points for which all orders are tried; for more, Student's distribution is
+/// accurate enough.
 const EXACT: usize = 8;
 
-/// Share of the orders of b that give a sum of products, both less their means, as large as the one
-/// seen.
+/// Returns the share of the orders of b with a sum of products, both less their means, as large as
+/// the observed one.
 fn by_permutations(a: &[f64], b: &[f64], seen: f64) -> f64 {
     let (of_a, of_b) = (mean(a), mean(b));
     let a: Vec<f64> = a.iter().map(|x| x - of_a).collect();
@@ -103,7 +104,7 @@ fn by_permutations(a: &[f64], b: &[f64], seen: f64) -> f64 {
         let product: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
         usize::from(product.abs() >= limit)
     };
-    // Heap's order of permutations, each by one exchange.
+    // Heap's algorithm generates the permutations, each by one exchange.
     let (mut count, mut all) = (as_large(&b), 1);
     let mut state = vec![0; b.len()];
     let mut k = 1;
@@ -122,7 +123,7 @@ fn by_permutations(a: &[f64], b: &[f64], seen: f64) -> f64 {
     count as f64 / all as f64
 }
 
-/// Ranks from 1, equal values with their mean rank.
+/// Returns ranks from 1, with their mean rank for equal values.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -145,7 +146,8 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Three points in order: two of their six orders are as extreme; four: two of twenty-four.
+    /// For three points in order two of their six orders are as extreme; for four points two of
+    /// twenty-four.
     #[test]
     fn few_points_prove_little() {
         for (count, p) in [(3usize, 2.0 / 6.0), (4, 2.0 / 24.0)] {
@@ -167,8 +169,8 @@ mod tests {
         assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
     }
 
-    /// 1 - 6 sum d^2 / (n (n^2 - 1)) for ranks without ties: (1 2 3 4 5) against (2 1 4 3 5) is 1 -
-    /// 24/120.
+    /// The correlation is 1 - 6 sum d^2 / (n (n^2 - 1)) for ranks without ties: (1 2 3 4 5) and (2
+    /// 1 4 3 5) give 1 - 24/120.
     #[test]
     fn spearmans_formula_and_monotonic_functions() {
         let rows: Vec<Vec<f64>> = (1..=5)

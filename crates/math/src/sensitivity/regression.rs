@@ -7,7 +7,7 @@
 //! model explains at all: if it is small, the coefficients say little, and ranks or Sobol's indices
 //! say more. Saltelli et al., Global Sensitivity Analysis: The Primer, 2008, section 1.2.
 //!
-//! Seeds of one point share the point's departure from the linear model, so that they count as one
+//! Seeds of one point share the point's deviation from the linear model, so that they count as one
 //! in the intervals.
 
 use super::SensitivityError;
@@ -42,13 +42,13 @@ pub struct Regression {
     pub r_squared: f64,
 }
 
-/// Fits the linear model to runs, a row of factor values each. Equal rows are seeds of a point;
-/// `None` is a run that failed.
+/// Fits the linear model to runs, given by one row of factor values each. Equal rows are seeds of a
+/// point; `None` is a failed run.
 ///
 /// # Errors
 ///
-/// Rows of unequal length, another number of outputs, fewer points than factors + 1, factors that
-/// do not vary or vary together, or equal outputs.
+/// Rows have different lengths, the number of outputs is wrong, there are fewer points than
+/// factors + 1, factors do not vary or vary together, or all outputs are equal.
 pub fn regression(
     rows: &[Vec<f64>],
     outputs: &[Option<f64>],
@@ -68,7 +68,8 @@ pub fn regression(
     if total <= 0.0 {
         return Err(SensitivityError::Constant);
     }
-    // Factors less their mean: columns of a factor far from 0 would seem to be dependent.
+    // The mean is subtracted from factors, since columns of a factor far from 0 would appear to be
+    // dependent.
     let centres: Vec<f64> = (0..factors)
         .map(|f| points.rows.iter().map(|r| r[f]).sum::<f64>() / count as f64)
         .collect();
@@ -93,7 +94,8 @@ pub fn regression(
     })
 }
 
-/// The coefficient in a column, with the ratio of the standard deviations of factor and output.
+/// Returns the coefficient in a column, with the ratio of the standard deviations of factor and
+/// output.
 fn coefficient(fit: &LeastSquares, column: usize, ratio: f64) -> Coefficient {
     let slope = fit.coefficients[column];
     let degrees = fit.degrees as f64;
@@ -138,8 +140,8 @@ mod tests {
         }
     }
 
-    /// Over 500 studies: intervals of slopes hold the truth in 95 % (standard error 1 %), the test
-    /// of a factor without effect rejects 5 %.
+    /// Over 500 studies intervals of slopes contain the truth in 95 % (standard error 1 %), and the
+    /// test of a factor without effect rejects 5 %.
     #[test]
     fn intervals_and_tests_keep_their_level() {
         let once = latin_hypercube(20, 2, 8);

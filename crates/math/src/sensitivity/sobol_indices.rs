@@ -9,7 +9,7 @@
 //!   at all.
 //!
 //! From the rows of [`saltelli`](crate::design::saltelli::saltelli), with sums over the n base
-//! points and outputs less their mean:
+//! points and outputs less their mean, they are
 //!
 //! ```text
 //! S_i = sum f(B) (f(A_B^i) - f(A)) / (n V)       Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, table 2 (b)
@@ -25,21 +25,21 @@
 //! independent base points, in 92 to 100 % with 512 of a sequence.
 //!
 //! Outputs that scatter with the seed: the noise counts as interaction of every factor, and adds
-//! its share of the variance to each total index. Take the mean over some seeds, or the same seed
-//! in all runs where that lessens the scatter.
+//! its share of the variance to each total index. The outputs should be means over some seeds, or
+//! of the same seed in all runs where that reduces the scatter.
 
 use super::SensitivityError;
 use crate::design::saltelli::rows_per_base;
 use crate::statistics::bootstrap::percentile_intervals;
 use crate::statistics::interval::{CONFIDENCE, Interval};
 
-/// Bootstrap resamples of [`sobol_indices`].
+/// Number of bootstrap resamples of [`sobol_indices`].
 const RESAMPLES: usize = 1000;
 
 /// An index of one factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Index {
-    /// The estimate. That of a small index may be negative.
+    /// Estimate, which may be negative for a small index.
     pub value: f64,
     /// Interval of 95 %.
     pub interval: Option<Interval>,
@@ -48,9 +48,9 @@ pub struct Index {
 /// The indices of all factors for one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SobolIndices {
-    /// Base points whose rows all have an output.
+    /// Number of base points whose rows all have an output.
     pub used: usize,
-    /// Base points left out, since a run of theirs failed.
+    /// Number of base points left out because of a failed run.
     pub left_out: usize,
     /// Mean output at the points A and B.
     pub mean: f64,
@@ -62,15 +62,15 @@ pub struct SobolIndices {
     pub total: Vec<Index>,
 }
 
-/// The indices of `factors` factors from outputs in the order of the rows of
-/// [`saltelli`](crate::design::saltelli::saltelli), `None` for runs that failed; `seed` is that of
-/// the bootstrap. A base point with a failed run is left out: if runs fail in one part of the
-/// range, the indices are those of the rest.
+/// Returns the indices of `factors` factors from outputs in the order of the rows of
+/// [`saltelli`](crate::design::saltelli::saltelli), `None` for failed runs; `seed` is that of the
+/// bootstrap. A base point with a failed run is left out: if runs fail in one part of the range,
+/// the indices are those of the rest.
 ///
 /// # Errors
 ///
-/// A number of outputs that is no multiple of `factors` + 2, fewer than two complete base points,
-/// or equal outputs.
+/// The number of outputs is not a multiple of `factors` + 2, there are fewer than two complete base
+/// points, or all outputs are equal.
 pub fn sobol_indices(
     outputs: &[Option<f64>],
     factors: usize,
@@ -162,15 +162,15 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use std::f64::consts::PI;
 
-    /// Ishigami and Homma's function with a = 7, b = 0.1.
+    /// Returns the function of Ishigami and Homma with a = 7, b = 0.1.
     fn ishigami(u: &[f64]) -> f64 {
         let x: Vec<f64> = u.iter().map(|u| PI * (2.0 * u - 1.0)).collect();
         x[0].sin() + 7.0 * x[1].sin().powi(2) + 0.1 * x[2].powi(4) * x[0].sin()
     }
 
-    /// First-order and total indices in closed form (Saltelli et al., Global Sensitivity Analysis:
-    /// The Primer, 2008, section 4.9): V = a^2/8 + b pi^4/5 + b^2 pi^8/18 + 1/2, V_1 = (1 + b
-    /// pi^4/5)^2 / 2, V_2 = a^2/8, V_13 = 8 b^2 pi^8 / 225.
+    /// Returns first-order and total indices in closed form (Saltelli et al., Global Sensitivity
+    /// Analysis: The Primer, 2008, section 4.9): V = a^2/8 + b pi^4/5 + b^2 pi^8/18 + 1/2, V_1 =
+    /// (1 + b pi^4/5)^2 / 2, V_2 = a^2/8, V_13 = 8 b^2 pi^8 / 225.
     fn ishigami_indices() -> ([f64; 3], [f64; 3]) {
         let (a, b) = (7f64, 0.1);
         let v = a * a / 8.0 + b * PI.powi(4) / 5.0 + b * b * PI.powi(8) / 18.0 + 0.5;
@@ -179,8 +179,8 @@ mod tests {
         ([v1 / v, v2 / v, 0.0], [(v1 + v13) / v, v2 / v, v13 / v])
     }
 
-    /// Sobol's g-function, the product of (|4 u_i - 2| + a_i) / (1 + a_i), for which V_i = 1 / (3
-    /// (1 + a_i)^2).
+    /// Returns Sobol's g-function, the product of (|4 u_i - 2| + a_i) / (1 + a_i), for which V_i =
+    /// 1 / (3 (1 + a_i)^2).
     const G: [f64; 5] = [0.0, 1.0, 4.5, 9.0, 99.0];
 
     fn g_function(u: &[f64]) -> f64 {
@@ -188,7 +188,8 @@ mod tests {
         u.iter().zip(G).map(factor).product()
     }
 
-    /// V = prod (1 + V_i) - 1, S_i = V_i / V, T_i = V_i prod over the others of (1 + V_j) / V.
+    /// Returns V = prod (1 + V_i) - 1, S_i = V_i / V, T_i = V_i prod over the others of (1 + V_j) /
+    /// V.
     fn g_indices() -> (Vec<f64>, Vec<f64>) {
         let parts = G.map(|a| 1.0 / (3.0 * (1.0 + a).powi(2)));
         let product: f64 = parts.iter().map(|v| 1.0 + v).product();
@@ -239,7 +240,7 @@ mod tests {
         check(g_function, &first, &total);
     }
 
-    /// Of 300 studies the intervals of 95 % of each index hold the truth in as many, for
+    /// In 300 studies the intervals of 95 % of each index contain the truth in 95 %, for
     /// independent base points: the share has a standard error of 1.3 %.
     #[test]
     fn intervals_hold_the_truth_as_often_as_they_say() {

@@ -1,4 +1,4 @@
-//! Bootstrap intervals: how far an estimate changes when the data are drawn again from themselves.
+//! Bootstrap intervals: variation of an estimate when the data are resampled.
 //!
 //! Efron, Ann. Statist. 7 (1979) 1; the percentile interval of Efron and Tibshirani, An
 //! Introduction to the Bootstrap, 1993, chapter 13.
@@ -7,9 +7,9 @@ use crate::statistics::interval::Interval;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Percentile intervals of estimates (one or several) from `count` items: the estimates are
+/// Returns percentile intervals of estimates (one or several) from `count` items: the estimates are
 /// computed from `resamples` lists of `count` item numbers, drawn with replacement from `seed`, and
-/// each interval leaves out (1 - `confidence`)/2 of them at each end. Estimates that are not finite
+/// each interval excludes (1 - `confidence`)/2 of them at each end. Estimates that are not finite
 /// are left out; `None` where fewer than half of them are finite.
 pub fn percentile_intervals(
     count: usize,
@@ -49,8 +49,8 @@ pub fn percentile_intervals(
         .collect()
 }
 
-/// The value below which the fraction `probability` of a sorted list lies, by linear interpolation
-/// between its values. The list has at least one value.
+/// Returns the value below which the fraction `probability` of a sorted list lies, by linear
+/// interpolation between its values. The list must have at least one value.
 fn quantile_of_sorted(sorted: &[f64], probability: f64) -> f64 {
     let place = probability * (sorted.len() - 1) as f64;
     let below = place.floor() as usize;

@@ -1,19 +1,19 @@
-//! Which of several alternatives differ, by runs with the same seeds.
+//! Differences between several alternatives, by runs with the same seeds.
 //!
 //! Each pair is compared seed by seed: d_k = y_b(seed k) - y_a(seed k), with Student's test of a
-//! zero mean. Of many pairs some seem to differ by chance; the probabilities are therefore adjusted
-//! by Holm's method (Scand. J. Statist. 6 (1979) 65): sorted p_1 <= p_2 <= ... of m pairs, the
-//! adjusted p_i is the largest of (m + 1 - j) p_j over j <= i. With pairs called different where it
-//! is below 5 %, the chance that any of them is not is below 5 %.
+//! zero mean. Of many pairs some appear to differ by chance; the probabilities are therefore
+//! adjusted by Holm's method (Scand. J. Statist. 6 (1979) 65): sorted p_1 <= p_2 <= ... of m pairs,
+//! the adjusted p_i is the largest of (m + 1 - j) p_j over j <= i. If pairs count as different
+//! where it is below 5 %, the probability that any of them does not differ is below 5 %.
 
 use crate::statistics::distribution::{student_quantile, student_two_sided};
 use crate::statistics::interval::{CONFIDENCE, Mean};
 
-/// The chance to find a difference of the size seen, for which [`Pair::seeds_needed`] is.
+/// Probability to detect a difference of the observed size, for [`Pair::seeds_needed`].
 pub const POWER: f64 = 0.8;
 
 /// Largest number of seeds that is proposed.
-const MOST_SEEDS: usize = 100_000;
+const MAX_SEEDS: usize = 100_000;
 
 /// Two alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,18 +22,18 @@ pub struct Pair {
     pub first: usize,
     /// Number of the second.
     pub second: usize,
-    /// Second less first, over the seeds that both have; `None` if there are none. Its interval is
-    /// for this pair alone.
+    /// Second less first, over the common seeds; `None` if there are none. The interval is for this
+    /// pair alone.
     pub difference: Option<Mean>,
     /// Probability of such a difference by chance, adjusted for the number of pairs; `None` below
     /// two seeds.
     pub p: Option<f64>,
     /// Whether p is below 5 %.
     pub differs: bool,
-    /// Number of seeds with which a difference as large as that seen would be found with a chance
-    /// of [`POWER`], by the scatter seen and the level of all pairs together; `None` if no number
-    /// was found, or below two seeds. A difference that is seen by chance alone asks for a number
-    /// that changes with every further seed.
+    /// Number of seeds with which a difference of the observed size would be detected with the
+    /// probability [`POWER`], by the observed scatter and the level of all pairs together; `None`
+    /// if no number was found, or below two seeds. For a difference that is only chance this number
+    /// changes with every further seed.
     pub seeds_needed: Option<usize>,
 }
 
@@ -47,8 +47,8 @@ pub struct Comparisons {
 }
 
 impl Comparisons {
-    /// Compares alternatives, a row each with the output for each seed, the same seeds in the same
-    /// order; `None` is a run that failed. Rows may be shorter than others.
+    /// Compares alternatives, with one row each of the output for each seed, with the same seeds in
+    /// the same order; `None` is a failed run. Rows may be shorter than others.
     pub fn of(alternatives: &[Vec<Option<f64>>]) -> Self {
         let value = |v: &Option<f64>| v.filter(|v| v.is_finite());
         let means: Vec<Option<Mean>> = alternatives
@@ -87,7 +87,7 @@ impl Pair {
             second,
             difference,
             p: error.and_then(|(d, e)| match d.mean {
-                // Equal for each seed, or different by the same number.
+                // The values are equal for each seed, or differ by the same number.
                 0.0 => Some(1.0),
                 mean => student_two_sided(mean / e, (d.count - 1) as f64),
             }),
@@ -106,11 +106,11 @@ fn seeds_needed(difference: f64, scatter: f64, level: f64) -> Option<usize> {
             .map(|(a, b)| a + b);
         quantiles.is_some_and(|q| q * scatter <= difference * (n as f64).sqrt())
     };
-    if difference == 0.0 || !enough(MOST_SEEDS) {
+    if difference == 0.0 || !enough(MAX_SEEDS) {
         return None;
     }
-    // It holds for all larger n too.
-    let (mut below, mut from) = (1, MOST_SEEDS);
+    // The condition holds for all larger n too.
+    let (mut below, mut from) = (1, MAX_SEEDS);
     while from - below > 1 {
         let middle = below + (from - below) / 2;
         if enough(middle) {
@@ -122,7 +122,7 @@ fn seeds_needed(difference: f64, scatter: f64, level: f64) -> Option<usize> {
     Some(from)
 }
 
-/// Holm's adjusted probabilities; pairs without one are not counted.
+/// Returns Holm's adjusted probabilities; pairs without one are not counted.
 fn holm(probabilities: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut known: Vec<(usize, f64)> = probabilities
         .iter()
@@ -146,7 +146,8 @@ mod tests {
     use rand::SeedableRng;
     use rand_pcg::Pcg64;
 
-    /// By the definition: 4 x 0.005, 3 x 0.01, 2 x 0.03, and for 0.04 the largest so far.
+    /// The values follow from the definition: 4 x 0.005, 3 x 0.01, 2 x 0.03, and for 0.04 the
+    /// largest so far.
     #[test]
     fn holms_adjustment() {
         let adjusted = holm(&[Some(0.01), Some(0.04), None, Some(0.03), Some(0.005)]);
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Outputs of some alternatives: what the seed has for all, a shift, and noise.
+    /// Returns outputs of some alternatives: a common part of each seed, a shift, and noise.
     fn draw(shifts: &[f64], seeds: usize, noise: f64, rng: &mut Pcg64) -> Vec<Vec<Option<f64>>> {
         let common: Vec<f64> = (0..seeds).map(|_| 3.0 * normal(rng)).collect();
         shifts
@@ -169,8 +170,8 @@ mod tests {
             .collect()
     }
 
-    /// Of 1000 comparisons of five equals fewer than 5 % find any difference (Holm's bound;
-    /// standard error 0.7 %).
+    /// In 1000 comparisons of five equal alternatives fewer than 5 % find any difference (Holm's
+    /// bound; standard error 0.7 %).
     #[test]
     fn equals_seldom_seem_to_differ() {
         let mut rng = Pcg64::seed_from_u64(11);
@@ -183,9 +184,9 @@ mod tests {
         assert!((10..=70).contains(&wrong), "{wrong}");
     }
 
-    /// What seeds share is 3, the difference 1 and the noise 0.2: only paired differences find it.
-    /// The number of seeds that is asked for finds it in 80 % (one pair; standard error 1.3 % over
-    /// 1000, and t quantiles approximate the noncentral distribution).
+    /// The common part of the seeds is 3, the difference 1 and the noise 0.2: only paired
+    /// differences detect it. The proposed number of seeds detects it in 80 % (one pair; standard
+    /// error 1.3 % over 1000, and t quantiles approximate the noncentral distribution).
     #[test]
     fn pairs_find_what_means_hide() {
         let mut rng = Pcg64::seed_from_u64(12);

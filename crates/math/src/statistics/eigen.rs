@@ -7,15 +7,15 @@
 
 use nalgebra::DMatrix;
 
-/// Upper bound of the rounds over all pairs of rows; large matrices usually need about ten.
-const MOST_ROUNDS: usize = 60;
+/// Upper limit of the rounds over all pairs of rows; large matrices usually need about ten.
+const MAX_ROUNDS: usize = 60;
 
 /// Returns the eigenvalues (n), unsorted, and the eigenvectors as columns (n x n) in their order.
 pub(crate) fn eigen(symmetric: &DMatrix<f64>) -> (Vec<f64>, DMatrix<f64>) {
     let n = symmetric.nrows();
     let mut a = symmetric.clone();
     let mut vectors = DMatrix::identity(n, n);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut turned = false;
         for p in 0..n {
             for q in p + 1..n {

@@ -21,7 +21,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// From `centre - half_width` to `centre + half_width`.
+    /// Returns the interval from `centre - half_width` to `centre + half_width`.
     pub fn around(centre: f64, half_width: f64) -> Self {
         Self {
             low: centre - half_width,
@@ -40,7 +40,7 @@ impl Interval {
 pub struct Mean {
     /// Number of values.
     pub count: usize,
-    /// Their mean.
+    /// Mean of the values.
     pub mean: f64,
     /// Standard deviation; `None` for a single value.
     pub scatter: Option<f64>,
@@ -49,7 +49,7 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// The mean of values that vary randomly from seed to seed; `None` for no values.
+    /// Returns the mean of values that vary randomly from seed to seed; `None` for no values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let count = values.len();
         let n = count as f64;
@@ -80,7 +80,7 @@ impl Mean {
         }
     }
 
-    /// Largest magnitude within the interval; infinite if the interval is unknown.
+    /// Returns the largest magnitude within the interval; infinite if the interval is unknown.
     pub fn at_most(&self) -> f64 {
         self.mean.abs() + self.half_width.unwrap_or(f64::INFINITY)
     }
@@ -90,7 +90,7 @@ impl Mean {
         self.half_width.is_none_or(|h| self.mean.abs() <= h)
     }
 
-    /// The mean, scatter and half-width in other units, multiplied by `factor`.
+    /// Returns mean, scatter and half-width in other units, multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         let size = factor.abs();
         Self {
@@ -102,13 +102,14 @@ impl Mean {
     }
 }
 
-/// Student's t for the mean of `count` values, two-sided at [`CONFIDENCE`]; `None` below two.
+/// Returns Student's t for the mean of `count` values, two-sided at [`CONFIDENCE`]; `None` below
+/// two.
 pub fn quantile(count: usize) -> Option<f64> {
     student_quantile(0.5 + 0.5 * CONFIDENCE, count.checked_sub(1)? as f64)
 }
 
-/// Number of seeds that would bring the half-width below `wanted`, estimated from the scatter so
-/// far: the smallest n with t(n) s / sqrt(n) <= wanted.
+/// Returns the number of seeds that would reduce the half-width below `wanted`, estimated from the
+/// scatter so far: the smallest n with t(n) s / sqrt(n) <= wanted.
 pub fn seeds_for(scatter: f64, wanted: f64) -> Option<usize> {
     let enough = |n: usize| quantile(n).is_some_and(|t| t * scatter / (n as f64).sqrt() <= wanted);
     if wanted.is_nan() || wanted <= 0.0 {
@@ -145,7 +146,7 @@ mod tests {
         }
     }
 
-    /// Student's t at 95 % (any table): 12.706 for one degree of freedom, 4.303 for two.
+    /// Student's t at 95 % is 12.706 for one degree of freedom, 4.303 for two (common tables).
     #[test]
     fn follows_students_table() {
         assert!((quantile(2).unwrap() - 12.706).abs() < 1e-3);

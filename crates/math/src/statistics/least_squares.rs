@@ -2,23 +2,24 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Columns are dependent where a singular value is below this fraction of the largest, with all
-/// columns of unit length.
+/// Ratio of a singular value to the largest below which columns are dependent, with all columns of
+/// unit length.
 const DEPENDENT: f64 = 1e-10;
 
-/// The coefficients that minimise |X b - y|, with what their errors follow from.
+/// Coefficients that minimise |X b - y|, with the data for their errors.
 pub(crate) struct LeastSquares {
     /// One coefficient per column of X.
     pub coefficients: DVector<f64>,
-    /// (X^T X)^-1: times the variance of y this is the covariance of the coefficients.
+    /// (X^T X)^-1, which times the variance of y is the covariance of the coefficients.
     pub covariance: DMatrix<f64>,
     /// Sum of the squared residuals.
     pub residual: f64,
-    /// Rows less columns.
+    /// Degrees of freedom: number of rows less number of columns.
     pub degrees: usize,
 }
 
-/// `None` where there are fewer rows than columns, or the columns are linearly dependent.
+/// Fits the coefficients; `None` if there are fewer rows than columns, or the columns are linearly
+/// dependent.
 pub(crate) fn least_squares(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<LeastSquares> {
     let inverse = pseudo_inverse(x)?;
     let coefficients = &inverse * y;
@@ -31,14 +32,14 @@ pub(crate) fn least_squares(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<LeastS
     })
 }
 
-/// (X^T X)^-1 X^T, which gives the coefficients from y; its product with its transpose is (X^T
-/// X)^-1. `None` where there are fewer rows than columns, or the columns are linearly dependent.
+/// Returns (X^T X)^-1 X^T, which gives the coefficients from y; its product with its transpose is
+/// (X^T X)^-1. `None` if there are fewer rows than columns, or the columns are linearly dependent.
 pub(crate) fn pseudo_inverse(x: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let (rows, columns) = x.shape();
     if rows < columns || columns == 0 {
         return None;
     }
-    // Columns of unit length, so that the test of dependence knows no units.
+    // Columns have unit length, so that the test of dependence does not depend on units.
     let lengths: Vec<f64> = x.column_iter().map(|c| c.norm()).collect();
     if lengths.iter().any(|l| *l == 0.0 || !l.is_finite()) {
         return None;
@@ -50,7 +51,7 @@ pub(crate) fn pseudo_inverse(x: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     if values.min() < DEPENDENT * values.max() {
         return None;
     }
-    // V S^-1, in the units of the coefficients.
+    // This is V S^-1, in the units of the coefficients.
     let root = DMatrix::from_fn(columns, columns, |i, j| vt[(j, i)] / values[j] / lengths[i]);
     Some(root * u.transpose())
 }
@@ -59,7 +60,7 @@ pub(crate) fn pseudo_inverse(x: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 mod tests {
     use super::*;
 
-    /// The line through (0,1), (1,3), (2,4), (3,4): by hand the slope is 1, the intercept 1.5, the
+    /// For the line through (0,1), (1,3), (2,4), (3,4) the slope is 1, the intercept 1.5, the
     /// residual sum of squares 1, and (X^T X)^-1 = [[14, -6], [-6, 4]] / 20.
     #[test]
     fn a_line_by_hand() {

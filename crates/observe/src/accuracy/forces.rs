@@ -1,26 +1,26 @@
-//! What finer settings change in the forces of contacts: the next step is made again in quarters,
-//! and with a hundredth of the tolerance.
+//! Effect of finer settings on the forces of contacts: the next step is made again in quarters, and
+//! with a hundredth of the tolerance.
 
 use crate::error_estimate::{FINER, cost, shorten, tighten};
 use fretwork_core::step::{ContactForces, RepeatError};
 use fretwork_core::view::RunControl;
 
-/// Most iterations with the tight tolerance: this many times those of the run, and this many in any
-/// case.
-const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+/// Largest number of iterations with the tight tolerance: a factor on the number in the run, and a
+/// minimum.
+const MAX_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
-/// Change of the forces by finer settings, as a share of them.
+/// Relative change of the forces by finer settings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ForceChanges {
-    /// With a quarter of the step.
+    /// Change with a quarter of the step.
     pub finer: f64,
-    /// With a hundredth of the tolerance.
+    /// Change with a hundredth of the tolerance.
     pub tighter: f64,
-    /// Whether that was reached.
+    /// Whether the tight tolerance was reached.
     pub tight: bool,
 }
 
-/// One way of making the next step.
+/// Result of one way to make the next step.
 struct Made {
     forces: ContactForces,
     cost: f64,
@@ -28,7 +28,7 @@ struct Made {
     converged: bool,
 }
 
-/// Makes the next step in so many parts; `None` where it fails.
+/// Makes the next step in a number of parts; `None` where it fails.
 fn made(run: &mut dyn RunControl, parts: u32) -> Option<Made> {
     let (mut spent, mut iterations, mut converged) = (0.0, 0, true);
     for _ in 0..parts {
@@ -45,8 +45,8 @@ fn made(run: &mut dyn RunControl, parts: u32) -> Option<Made> {
     })
 }
 
-/// Repeats the next step, as long as it is; `None` where a step failed. Gives the cost of all of it
-/// too, and that of the step as it is.
+/// Repeats the next step with its length; `None` where a step failed. Also returns the cost of all
+/// repetitions, and that of the step with the present settings.
 ///
 /// # Errors
 /// A process could not be put back: the run cannot go on.
@@ -62,9 +62,9 @@ pub(super) fn repeat_step(
         run.options_mut().grown = (grown / FINER).max(1) - 1;
         made(run, FINER)
     })?;
-    let most = MOST_ITERATIONS
+    let most = MAX_ITERATIONS
         .1
-        .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
+        .max(MAX_ITERATIONS.0 * f64::from(base.iterations));
     let tighter = run.repeated(|run| {
         tighten(run, most);
         made(run, 1)

@@ -1,11 +1,11 @@
 //! Steps that grow beyond that of the case where nothing moves, and shrink again before something
 //! does.
 //!
-//! A step of the run spans a number of steps of the case. It follows from what a step changes: the
-//! largest displacement of a body over the half size of the smallest grain, which is to stay at the
-//! accuracy asked for, and the change of forces and damage, above which steps do not grow. A step
-//! in which something moves too far, a bond forms or breaks, or the solver does not converge is
-//! made again with a quarter of the number. Events end steps, see [`StepBounds`].
+//! A step of the run spans a number of steps of the case. The number follows from the changes in a
+//! step: the largest displacement of a body over the half size of the smallest grain, which is kept
+//! at the requested accuracy, and the change of forces and damage, above which steps do not grow. A
+//! step in which something moves too far, a bond forms or breaks, or the solver does not converge
+//! is made again with a quarter of the number. Events end steps, see [`StepBounds`].
 //!
 //! [`StepBounds`]: fretwork_core::step::control::StepBounds
 
@@ -14,45 +14,45 @@ use fretwork_core::view::RunView;
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
-/// A step that has grown is made again as a shorter one above this many times of the displacement
-/// that is aimed at.
+/// Factor on the target displacement above which a step that has grown is made again with a smaller
+/// number.
 const KEPT: f64 = 2.5;
-/// Change of forces above which steps do not grow, of what is allowed.
+/// Fraction of the permitted change of forces above which steps do not grow.
 const CHANGE: f64 = 0.4;
-/// Least and most by which a step is longer than the one before it. It shrinks slowly where it may:
-/// rigid contacts with gaps of up to g h^2 carry over a step h, and a much shorter step finds them
-/// open.
+/// Smallest and largest ratio of the length of a step to that of the one before. Where possible it
+/// shrinks slowly: rigid contacts with gaps of up to g h^2 transmit forces over a step h, and in a
+/// much shorter step they are open.
 const RATIO: [f64; 2] = [0.8, 2.0];
-/// A step that is not kept is made again with its number over this.
+/// Divisor of the number when a step is made again.
 const SHRINKS: u32 = 4;
-/// Displacements are not told apart more closely than this.
+/// Resolution of displacements.
 const LITTLE: f64 = 0.1;
-/// Largest displacement of a step, over the half size of the smallest grain, and change of forces,
-/// whatever accuracy is asked for.
-const MOST_CHANGE: f64 = 0.2;
-/// How many steps of the case a step spans.
+/// Upper limits, for any requested accuracy: displacement of a step over the half size of the
+/// smallest grain, and change of forces.
+const MAX_CHANGE: f64 = 0.2;
+/// Number of steps of the case that a step spans.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Growth {
-    /// Most; 1 where steps do not grow.
+    /// Largest number; 1 where steps do not grow.
     most: u32,
-    /// Displacement over a step that is aimed at, over the half size of the smallest grain, and
-    /// change of forces that is allowed, over these.
+    /// Target displacement of a step and permitted change of forces, relative to their upper
+    /// limits.
     allowed: f64,
-    /// Steps of the case that were chosen; events and records may end a step earlier.
+    /// Chosen number of steps of the case; events and records may end a step earlier.
     chosen: u32,
-    /// Steps of the case that the last step spanned.
+    /// Number of steps of the case that the last step spanned.
     last: u32,
     /// Whether an event ends the next step.
     event: bool,
-    /// The most that a step has spanned.
+    /// Largest number that a step has spanned.
     pub longest: u32,
-    /// Steps of the case that were spanned by steps that had grown.
+    /// Number of steps of the case that were part of longer steps.
     pub spanned: u64,
-    /// Steps repeated with fewer.
+    /// Number of steps repeated with a smaller number.
     pub repeated: u64,
 }
 
-/// What a step is compared with.
+/// State before a step, with which the state after it is compared.
 #[derive(Debug)]
 pub(super) struct Before {
     pub forces: ContactForces,
@@ -68,7 +68,7 @@ impl Before {
     }
 }
 
-/// Sum of the damage of all bonds.
+/// Returns the sum of the damage of all bonds.
 fn damage(run: &dyn RunView) -> f64 {
     let made = run.bonds_made();
     if made == 0 {
@@ -80,12 +80,12 @@ fn damage(run: &dyn RunView) -> f64 {
 impl Growth {
     pub fn new(spec: &AccuracySpec, case: &Case, run: &dyn RunView) -> Self {
         let most = spec.largest(case.time.step) / case.time.step;
-        // A largest step that is a multiple up to rounding is reached. The waves of deformable
-        // bodies are not seen by what is looked at here.
+        // A limit that is a whole multiple up to rounding is reached. The waves of deformable
+        // bodies are not detected here.
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
         Self {
             most: if run.system_count() == 0 { most } else { 1 },
-            allowed: spec.share.min(MOST_CHANGE),
+            allowed: spec.share.min(MAX_CHANGE),
             chosen: 1,
             last: 1,
             event: false,
@@ -95,17 +95,17 @@ impl Growth {
         }
     }
 
-    /// Steps of the case that the last step spanned.
+    /// Returns the number of steps of the case that the last step spanned.
     pub fn last(&self) -> u32 {
         self.last
     }
 
-    /// Steps of the case that steps span where nothing ends them.
+    /// Returns the number of steps of the case that steps span unless an event ends them.
     pub fn chosen(&self) -> u32 {
         self.chosen
     }
 
-    /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than
+    /// Returns the number of steps of the case, of `h` (s), that the next step spans, at most
     /// `most`.
     pub fn next(&mut self, run: &dyn RunView, h: f64, most: u64) -> u32 {
         self.event = false;
@@ -117,21 +117,22 @@ impl Growth {
         }
         let [event, resolved] = run.step_bounds().steps(run.time(), h);
         let wanted = u64::from(self.chosen).min(resolved).max(1);
-        // Equal steps up to the next event or record, so that none is much shorter than the one
-        // before it.
+        // Steps up to the next event or record have equal lengths, so that none is much shorter
+        // than the one before.
         let rest = event.min(most).max(1);
         let count = rest.div_ceil(rest.div_ceil(wanted));
         self.event = count == event;
         u32::try_from(count).unwrap_or(u32::MAX)
     }
 
-    /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or
-    /// may grow after it.
+    /// Returns whether to compare the state after the next step, of `count` steps of the case: it
+    /// has grown, or steps may grow after it.
     pub fn watches(&self, run: &dyn RunView, count: u32) -> bool {
         count > 1 || (self.most > 1 && run.largest_displacement() <= self.allowed)
     }
 
-    /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
+    /// Evaluates a step of `count` steps of the case; returns false where it must be repeated with
+    /// a smaller number.
     pub fn holds(
         &mut self,
         run: &dyn RunView,
@@ -143,7 +144,7 @@ impl Growth {
             && report.projected.is_none()
             && run.bond_breaks().is_empty()
             && run.bonds_formed().is_empty();
-        // Displacement, and change of forces and damage, over what steps aim at.
+        // Displacement, and change of forces and damage, relative to their targets.
         let [moved, changed] = before
             .filter(|_| whole)
             .map_or([f64::INFINITY; 2], |before| {
@@ -159,8 +160,8 @@ impl Growth {
         true
     }
 
-    /// A step of `count` steps of the case is made, in which displacement and forces changed by
-    /// these, over what is aimed at.
+    /// Chooses the next number after a step of `count` steps of the case, from the displacement and
+    /// the change of forces relative to their targets.
     fn keep(&mut self, count: u32, moved: f64, changed: f64) {
         self.last = count;
         self.longest = self.longest.max(count);
@@ -168,7 +169,7 @@ impl Growth {
             self.spanned += u64::from(count);
         }
         if self.event {
-            // Something may begin here.
+            // An event may begin here.
             self.chosen = 1;
             return;
         }
@@ -176,19 +177,19 @@ impl Growth {
         if ratio < 1.0 - LITTLE {
             self.chosen = ((f64::from(count) * ratio) as u32).max(1);
         } else if ratio > 1.0 + LITTLE && changed <= 1.0 {
-            // A step that a record has ended before says nothing against longer ones.
+            // A step that a record has ended early does not limit the next ones.
             let next = (f64::from(count) * ratio) as u32;
             self.chosen = next.max(self.chosen).min(self.most);
         }
     }
 
-    /// Finer steps were found to change the result by more than is allowed: the next ones are
-    /// somewhat shorter.
+    /// Shortens the next steps slightly, since finer steps change the result by more than
+    /// permitted.
     pub fn shorten(&mut self) {
         self.chosen = ((f64::from(self.chosen) * RATIO[0]) as u32).max(1);
     }
 
-    /// A step of `count` steps of the case did not hold: the next ones span fewer.
+    /// Reduces the number after a step of `count` steps of the case that had to be repeated.
     pub fn shrink(&mut self, count: u32) {
         self.chosen = (count / SHRINKS).max(1);
         self.event = false;

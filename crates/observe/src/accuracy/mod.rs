@@ -1,13 +1,13 @@
-//! Accuracy as an input: a run that chooses its step and tolerance by repeating some of its steps
-//! with finer ones.
+//! Accuracy as an input: the run chooses its step and tolerance by repeating some of its steps with
+//! finer ones.
 //!
-//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts, or one step spans
-//! several where nothing moves. Every now and then the next parts are repeated with a quarter of
+//! The steps of the case, `time.step`, are kept: each is made in 2^k equal parts, or one step spans
+//! several where nothing moves. From time to time the next parts are repeated with a quarter of
 //! their length and with a hundredth of the tolerance, as for the [error
-//! estimate](crate::error_estimate); from the change of the result asked for follow finer or
-//! coarser settings. Half of the share allowed is for the step, half for the tolerance. All of it
-//! follows from the state, and costs are counted in iterations: the bits are the same on every
-//! machine, and after a resume.
+//! estimate](crate::error_estimate); finer or coarser settings follow from the change of the
+//! requested result. Half of the permitted share is for the step, half for the tolerance. All
+//! decisions depend on the state only, and costs are counted in iterations: the bits are the same
+//! on every machine, and after a resume.
 
 mod forces;
 mod growth;
@@ -16,7 +16,7 @@ mod setting;
 
 pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report_accuracy};
 
-use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
+use crate::error_estimate::{Increments, RatioPair, RepeatedStretch, StretchRepeats, cost};
 use fretwork_core::bodies::Dof;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, StepError, StepReport};
@@ -29,30 +29,31 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use setting::{Decision, Setting};
 
-/// Parts of a step that are repeated at a time; the second half of them is compared.
+/// Number of parts of a step that are repeated at a time; the second half of them is compared.
 const LENGTH: u32 = 8;
-/// Steps of the case after which parts that a law asked for are given up again.
+/// Number of steps of the case after which a reduction of the step requested by a law is undone.
 const CALM: u32 = 20;
-/// Steps until the next stretch after one that failed.
+/// Number of steps until the next stretch after one that failed.
 const AFTER_FAILURE: u64 = 50;
-/// Stretches at the start that may cost as much as the run.
+/// Number of stretches at the start that may cost as much as the run.
 const FIRST: u64 = 6;
 /// Cost of repeating a step for its forces, in steps.
 const FORCES_COST: f64 = 8.0;
-/// Most steps between stretches.
+/// Largest number of steps between stretches.
 const LONGEST_PAUSE: f64 = 1e6;
-/// Mixed into the seed of the case, so that pauses are not drawn with the numbers of its grains.
+/// Added to the seed of the case, so that pauses are independent of the random numbers of its
+/// grains.
 const STREAM: u64 = 0x6163_6375_7261_6379;
-/// A level of the tolerance is this factor.
+/// Factor between two levels of the tolerance.
 const TOLERANCE_FACTOR: f64 = 4.0;
 /// Extrapolation from a quarter of the step to none, at the first order.
 const STEP_LIMIT: f64 = 4.0 / 3.0;
 
-/// Chooses step and tolerance of a run; all of it is part of a checkpoint.
+/// Chooses step and tolerance of a run; a checkpoint contains all of it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AccuracyControl {
     share: f64,
-    of: Quantity,
+    of: StoredResult,
     effort: f64,
     seed: u64,
     /// Step (s), tolerance and position correction of the case.
@@ -63,16 +64,16 @@ pub struct AccuracyControl {
     body: Option<SlidingBody>,
     /// Step of the case before which the next stretch is repeated.
     next: u64,
-    /// Stretches repeated, and those that failed.
+    /// Number of stretches repeated, and number of those that failed.
     stretches: [u64; 2],
     /// Cost of the run, and of repeated stretches.
     cost: [f64; 2],
-    /// Halvings that laws asked for, steps of the case since the last one, and how many requests
-    /// there were.
+    /// Halvings requested by laws, steps of the case since the last request, and number of
+    /// requests.
     asked: u32,
     calm: u32,
     requests: u64,
-    /// Parts made, and the most in a step of the case.
+    /// Number of parts made, and largest number in a step of the case.
     parts: u64,
     most_parts: u64,
     smallest_tolerance: f64,
@@ -81,7 +82,7 @@ pub struct AccuracyControl {
 
 /// The result, as stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Quantity {
+enum StoredResult {
     Friction,
     FrictionEnergy,
     Damage,
@@ -89,8 +90,8 @@ enum Quantity {
     Forces,
 }
 
-impl Quantity {
-    /// What a case asks for.
+impl StoredResult {
+    /// Returns the result that a case requests.
     fn asked(of: AccurateResult, case: &Case, run: &dyn RunView) -> Self {
         match of {
             AccurateResult::Friction if FrictionTest::of(case, run).is_some() => Self::Friction,
@@ -102,7 +103,7 @@ impl Quantity {
         }
     }
 
-    /// Numerator and denominator of the result over a stretch.
+    /// Returns numerator and denominator of the result over a stretch.
     fn of(self, grown: &Increments) -> [f64; 2] {
         match self {
             Self::Friction => [grown.work, grown.load_path],
@@ -125,7 +126,7 @@ impl Quantity {
     }
 }
 
-/// Where a step of a case stands, in the smallest parts that it may have.
+/// Position within a step of a case, in the smallest permitted parts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepParts {
     done: u64,
@@ -142,11 +143,11 @@ impl AccuracyControl {
             run.options().solver.tolerance,
             run.options().correction,
         ];
-        let of = Quantity::asked(spec.of, case, run);
+        let of = StoredResult::asked(spec.of, case, run);
         let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
-        if of == Quantity::Forces {
-            // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is
-            // tightened where the case says how far.
+        if of == StoredResult::Forces {
+            // The steps only grow, and forces of rigid packings scatter at any tolerance: the
+            // tolerance is reduced only if the case gives a limit.
             step = 0;
             tolerance = if spec.finest_tolerance.is_some() {
                 tolerance
@@ -177,12 +178,12 @@ impl AccuracyControl {
         })
     }
 
-    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a
-    /// stretch where one is due, and chooses the settings. A step that spans several may span
-    /// `most`.
+    /// Prepares a step of the case, given the number of completed steps and the total number:
+    /// repeats a stretch if one is due, and chooses the settings. A step that spans several steps
+    /// of the case may span `most`.
     ///
     /// # Errors
-    /// Steps cannot be repeated, or a process could not be put back.
+    /// Steps cannot be repeated, or a process could not be restored.
     pub fn begin_step(
         &mut self,
         run: &mut dyn RunControl,
@@ -195,9 +196,9 @@ impl AccuracyControl {
                 (self.asked, self.calm) = (self.asked - 1, 0);
             }
         }
-        // Not beyond the end, where drives and tables have ended.
+        // The stretch must not extend beyond the end, where drives and tables have ended.
         let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
-        if self.of == Quantity::Forces {
+        if self.of == StoredResult::Forces {
             let count = self.count(run, [done, total], most);
             self.set(run, count);
             if self.repeats_for_forces(run) {
@@ -216,7 +217,7 @@ impl AccuracyControl {
         Ok(StepParts::default())
     }
 
-    /// Steps of the case that the next step spans.
+    /// Returns the number of steps of the case that the next step spans.
     fn count(&mut self, run: &dyn RunView, [done, total]: [u64; 2], most: u64) -> u32 {
         match self.level() {
             0 => (self.growth).next(run, self.coarsest[0], most.min(total - done)),
@@ -224,12 +225,12 @@ impl AccuracyControl {
         }
     }
 
-    /// Makes one part of a step of the case. `None` where a law asked for a smaller one: nothing
-    /// was done then, and the next part is shorter.
+    /// Makes one part of a step of the case. Returns `None` where a law requested a smaller step:
+    /// the state is then unchanged, and the next part is shorter.
     ///
     /// # Errors
-    /// The step's own error, also that of a law that asks for less than the smallest step; steps
-    /// cannot be repeated.
+    /// Returns the error of the step, including that of a law that requests less than the smallest
+    /// step; or steps cannot be repeated.
     pub fn part(
         &mut self,
         run: &mut dyn RunControl,
@@ -257,7 +258,7 @@ impl AccuracyControl {
                 self.cost[0] += cost(run, &report);
                 Ok(Some(report))
             }
-            // Also what fails in a step that has grown may do so because of it.
+            // A failure in a step that has grown may be due to its length.
             Err(_) if count > 1 => {
                 self.growth.repeated += 1;
                 self.growth.shrink(count);
@@ -276,7 +277,7 @@ impl AccuracyControl {
         }
     }
 
-    /// Steps of the case that the last step spanned: 1 unless it had grown.
+    /// Returns the number of steps of the case that the last step spanned: 1 unless it had grown.
     pub fn spanned(&self) -> u64 {
         u64::from(self.growth.last())
     }
@@ -296,8 +297,8 @@ impl AccuracyControl {
         self.coarsest[1] / TOLERANCE_FACTOR.powi(self.tolerance.level as i32)
     }
 
-    /// Goes on in a simulation that was restored with its state: impulses are those of the step in
-    /// force.
+    /// Continues in a simulation that was restored with its state: impulses are those of the
+    /// current step length.
     pub fn resume(&mut self, run: &mut dyn RunControl) {
         let last = self.growth.last();
         let parts = f64::from(1u32 << self.level());
@@ -306,8 +307,8 @@ impl AccuracyControl {
         self.set(run, last);
     }
 
-    /// Sets the step, which spans `count` of the case or is a part of one, tolerance and
-    /// correction.
+    /// Sets tolerance, correction and the step, which spans `count` steps of the case or is a part
+    /// of one.
     fn set(&mut self, run: &mut dyn RunControl, count: u32) {
         let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
@@ -324,7 +325,7 @@ impl AccuracyControl {
         self.smallest_tolerance = self.smallest_tolerance.min(tolerance);
     }
 
-    /// Repeats a stretch, and decides.
+    /// Repeats a stretch, and chooses the settings.
     fn measure(&mut self, run: &mut dyn RunControl, done: u64) -> Result<(), RepeatError> {
         let stretch = RepeatedStretch {
             length: LENGTH,
@@ -333,7 +334,7 @@ impl AccuracyControl {
         };
         let (place, [cost, each]) = stretch.at(run)?;
         self.cost[1] += cost;
-        // At the start, before anything is known, steps are worth measuring more often.
+        // At the start, before any result is known, steps are measured more often.
         let first = self.stretches[0] < FIRST;
         let effort = if first {
             self.effort.max(1.0)
@@ -343,7 +344,7 @@ impl AccuracyControl {
         let step = each * f64::from(1u32 << self.level());
         let pause = (cost / (effort * step)).clamp(1.0, LONGEST_PAUSE);
         let pause = if pause.is_nan() { 1.0 } else { pause };
-        // At random, so that pauses and cycles do not keep step.
+        // The interval is random, so that it is not synchronous with cycles.
         let number = self.stretches[0] + self.stretches[1];
         let mut random = Pcg64::seed_from_u64(self.seed.wrapping_add(number));
         let pause = pause * (0.5 + random.random::<f64>());
@@ -358,15 +359,16 @@ impl AccuracyControl {
         Ok(())
     }
 
-    /// Whether a step is repeated for its forces: as often as the effort permits, since every step
-    /// tells as much, and not the first ones, which are solved from nothing.
+    /// Returns whether a step is repeated for its forces: as often as the permitted cost allows,
+    /// since all steps are equally informative, except the first ones, which are solved from zero
+    /// impulses.
     fn repeats_for_forces(&self, run: &dyn RunView) -> bool {
         let [of_run, repeats] = self.cost;
         let each = of_run / self.parts.max(1) as f64;
         run.steps() > 3 && repeats + FORCES_COST * each <= self.effort * of_run
     }
 
-    /// Repeats a step for its forces, and decides.
+    /// Repeats a step for its forces, and chooses the settings.
     fn measure_forces(&mut self, run: &mut dyn RunControl) -> Result<(), RepeatError> {
         let (changes, [cost, _]) = forces::repeat_step(run)?;
         self.cost[1] += cost;
@@ -376,7 +378,7 @@ impl AccuracyControl {
         };
         self.stretches[0] += 1;
         let allowed = 0.5 * self.share;
-        let pair = |change: f64| Pair {
+        let pair = |change: f64| RatioPair {
             coarse: [1.0; 2],
             fine: [1.0 + change, 1.0],
         };
@@ -403,16 +405,16 @@ impl AccuracyControl {
         Ok(())
     }
 
-    fn decide(&mut self, place: &Place, run: &dyn RunView) {
+    fn decide(&mut self, place: &StretchRepeats, run: &dyn RunView) {
         let allowed = 0.5 * self.share;
-        let pair = |fine: &Increments| Pair {
+        let pair = |fine: &Increments| RatioPair {
             coarse: self.of.of(&place.base),
             fine: self.of.of(fine),
         };
         let (finer, tighter) = (pair(&place.finer), pair(&place.tighter));
         let step = self.step.decide(finer, STEP_LIMIT, 2.0, allowed);
-        // A phase may have a tolerance of its own; a stretch that did not reach the tighter one
-        // says too little.
+        // A phase may have its own tolerance; a stretch that did not reach the tighter tolerance is
+        // not conclusive.
         let tolerance = if run.phase_tolerance().is_none() && place.tight {
             self.tolerance
                 .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed)
@@ -436,10 +438,10 @@ impl AccuracyControl {
     }
 }
 
-/// Why a step is not kept.
+/// Reason why a step is not kept.
 enum Refused {
     Step(StepError),
-    /// It had grown, and something moved in it.
+    /// The step had grown, and something moved in it.
     Moves,
 }
 
@@ -449,7 +451,7 @@ impl From<StepError> for Refused {
     }
 }
 
-/// Why a part of a step failed.
+/// Reason why a part of a step failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// The step failed.
@@ -460,7 +462,7 @@ pub enum PartError {
     Repeat(#[from] RepeatError),
 }
 
-/// Whether anything moves or loads a case but gravity that does not change.
+/// Returns whether anything in a case moves or applies loads, apart from constant gravity.
 fn driven(case: &Case, run: &dyn RunView) -> bool {
     let dofs = run.bodies().driven.iter().flat_map(|d| &d.dofs);
     case.gravity_drive.is_some()
@@ -469,9 +471,9 @@ fn driven(case: &Case, run: &dyn RunView) -> bool {
         || dofs.flat_map(Dof::drives).any(|d| d.function().is_some())
 }
 
-/// Finest levels of step and tolerance.
+/// Returns the finest levels of step and tolerance.
 fn finest_levels(spec: &AccuracySpec, [h, tolerance, _]: &[f64; 3]) -> [u32; 2] {
-    // A bound that is a level up to rounding is reached.
+    // A limit that equals a level up to rounding is reached.
     let levels = |ratio: f64, factor: f64| (ratio.ln() / factor.ln() + 1e-9).max(0.0) as u32;
     let step = spec.finest_step.map_or(6, |least| levels(h / least, 2.0));
     let tolerance = match spec.finest_tolerance {

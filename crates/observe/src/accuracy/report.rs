@@ -1,4 +1,4 @@
-//! What a run says of the settings that it chose.
+//! Report of a run on the settings that it chose.
 
 use super::AccuracyControl;
 use crate::error_estimate::Change;
@@ -63,7 +63,7 @@ crate::described! {
 }
 
 impl AccuracyControl {
-    /// What it has done, in `done` steps of the case.
+    /// Returns the report after `done` steps of the case.
     pub fn report(&self, done: u64) -> AccuracyReport {
         let [h, tolerance, _] = self.coarsest;
         let parts = (self.parts.max(1) as f64) / (done.max(1) as f64);
@@ -111,7 +111,7 @@ pub fn report(accuracy: Option<&AccuracyReport>, found: &mut Findings) {
 }
 
 impl AccuracyReport {
-    /// Sentence of the terminal.
+    /// Returns the sentence for the terminal.
     fn line(&self) -> String {
         let range = |coarse: String, fine: String| match coarse == fine {
             true => coarse,
@@ -142,7 +142,7 @@ impl AccuracyReport {
         )
     }
 
-    /// What finer settings would change.
+    /// Returns the effects of finer settings as text.
     fn effects(&self) -> String {
         let effect = |effect: &Option<Change>| {
             effect.map_or("not known".to_owned(), |e| {
@@ -157,7 +157,7 @@ impl AccuracyReport {
         )
     }
 
-    /// Why the accuracy is not shown to be reached, where it is not.
+    /// Returns why the accuracy is not shown to be reached, where it is not.
     fn shortfall(&self) -> Option<String> {
         (!self.reached).then(|| {
             format!(

@@ -1,31 +1,31 @@
-//! One setting of a run, step or tolerance, and when it becomes finer or coarser.
+//! One setting of a run, step or tolerance, and the decision to make it finer or coarser.
 
-use crate::error_estimate::{Change, Pair};
+use crate::error_estimate::{Change, RatioPair};
 use serde::{Deserialize, Serialize};
 
-/// Most stretches from which the effect of a setting is taken, the latest.
+/// Largest number of latest stretches from which the effect of a setting is determined.
 const KEPT: usize = 12;
-/// Stretches after which settings become finer although the effect may be scatter.
+/// Number of stretches after which settings become finer although the effect may be scatter.
 const PATIENCE: usize = 6;
-/// Fewest stretches with a setting before its effect is stated.
+/// Smallest number of stretches with a setting before its effect is stated.
 const FEWEST: u32 = 3;
 
-/// A setting that is chosen.
+/// A setting that the run chooses.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Setting {
-    /// How often it was made finer.
+    /// Current level: number of times that it was made finer.
     pub level: u32,
     /// Finest level permitted.
     pub finest: u32,
-    /// Results without and with a finer setting, of the latest stretches.
+    /// Results with the present and with a finer setting, of the latest stretches.
     pairs: Vec<[[f64; 2]; 2]>,
     /// The effect of a finer setting, as last found.
     pub effect: Option<Change>,
-    /// Stretches measured since the last change.
+    /// Number of stretches measured since the last change.
     measured: u32,
 }
 
-/// What is done with a setting.
+/// Decision on a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Decision {
     Keep,
@@ -41,15 +41,15 @@ impl Setting {
         }
     }
 
-    /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the
+    /// Adds a stretch, and decides; `factor` is the ratio of two levels, `allowed` the share of the
     /// result that the setting may change.
-    pub fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
+    pub fn decide(&mut self, pair: RatioPair, limit: f64, factor: f64, allowed: f64) -> Decision {
         self.pairs.push([pair.coarse, pair.fine]);
         self.measured += 1;
         if self.pairs.len() > KEPT {
             self.pairs.remove(0);
         }
-        let pairs = self.pairs.iter().map(|[coarse, fine]| Pair {
+        let pairs = self.pairs.iter().map(|[coarse, fine]| RatioPair {
             coarse: *coarse,
             fine: *fine,
         });
@@ -68,21 +68,20 @@ impl Setting {
                     .min(self.finest - self.level),
             );
         }
-        // At the first order the effect then stays below half of what is allowed.
+        // At the first order the effect then stays below half of the permitted value.
         if self.level > 0 && effect.bound() * factor < 0.5 * allowed {
             return Decision::Coarser;
         }
         Decision::Keep
     }
 
-    /// The effect, where it was measured with the setting in force, not only expected of it.
+    /// Returns the effect, where it was measured with the present setting, not only extrapolated.
     pub fn shown(&self) -> Option<Change> {
         self.effect.filter(|_| self.measured >= FEWEST)
     }
 
-    /// Adopts a decision; returns whether it changed anything. What was found before counts with
-    /// the effect that it would have had at the first order, so that knowledge is not lost with
-    /// every change.
+    /// Adopts a decision; returns whether it changed anything. Earlier results are kept with the
+    /// effect expected at the first order, so that they are not lost with every change.
     pub fn adopt(&mut self, decision: Decision, factor: f64) -> bool {
         let times = match decision {
             Decision::Keep => return false,
@@ -115,8 +114,8 @@ mod tests {
 
     const STEP_LIMIT: f64 = 4.0 / 3.0;
 
-    fn pair(change: f64) -> Pair {
-        Pair {
+    fn pair(change: f64) -> RatioPair {
+        RatioPair {
             coarse: [1.0, 1.0],
             fine: [1.0 + change, 1.0],
         }
@@ -130,14 +129,14 @@ mod tests {
             assert_eq!(setting.decide(pair(0.03), STEP_LIMIT, 2.0, 0.01), expected);
         }
         assert!(setting.adopt(Decision::Finer(2), 2.0) && setting.level == 2);
-        // 1 % is left of the effect, and another stretch with 1 % leaves it there.
+        // The effect is now 1 %, and another stretch with 1 % does not change it.
         assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
         assert_eq!(
             setting.decide(pair(0.0075), STEP_LIMIT, 2.0, 0.011),
             Decision::Keep
         );
         assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
-        // Not beyond the finest.
+        // The level does not exceed the finest.
         let mut setting = Setting::new(0);
         for _ in 0..20 {
             assert_eq!(setting.decide(pair(0.03), 1.0, 2.0, 0.01), Decision::Keep);
@@ -151,7 +150,7 @@ mod tests {
         for expected in [Decision::Keep, Decision::Keep, Decision::Coarser] {
             assert_eq!(setting.decide(pair(0.002), 1.0, 2.0, 0.01), expected);
         }
-        // Half of what is allowed would be exceeded.
+        // The coarser level would exceed half of the permitted value.
         setting.pairs.clear();
         for _ in 0..6 {
             assert_eq!(setting.decide(pair(0.003), 1.0, 2.0, 0.01), Decision::Keep);

@@ -6,7 +6,7 @@
 
 mod outcome;
 
-pub use outcome::Outcome;
+pub use outcome::BiaxialOutcome;
 pub(crate) use outcome::report_none;
 
 use super::coordination::{Coordination, coordination};
@@ -16,7 +16,7 @@ use super::quantity::Findings;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::geometry::space::ball_volume;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
@@ -49,7 +49,7 @@ pub struct Biaxial {
 
 /// Measured values at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
+pub struct BiaxialState {
     /// Axial and lateral stress, from the walls (Pa).
     pub walls: [f64; 2],
     /// Mean of the two (Pa).
@@ -111,7 +111,7 @@ impl Biaxial {
         Some(test)
     }
 
-    /// Distances between the faces along the two axes (m).
+    /// Returns the distances between the faces along the two axes (m).
     fn lengths(&self, run: &dyn RunView) -> [f64; 2] {
         let position = run.bodies().position;
         [0, 1].map(|k| {
@@ -132,22 +132,23 @@ impl Biaxial {
         }
     }
 
-    /// Volume of the grains (m^3; m^2 in 2D).
+    /// Returns the volume of the grains (m^3; m^2 in 2D).
     pub fn solid(&self) -> f64 {
         self.solid
     }
 
-    /// Mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
+    /// Returns the mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
     pub fn grain_mass(&self, run: &dyn RunView) -> f64 {
         let (grains, mass) = (run.grains(), run.bodies().mass);
         grains.iter().map(|b| mass[*b]).sum::<f64>() / grains.len().max(1) as f64
     }
 
-    /// Measured values for the last step.
-    pub fn state(&self, run: &dyn RunView) -> State {
+    /// Returns the measured values for the last step.
+    pub fn state(&self, run: &dyn RunView) -> BiaxialState {
         let lengths = self.lengths(run);
         let volume = lengths[0] * lengths[1];
-        // Grains push the low wall down the axis and the high wall up, with equal forces at rest.
+        // Grains push the low wall in the negative direction of the axis and the high wall in the
+        // positive one, with equal forces at rest.
         let received = run.received();
         let walls = [0, 1].map(|k| {
             let [low, high] = self.walls[k].map(|w| received[w.place][0][self.axes[k]]);
@@ -156,7 +157,7 @@ impl Biaxial {
         let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(run, volume));
         let sum = walls[0] + walls[1];
         let [l0, l1] = [0, 1].map(|k| lengths[k] / self.reference[k]);
-        State {
+        BiaxialState {
             walls,
             pressure_walls: 0.5 * sum,
             pressure_contacts,
@@ -173,7 +174,7 @@ impl Biaxial {
         }
     }
 
-    /// Columns of the statistics.
+    /// Returns the columns of the statistics.
     pub fn columns() -> Vec<Column> {
         let c = Column::new;
         vec![
@@ -228,25 +229,25 @@ impl Observer for Biaxial {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
-        Outcome::new(end.table, self.start, mass).report(found);
+        BiaxialOutcome::new(end.table, self.start, mass).report(found);
     }
 
     fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         vec![figures::biaxial::charts(self.start)]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.reference)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.reference = decode(from)?;
         Ok(())
     }
 }
 
-impl State {
-    /// Values of [`Biaxial::columns`].
+impl BiaxialState {
+    /// Returns the values of [`Biaxial::columns`].
     pub fn row(&self) -> Vec<f64> {
         let z = &self.coordination;
         vec![
@@ -266,7 +267,7 @@ impl State {
     }
 }
 
-/// Axis normal to the face of a wall.
+/// Returns the axis normal to the face of a wall.
 fn axis_of(run: &dyn RunView, name: &str) -> Option<usize> {
     let body = run.bodies().driven.iter().find(|d| d.name == name)?.body;
     let face = run.surfaces().iter().position(|f| f.body == body)?;

@@ -12,7 +12,7 @@ const WINDOW: f64 = 5e-3;
 crate::described! {
     /// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-    pub struct Outcome {
+    pub struct BiaxialOutcome {
         /// Compacity when the test starts.
         pub compacity_start: f64 => ONE,
         /// Coordination over all grains when the test starts.
@@ -49,7 +49,7 @@ crate::described! {
     }
 }
 
-impl Outcome {
+impl BiaxialOutcome {
     /// Evaluates the statistics, with the `start` of the test (s) and the mean mass of a grain (kg;
     /// kg/m).
     pub fn new(table: &Table, start: f64, mass: f64) -> Self {
@@ -120,7 +120,7 @@ impl Outcome {
         }
     }
 
-    /// Quantities that stand in the report, with the sentences of the terminal.
+    /// Returns the quantities shown in the report, with the sentences for the terminal.
     fn sentences(&self) -> [(&'static str, &'static str, &'static str, String); 4] {
         [
             (
@@ -175,7 +175,7 @@ impl Outcome {
     }
 }
 
-/// Adds what cases without a biaxial test lack.
+/// Marks the results that cases without a biaxial test do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Measures, Role::Detail);
     let doc = "result of a biaxial test; null without one";
@@ -183,9 +183,9 @@ pub(crate) fn report_none(found: &mut Findings) {
     none.lacks("the case has no biaxial test (`biaxial`)");
 }
 
-/// Stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero without pressure.
-/// Forces between rigid grains fluctuate by as much as their mean, so that a mean of ratios would
-/// weigh the steps of low pressure too much.
+/// Returns the stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero
+/// without pressure. Forces between rigid grains fluctuate by as much as their mean, so that a mean
+/// of ratios would overweight the steps of low pressure.
 fn ratio([axial, lateral]: [f64; 2]) -> f64 {
     let sum = axial + lateral;
     if sum > 0.0 {
@@ -195,8 +195,8 @@ fn ratio([axial, lateral]: [f64; 2]) -> f64 {
     }
 }
 
-/// Largest ratio of the mean axial and lateral stresses in a window of strain, and the strain at
-/// its centre; of the whole range if it is shorter.
+/// Returns the largest ratio of the mean axial and lateral stresses in a window of strain, and the
+/// strain at its centre; of the whole range if it is shorter.
 fn peak(strain: &[f64], stresses: [&[f64]; 2]) -> (f64, f64) {
     let whole = ratio(stresses.map(|s| s.iter().sum::<f64>()));
     let mut best: Option<(f64, f64)> = None;
@@ -225,8 +225,7 @@ mod tests {
     #[test]
     fn a_lone_jump_is_no_peak() {
         let strain: Vec<f64> = (0..1000).map(|k| f64::from(k) * 1e-4).collect();
-        // A plateau of 0.4 within 0.3, and one step of 1 in which the pressure is that of the
-        // others.
+        // The ratio has a plateau of 0.4 within 0.3, and is 1 in one step with the same pressure.
         let mut q: Vec<f64> = strain
             .iter()
             .map(|e| if (e - 0.03).abs() < 5e-3 { 0.4 } else { 0.3 })
@@ -243,7 +242,7 @@ mod tests {
 
     #[test]
     fn ratios_are_those_of_mean_stresses() {
-        // Two steps in turn, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the
+        // Two steps alternate, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the
         // ratio of means 2/10.
         let columns = [
             "time",
@@ -270,9 +269,9 @@ mod tests {
             let row = [time, 1e-4 * time, p + 1.0, p - 1.0, p];
             table.rows.extend(row.iter().chain(&rest));
         }
-        let outcome = Outcome::new(&table, 0.0, 1.0);
+        let outcome = BiaxialOutcome::new(&table, 0.0, 1.0);
         assert!((outcome.residual_ratio - 0.2).abs() < 1e-9, "{outcome:?}");
-        // Fifty-one steps fit into the window: at best one more of low pressure, 51/(26 + 25 * 9).
+        // Fifty-one steps fit into the window, at most one more of low pressure: 51/(26 + 25 * 9).
         assert!(outcome.peak_ratio >= 0.2 && outcome.peak_ratio < 51.0 / 251.0 + 1e-9);
         assert_eq!(outcome.residual_angle, outcome.residual_ratio.asin());
     }

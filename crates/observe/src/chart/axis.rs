@@ -1,8 +1,8 @@
-//! Axes of a chart: quantity, unit, and SI prefixes in place of exponents.
+//! Axes of a chart: quantity, unit, and SI prefixes instead of exponents.
 
 use serde::{Deserialize, Serialize};
 
-/// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m`
+/// An axis of a chart. Data are given in the unit itself; the chart chooses the prefix (data in `m`
 /// of the order of 1e-5 are shown in µm).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -15,14 +15,14 @@ pub struct Axis {
     pub unit: String,
     /// Logarithmic scale: non-positive values are omitted.
     pub log: bool,
-    /// Ticks at whole numbers only, for cycles or grains.
+    /// Whether ticks are at whole numbers only, for cycles or grains.
     pub whole: bool,
-    /// Whether the unit is that of the column of the statistics which the chart shows.
+    /// Whether the unit is that of the column of the statistics in the chart.
     pub unit_of_rows: bool,
 }
 
 impl Axis {
-    /// An axis for columns of the statistics, whose unit it takes.
+    /// Creates an axis for columns of the statistics, with the unit of the column.
     pub fn of_rows(name: impl Into<String>) -> Self {
         Self {
             unit_of_rows: true,
@@ -61,7 +61,8 @@ impl Axis {
         self
     }
 
-    /// Exponent of ten to divide by, and the axis label, for the largest magnitude shown.
+    /// Returns the exponent of ten to divide by, and the axis label, for the largest magnitude
+    /// shown.
     pub fn scaled(&self, largest: f64) -> (i32, String) {
         let (exponent, unit) = if self.log || !(largest > 0.0 && largest.is_finite()) {
             (0, raised(&self.unit))
@@ -76,13 +77,13 @@ impl Axis {
     }
 }
 
-/// Exponent of ten of the first significant digit.
+/// Returns the exponent of ten of the first significant digit.
 fn magnitude(value: f64) -> i32 {
     (value * (1.0 + 1e-12)).log10().floor() as i32
 }
 
-/// Exponent of ten to divide by, and the resulting unit: with an SI prefix if it takes one,
-/// otherwise with a power of ten if the numbers would be long.
+/// Returns the exponent of ten to divide by, and the resulting unit: with an SI prefix if the unit
+/// permits one, otherwise with a power of ten if the numbers would be long.
 fn shown_unit(unit: &str, magnitude: i32) -> (i32, String) {
     if let Some((exponent, base, prefix)) = prefix(unit, magnitude) {
         let rest = unit.find('/').map_or("", |at| &unit[at..]);
@@ -145,7 +146,7 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     format!("{text} {unit}").trim_end().to_owned()
 }
 
-/// Exponent, base unit and SI prefix for a magnitude, if the unit takes prefixes.
+/// Returns exponent, base unit and SI prefix for a magnitude, if the unit permits prefixes.
 fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
     let base = unit.split('/').next().unwrap_or_default();
     if let Some(power) = base.strip_prefix("m^").and_then(|p| p.parse::<i32>().ok()) {

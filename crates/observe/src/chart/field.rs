@@ -3,41 +3,41 @@
 use super::{Axis, rows};
 use serde::{Deserialize, Serialize};
 
-/// Cells of a plane with colours, and arrows over them.
+/// Coloured cells of a plane, and arrows over them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Field {
+pub struct FieldMap {
     /// Corners of each cell, in the units of the axes.
     pub cells: Vec<Vec<[f32; 2]>>,
-    /// What the colours say.
+    /// Meaning of the colours.
     pub colours: Colours,
-    /// Arrows from a place, and their length as a share of the longest, along both axes.
+    /// Arrows at positions, with their length as a share of the longest, along both axes.
     pub arrows: Vec<([f32; 2], [f32; 2])>,
-    /// Entry of the arrows in the legend: what the longest is.
+    /// Entry of the arrows in the legend: the meaning of the longest arrow.
     pub arrow_label: String,
 }
 
-/// What the colours of cells say.
+/// Meaning of the colours of cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Colours {
-    /// The class of each cell, as an index in a list of names and colours (red, green, blue).
+    /// Classes, as indices in a list of names and colours (red, green, blue).
     Classes {
         /// Name and colour of each class.
         classes: Vec<(String, (u8, u8, u8))>,
         /// Class of each cell.
         of: Vec<usize>,
     },
-    /// A value of each cell, from zero up.
+    /// Values, from zero up.
     Values {
-        /// The values; not a number where there is none.
+        /// Value of each cell; NaN where there is none.
         #[serde(with = "rows::numbers")]
         values: Vec<f64>,
-        /// What they are.
+        /// Quantity and unit.
         scale: Axis,
     },
 }
 
-impl Field {
-    /// Classes that a cell has, in their order; none where colours are values.
+impl FieldMap {
+    /// Returns the classes that a cell has, in their order; empty where colours are values.
     pub fn classes(&self) -> Vec<&(String, (u8, u8, u8))> {
         let Colours::Classes { classes, of } = &self.colours else {
             return Vec::new();
@@ -47,7 +47,7 @@ impl Field {
         classes.map(|(_, class)| class).collect()
     }
 
-    /// The end of the scale of values, a round number; zero where colours are classes.
+    /// Returns the end of the scale of values, a round number; zero where colours are classes.
     pub fn top(&self) -> f64 {
         match &self.colours {
             Colours::Classes { .. } => 0.0,
@@ -58,8 +58,8 @@ impl Field {
     }
 }
 
-/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a
-/// colour bar.
+/// Returns the smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of
+/// a colour bar.
 pub fn round_top(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

@@ -1,17 +1,17 @@
 //! Figures as data: charts of curves with their axes. A figure is described once; one back end
-//! draws it as a PNG file, another in an HTML page, both from what [`Figure::resolve`] makes of it.
+//! draws it as a PNG file, another in an HTML page, both from the result of [`Figure::resolve`].
 
 mod axis;
 mod field;
 mod rows;
 
 pub use axis::{Axis, number, quantity, superscript};
-pub use field::{Colours, Field, round_top};
+pub use field::{Colours, FieldMap, round_top};
 pub use rows::{Columns, Part, Rows, TableColumns, Value};
 
 use serde::{Deserialize, Serialize};
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Style {
     /// Continuous line.
@@ -25,17 +25,17 @@ pub enum Style {
     LineMarkers,
 }
 
-/// Where the points of a series come from.
+/// Source of the points of a series.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Source {
-    /// From [`Series::points`] themselves.
+    /// The points in [`Series::points`].
     #[default]
     Points,
-    /// From rows of the statistics.
+    /// Rows of the statistics.
     Rows(Rows),
     /// A horizontal line at a height, across all other series.
     Level(f64),
-    /// A vertical line at a place, from zero to above all other series.
+    /// A vertical line at a position, from zero to above all other series.
     Place(f64),
 }
 
@@ -45,15 +45,15 @@ pub enum Source {
 pub struct Series {
     /// Entry in the legend; empty for none.
     pub label: String,
-    /// Where the points come from.
+    /// Source of the points.
     pub source: Source,
     /// Points in the units of the axes, in drawing order. A point that is not
     /// finite breaks the line.
     #[serde(with = "rows::pairs")]
     pub points: Vec<(f64, f64)>,
-    /// Red, green, blue; `None` takes the colour of the palette for its place among the series.
+    /// Red, green, blue; `None` for the colour of the palette at the index of the series.
     pub colour: Option<(u8, u8, u8)>,
-    /// Place in the palette, from [`Figure::resolve`]; series that are left out keep theirs.
+    /// Index in the palette, from [`Figure::resolve`]; series that are left out keep theirs.
     pub place: usize,
     /// Line or markers.
     pub style: Style,
@@ -61,7 +61,7 @@ pub struct Series {
     /// for none. A non-finite interval is omitted.
     #[serde(with = "rows::pairs")]
     pub intervals: Vec<(f64, f64)>,
-    /// A series of rows is left out where no value exceeds this share of the largest of the chart.
+    /// Share of the largest value of the chart up to which a series of rows is left out.
     pub least: f64,
     /// Whether the share of a series that is left out is stated below the heading.
     pub stated: bool,
@@ -77,19 +77,19 @@ impl Series {
         }
     }
 
-    /// A column of the statistics over another. It is left out if it is zero throughout, or if the
-    /// other does not change.
+    /// Creates a curve of a column of the statistics over another. It is left out if it is zero
+    /// throughout, or if the other column is constant.
     pub fn rows(label: impl Into<String>, x: impl Into<Value>, y: impl Into<Value>) -> Self {
         let (x, y, part) = (x.into(), y.into(), Part::All);
         Self::from_source(label, Source::Rows(Rows { x, y, part }))
     }
 
-    /// A dashed horizontal line across all other series of the chart.
+    /// Creates a dashed horizontal line across all other series of the chart.
     pub fn level(label: impl Into<String>, height: f64) -> Self {
         Self::from_source(label, Source::Level(height)).style(Style::Dashed)
     }
 
-    /// A dashed vertical line from zero to above all other series of the chart.
+    /// Creates a dashed vertical line from zero to above all other series of the chart.
     pub fn place(label: impl Into<String>, x: f64) -> Self {
         Self::from_source(label, Source::Place(x)).style(Style::Dashed)
     }
@@ -102,7 +102,7 @@ impl Series {
         }
     }
 
-    /// Takes only a part of the rows.
+    /// Uses only a part of the rows.
     pub fn part(mut self, part: Part) -> Self {
         if let Source::Rows(rows) = &mut self.source {
             rows.part = part;
@@ -137,7 +137,7 @@ pub struct Chart {
     pub title: String,
     /// Second line under the heading, for the conditions of the run.
     pub subtitle: Option<String>,
-    /// What to read in it, in one sentence; empty for none.
+    /// Explanation of the chart in one sentence; empty for none.
     pub note: String,
     /// Horizontal axis.
     pub x: Axis,
@@ -146,13 +146,13 @@ pub struct Chart {
     /// Curves, drawn in order.
     pub series: Vec<Series>,
     /// Coloured cells below the curves, with both axes to the same scale.
-    pub field: Option<Field>,
+    pub field: Option<FieldMap>,
     /// Horizontal range in the axis unit; `None` fits the data.
     pub x_range: Option<(f64, f64)>,
     /// Vertical range in the axis unit; `None` fits the data.
     pub y_range: Option<(f64, f64)>,
-    /// Colours the series along a gradient from first to last, with the gradient as legend; for
-    /// superimposed cycles.
+    /// Whether series are coloured along a gradient from first to last, with the gradient as
+    /// legend; for superimposed cycles.
     pub colour_by_order: bool,
     /// Width and height in pixels of a chart that is drawn alone; text and line widths scale with
     /// the width.
@@ -171,7 +171,7 @@ impl Chart {
         }
     }
 
-    /// Says what to read in it.
+    /// Sets the explanation.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
@@ -205,7 +205,7 @@ impl Chart {
         }
     }
 
-    /// What the chart shows as a line of text: title, axes with their units, and series.
+    /// Describes the chart in a line of text: title, axes with their units, and series.
     pub fn describe(&self) -> String {
         let axis = |a: &Axis| match (a.unit.as_str(), a.log) {
             ("", false) => a.name.clone(),
@@ -225,8 +225,8 @@ impl Chart {
         )
     }
 
-    /// The chart as it is drawn: with the points of the lines across the other series; without
-    /// others there are no lines.
+    /// Returns the chart for drawing, with the points of the lines across the other series; without
+    /// other series there are no lines.
     pub fn with_lines(&self) -> Self {
         let line = |s: &&Series| matches!(s.source, Source::Level(_) | Source::Place(_));
         let others = self.series.iter().filter(|s| !line(s));
@@ -255,7 +255,7 @@ impl Chart {
         self.field.as_ref().is_some_and(|f| !f.cells.is_empty()) || self.series.iter().any(points)
     }
 
-    /// Whether a point can be shown on both axes.
+    /// Returns whether a point can be shown on both axes.
     pub fn shows(&self, p: &(f64, f64)) -> bool {
         let on = |axis: &Axis, v: f64| v.is_finite() && (!axis.log || v > 0.0);
         on(&self.x, p.0) && on(&self.y, p.1)
@@ -263,7 +263,7 @@ impl Chart {
 }
 
 /// Limit on the charts of a figure.
-const MOST_CHARTS: usize = 12;
+const MAX_CHARTS: usize = 12;
 
 /// Charts on one page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -271,7 +271,7 @@ const MOST_CHARTS: usize = 12;
 pub struct Figure {
     /// Name of the figure, and of its PNG file without `.png`.
     pub name: String,
-    /// What all charts are of; empty for none.
+    /// Common subject of all charts; empty for none.
     pub heading: String,
     /// The charts, row by row.
     pub charts: Vec<Chart>,
@@ -283,7 +283,7 @@ impl Figure {
     /// Name of the file in the folder of a run with its figures as data, a list in JSON.
     pub const FILE: &str = "figures.json";
 
-    /// Charts on one page, in a number of columns.
+    /// Creates a figure of charts on one page, in a number of columns.
     pub fn new(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self {
             name: name.into(),
@@ -293,19 +293,19 @@ impl Figure {
         }
     }
 
-    /// The figure with the points of all series, from the statistics of a run; charts without data,
-    /// and those beyond the twelfth, are left out.
+    /// Returns the figure with the points of all series, from the statistics of a run; charts
+    /// without data, and those beyond the twelfth, are left out.
     pub fn resolve(&self, columns: &dyn Columns) -> Self {
         let charts = self.charts.iter().map(|c| c.resolve(columns));
         Self {
-            charts: charts.filter(Chart::has_data).take(MOST_CHARTS).collect(),
+            charts: charts.filter(Chart::has_data).take(MAX_CHARTS).collect(),
             name: self.name.clone(),
             heading: self.heading.clone(),
             columns: self.columns,
         }
     }
 
-    /// The charts, each with the heading in the line under its own.
+    /// Returns the charts, each with the heading of the figure in the line under its own.
     pub fn headed(&self) -> Vec<Chart> {
         let mut charts = self.charts.clone();
         charts.iter_mut().for_each(|c| c.head(&self.heading));

@@ -10,16 +10,16 @@ use std::rc::Rc;
 /// Rows of the statistics as points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rows {
-    /// Horizontal place.
+    /// Horizontal value.
     pub x: Value,
-    /// Vertical place.
+    /// Vertical value.
     pub y: Value,
-    /// Which rows.
+    /// Selection of rows.
     pub part: Part,
 }
 
-/// A value of each row: of a column, less its first value or divided by another column where asked,
-/// times a factor.
+/// A value of each row: the value of a column, optionally less its first value or divided by
+/// another column, times a factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Value {
     /// Name of the column.
@@ -48,7 +48,7 @@ impl<T: Into<String>> From<T> for Value {
 pub enum Part {
     /// All rows.
     All,
-    /// From a time on (s).
+    /// Rows from a time on (s).
     Since(f64),
     /// A cycle from one time to another (s), with values between rows at both ends, so that it ends
     /// where the next one begins.
@@ -57,7 +57,7 @@ pub enum Part {
 
 /// Columns of numbers by name, all of the same length.
 pub trait Columns {
-    /// Unit and values of a column; `None` if there is none of that name.
+    /// Returns unit and values of a column; `None` if there is no such column.
     fn column(&self, name: &str) -> Option<(&str, Rc<[f64]>)>;
 }
 
@@ -88,7 +88,7 @@ impl Columns for TableColumns<'_> {
 }
 
 impl Rows {
-    /// The points; `None` if a column is missing, or if the horizontal value does not change.
+    /// Returns the points; `None` if a column is missing, or if the horizontal value is constant.
     fn points(&self, columns: &dyn Columns) -> Option<Vec<(f64, f64)>> {
         let (x, y) = (self.x.of(columns)?, self.y.of(columns)?);
         let first = x.iter().find(|x| x.is_finite())?;
@@ -104,7 +104,7 @@ impl Rows {
         let all = || x.iter().copied().zip(y.iter().copied());
         let time = |from: f64| {
             let (_, time) = columns.column("time")?;
-            // Times are sums of steps.
+            // Times are sums of steps, so that they are compared with a tolerance.
             let slack = 1e-9 * from.abs();
             Some(time.partition_point(|t| *t < from - slack))
         };
@@ -137,7 +137,7 @@ impl Value {
     }
 }
 
-/// Points of the rows in a time interval, with values between rows at both ends.
+/// Returns the points of the rows in a time interval, with interpolated values at both ends.
 fn cycle(time: &[f64], x: &[f64], y: &[f64], [from, to]: [f64; 2]) -> Vec<(f64, f64)> {
     let slack = 1e-9 * (to - from);
     let first = time.partition_point(|t| *t < from - slack);
@@ -163,7 +163,8 @@ fn cycle(time: &[f64], x: &[f64], y: &[f64], [from, to]: [f64; 2]) -> Vec<(f64, 
 }
 
 impl Chart {
-    /// The chart with the points of its series, and with the units of their columns on its axes.
+    /// Returns the chart with the points of its series, and with the units of their columns on its
+    /// axes.
     pub(super) fn resolve(&self, columns: &dyn Columns) -> Self {
         let mut chart = self.clone();
         chart.series = Vec::new();
@@ -204,13 +205,13 @@ impl Chart {
     }
 }
 
-/// Largest magnitude of the heights of points.
+/// Returns the largest magnitude of the heights of points.
 fn size(points: &[(f64, f64)]) -> f64 {
     let finite = points.iter().map(|p| p.1.abs()).filter(|v| v.is_finite());
     finite.fold(0.0, f64::max)
 }
 
-/// Pairs of numbers in files that have no numbers beside the finite ones: null stands for these.
+/// Serializes pairs of numbers for files without NaN and infinities: these become null.
 pub(super) mod pairs {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -230,7 +231,7 @@ pub(super) mod pairs {
     }
 }
 
-/// Numbers in files that have none beside the finite ones: null stands for these.
+/// Serializes numbers for files without NaN and infinities: these become null.
 pub(super) mod numbers {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -261,7 +262,7 @@ mod tests {
         table
     }
 
-    /// Rows of a circle in (delta, Q), at an interval `every`, for cycles of one second.
+    /// Returns rows of a circle in (delta, Q), at an interval `every`, for cycles of one second.
     fn circle(every: f64, end: f64) -> Table {
         let count = (end / every).round() as usize;
         let row = |k: usize| {
@@ -280,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_whole_cycle_ends_where_it_began() {
-        // Intervals that divide the cycle, and one that does not.
+        // Some intervals divide the cycle, and one does not.
         for every in [0.01, 0.03, 0.007] {
             let table = circle(every, 3.5);
             let points = |span| {
@@ -325,7 +326,7 @@ mod tests {
         };
         assert!((low + 1.0).abs() < 1e-9 && (high - 1.0).abs() < 1e-9 && at == 0.5 && end == 0.5);
         assert_eq!(drawn.series[1].points.len(), 76);
-        // Without a curve there is nothing to cross, and no chart.
+        // Without a curve there is no chart for a line across it.
         assert_eq!(resolved(chart(), &table(&[("time", "s")], vec![])), None);
     }
 

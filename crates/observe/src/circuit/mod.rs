@@ -1,5 +1,5 @@
-//! The tribological circuit as an observer: its columns, its events, and what it sums up. The
-//! account itself is a process, [`fretwork_core::process::circuit`].
+//! The tribological circuit as an observer: columns, events, and summary. The account itself is a
+//! process, [`fretwork_core::process::circuit`].
 
 mod summary;
 
@@ -9,23 +9,23 @@ pub use summary::{Base, CircuitSummary, Rates};
 use super::figures;
 use super::observer::{Event, EventTable};
 use super::output::Output;
-use super::picture::{Paint, Picture, Shows};
+use super::picture::{Paint, Picture, PictureContent};
 use super::quantity::Findings;
 use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW, METRE, ONE, SECOND, Unit};
-use super::series::Series;
+use super::series::DecimatedSeries;
 use super::statistics::Column;
 use super::steady;
 use super::wear::show_flows;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
 use fretwork_core::view::RunView;
-use fretwork_core::wear::ledger::{Flows, GrainPlace, Ledger};
+use fretwork_core::wear::ledger::{Flows, GrainPlace, MassLedger};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Observes the bonds that break: an event each.
+/// Observes the bonds that break, and records an event for each.
 #[derive(Clone, Copy, Debug)]
 pub struct BrokenBonds {
     count: u64,
@@ -40,7 +40,7 @@ impl BrokenBonds {
     }
 }
 
-/// Coordinates of the place of an event.
+/// Returns the columns of the coordinates of an event.
 fn place() -> [Column; 3] {
     ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
 }
@@ -115,14 +115,14 @@ impl Observer for BrokenBonds {
                 at[0],
                 at[1],
                 at[2],
-                b.life.mode_mix(),
+                b.energies.mode_mix(),
                 b.opening[0],
                 b.opening[1],
                 b.area,
-                b.life.work.iter().sum(),
-                b.life.fracture,
-                b.life.viscous,
-                b.life.friction,
+                b.energies.work.iter().sum(),
+                b.energies.fracture,
+                b.energies.viscous,
+                b.energies.friction,
                 f64::from(u8::from(!b.damaged)),
             ];
             events.push(Event {
@@ -134,11 +134,11 @@ impl Observer for BrokenBonds {
         events
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.count)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.count = decode(from)?;
         Ok(())
     }
@@ -148,20 +148,20 @@ impl Observer for BrokenBonds {
 #[derive(Clone, Debug)]
 pub struct CircuitAccount {
     start: f64,
-    state: Followed,
+    state: CircuitObserverState,
 }
 
-/// What it carries from step to step.
+/// State carried from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Followed {
-    /// Pieces that came loose, and grains of the largest.
+struct CircuitObserverState {
+    /// Number of pieces that detached, and number of grains of the largest.
     pieces: u64,
     largest: usize,
-    /// Time, what passed by then, and the mass in the contact, at each update.
-    series: Series<(f64, Flows, f64)>,
+    /// Time, accumulated flows, and the mass in the contact, at each update.
+    series: DecimatedSeries<(f64, Flows, f64)>,
 }
 
-/// The circuit of a simulation; none before it begins.
+/// Returns the circuit of a simulation; `None` before its start.
 fn circuit(run: &dyn RunView) -> Option<&GrainCircuit> {
     run.process::<CircuitProcess>()?.circuit()
 }
@@ -171,7 +171,7 @@ impl CircuitAccount {
     pub fn new(start: f64) -> Self {
         Self {
             start,
-            state: Followed::default(),
+            state: CircuitObserverState::default(),
         }
     }
 
@@ -199,7 +199,8 @@ impl CircuitAccount {
         }
     }
 
-    /// The colours of balls and pieces by where they are; none before the account begins.
+    /// Returns the colours of balls and pieces by their place in the circuit; `None` before its
+    /// start.
     fn paints(run: &dyn RunView) -> Vec<Paint> {
         let Some(circuit) = circuit(run) else {
             return Vec::new();
@@ -217,7 +218,7 @@ impl CircuitAccount {
         bodies.map(paint).collect()
     }
 
-    /// What the summary says.
+    /// Returns the summary.
     fn summary(&self, run: &dyn RunView, wall: Duration) -> Option<CircuitSummary> {
         let circuit = circuit(run)?;
         let end = self.state.series.last().map_or(self.start, |p| p.0);
@@ -341,7 +342,7 @@ impl Observer for CircuitAccount {
     }
 
     fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
-        let none = Ledger::default();
+        let none = MassLedger::default();
         let ledger = circuit(run).map_or(&none, |c| &c.ledger);
         let (c, f, r) = (&ledger.contents, &ledger.flows, ledger.residual());
         let rest = [r.tied, r.contact, r.ejected, r.lost];
@@ -362,11 +363,11 @@ impl Observer for CircuitAccount {
         }
         vec![Picture {
             name: "circuit",
-            shows: Shows::Paints(paints),
+            shows: PictureContent::Paints(paints),
         }]
     }
 
-    /// Grains that came loose from first bodies are a source beside the wear law.
+    /// Grains that detached from first bodies are a source in addition to the wear law.
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let run = end.simulation;
         for name in ["Qs", "Qe", "Qw"] {
@@ -400,11 +401,11 @@ impl Observer for CircuitAccount {
         summary.map(figure).into_iter().collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.state)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.state = decode(from)?;
         Ok(())
     }

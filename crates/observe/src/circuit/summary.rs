@@ -1,8 +1,8 @@
-//! What the tribological circuit says at the end of a run.
+//! Summary of the tribological circuit at the end of a run.
 
 use crate::quantity::unit::{MASS, ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part};
-use crate::steady::Flow;
+use crate::steady::MeanFlow;
 use crate::warning::Warning;
 use crate::wear::NO_CIRCUIT;
 use fretwork_core::wear::ledger::{Flows, MassByPlace};
@@ -15,19 +15,19 @@ crate::described! {
     #[allow(non_snake_case)]
     pub struct Rates {
         /// Source flow.
-        pub Qs: Option<Flow> = part::<Flow>(),
+        pub Qs: Option<MeanFlow> = part::<MeanFlow>(),
         /// Attached flow: mass bonded again.
-        pub Qa: Option<Flow> = part::<Flow>(),
+        pub Qa: Option<MeanFlow> = part::<MeanFlow>(),
         /// Ejected flow.
-        pub Qe: Option<Flow> = part::<Flow>(),
+        pub Qe: Option<MeanFlow> = part::<MeanFlow>(),
         /// Recirculated flow.
-        pub Qr: Option<Flow> = part::<Flow>(),
+        pub Qr: Option<MeanFlow> = part::<MeanFlow>(),
         /// Wear flow.
-        pub Qw: Option<Flow> = part::<Flow>(),
+        pub Qw: Option<MeanFlow> = part::<MeanFlow>(),
         /// Qs - Qa - Qw, block by block: its interval contains zero in steady sliding.
-        pub Qs_less_Qw: Option<Flow> = part::<Flow>(),
+        pub Qs_less_Qw: Option<MeanFlow> = part::<MeanFlow>(),
         /// Rate of change of the mass in the contact.
-        pub M: Option<Flow> = part::<Flow>(),
+        pub M: Option<MeanFlow> = part::<MeanFlow>(),
     }
 }
 
@@ -102,7 +102,7 @@ crate::described! {
     }
 }
 
-/// Adds what cases without a circuit lack.
+/// Marks the results that cases without a circuit do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
     let doc = "the tribological circuit; null without one";
@@ -137,7 +137,7 @@ impl CircuitSummary {
         }));
     }
 
-    /// Labels and sentences of the terminal.
+    /// Returns labels and sentences for the terminal.
     fn lines(&self) -> Vec<(&'static str, String)> {
         let (c, f, r) = (&self.contents, &self.flows, &self.rates);
         let tied: Vec<String> = self
@@ -145,12 +145,12 @@ impl CircuitSummary {
             .iter()
             .map(|b| format!("{} to {}", b.grains, b.name))
             .collect();
-        let flow = |q: &Option<Flow>| {
+        let flow = |q: &Option<MeanFlow>| {
             q.map_or("not known".to_owned(), |q| {
                 format!("{:.2e} +- {:.1e}", q.mean, q.half_width)
             })
         };
-        let steady = |q: &Option<Flow>| match q {
+        let steady = |q: &Option<MeanFlow>| match q {
             Some(q) if q.steady => "no trend",
             Some(_) => "TREND",
             None => "too few updates",

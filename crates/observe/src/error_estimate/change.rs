@@ -9,16 +9,16 @@ use crate::quantity::unit::ONE;
 use fretwork_math::statistics::interval;
 use serde::{Deserialize, Serialize};
 
-/// Fewest stretches of which an interval is formed.
+/// Smallest number of stretches for an interval.
 pub const FEWEST: usize = 3;
 
-/// Numerator and denominator of a result over one stretch: as computed by the run, and by the finer
-/// repeat.
+/// Numerator and denominator of a result over one stretch: from the run, and from the finer
+/// repetition.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
-    /// Values from the run itself.
+pub struct RatioPair {
+    /// Values from the run.
     pub coarse: [f64; 2],
-    /// Values from the repeat.
+    /// Values from the repetition.
     pub fine: [f64; 2],
 }
 
@@ -35,9 +35,9 @@ crate::described! {
 }
 
 impl Change {
-    /// The change over all stretches times a factor of extrapolation; `None` for fewer than three,
-    /// or where the run gives nothing to compare with.
-    pub fn over(pairs: &[Pair], extrapolation: f64) -> Option<Self> {
+    /// Returns the change over all stretches times a factor of extrapolation; `None` for fewer than
+    /// three stretches, or where the run gives no reference value.
+    pub fn over(pairs: &[RatioPair], extrapolation: f64) -> Option<Self> {
         let n = pairs.len();
         if n < FEWEST {
             return None;
@@ -60,22 +60,22 @@ impl Change {
         })
     }
 
-    /// What the result may be off by, as a share of it: the change, which the run has not made, and
-    /// what is not known of it.
+    /// Returns the largest relative error of the result: the change, for which the run is not
+    /// corrected, plus its uncertainty.
     pub fn bound(&self) -> f64 {
         self.change.abs() + self.half_width
     }
 }
 
-/// Change of the ratio of the sums, without one of the stretches.
-fn ratio(pairs: &[Pair], without: Option<usize>) -> Option<f64> {
+/// Returns the change of the ratio of the sums, without one of the stretches.
+fn ratio(pairs: &[RatioPair], without: Option<usize>) -> Option<f64> {
     let all = || {
         let numbered = pairs.iter().enumerate();
         numbered
             .filter(move |(k, _)| Some(*k) != without)
             .map(|(_, p)| p)
     };
-    let sum = |part: fn(&Pair) -> f64| all().map(part).sum::<f64>();
+    let sum = |part: fn(&RatioPair) -> f64| all().map(part).sum::<f64>();
     let coarse = sum(|p| p.coarse[0]) / sum(|p| p.coarse[1]);
     let fine = sum(|p| p.fine[0]) / sum(|p| p.fine[1]);
     let change = fine / coarse - 1.0;
@@ -86,8 +86,8 @@ fn ratio(pairs: &[Pair], without: Option<usize>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn pair(coarse: f64, fine: f64) -> Pair {
-        Pair {
+    fn pair(coarse: f64, fine: f64) -> RatioPair {
+        RatioPair {
             coarse: [coarse, 1.0],
             fine: [fine, 1.0],
         }
@@ -101,7 +101,7 @@ mod tests {
         assert!(change.half_width < 1e-12, "{change:?}");
     }
 
-    /// Of equal stretches the jackknife is Student's interval of the mean: changes of 0.01, 0.02,
+    /// For equal stretches the jackknife is Student's interval of the mean: changes of 0.01, 0.02,
     /// 0.03 have the mean 0.02, the standard deviation 0.01, and t(2, 0.975) = 4.302653.
     #[test]
     fn equal_stretches_give_the_interval_of_the_mean() {
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(Change::over(&[pair(1.0, 1.1); 2], 1.0), None);
         assert_eq!(Change::over(&[pair(0.0, 0.1); 4], 1.0), None);
         assert_eq!(Change::over(&[pair(0.0, 0.0); 4], 1.0), None);
-        // All of it at one place.
+        // All of the result is in one stretch.
         let mut pairs = [pair(0.0, 0.0); 4];
         pairs[2] = pair(1.0, 1.1);
         let change = Change::over(&pairs, 1.0).unwrap();

@@ -1,4 +1,4 @@
-//! What the results of a run grow by over a few steps.
+//! Growth of the results of a run over a few steps.
 
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{StepError, StepReport};
@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// Growth of the results over a stretch of steps (per metre of depth in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Increments {
-    /// Work of the tangential force that moves the body under test (J).
+    /// Work of the tangential force that moves the rubbed body (J).
     pub work: f64,
-    /// Normal force on it times its sliding distance (N m).
+    /// Normal force on that body times its sliding distance (N m).
     pub load_path: f64,
     /// Energy dissipated by friction (J).
     pub friction_energy: f64,
@@ -34,24 +34,24 @@ pub struct Stretch {
 }
 
 /// Cost of a step without its iterations, in iterations: detection, laws and motion take about as
-/// long as this many sweeps of contacts with three laws each.
+/// long as this number of sweeps of contacts with three laws each.
 const FIXED_ITERATIONS: f64 = 60.0;
 
-/// Cost of a step in iterations times contacts: the same on every machine.
+/// Returns the cost of a step in iterations times contacts, which is the same on every machine.
 pub fn cost(run: &dyn RunView, report: &StepReport) -> f64 {
     let iterations = f64::from(report.solver.iterations) + FIXED_ITERATIONS;
     iterations * run.counted_contacts().max(1) as f64
 }
 
-/// The sum of the damage of all bonds; broken ones count 1.
+/// Returns the sum of the damage of all bonds; broken bonds count 1.
 fn damage(run: &dyn RunView) -> f64 {
     run.mean_damage() * run.bonds_made() as f64
 }
 
 impl Stretch {
-    /// Makes `length` steps of a run, each in `parts`, and measures those after the first half of
-    /// the `length`: by then what the change of settings disturbs has mostly died away, such as
-    /// damage that explicit coupling lets lag by a step.
+    /// Makes `length` steps of a run, each in `parts`, and measures those after the first half: by
+    /// then effects of the change of settings have mostly decayed, such as damage that lags by a
+    /// step with explicit coupling.
     ///
     /// # Errors
     /// A step failed.
@@ -69,7 +69,7 @@ impl Stretch {
         let sums = &mut stretch.increments;
         let steps = parts * length;
         for k in 0..steps {
-            // The same stretch of time in as many parts as there may be.
+            // The measured time is the same for any number of parts.
             if k == parts * (length / 2) {
                 *sums = Increments::default();
                 (friction, bonds) = (run.energies().friction, damage(run));

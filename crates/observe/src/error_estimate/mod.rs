@@ -1,9 +1,9 @@
-//! The error of a run by its own estimate: at places drawn from the seed it repeats a few steps
-//! with a quarter of the step, with a hundredth of the tolerance, and, where damage is coupled
-//! explicitly, with implicit coupling, and compares what friction, damage and wear grow by.
+//! Estimate of the error of a run: at times drawn from the seed the run repeats a few steps with a
+//! quarter of the step, with a hundredth of the tolerance, and, where damage is coupled explicitly,
+//! with implicit coupling, and compares the growth of friction, damage and wear.
 //!
-//! The state is restored after each repeat, so that the run has the same bits as without. Observers
-//! see no repeated step.
+//! The state is restored after each repetition, so that the run has the same bits as without.
+//! Observers do not see repeated steps.
 
 mod change;
 mod increments;
@@ -15,7 +15,7 @@ mod warnings;
 pub use change::Change;
 pub use report::{Effects, Repeats, Shares};
 
-pub(crate) use change::Pair;
+pub(crate) use change::RatioPair;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{RepeatError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
@@ -26,58 +26,59 @@ pub(crate) use increments::cost;
 use serde::{Deserialize, Serialize};
 pub(crate) use stretches::{RepeatedStretch, shorten, tighten};
 
-/// The shorter steps of a repeat are the step over this number.
+/// Number of parts of a step in the repetition with shorter steps.
 pub(crate) const FINER: u32 = 4;
-/// Share of the cost of the run beyond which no further repeats are made.
-const MOST_COST: f64 = 0.05;
+/// Share of the cost of the run above which no further repetitions are made.
+const MAX_COST: f64 = 0.05;
 
-/// One place with its repeats.
+/// A stretch of the run with its repetitions.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Place {
-    /// Steps done before it.
+pub(crate) struct StretchRepeats {
+    /// Number of steps done before it.
     step: u64,
-    /// With the step and tolerance of the run.
+    /// Growth with the step and tolerance of the run.
     pub(crate) base: Increments,
-    /// With a quarter of the step.
+    /// Growth with a quarter of the step.
     pub(crate) finer: Increments,
-    /// With a hundredth of the tolerance.
+    /// Growth with a hundredth of the tolerance.
     pub(crate) tighter: Increments,
     /// Whether that tolerance was reached.
     pub(crate) tight: bool,
-    /// With implicit coupling, where the run has explicit coupling of damage.
+    /// Growth with implicit coupling, where the run has explicit coupling of damage.
     coupled: Option<Increments>,
 }
 
-/// Estimates the error of a run; all of it is part of a checkpoint.
+/// Estimates the error of a run; a checkpoint contains all of it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ErrorEstimate {
-    /// Steps of a stretch.
+    /// Number of steps of a stretch.
     length: u32,
-    /// Steps after which stretches are repeated, those to come.
+    /// Numbers of steps after which the remaining stretches are repeated.
     to_come: std::collections::VecDeque<u64>,
-    /// Steps of the run when it was begun.
+    /// Number of steps of the run, as known at its start.
     total: u64,
     body: Option<SlidingBody>,
-    /// Whether repeats are left out once they cost too much: where the case does not say how many
-    /// there are.
+    /// Whether repetitions are skipped once they cost too much: where the case does not give their
+    /// number.
     limited: bool,
-    /// Why there is no estimate.
+    /// Reason why there is no estimate.
     reason: Option<String>,
-    places: Vec<Place>,
-    /// Places at which a repeated step failed.
+    places: Vec<StretchRepeats>,
+    /// Number of places at which a repeated step failed.
     failed: u32,
-    /// Places left out since repeats cost too much.
+    /// Number of places skipped since repetitions cost too much.
     left_out: u32,
-    /// Cost of the steps of the run, and of the repeats.
+    /// Cost of the steps of the run, and of the repetitions.
     cost: [f64; 2],
     /// External work and potential energy at the end of the last step (J).
     last: [f64; 2],
-    /// Sum of their changes in all steps, and in those that missed the tolerance (J).
+    /// Sum of the changes of these energies in all steps, and in those that missed the tolerance
+    /// (J).
     supplied: [f64; 2],
 }
 
 impl ErrorEstimate {
-    /// Draws the places of a run of so many steps.
+    /// Draws the places of a run with this number of steps.
     pub fn new(case: &Case, run: &dyn RunView, total: u64) -> Self {
         let test = FrictionTest::of(case, run);
         let mut estimate = Self {
@@ -100,22 +101,22 @@ impl ErrorEstimate {
         estimate
     }
 
-    /// Repeats the steps that are next, where one of the places is reached: `step` steps of the
-    /// case are done.
+    /// Repeats the next steps, where one of the places is reached: `step` steps of the case are
+    /// done.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
     pub fn before_step(&mut self, run: &mut dyn RunControl, step: u64) -> Result<(), RepeatError> {
         let mut due = false;
         while self.to_come.front().is_some_and(|at| *at <= step) {
-            // A step that spans several of the case may pass some.
+            // A step that spans several steps of the case may pass several places.
             due |= self.to_come.pop_front().is_some();
         }
         if !due || self.reason.is_some() {
             return Ok(());
         }
         if let Err(other) = run.repeatable() {
-            // A process that was added since the start.
+            // A process was added since the start.
             self.reason = Some(other.to_string());
             return Ok(());
         }
@@ -131,14 +132,14 @@ impl ErrorEstimate {
         let (place, [cost, _]) = repeats.at(run)?;
         self.cost[1] += cost;
         match place {
-            Some(place) => self.places.push(Place { step, ..place }),
+            Some(place) => self.places.push(StretchRepeats { step, ..place }),
             None => self.failed += 1,
         }
         Ok(())
     }
 
-    /// Whether one more place, at the mean cost of those so far, would take more than its share of
-    /// the run.
+    /// Returns whether one more place, at the mean cost of those so far, would exceed the permitted
+    /// share of the run.
     fn costs_too_much(&self, step: u64) -> bool {
         let done = self.places.len() + self.failed as usize;
         if !self.limited || done < change::FEWEST || step == 0 {
@@ -146,10 +147,10 @@ impl ErrorEstimate {
         }
         let each = self.cost[1] / done as f64;
         let run = self.cost[0] / step as f64 * self.total as f64;
-        self.cost[1] + each > MOST_COST * run
+        self.cost[1] + each > MAX_COST * run
     }
 
-    /// Takes in a step of the run.
+    /// Adds a step of the run.
     pub fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
         self.cost[0] += cost(run, report);
         let e = run.energies();

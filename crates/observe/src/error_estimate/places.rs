@@ -6,30 +6,31 @@ use fretwork_scene::case::UncertaintySpec;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Steps of a run for each step of a stretch: what a stretch costs with all its repeats is about
-/// ten times its own cost, and at most 5 % of the run may go into them.
+/// Number of steps of a run per step of a stretch: a stretch with all its repetitions costs about
+/// ten times its own cost, and they may take at most 5 % of the run.
 const STEPS_EACH: u64 = 220;
-/// Places over which the repeats are distributed before stretches are made longer, for the
-/// interval.
+/// Number of places over which the repetitions are distributed before stretches are made longer,
+/// for the interval.
 const PLACES: u64 = 4;
-/// Longest stretch: what the change of settings disturbs at its start has died away by then.
+/// Longest stretch: by then effects of the change of settings at its start have decayed.
 const LONGEST: u64 = 8;
-/// Mixed into the seed of the case, so that places are not drawn with the numbers of its grains.
+/// Added to the seed of the case, so that places are independent of the random numbers of its
+/// grains.
 const STREAM: u64 = 0x7265_7065_6174_7321;
 
-/// How many stretches are repeated, and how long they are.
+/// Number of repeated stretches, and their length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Number of places.
     pub count: usize,
-    /// Steps of each stretch.
+    /// Number of steps of each stretch.
     pub length: u32,
 }
 
-/// Plans the repeats of a run of so many steps.
+/// Plans the repetitions for a run with this number of steps.
 ///
 /// # Errors
-/// Why there are none.
+/// Returns why there are none.
 pub fn plan(spec: &UncertaintySpec, steps: u64) -> Result<Plan, String> {
     if spec.repeats == Some(0) {
         return Err("switched off by `uncertainty: (repeats: 0)`".to_owned());
@@ -50,7 +51,7 @@ pub fn plan(spec: &UncertaintySpec, steps: u64) -> Result<Plan, String> {
 }
 
 impl Plan {
-    /// Numbers of completed steps after which stretches are repeated, between two steps, in order.
+    /// Returns the numbers of completed steps after which stretches are repeated, in order.
     pub fn draw(&self, seed: u64, from: u64, to: u64) -> Vec<u64> {
         let mut rng = Pcg64::seed_from_u64(seed ^ STREAM);
         let steps = usize::try_from(to.saturating_sub(from)).unwrap_or(usize::MAX);

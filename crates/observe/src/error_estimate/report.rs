@@ -1,8 +1,8 @@
-//! What the repeats say, for the summary.
+//! Results of the repetitions for the summary.
 
 use super::Increments;
-use super::change::{Change, Pair};
-use super::{ErrorEstimate, FINER, Place};
+use super::change::{Change, RatioPair};
+use super::{ErrorEstimate, FINER, StretchRepeats};
 use crate::quantity::part;
 use crate::quantity::unit::{ONE, WORD};
 use fretwork_core::energy::Energy;
@@ -27,7 +27,7 @@ crate::described! {
 impl Effects {
     fn of(pairs: &[(Increments, Increments)], extrapolation: f64) -> Self {
         let change = |part: fn(&Increments) -> [f64; 2]| {
-            let pairs = pairs.iter().map(|(coarse, fine)| Pair {
+            let pairs = pairs.iter().map(|(coarse, fine)| RatioPair {
                 coarse: part(coarse),
                 fine: part(fine),
             });
@@ -94,19 +94,19 @@ crate::described! {
 }
 
 impl ErrorEstimate {
-    /// What it has found, by the ledger at the end and the kinetic energy of driven bodies then
-    /// (J).
+    /// Returns the results, given the ledger at the end and the kinetic energy of driven bodies
+    /// then (J).
     pub fn report(&self, energy: &Energy, driven: f64) -> Repeats {
-        let pairs = |fine: fn(&Place) -> Option<Increments>| {
+        let pairs = |fine: fn(&StretchRepeats) -> Option<Increments>| {
             let pairs = self.places.iter().filter_map(|p| Some((p.base, fine(p)?)));
             pairs.collect::<Vec<_>>()
         };
         let coupled = pairs(|p| p.coupled);
         let short = 1.0 / f64::from(FINER);
         let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
-        // Negative where it supplies energy.
+        // The correction is negative where it supplies energy.
         let correction = (-energy.correction).max(0.0);
-        // What corrections supply is dissipated elsewhere.
+        // Energy that corrections supply is dissipated elsewhere.
         let dissipated = energy.dissipated() - energy.correction;
         let turned_over = [
             dissipated + energy.scheme.max(0.0),

@@ -1,24 +1,24 @@
 //! A stretch of steps, repeated with other settings.
 
 use super::increments::Stretch;
-use super::{FINER, Place};
+use super::{FINER, StretchRepeats};
 use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::SlidingBody;
 use fretwork_core::step::{Coupling, RepeatError};
 use fretwork_core::view::RunControl;
 
-/// The tight tolerance is the tolerance over this number.
+/// Ratio of the tolerance to the tight tolerance.
 const TIGHTER: f64 = 100.0;
-/// Below this tolerance rounding decides, not the solver.
+/// Tolerance below which rounding limits the error, not the solver.
 const ROUNDING: f64 = 1e-12;
-/// Most iterations with the tight tolerance: this many times those of the run, and this many in any
-/// case.
-const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+/// Largest number of iterations with the tight tolerance: a factor on the number in the run, and a
+/// minimum.
+const MAX_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
 /// Sets the options of a repeated stretch.
 type SetOptions<'a> = dyn Fn(&mut dyn RunControl) + 'a;
 
-/// What is repeated: so many steps, and the body under test.
+/// Repeated stretch: number of steps, and the rubbed body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RepeatedStretch {
     pub length: u32,
@@ -28,17 +28,20 @@ pub(crate) struct RepeatedStretch {
 }
 
 impl RepeatedStretch {
-    /// Repeats the next steps in all ways; `None` where a step failed. Steps of the stretch itself
-    /// are repeated too, so that all are measured in the same way. Gives the cost of all of it too,
-    /// and that of a step as it is.
+    /// Repeats the next steps in all ways; `None` where a step failed. Steps with the present
+    /// settings are repeated too, so that all are measured in the same way. Also returns the cost
+    /// of all repetitions, and that of a step with the present settings.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn at(&self, run: &mut dyn RunControl) -> Result<(Option<Place>, [f64; 2]), RepeatError> {
+    pub fn at(
+        &self,
+        run: &mut dyn RunControl,
+    ) -> Result<(Option<StretchRepeats>, [f64; 2]), RepeatError> {
         let (length, mut cost) = (self.length, 0.0);
         let mut stretch = |run: &mut dyn RunControl, parts, options: &SetOptions<'_>| {
             let made = run.repeated(|run| {
-                // Steps that have grown would end beyond what lies ahead.
+                // Longer steps would end after the known events.
                 run.span_steps(run.options().event_step(), 1);
                 options(run);
                 Stretch::of(run, [length, parts], self.body.as_ref()).ok()
@@ -51,9 +54,9 @@ impl RepeatedStretch {
         };
         let each = base.cost / f64::from(length);
         let finer = stretch(run, FINER, &shorten)?;
-        let most = MOST_ITERATIONS
+        let most = MAX_ITERATIONS
             .1
-            .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
+            .max(MAX_ITERATIONS.0 * f64::from(base.iterations));
         let tighter = stretch(run, 1, &|run| tighten(run, most))?;
         let damages = run.laws().iter().any(Interface::damages);
         let mut coupled = None;
@@ -68,7 +71,7 @@ impl RepeatedStretch {
         let (Some(finer), Some(tighter)) = (finer, tighter) else {
             return Ok((None, [cost, each]));
         };
-        let place = Place {
+        let place = StretchRepeats {
             step: run.steps(),
             base: base.increments,
             finer: finer.increments,
@@ -80,7 +83,7 @@ impl RepeatedStretch {
     }
 }
 
-/// Sets a shorter step, in which as much of an overlap is taken out in a given time.
+/// Sets a shorter step, with the same correction of an overlap in a given time.
 pub(crate) fn shorten(run: &mut dyn RunControl) {
     let parts = f64::from(FINER);
     run.change_step(run.options().scheme.h / parts);

@@ -1,18 +1,18 @@
-//! Warnings of errors that repeated steps show, or do not exclude.
+//! Warnings of errors that repeated steps show or cannot exclude.
 
 use super::{Change, Repeats};
 use crate::warning::Warning;
 
-/// Share of a result, or of the energy, by which an error is worth a note.
+/// Share of a result, or of the energy, above which an error is reported.
 const LARGE_ERROR: f64 = 0.05;
-/// Share of the energy that the time integration may add before the run is not to be trusted.
+/// Share of the energy that the time integration may add before the run counts as not trustworthy.
 const ADDED: f64 = 0.2;
 
-/// A result, its change with a setting, and that setting.
+/// A result, its change with a setting, and the name of that setting.
 type SettingEffect = (&'static str, Change, &'static str);
 
 impl Repeats {
-    /// What to know of the error of the run.
+    /// Returns the warnings on the error of the run.
     pub fn warnings(&self) -> Vec<Warning> {
         let notes = [
             ("POSITION CORRECTION", self.correction()),
@@ -24,7 +24,7 @@ impl Repeats {
         self.scheme().into_iter().chain(notes).collect()
     }
 
-    /// The position correction, where it is a large share of the energy.
+    /// Returns a warning where the position correction is a large share of the energy.
     fn correction(&self) -> Option<String> {
         let share = self.shares.correction?;
         (share > LARGE_ERROR).then(|| {
@@ -36,7 +36,8 @@ impl Repeats {
         })
     }
 
-    /// The time integration, where what it takes or adds is a large share of the energy.
+    /// Returns a warning where the energy that the time integration dissipates or adds is a large
+    /// share.
     fn scheme(&self) -> Option<Warning> {
         let share = self.shares.scheme?;
         let percent = format!("{:.0} %", 100.0 * share.abs());
@@ -60,7 +61,7 @@ impl Repeats {
         })
     }
 
-    /// The changes of the main results that may be large.
+    /// Returns the changes of the main results that may be large.
     fn large_effects(&self) -> Vec<SettingEffect> {
         let settings = [
             (Some(&self.step), "time.step"),
@@ -79,7 +80,7 @@ impl Repeats {
         effects.filter(|e| e.1.bound() > LARGE_ERROR).collect()
     }
 
-    /// Results that repeated steps show to be wrong by more than 5 %.
+    /// Returns a warning for results whose error is more than 5 % according to repeated steps.
     fn estimated_error(&self) -> Option<String> {
         let list = self.large_effects().into_iter();
         let texts = list.filter(|(_, c, _)| c.change.abs() > c.half_width);
@@ -97,7 +98,7 @@ impl Repeats {
         })
     }
 
-    /// Results of which the repeated steps do not tell whether they are right to 5 %.
+    /// Returns a warning for results for which repeated steps cannot exclude an error of 5 %.
     fn unknown_error(&self) -> Option<String> {
         let list = self.large_effects().into_iter();
         let texts = list.filter(|(_, c, _)| c.change.abs() <= c.half_width);

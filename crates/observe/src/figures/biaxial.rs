@@ -3,8 +3,8 @@
 use crate::chart::{Axis, Chart, Part, Series, Style};
 use crate::output::Output;
 
-/// The stress ratio, the volumetric strain, the coordination and the compacity against axial
-/// strain, from the start of the test (s) on.
+/// Returns charts of the stress ratio, the volumetric strain, the coordination and the compacity
+/// against axial strain, from the start of the test (s) on.
 pub(crate) fn charts(start: f64) -> Output {
     let rows = |label: &str, column: &str| {
         Series::rows(label, "axial_strain", column).part(Part::Since(start))

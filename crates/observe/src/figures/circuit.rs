@@ -4,7 +4,8 @@ use super::history;
 use crate::chart::{Axis, Series};
 use crate::output::Output;
 
-/// From the columns of the statistics; `window` is the one of the mean flows (s).
+/// Returns the charts from the columns of the statistics; `window` is the interval of the mean
+/// flows (s).
 pub(crate) fn charts(window: [f64; 2]) -> Output {
     let flows = [
         ("source, Qs", "source"),

@@ -1,15 +1,15 @@
 //! Maps of a contact in space: cells of a surface seen along its normal, with colours and arrows.
 
-use crate::chart::{Axis, Chart, Colours, Field, quantity};
-use crate::picture::{OPEN, SLIPS, STICKS};
-use crate::tractions::{FacetTraction, SurfaceState, Zone};
+use crate::chart::{Axis, Chart, Colours, FieldMap, quantity};
+use crate::picture::{OPEN_COLOUR, SLIP_COLOUR, STICK_COLOUR};
+use crate::tractions::{ContactZone, FacetTraction, SurfaceState};
 use nalgebra::Vector3;
 
-/// The maps of the contact of a surface: what sticks and slips with the tractions along the
-/// surface, pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of
-/// its points where these stand for equal areas, or else those of its facets.
+/// Returns the maps of the contact of a surface: stick and slip with the tangential tractions,
+/// pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of the
+/// points of the surface where these have equal tributary areas, otherwise those of its facets.
 pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart> {
-    let touching = |k: &usize| state.zone[*k] != Zone::Open;
+    let touching = |k: &usize| state.zone[*k] != ContactZone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
     let Some(axes) = plane(state, &loaded).filter(|_| state.dimension == 3) else {
         return Vec::new();
@@ -29,7 +29,7 @@ pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart
         let mut chart = Chart::new(format!("{what}, {name}"), x.clone(), y.clone());
         let [xmin, xmax, ymin, ymax] = view.window;
         (chart.x_range, chart.y_range) = (Some((xmin, xmax)), Some((ymin, ymax)));
-        chart.field = Some(Field {
+        chart.field = Some(FieldMap {
             cells: cells
                 .iter()
                 .map(|c| c.iter().copied().map(single).collect())
@@ -68,18 +68,22 @@ pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart
     out
 }
 
-/// Figures need no more digits.
+/// Converts to single precision, which is enough for figures.
 fn single(p: [f64; 2]) -> [f32; 2] {
     p.map(|x| x as f32)
 }
 
-/// What sticks and slips at some points.
+/// Returns colours for stick and slip at some points.
 fn zones(state: &SurfaceState, points: &[usize]) -> Colours {
-    let classes = [("sticks", STICKS), ("slips", SLIPS), ("open", OPEN)];
+    let classes = [
+        ("sticks", STICK_COLOUR),
+        ("slips", SLIP_COLOUR),
+        ("open", OPEN_COLOUR),
+    ];
     let class = |k: &usize| match state.zone[*k] {
-        Zone::Stick => 0,
-        Zone::Slip => 1,
-        Zone::Open => 2,
+        ContactZone::Stick => 0,
+        ContactZone::Slip => 1,
+        ContactZone::Open => 2,
     };
     Colours::Classes {
         classes: classes
@@ -97,7 +101,7 @@ struct Local {
     shear: f64,
 }
 
-/// The two axes across the one that is nearest to the normal of the loaded part.
+/// Returns the two axes other than the one nearest to the normal of the loaded part.
 fn plane(state: &SurfaceState, loaded: &[usize]) -> Option<[usize; 2]> {
     let mut normal = Vector3::zeros();
     for k in loaded {
@@ -161,7 +165,7 @@ impl View<'_> {
         corners.iter().any(inside)
     }
 
-    /// Facets in the window: index, points, and corners.
+    /// Iterates over the facets in the window: index, points, and corners.
     fn facets(&self) -> impl Iterator<Item = (usize, &[u32; 3], [[f64; 2]; 3])> {
         let facets = self.state.surface.facets.as_chunks::<3>().0.iter();
         let all = facets.enumerate();
@@ -169,8 +173,8 @@ impl View<'_> {
             .filter(|(_, _, corners)| self.shows(corners))
     }
 
-    /// What belongs to each point, in pieces of which a point has several, and the point of each
-    /// piece.
+    /// Returns the cells of the points, in pieces of which a point has several, and the point of
+    /// each piece.
     fn points(&self) -> (Shapes, Vec<usize>) {
         let (mut cells, mut seen) = (Vec::new(), Vec::new());
         for (_, points, corners) in self.facets() {
@@ -190,8 +194,8 @@ impl View<'_> {
         (cells, seen)
     }
 
-    /// Tractions along the surface at some points, along both axes (Pa): their own, or means of the
-    /// facets around them.
+    /// Returns the tangential tractions at some points, along both axes (Pa): those of the points,
+    /// or means of the facets around them.
     fn around(&self, points: &[usize], own: bool) -> Vec<(usize, [f64; 2])> {
         let state = self.state;
         let mut sums = vec![(Vector3::zeros(), 0.0); state.zone.len()];
@@ -221,7 +225,7 @@ impl View<'_> {
     fn at_points(&self, points: &[usize]) -> Vec<Local> {
         let state = self.state;
         let local = |k: &usize| {
-            let loaded = state.zone[*k] != Zone::Open;
+            let loaded = state.zone[*k] != ContactZone::Open;
             Local::new(loaded, state.pressure[*k], &state.tangential[*k])
         };
         points.iter().map(local).collect()
@@ -230,7 +234,7 @@ impl View<'_> {
     fn at_facets(&self) -> (Shapes, Vec<Local>) {
         let tractions = self.state.facets();
         let facet = |(f, points, corners): (usize, &[u32; 3], [[f64; 2]; 3])| {
-            let open = |k: &u32| self.state.zone[*k as usize] == Zone::Open;
+            let open = |k: &u32| self.state.zone[*k as usize] == ContactZone::Open;
             let FacetTraction {
                 pressure,
                 tangential,
@@ -243,14 +247,14 @@ impl View<'_> {
     }
 }
 
-/// Where the cells around the corners of a triangle meet: the centre of its circumcircle, which
-/// gives squares on a grid, or the middle of its longest edge where that lies outside.
+/// Returns where the cells around the corners of a triangle meet: the centre of its circumcircle,
+/// which gives squares on a grid, or the middle of its longest edge where that centre lies outside.
 fn centre(corners: &[[f64; 2]; 3]) -> [f64; 2] {
     let squared = |i: usize, j: usize| {
         let [dx, dy] = [0, 1].map(|a| corners[i][a] - corners[j][a]);
         dx * dx + dy * dy
     };
-    // Edges opposite to the corners.
+    // The edges are opposite to the corners.
     let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
     let total: f64 = edges.iter().sum();
     let mut weights = [0, 1, 2].map(|k| (edges[k] * (total - 2.0 * edges[k])).max(0.0));

@@ -1,11 +1,11 @@
-//! What is known of the error of a result, in its figure.
+//! Uncertainty of a result, in its figure.
 
 use crate::chart::{Chart, Series, Style, quantity};
 use crate::friction::Cycles;
 use crate::quantity::number;
 use crate::summary::Estimate;
 
-/// Adds a result with the half-widths of what is known of its error to the line under the heading.
+/// Adds a result with its half-widths to the line under the heading.
 pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &'static str) {
     let digits = |x: f64, digits: usize| {
         if unit.is_empty() {
@@ -31,14 +31,14 @@ pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &
     chart.subtitle = Some(text);
 }
 
-/// The friction coefficient at the last complete cycle, with an interval of all half-widths that
-/// are known.
+/// Returns the friction coefficient at the last complete cycle, with an interval of all known
+/// half-widths.
 pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
     let last = cycles.list.iter().rfind(|c| c.complete);
     let (Some(last), Some(value), true) = (last, known.value, cycles.oscillates()) else {
         return Series::default();
     };
-    // The error of the coupling is a part of that of the step.
+    // The error of the coupling is part of that of the step.
     let parts = [known.scatter, known.step, known.tolerance];
     let half: f64 = parts
         .into_iter()

@@ -5,7 +5,7 @@ use crate::output::Output;
 use fretwork_core::process::jump::{JumpPoint, JumpSummary};
 use fretwork_core::unit::VOLUME;
 
-/// Wear volume and mean damage against cycles, computed and jumped.
+/// Returns charts of wear volume and mean damage against cycles, computed and skipped.
 pub(crate) fn charts(jump: &JumpSummary, dimension: usize) -> Output {
     let volume = VOLUME.symbol(dimension);
     let chart = |heading: &str, y: Axis, value: fn(&JumpPoint) -> f64| {

@@ -1,4 +1,4 @@
-//! Figures of a run: charts of its statistics and of what observers hold.
+//! Figures of a run: charts of its statistics and of data in observers.
 
 pub(crate) mod biaxial;
 pub(crate) mod circuit;
@@ -27,7 +27,7 @@ pub(crate) struct Drive {
     pub axis: usize,
 }
 
-/// The axes along which bodies are driven, the ones of the friction test apart.
+/// Returns the axes along which bodies are driven, except those of the friction test.
 pub(crate) fn drives(run: &dyn RunView, test: Option<(&str, usize)>) -> Vec<Drive> {
     let mut out = Vec::new();
     for driven in run.bodies().driven {
@@ -43,8 +43,8 @@ pub(crate) fn drives(run: &dyn RunView, test: Option<(&str, usize)>) -> Vec<Driv
     out
 }
 
-/// Whether a motion or a varying force is imposed: the displacement under a constant load is mostly
-/// noise.
+/// Returns whether a motion or a varying force is imposed: the displacement under a constant load
+/// is mostly noise.
 fn driven_along(dof: &Dof) -> bool {
     match dof {
         Dof::Free | Dof::Fixed => false,
@@ -53,7 +53,7 @@ fn driven_along(dof: &Dof) -> bool {
     }
 }
 
-/// Columns of the statistics over time, with their labels.
+/// Returns a chart of columns of the statistics over time, with their labels.
 pub(crate) fn history<C: AsRef<str>>(
     heading: impl Into<String>,
     y: Axis,
@@ -63,7 +63,7 @@ pub(crate) fn history<C: AsRef<str>>(
     Chart::new(heading, Axis::time(), y).with_all(series.iter().map(line))
 }
 
-/// Broken bonds and mean damage against time.
+/// Returns a chart of broken bonds and mean damage against time.
 pub(crate) fn damage_ratio(known: &Estimate) -> Output {
     let mut chart = Chart::new("Damage of the bonds", Axis::time(), Axis::new("damage", ""))
         .note("Broken bonds over bonds made, and the mean damage of all bonds.")
@@ -77,8 +77,8 @@ pub(crate) fn damage_ratio(known: &Estimate) -> Output {
     Output::figure("damage_ratio", [chart], 1)
 }
 
-/// The loops of a fretting test, its friction coefficient, and the forces on the tested body over
-/// time.
+/// Returns the loops of a fretting test, its friction coefficient, and the forces on the tested
+/// body over time.
 pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     let mut out = Vec::new();
     if cycles.oscillates() {
@@ -102,10 +102,10 @@ pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     out
 }
 
-/// Q against the displacement, and Q/P.
+/// Returns charts of Q and Q/P against the displacement.
 fn loops(cycles: &Cycles) -> [Chart; 2] {
     let known: Vec<u32> = match cycles.list.as_slice() {
-        // Nothing has moved yet.
+        // Before any motion all cycles are listed.
         [] => (1..=cycles.total()).collect(),
         list => list.iter().map(|c| c.cycle).collect(),
     };
@@ -133,7 +133,7 @@ fn loops(cycles: &Cycles) -> [Chart; 2] {
         chart.colour_by_order = true;
         chart
     };
-    // A body that is not pressed has no ratio.
+    // A body without normal force has no ratio.
     let ratio = Value {
         over: Some("P".to_owned()),
         ..Value::from("Q")
@@ -153,11 +153,11 @@ fn chosen(list: &[u32], count: usize) -> Vec<u32> {
     (0..shown).map(|k| list[place(k)]).collect()
 }
 
-/// Friction coefficient by cycle; for a one-way motion, against the path.
+/// Returns a chart of the friction coefficient by cycle; for a one-way motion, against the path.
 fn friction(cycles: &Cycles) -> Chart {
     let mu = Axis::new("friction coefficient µ", "");
     if !cycles.oscillates() {
-        // What is before the friction is looked at belongs to a compaction.
+        // Rows before the start of the test belong to a compaction.
         let since = Part::Since(cycles.start());
         let x = Axis::of_rows("relative displacement δ");
         let mean = cycles.last().map(|c| c.friction_coefficient);
@@ -197,7 +197,7 @@ fn friction(cycles: &Cycles) -> Chart {
     chart
 }
 
-/// Driving force of each body against its displacement.
+/// Returns charts of the driving force of each body against its displacement.
 pub(crate) fn force_displacement(drives: &[Drive]) -> Output {
     let chart = |Drive { body, axis }: &Drive| {
         let a = ["x", "y", "z"][*axis];
@@ -222,11 +222,12 @@ pub(crate) fn force_displacement(drives: &[Drive]) -> Output {
     )
 }
 
-/// Entries below this fraction of the largest would coincide with the axis and are omitted.
+/// Fraction of the largest entry below which an entry is omitted, since it would coincide with the
+/// axis.
 const NEGLIGIBLE: f64 = 1e-3;
-/// A residual below this fraction of the largest entry is rounding, and reported as such.
+/// Fraction of the largest entry below which a residual is rounding, and reported as such.
 const ROUNDING: f64 = 1e-9;
-/// Entries that say what is there now, drawn dashed, and not what has passed since the start.
+/// Entries that are current values, drawn dashed, instead of sums since the start.
 const HELD: [&str; 6] = [
     "kinetic",
     "potential",
@@ -254,7 +255,7 @@ const COLOURS: [(u8, u8, u8); 15] = [
     (150, 150, 150),
 ];
 
-/// Entries of the energy ledger against time, by the names of their columns.
+/// Returns a chart of the entries of the energy ledger against time, by the names of their columns.
 pub(crate) fn energy_balance(
     entries: impl Iterator<Item = &'static str>,
     known: &Estimate,
@@ -263,7 +264,7 @@ pub(crate) fn energy_balance(
     let (x, y) = (Axis::time(), Axis::of_rows("energy"));
     let mut chart = Chart::new("Energy balance", x, y)
         .note("Entries of the energy ledger above a thousandth of the largest, by their columns.");
-    // What there was at the start does not change.
+    // The entries at the start do not change.
     let drawn = entries
         .zip(COLOURS)
         .filter(|(name, _)| *name != "initial_kinetic");
@@ -291,7 +292,7 @@ mod tests {
         table
     }
 
-    /// The figures that have something to show.
+    /// Returns the figures that are not empty.
     fn resolved(outputs: Vec<Output>, table: &Table) -> Vec<Figure> {
         let figure = |output| match output {
             Output::Figure(figure) => Some(figure.resolve(&TableColumns::of(table))),
@@ -315,7 +316,7 @@ mod tests {
             let loops = Output::figure("loops", loops(cycles), 2);
             resolved(vec![loops], &table).pop().unwrap().charts
         };
-        // Before anything has moved, all cycles to come.
+        // Before any motion all future cycles are listed.
         let before = drawn(&cycles);
         let list = (1..=3).map(|cycle| Cycle {
             cycle,

@@ -6,8 +6,8 @@ use crate::scars::file_name;
 use fretwork_core::view::RunView;
 use fretwork_core::wear::{ScarForm, shape};
 
-/// The scars: the depth, in 3D averaged across the sliding, and in 2D the initial and the current
-/// profile.
+/// Returns charts of the scars: the depth, in 3D averaged across the sliding, and in 2D the initial
+/// and the current profile.
 pub(crate) fn charts(run: &dyn RunView) -> Vec<Output> {
     let mut out = Vec::new();
     let scars = run.scars().into_iter().enumerate();
@@ -18,7 +18,7 @@ pub(crate) fn charts(run: &dyn RunView) -> Vec<Output> {
             ScarForm::None => format!("Wear scar of {}", scar.name),
             form => format!("Wear scar of {}, {form:?}-shaped", scar.name),
         };
-        // Depth plotted downwards.
+        // The depth is plotted downwards.
         let points = rows.iter().map(|r| (r[0], -r[2])).collect();
         let depth = Chart::new(title, x(), Axis::new("−depth", "m"));
         let mut charts = vec![depth.with(Series::new(String::new(), points))];

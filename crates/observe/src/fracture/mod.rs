@@ -1,15 +1,17 @@
-//! Observes broken bonds: the energy that they released over what their laws declare, and whether
-//! the step resolved them.
+//! Observes broken bonds: the ratio of the released energy to the energy that their laws declare,
+//! and whether the step resolved them.
 
 mod summary;
 
-pub use summary::{AT_ONCE, BondEnergies, FractureSummary, Reference, WRONG_ENERGY};
+pub use summary::{
+    FractureSummary, InterfaceBonds, Reference, UNRESOLVED_BREAK_SHARE, UNRESOLVED_ENERGY_ERROR,
+};
 
 use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::Break;
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::laws::bench::Bench;
 use fretwork_core::laws::bench::scale::Mode;
 use fretwork_core::laws::{Interface, LawError};
@@ -20,23 +22,23 @@ use fretwork_scene::case::Case;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// Angles of opening, evenly from the normal to the tangent, at which areas of broken bonds are
-/// collected for laws that declare no energy.
+/// Number of opening angles, evenly spaced from the normal to the tangent, at which areas of broken
+/// bonds are collected for laws that declare no energy.
 const ANGLES: usize = 19;
-/// Reduced radius of the bond on the bench (m), where the scene has no contact any more.
+/// Reduced radius of the bond on the bench (m), where the scene has no contacts any more.
 const RADIUS: f64 = 1e-3;
-/// Share of rotation in the work on a bond from which its energy is compared with that of a pull
-/// that also turns it: what laws declare is that of openings.
+/// Share of rotation in the work on a bond above which its energy is compared with that of a pull
+/// that also rotates it: declared energies are those of openings.
 const TURNS: f64 = 1e-3;
-/// Bonds broken by rotation that are compared; the rest are not.
+/// Number of bonds broken by rotation that are compared.
 const TURNED: usize = 32;
-/// Speed at which critical openings are sought (m/s).
+/// Speed at which critical openings are searched (m/s).
 const SLOW: f64 = 1e-6;
 
-/// A bond that broke as it turned: its opening normal and across (m), twist and bending (rad),
-/// area, and what it released (J).
+/// A bond that broke in rotation: its normal and tangential opening (m), twist and bending (rad),
+/// area, and released energy (J).
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Turned {
+struct RotatedBreak {
     opening: [f64; 2],
     rotation: [f64; 2],
     area: f64,
@@ -52,14 +54,14 @@ struct Broken {
     /// Number of bonds that began at their gap.
     begun_open: u64,
     released: f64,
-    /// Part of it that is compared with what follows.
+    /// Part of the released energy that is compared.
     opened: f64,
-    /// What the law declares for those that opened; not a number where it declares nothing.
+    /// Energy that the law declares for bonds that opened; NaN where it declares none.
     declared: f64,
-    /// Their areas by angle.
+    /// Areas of these bonds by angle.
     areas: Vec<f64>,
-    /// Bonds that turned.
-    turned: Vec<Turned>,
+    /// Bonds that broke in rotation.
+    turned: Vec<RotatedBreak>,
 }
 
 impl Broken {
@@ -70,12 +72,12 @@ impl Broken {
         }
         self.broken += 1;
         self.at_once += u64::from(b.damage_before <= 0.0);
-        self.begun_open += u64::from(b.life.given > 0.0);
-        let released = b.life.fracture + b.life.given;
+        self.begun_open += u64::from(b.energies.given > 0.0);
+        let released = b.energies.fracture + b.energies.given;
         self.released += released;
-        if b.life.turning() > TURNS {
+        if b.energies.turning() > TURNS {
             if self.turned.len() < TURNED {
-                self.turned.push(Turned {
+                self.turned.push(RotatedBreak {
                     opening: b.opening,
                     rotation: b.rotation,
                     area: b.area,
@@ -96,8 +98,8 @@ impl Broken {
         self.areas[low + 1] += b.area * share;
     }
 
-    /// What those that turned released, and what slow pulls to the same openings and rotations take
-    /// for them; `None` where a pull does not break a bond.
+    /// Returns the energy released by bonds in rotation, and the energy of slow pulls to the same
+    /// openings and rotations; `None` where a pull does not break a bond.
     fn by_turning_pulls(
         &self,
         law: &Interface,
@@ -118,7 +120,7 @@ impl Broken {
         Ok(Some(sums))
     }
 
-    /// What a slow pull takes for them.
+    /// Returns the energy of slow pulls for these bonds.
     fn by_slow_pulls(&self, bench: &mut Bench) -> Result<Option<f64>, LawError> {
         let mut sum = 0.0;
         for (k, area) in self.areas.iter().enumerate().filter(|(_, a)| **a > 0.0) {
@@ -136,7 +138,7 @@ impl Broken {
 #[derive(Clone, Debug)]
 pub struct Fracture {
     jumps: bool,
-    /// One an interface.
+    /// Broken bonds of each interface.
     broken: Vec<Broken>,
 }
 
@@ -149,20 +151,20 @@ impl Fracture {
         }
     }
 
-    fn energies(&self, run: &dyn RunView, place: usize) -> BondEnergies {
+    fn energies(&self, run: &dyn RunView, place: usize) -> InterfaceBonds {
         let (law, broken) = (&run.laws()[place], &self.broken[place]);
         let sites = BondSites::of(run, place);
         let radius = sites.as_ref().map_or(RADIUS, |s| s.radius);
         let mut bench = Bench::new(law.clone(), run.dimension() as u32, radius);
-        let mut out = BondEnergies {
+        let mut out = InterfaceBonds {
             interface: law.name.clone(),
             broken: broken.broken,
             torn: broken.torn,
             released: broken.released,
             broken_at_once: share(broken.at_once, broken.broken),
-            ..BondEnergies::default()
+            ..InterfaceBonds::default()
         };
-        // A law that fails on the bench leaves out what is sought there.
+        // Values from the bench are omitted for a law that fails on it.
         if broken.broken > 0 {
             if broken.declared.is_finite() {
                 (out.declared, out.reference) = (Some(broken.declared), Reference::Declared);
@@ -231,7 +233,7 @@ impl Observer for Fracture {
         let run = end.simulation;
         let laws = run.laws().iter().enumerate();
         let bonded = laws.filter(|(k, law)| run.bonds_of(*k).made > 0 && law.opens());
-        let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(run, k)).collect();
+        let interfaces: Vec<InterfaceBonds> = bonded.map(|(k, _)| self.energies(run, k)).collect();
         if interfaces.is_empty() {
             found.begin(Topic::Damage, Role::Detail);
             let doc = "energy that broken bonds released, over what their laws declare; null without bonds";
@@ -241,11 +243,11 @@ impl Observer for Fracture {
         FractureSummary::new(interfaces, self.jumps, run.options()).report(found);
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&self.broken)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         self.broken = decode(from)?;
         Ok(())
     }

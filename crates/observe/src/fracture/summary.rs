@@ -3,28 +3,30 @@
 use crate::quantity::unit::{ENERGY, METRE, ONE, WORD};
 use crate::quantity::{Findings, Role, Topic, number, part};
 use crate::warning::Warning;
-use fretwork_core::contact::Slides;
+use fretwork_core::contact::SlideStatistics;
 use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
 use serde::Serialize;
 
-/// Relative difference of the released energy from that of the laws from which bonds count as not
+/// Relative difference of the released energy from that of the laws above which bonds count as not
 /// resolved.
-pub const WRONG_ENERGY: f64 = 0.05;
-/// Share of bonds that break within the step in which their damage begins, from which they count as
-/// not resolved.
-pub const AT_ONCE: f64 = 0.1;
-/// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at
-/// once however small the step.
+pub const UNRESOLVED_ENERGY_ERROR: f64 = 0.05;
+/// Share of bonds that break within the step in which their damage begins, above which bonds count
+/// as not resolved.
+pub const UNRESOLVED_BREAK_SHARE: f64 = 0.1;
+/// Ratio of the opening at failure to that at peak traction below which a bond is brittle: it
+/// breaks within one step for any step length.
 const BRITTLE: f64 = 1.05;
-/// Slide over critical opening, in the steps in which they break, from which brittle bonds count as
-/// not resolved: the step, not the law, then decides which of several breaks.
+/// Ratio of displacement to critical opening, in the steps in which they break, above which brittle
+/// bonds count as not resolved: which of several bonds breaks then depends on the step, not on the
+/// law.
 const OVERSHOOT: f64 = 0.2;
-/// Slide per step over critical opening up to which a step resolves a bond, as in `fretwork check`:
-/// if damage is that at the start or end of the step, and if it is that at its middle.
+/// Ratio of displacement per step to critical opening up to which a step resolves a bond, as in
+/// `fretwork check`: if damage is that at the start or end of the step, and if it is that at its
+/// middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
 
-/// What the energy to break a bond is compared with.
+/// Fracture energy with which the energy to break a bond is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reference {
@@ -40,7 +42,7 @@ pub enum Reference {
 crate::described! {
     /// Bonds of one interface.
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-    pub struct BondEnergies {
+    pub struct InterfaceBonds {
         /// Name of the interface.
         pub interface: String => WORD,
         /// Bonds that damage broke.
@@ -94,7 +96,7 @@ crate::described! {
         /// where they are `comparable`; null without any.
         pub released_over_declared: Option<f64> => ONE,
         /// The interfaces that made bonds.
-        pub interfaces: Vec<BondEnergies> = part::<BondEnergies>(),
+        pub interfaces: Vec<InterfaceBonds> = part::<InterfaceBonds>(),
         /// Whether cycles were skipped: damage then grows by more than what the energies of a step
         /// say, and nothing is compared.
         pub jumps: bool => WORD,
@@ -108,7 +110,7 @@ crate::described! {
 impl FractureSummary {
     /// Summarises the bonds of some interfaces in a run with these options; `jumps` is whether
     /// cycles were skipped.
-    pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, options: &Options) -> Self {
+    pub fn new(interfaces: Vec<InterfaceBonds>, jumps: bool, options: &Options) -> Self {
         let resolved = match options.coupling {
             Coupling::Midpoint => RESOLVED[1],
             Coupling::Explicit | Coupling::Implicit { .. } => RESOLVED[0],
@@ -138,7 +140,7 @@ impl FractureSummary {
         found.warn(text.map(|text| Warning::note("BONDS NOT RESOLVED", text)));
     }
 
-    /// Sentence for the terminal, for the released over the declared energy.
+    /// Returns the sentence for the terminal on the ratio of the released to the declared energy.
     fn sentence(&self, ratio: f64) -> String {
         let once = self.interfaces.iter().filter_map(|b| {
             let share = b.softening_at_once().filter(|s| *s > 0.0)?;
@@ -156,19 +158,22 @@ impl FractureSummary {
         text.join("; ")
     }
 
-    /// Says which bonds the step does not resolve, and what to change; `None` where it resolves
+    /// Returns which bonds the step does not resolve, and what to change; `None` where it resolves
     /// all, or nothing is known.
     pub fn warning(&self) -> Option<String> {
         if self.jumps {
             return None;
         }
-        let texts = self.interfaces.iter().filter_map(BondEnergies::unresolved);
+        let texts = self
+            .interfaces
+            .iter()
+            .filter_map(InterfaceBonds::unresolved);
         let texts: Vec<String> = texts.collect();
         if texts.is_empty() {
             return None;
         }
         let resolved_or_brittle =
-            |b: &BondEnergies| b.overshoot().is_some() || b.unresolved().is_none();
+            |b: &InterfaceBonds| b.overshoot().is_some() || b.unresolved().is_none();
         let brittle = self.interfaces.iter().all(resolved_or_brittle);
         let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
         let slide = slides.fold(0.0, f64::max);
@@ -195,9 +200,10 @@ impl FractureSummary {
     }
 }
 
-impl BondEnergies {
-    /// Sets how far the bonds slid in a step, relative to their critical opening if it is known.
-    pub(crate) fn slide(&mut self, slides: &Slides) {
+impl InterfaceBonds {
+    /// Sets the displacement of the bonds in a step, relative to their critical opening if it is
+    /// known.
+    pub(crate) fn slide(&mut self, slides: &SlideStatistics) {
         let Some(critical) = self.critical_opening else {
             return;
         };
@@ -214,23 +220,25 @@ impl BondEnergies {
         }
     }
 
-    /// Share of the bonds that broke within one step, where they should soften.
+    /// Returns the share of the bonds that broke within one step, where they should soften.
     fn softening_at_once(&self) -> Option<f64> {
         self.broken_at_once.filter(|_| !self.brittle())
     }
 
-    /// Slide over critical opening of brittle bonds in the steps in which they broke, if the step
-    /// does not resolve them.
+    /// Returns the displacement over the critical opening of brittle bonds in the steps in which
+    /// they broke, if the step does not resolve them.
     fn overshoot(&self) -> Option<f64> {
         self.slide_breaking
             .filter(|s| self.brittle() && *s > OVERSHOOT)
     }
 
-    /// Text for the warning, if the step does not resolve the bonds.
+    /// Returns the text of the warning, if the step does not resolve the bonds.
     fn unresolved(&self) -> Option<String> {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
-        let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
-        let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
+        let wrong = ratio.filter(|r| (r - 1.0).abs() > UNRESOLVED_ENERGY_ERROR);
+        let at_once = self
+            .softening_at_once()
+            .filter(|s| *s > UNRESOLVED_BREAK_SHARE);
         let overshoot = self.overshoot();
         if wrong.is_none() && at_once.is_none() && overshoot.is_none() {
             return None;
@@ -269,7 +277,7 @@ mod tests {
     use super::*;
 
     fn brittle(slide: f64, comparable: bool) -> FractureSummary {
-        let bonds = BondEnergies {
+        let bonds = InterfaceBonds {
             interface: "grains".to_owned(),
             broken: 10,
             critical_opening: Some(2e-6),
@@ -277,7 +285,7 @@ mod tests {
             slide_breaking: Some(slide),
             released_over_declared: Some(1.4),
             comparable,
-            ..BondEnergies::default()
+            ..InterfaceBonds::default()
         };
         FractureSummary::new(vec![bonds], false, &Options::default())
     }

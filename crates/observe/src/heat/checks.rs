@@ -1,21 +1,21 @@
-//! What may be wrong with the heat of a run: an account that does not close, half-spaces that are
-//! not deep enough, and contacts that heat a body beside its half-spaces.
+//! Checks of the heat of a run: an account that does not close, half-spaces that are not deep
+//! enough, and contacts that heat a body outside the range of its half-spaces.
 
 use crate::quantity::part;
 use crate::quantity::unit::{METRE, ONE, WORD};
-use crate::run_state::LEDGER;
+use crate::run_state::LEDGER_TOLERANCE;
 use crate::warning::Warning;
 use fretwork_core::contact::HeatSide;
 use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
 
-/// Depth of half-spaces over the distance sqrt(D t) that heat has come, below which their end may
-/// be felt.
+/// Ratio of the depth of half-spaces to the diffusion length sqrt(D t) below which their end may
+/// affect the result.
 const DEEP: f64 = 4.0;
-/// Share of the heat of a body that may pass beside its half-spaces without a note.
+/// Share of the heat of a body that may pass outside its half-spaces without a note.
 const NEGLIGIBLE: f64 = 1e-2;
-/// Distance beyond the ends of the half-spaces that is not beside them, over their length:
+/// Distance beyond the ends of the half-spaces that still counts as inside, over their length:
 /// rounding, and rotation in a step.
 const ROUNDING: f64 = 1e-3;
 
@@ -48,7 +48,7 @@ crate::described! {
 }
 
 impl HeatChecks {
-    /// What is wrong.
+    /// Returns the warnings.
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let account = self.account();
         let account = account.map(|text| Warning::serious("HEAT DOES NOT ADD UP", text));
@@ -61,18 +61,18 @@ impl HeatChecks {
         account.into_iter().chain(notes).collect()
     }
 
-    /// An account that is off.
+    /// Returns a warning if the account does not close.
     fn account(&self) -> Option<String> {
         let share = self.residual_relative;
-        (share > LEDGER || share.is_nan()).then(|| {
+        (share > LEDGER_TOLERANCE || share.is_nan()).then(|| {
             format!(
-                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {LEDGER:.0e}): temperatures are \
+                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {LEDGER_TOLERANCE:.0e}): temperatures are \
                  wrong; this is a defect of the program, please report it"
             )
         })
     }
 
-    /// Half-spaces that heat has reached the depth of.
+    /// Returns a warning for half-spaces whose depth the heat has reached.
     fn shallow(&self) -> Option<String> {
         let shallow = self.half_spaces.iter().filter(|h| h.depth < DEEP * h.reach);
         let texts: Vec<String> = shallow
@@ -95,7 +95,7 @@ impl HeatChecks {
         })
     }
 
-    /// Contacts beside the half-spaces.
+    /// Returns a warning for contacts outside the half-spaces.
     fn outside(&self) -> Option<String> {
         let outside = self.half_spaces.iter().filter(|h| h.outside > NEGLIGIBLE);
         let texts: Vec<String> = outside
@@ -111,8 +111,8 @@ impl HeatChecks {
     }
 }
 
-/// Heat at the contacts of each driven body with half-spaces, in their order: beside the
-/// half-spaces, and of all (J; J/m in 2D).
+/// Heat at the contacts of each driven body with half-spaces, in their order: outside the
+/// half-spaces, and in total (J; J/m in 2D).
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct ContactShares(Vec<[f64; 2]>);
 
@@ -136,8 +136,8 @@ impl ContactShares {
         let (Some(thermal), true) = (run.contact_heat(), begun && !bounded.is_empty()) else {
             return;
         };
-        // With a circuit conductances are known in every step, without in those in which heat
-        // flows.
+        // With a circuit conductances are known in every step, without one only in those in which
+        // heat flows.
         let steps = if thermal.current { 1 } else { heat.every };
         let span = heat.clock * h * steps as f64;
         let temperature =
@@ -176,7 +176,7 @@ impl ContactShares {
     }
 }
 
-/// Whether a place in the axes of a body (m) is beside its pieces.
+/// Returns whether a position in the axes of a body (m) is outside its pieces.
 fn beside(pieces: &Pieces, place: [f64; 3]) -> bool {
     pieces.axes.iter().filter(|a| !a.periodic).any(|a| {
         let along = (place[a.axis] - a.low) / a.length;
@@ -213,8 +213,8 @@ pub(super) fn checks(
     })
 }
 
-/// Interfaces whose transport law is not asked, since the case computes no heat: a sentence for
-/// each.
+/// Returns a sentence for each interface whose transport law is not called, since the case computes
+/// no heat.
 pub fn without_heat(run: &dyn RunView) -> Vec<String> {
     let laws = run.laws().iter();
     let idle = laws.filter(|l| l.transport().is_some() && run.heat().is_none());

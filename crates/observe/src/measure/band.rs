@@ -7,7 +7,7 @@
 
 use super::{grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::Findings;
@@ -30,7 +30,8 @@ pub struct Band {
 /// Smallest number of grains in a row, and of rows in a band.
 const FEWEST: (usize, usize) = (4, 3);
 
-/// Angle to the x axis, 0 to pi, and width of the band formed by points (x, height).
+/// Returns the angle to the x axis, 0 to pi, and the width of the band formed by points (x,
+/// height).
 fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (x, z) in points {
@@ -57,13 +58,13 @@ fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     if centres.len() < FEWEST.1 {
         return None;
     }
-    // x as a function of height, since a band may be vertical.
+    // x is a function of height, since a band may be vertical.
     let lean = line(centres.iter().copied())?;
     let angle = 1f64.atan2(lean).rem_euclid(PI);
     Some((angle, width / centres.len() as f64 * angle.sin()))
 }
 
-/// Interpolated quantile of sorted, non-empty values.
+/// Returns an interpolated quantile of sorted, non-empty values.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let k = place as usize;
@@ -122,12 +123,12 @@ impl Observer for Band {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&self.strain)
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&self.strain)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        self.strain = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        self.strain = encoding::decode(from)?;
         Ok(())
     }
 
@@ -156,7 +157,8 @@ impl Observer for Band {
 mod tests {
     use super::*;
 
-    /// Points that fill a band of known angle and width, and some strays.
+    /// Points that fill a band of known angle and width, and some strays, give that angle and
+    /// width.
     #[test]
     fn a_band_has_its_angle_and_width() {
         for degrees in [35.0f64, 60.0, 90.0, 120.0] {

@@ -14,8 +14,8 @@ use fretwork_core::view::RunView;
 use fretwork_scene::measures::MeasureSpec;
 use nalgebra::Vector3;
 
-/// Measures of these words of the case of a run, and its `inertia_scaling`, by which the bodies'
-/// masses are too large.
+/// Adds the measures of these kinds of the case of a run; the masses of its bodies are too large by
+/// `inertia_scaling`.
 pub fn measures(specs: &[MeasureSpec], inertia_scaling: f64, run: &dyn RunView) -> Observers {
     let mut all = Observers::default();
     for spec in specs {
@@ -24,7 +24,7 @@ pub fn measures(specs: &[MeasureSpec], inertia_scaling: f64, run: &dyn RunView) 
     all
 }
 
-/// Name of a measure among the observers of a run.
+/// Returns the name of a measure among the observers of a run.
 fn name_of(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }
@@ -103,14 +103,14 @@ struct Grain {
     body: usize,
     /// Radius of the ball (2D: disk) of the same volume (m).
     radius: f64,
-    /// Its share of the body's mass, by volume (kg; kg/m in 2D).
+    /// Share of the body's mass, by volume (kg; kg/m in 2D).
     mass: f64,
-    /// Index of its convex piece and the rounding of that (m), unless it is a ball.
+    /// Index of its convex piece and the rounding of that piece (m), unless it is a ball.
     piece: Option<(usize, f64)>,
 }
 
 impl Grain {
-    /// Height of its highest point above its centre (m).
+    /// Returns the height of the highest point above the centre (m).
     fn rise(&self, run: &dyn RunView) -> f64 {
         let Some((piece, rounding)) = self.piece else {
             return self.radius;
@@ -134,7 +134,7 @@ fn grains(run: &dyn RunView) -> Vec<Grain> {
         mass: 0.0,
         piece,
     };
-    // Points of surfaces are balls without a radius.
+    // Points of surfaces are balls of radius zero.
     let balls = run.balls().into_iter().filter(|b| b.radius > 0.0);
     let balls = balls.map(|b| grain(b.centre, b.body, b.radius, None));
     let pieces = run.pieces().into_iter().enumerate();
@@ -159,7 +159,7 @@ fn grains(run: &dyn RunView) -> Vec<Grain> {
     all
 }
 
-/// (time, value) of a column after a time.
+/// Returns (time, value) of a column after a time.
 fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
     let pairs = table.column("time").into_iter().zip(table.column(column));
     pairs
@@ -167,12 +167,13 @@ fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Mean of the values; `None` for no points.
+/// Returns the mean of the values; `None` for no points.
 fn mean(points: &[(f64, f64)]) -> Option<f64> {
     (!points.is_empty()).then(|| points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64)
 }
 
-/// Slope of the least-squares line through points; `None` for fewer than two distinct abscissae.
+/// Returns the slope of the least-squares line through points; `None` for fewer than two distinct
+/// abscissae.
 fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = points.clone().count() as f64;
     let (x, y) = points

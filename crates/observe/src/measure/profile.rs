@@ -5,7 +5,7 @@
 
 use super::grains;
 use crate::chart::{Axis, Chart, Series, Style};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::statistics::Column;
@@ -73,7 +73,7 @@ impl Profile {
         }
     }
 
-    /// Components of a vector along the axes of the box.
+    /// Returns the components of a vector along the axes of the box.
     fn turned(&self, v: &Vector3<f64>) -> Vector3<f64> {
         let (sin, cos) = self.turned.sin_cos();
         let mut out = *v;
@@ -81,8 +81,8 @@ impl Profile {
         out
     }
 
-    /// Position, solid fraction, velocity and spin of each slice; NaN velocities where there was no
-    /// grain.
+    /// Returns position, solid fraction, velocity and spin of each slice; NaN velocities where
+    /// there was no grain.
     fn rows(&self) -> Vec<Vec<f64>> {
         let wide = (self.high[self.axis] - self.low[self.axis]) / self.slices.len() as f64;
         let section: f64 = (0..self.dimension)
@@ -168,12 +168,12 @@ impl Observer for Profile {
         Vec::new()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(self.samples, self.heated, &self.slices))
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&(self.samples, self.heated, &self.slices))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.samples, self.heated, self.slices) = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        (self.samples, self.heated, self.slices) = encoding::decode(from)?;
         Ok(())
     }
 

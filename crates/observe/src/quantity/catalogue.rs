@@ -1,12 +1,12 @@
-//! The catalogue of a run: what each path of its `summary.json` is. Written under the key
-//! `quantities`, and read by everything that shows runs later.
+//! Catalogue of a run: the meaning of each path of its `summary.json`. It is written under the key
+//! `quantities`, and read by all code that shows runs later.
 
 use super::{Estimate, Findings, Role, Topic, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
 
-/// What a path is, in which `*` stands for every place of a list.
+/// Description of a path, in which `*` represents any index of a list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The path.
@@ -16,19 +16,19 @@ pub struct Entry {
     pub unit: Option<String>,
     /// One line of explanation.
     pub doc: String,
-    /// How prominent it is.
+    /// Prominence.
     pub role: Role,
-    /// What it is about.
+    /// Topic.
     pub topic: Topic,
     /// Short name for tables.
     pub label: String,
-    /// Half-widths by cause, and the value that they are of.
+    /// Half-widths by cause, with the value to which they belong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<Estimate>,
 }
 
 impl Entry {
-    /// Whether it is in this unit, in space or per metre of depth.
+    /// Returns whether its unit is this one, in space or per metre of depth.
     pub fn is_in(&self, unit: Unit) -> bool {
         let symbols = [2, 3].map(|dimension| unit.symbol(dimension));
         self.unit
@@ -37,7 +37,7 @@ impl Entry {
     }
 }
 
-/// What the paths of a summary are.
+/// Descriptions of the paths of a summary.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Catalogue {
@@ -49,7 +49,8 @@ impl Catalogue {
     /// Key of the catalogue in `summary.json`.
     pub const KEY: &'static str = "quantities";
 
-    /// Of what was found. Details in lists share an entry; other quantities have their own.
+    /// Creates the catalogue of the results. Details in lists share an entry; other quantities have
+    /// their own.
     pub fn new(found: &Findings) -> Self {
         let mut seen = HashSet::new();
         let mut entries = Vec::new();
@@ -79,20 +80,21 @@ impl Catalogue {
         serde_json::from_value(entries).unwrap_or_default()
     }
 
-    /// The entry of a path: its own, or that of the lists it is in.
+    /// Returns the entry of a path: its own, or that of the list that contains it.
     pub fn entry(&self, path: &str) -> Option<&Entry> {
         let own = self.entries.iter().find(|e| e.path == path);
         own.or_else(|| self.entries.iter().find(|e| matches(&e.path, path)))
     }
 
-    /// The quantities of a role or a more prominent one that have a value, in their order.
+    /// Returns the quantities of a role or a more prominent one that have a value, in their order.
     pub fn shown<'a>(&'a self, summary: &'a Value, role: Role) -> Vec<(&'a Entry, &'a Value)> {
         let entries = self.entries.iter().filter(|e| e.role <= role);
         let with_value = entries.filter_map(|e| Some((e, find(summary, &e.path)?)));
         with_value.filter(|(_, v)| !v.is_null()).collect()
     }
 
-    /// Paths of the results that can be compared between runs: numbers that are in no list.
+    /// Returns the paths of the results that can be compared between runs: numbers that are not in
+    /// lists.
     pub fn comparable(&self) -> Vec<String> {
         let results = self.entries.iter().filter(|e| e.role < Role::Diagnostic);
         let numbers = results.filter(|e| e.unit.is_some() && !e.path.contains('*'));
@@ -100,10 +102,10 @@ impl Catalogue {
     }
 }
 
-/// Groups of a summary by their present names and by those that earlier versions gave them.
+/// Present and earlier names of groups of a summary.
 const RENAMED: [[&str; 2]; 1] = [["step_size", "haste"]];
 
-/// The present path of one that earlier versions of the program wrote.
+/// Returns the present path for a path that earlier versions of the program wrote.
 pub fn renamed(path: &str) -> Option<String> {
     let (group, rest) = path.split_once('.').unwrap_or((path, ""));
     let [now, _] = RENAMED.iter().find(|[_, before]| *before == group)?;
@@ -111,8 +113,8 @@ pub fn renamed(path: &str) -> Option<String> {
     Some(format!("{now}{dot}{rest}"))
 }
 
-/// A value of a summary by its path, also in summaries of versions that gave its group another
-/// name.
+/// Returns a value of a summary by its path, also in summaries of versions with another name of its
+/// group.
 pub fn find<'a>(summary: &'a Value, path: &str) -> Option<&'a Value> {
     let before = RENAMED.iter().find_map(|[now, before]| {
         let rest = path.strip_prefix(now)?;

@@ -3,35 +3,35 @@
 use super::Unit;
 use serde::Serialize;
 
-/// A field of a result: its name in `summary.json`, what it is, and one line of explanation.
+/// A field of a result: its name in `summary.json`, its schema, and one line of explanation.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Key in the JSON object.
     pub name: &'static str,
     /// Explanation.
     pub doc: &'static str,
-    /// What its values are.
+    /// Schema of its values.
     pub schema: Schema,
 }
 
-/// What the values of a field are. Lists and maps have the schema of their entries.
+/// Schema of the values of a field. Lists and maps have the schema of their entries.
 #[derive(Clone, Copy, Debug)]
 pub enum Schema {
     /// Values of a unit.
     Values(Unit),
     /// Results with fields.
     Part(&'static [Field]),
-    /// It is not reported.
+    /// Values that are not reported.
     Hidden,
 }
 
 /// A result with described fields, see [`described!`](crate::described).
 pub trait Described: Serialize + Clone + Send + Sync + 'static {
-    /// Its fields, in their order in `summary.json`.
+    /// Fields, in their order in `summary.json`.
     const FIELDS: &'static [Field];
 }
 
-/// The schema of a field that is itself a described result, or a list of such results.
+/// Returns the schema of a field that is itself a described result, or a list of such results.
 pub const fn part<T: Described>() -> Schema {
     Schema::Part(T::FIELDS)
 }
@@ -46,8 +46,8 @@ pub const fn field(name: &'static str, unit: Unit, doc: &'static str) -> Field {
 }
 
 /// Declares a struct whose fields have a unit, `=> UNIT`, or a schema, `= part::<Other>()`; their
-/// documentation is their explanation in all outputs. Fields with neither are not reported:
-/// `#[serde(skip)]` goes with them.
+/// documentation is their explanation in all outputs. Fields with neither are not reported, and
+/// need `#[serde(skip)]`.
 #[macro_export]
 macro_rules! described {
     (@schema [] [$unit:expr]) => { $crate::quantity::Schema::Values($unit) };

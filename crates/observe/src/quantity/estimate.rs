@@ -1,4 +1,4 @@
-//! How well a result is known.
+//! Uncertainty of a result.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ crate::described! {
 }
 
 impl Estimate {
-    /// Half-widths of what settings do: by step, tolerance and coupling, with their names.
+    /// Returns the half-widths due to settings: by step, tolerance and coupling, with their names.
     pub fn settings(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let all = [
             ("step", self.step),
@@ -37,16 +37,16 @@ impl Estimate {
         all.into_iter().filter_map(|(of, half)| Some((of, half?)))
     }
 
-    /// Half-widths of settings that are smaller than the value, and names of those that are not: as
-    /// large as the value they say that nothing is known.
+    /// Returns the half-widths of settings that are smaller than the value, and the names of the
+    /// others: a half-width as large as the value means that nothing is known.
     pub fn known(&self) -> (Vec<(&'static str, f64)>, Vec<&'static str>) {
         let size = self.value.unwrap_or(0.0).abs();
         let (known, unknown): (Vec<_>, Vec<_>) = self.settings().partition(|(_, h)| *h < size);
         (known, unknown.into_iter().map(|(of, _)| of).collect())
     }
 
-    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`. Empty
-    /// where nothing was estimated.
+    /// Returns ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`.
+    /// Empty where nothing was estimated.
     pub fn from_settings(&self, shown: impl Fn(f64) -> String) -> String {
         let (known, unknown) = self.known();
         let known = known.iter();

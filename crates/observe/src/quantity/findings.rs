@@ -1,6 +1,6 @@
-//! The list of what the observers of a run found.
+//! List of the results of the observers of a run.
 
-use super::{Described, Estimate, Field, Quantity, Role, Schema, Step, Topic, Unit, Wording};
+use super::{Described, Estimate, Field, PathStep, Quantity, Role, Schema, Topic, Unit, Wording};
 use crate::warning::Warning;
 use serde_json::Value;
 use std::any::Any;
@@ -18,13 +18,13 @@ pub struct Findings {
     list: Vec<Quantity>,
     places: HashMap<String, usize>,
     warnings: Vec<Warning>,
-    /// Fields of results that are not there yet.
+    /// Fields of results that are not available yet.
     to_come: Vec<Expected>,
-    /// Results as they were before they became quantities, one of each type.
+    /// Typed results from which the quantities were made, one of each type.
     typed: Vec<Arc<dyn Any + Send + Sync>>,
 }
 
-/// A doc comment as an explanation among others: on one line, without capital and full stop.
+/// Converts a doc comment to an explanation: on one line, without capital and full stop.
 fn plain(doc: &str) -> String {
     let words = doc.split_whitespace().collect::<Vec<_>>().join(" ");
     let text = words.strip_suffix('.').unwrap_or(&words);
@@ -44,14 +44,14 @@ fn keys(path: &str) -> Vec<String> {
     keys.map(str::to_owned).collect()
 }
 
-/// A field of a result that is not there yet.
+/// A field of a result that is not available yet.
 #[derive(Clone, Debug)]
 pub struct Expected {
-    /// Its path, with `*` for places in a list.
+    /// Path, with `*` for indices in a list.
     pub path: String,
-    /// Its unit.
+    /// Unit.
     pub unit: Unit,
-    /// Its explanation.
+    /// Explanation.
     pub doc: String,
 }
 
@@ -66,7 +66,7 @@ impl fmt::Debug for Findings {
 }
 
 impl Findings {
-    /// Of a run in a dimension.
+    /// Creates an empty list for a run in a dimension.
     pub fn new(dimension: usize) -> Self {
         Self {
             dimension,
@@ -74,18 +74,17 @@ impl Findings {
         }
     }
 
-    /// Dimension of the run.
+    /// Returns the dimension of the run.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// What the quantities that follow are about, and how prominent they are unless they say
-    /// otherwise.
+    /// Sets the default topic and role of the quantities that are added next.
     pub fn begin(&mut self, topic: Topic, role: Role) {
         (self.topic, self.role) = (topic, role);
     }
 
-    /// Adds a quantity by its path, in which whole numbers are places in lists.
+    /// Adds a quantity by its path, in which whole numbers are indices in lists.
     pub fn add(
         &mut self,
         path: &str,
@@ -94,8 +93,8 @@ impl Findings {
         doc: impl Into<String>,
     ) -> &mut Quantity {
         let steps = path.split('.').map(|part| match part.parse() {
-            Ok(place) => Step::Place(place),
-            Err(_) => Step::Key(part.to_owned()),
+            Ok(place) => PathStep::Place(place),
+            Err(_) => PathStep::Key(part.to_owned()),
         });
         self.put(steps.collect(), value.into(), unit, doc.into())
     }
@@ -109,7 +108,7 @@ impl Findings {
         unit: Unit,
         doc: impl Into<String>,
     ) -> &mut Quantity {
-        let path = [group, key].map(|k| Step::Key(k.to_owned()));
+        let path = [group, key].map(|k| PathStep::Key(k.to_owned()));
         self.put(path.to_vec(), value.into(), unit, doc.into())
     }
 
@@ -144,7 +143,7 @@ impl Findings {
         found.sentence(name, text)
     }
 
-    fn put(&mut self, path: Vec<Step>, value: Value, unit: Unit, doc: String) -> &mut Quantity {
+    fn put(&mut self, path: Vec<PathStep>, value: Value, unit: Unit, doc: String) -> &mut Quantity {
         let quantity = Quantity {
             path,
             value,
@@ -168,7 +167,8 @@ impl Findings {
     }
 
     /// Adds all fields of a described result below a path (at the root where it is empty), and
-    /// keeps it for [`Findings::get`]. `doc` is said where there is nothing, such as an empty list.
+    /// keeps it for [`Findings::get`]. `doc` is the explanation where there are no values, such as
+    /// for an empty list.
     pub fn part<T: Described>(&mut self, path: &str, result: &T, doc: &str) {
         self.keep(result.clone());
         self.fields(path, result, T::FIELDS, doc);
@@ -185,7 +185,7 @@ impl Findings {
         self.fields(path, results, T::FIELDS, doc);
     }
 
-    /// Adds what is described by fields that stand apart from it.
+    /// Adds a result whose fields are described separately.
     pub fn fields(
         &mut self,
         path: &str,
@@ -195,12 +195,12 @@ impl Findings {
     ) {
         let value = serde_json::to_value(result).unwrap_or_default();
         let steps = path.split('.').filter(|p| !p.is_empty());
-        let steps = steps.map(|p| Step::Key(p.to_owned())).collect();
+        let steps = steps.map(|p| PathStep::Key(p.to_owned())).collect();
         self.walk(steps, value, Schema::Part(fields), doc);
     }
 
-    fn walk(&mut self, path: Vec<Step>, value: Value, schema: Schema, doc: &str) {
-        let below = |step: Step| {
+    fn walk(&mut self, path: Vec<PathStep>, value: Value, schema: Schema, doc: &str) {
+        let below = |step: PathStep| {
             let mut path = path.clone();
             path.push(step);
             path
@@ -208,13 +208,13 @@ impl Findings {
         match (value, schema) {
             (Value::Array(list), _) if !list.is_empty() => {
                 for (k, value) in list.into_iter().enumerate() {
-                    self.walk(below(Step::Place(k)), value, schema, doc);
+                    self.walk(below(PathStep::Place(k)), value, schema, doc);
                 }
             }
             (Value::Object(mut map), Schema::Part(fields)) => {
                 for field in fields {
                     if let Some(value) = map.remove(field.name) {
-                        let path = below(Step::Key(field.name.to_owned()));
+                        let path = below(PathStep::Key(field.name.to_owned()));
                         self.walk(path, value, field.schema, field.doc);
                     }
                 }
@@ -223,7 +223,7 @@ impl Findings {
             }
             (Value::Object(map), Schema::Values(_)) if !map.is_empty() => {
                 for (key, value) in map {
-                    self.walk(below(Step::Key(key)), value, schema, doc);
+                    self.walk(below(PathStep::Key(key)), value, schema, doc);
                 }
             }
             (leaf, schema) => {
@@ -241,7 +241,7 @@ impl Findings {
         }
     }
 
-    /// Notes the fields of a result that is not there yet.
+    /// Records the fields of a result that is not available yet.
     fn expect(&mut self, name: &str, fields: &'static [Field]) {
         for field in fields {
             let name = format!("{name}.{}", field.name);
@@ -257,13 +257,13 @@ impl Findings {
         }
     }
 
-    /// Fields of results that are not there yet.
+    /// Returns the fields of results that are not available yet.
     pub fn expected(&self) -> &[Expected] {
         &self.to_come
     }
 
-    /// Whether a result that is not there yet will have a field of this path; `None` where nothing
-    /// is known of its group.
+    /// Returns whether a result that is not available yet will have a field of this path; `None`
+    /// where its group is unknown.
     pub fn expects(&self, path: &str) -> Option<bool> {
         let wanted = keys(path);
         let known: Vec<Vec<String>> = self.to_come.iter().map(|e| keys(&e.path)).collect();
@@ -272,8 +272,8 @@ impl Findings {
         Some(known.contains(&wanted))
     }
 
-    /// SI unit of a number by its path, `1` for pure numbers, also of one that is not there yet or
-    /// in a longer list; `None` where nothing is known of it.
+    /// Returns the SI unit of a number by its path, `1` for pure numbers, also for a number that is
+    /// not available yet or in a longer list; `None` where the path is unknown.
     pub fn unit_of(&self, path: &str) -> Option<&'static str> {
         let wanted = keys(path);
         let own = self.list.iter().find(|q| q.name() == path);
@@ -301,7 +301,7 @@ impl Findings {
         self.typed.push(Arc::new(result));
     }
 
-    /// A result of a type that an observer reported.
+    /// Returns a result of a type that an observer reported.
     pub fn get<T: 'static>(&self) -> Option<&T> {
         self.typed.iter().find_map(|kept| kept.downcast_ref())
     }
@@ -316,19 +316,19 @@ impl Findings {
         &self.warnings
     }
 
-    /// A quantity by its path.
+    /// Returns a quantity by its path.
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.places.get(name).map(|k| &self.list[*k])
     }
 
-    /// A quantity, to change how it is shown.
+    /// Changes how a quantity is shown.
     pub fn edit(&mut self, name: &str, change: impl FnOnce(&mut Quantity)) {
         if let Some(k) = self.places.get(name) {
             change(&mut self.list[*k]);
         }
     }
 
-    /// The quantities whose path begins with one of these keys.
+    /// Changes the quantities whose path begins with one of these keys.
     pub fn edit_all(&mut self, groups: &[&str], change: impl Fn(&mut Quantity)) {
         let of = |q: &&mut Quantity| {
             let name = q.name();
@@ -340,12 +340,12 @@ impl Findings {
         self.list.iter_mut().filter(of).for_each(change);
     }
 
-    /// Puts half-widths to a quantity.
+    /// Adds half-widths to a quantity.
     pub fn estimate(&mut self, name: &str, estimate: &Estimate) {
         self.edit(name, |q| q.estimate = Some(estimate.clone()));
     }
 
-    /// The number of a quantity; `None` where it is null, no number, or not there.
+    /// Returns the number of a quantity; `None` where it is null, not a number, or not available.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.quantity(name)?.value.as_f64()
     }
@@ -355,7 +355,7 @@ impl Findings {
         self.quantity(name)?.value.as_str()
     }
 
-    /// Adds all that others found.
+    /// Adds all results of another list.
     pub fn extend(&mut self, other: &Self) {
         for q in &other.list {
             let added = self.put(q.path.clone(), Value::Null, q.unit, String::new());

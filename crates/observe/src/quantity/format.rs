@@ -13,7 +13,7 @@ const PREFIXES: [(i32, &str); 9] = [
     (9, "G"),
 ];
 
-/// Formats a number with `digits` significant digits, without exponent if that is short.
+/// Formats a number with `digits` significant digits, without an exponent if that is short.
 pub fn number(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

@@ -1,7 +1,7 @@
-//! What a run says in numbers and words. Observers add quantities to [`Findings`], each with its
-//! path in `summary.json`, unit, explanation, role and half-widths; everything that shows results,
-//! on the terminal, in files and in tables, is made from that list and from its [`Catalogue`], and
-//! knows no quantity by name.
+//! Results of a run in numbers and words. Observers add quantities to [`Findings`], each with its
+//! path in `summary.json`, unit, explanation, role and half-widths; all code that shows results, on
+//! the terminal, in files and in tables, uses that list and its [`Catalogue`], and names no
+//! quantity.
 
 mod catalogue;
 mod described;
@@ -24,18 +24,18 @@ use serde_json::Value;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// A main result, compared by studies unless they ask for others.
+    /// A main result, which studies compare unless other results are requested.
     Headline,
-    /// A result that stands in the terminal text and on the report.
+    /// A result that is shown in the terminal text and in the report.
     Secondary,
-    /// A further result, in `summary.json`.
+    /// A further result, in `summary.json` only.
     #[default]
     Detail,
-    /// What the run did, and what it cost: no result of the case.
+    /// Course and cost of the run: not a result of the case.
     Diagnostic,
 }
 
-/// What a quantity is about: results are grouped by it, in this order.
+/// Topic of a quantity: results are grouped by topic, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Topic {
@@ -68,78 +68,78 @@ impl Topic {
     }
 }
 
-/// Why there is nothing to compare in what tells of the run alone.
-pub const COURSE: &str = "it describes the course of the run, not a result of the case";
+/// Reason why quantities that describe the course of a run are not compared.
+pub const DESCRIBES_THE_RUN: &str = "it describes the course of the run, not a result of the case";
 
-/// How a quantity is worded on the terminal.
+/// Form of a quantity on the terminal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Wording {
-    /// Its value, with half-widths, and a remark, which may be empty.
+    /// Value with half-widths, and a remark, which may be empty.
     Value(String),
-    /// A sentence of its own, with its label.
+    /// A separate sentence, with its label.
     Sentence(String, String),
-    /// Not at all: the sentence of another quantity has it.
+    /// The quantity is not shown, since the sentence of another quantity contains it.
     #[default]
     Silent,
 }
 
-/// A quantity that a run found.
+/// A result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Where it stands in `summary.json`: keys, and places in lists.
-    pub path: Vec<Step>,
+    /// Path in `summary.json`: keys, and indices in lists.
+    pub path: Vec<PathStep>,
     /// Number, text, flag or null; an empty list or object where there is nothing to list.
     pub value: Value,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: Unit,
     /// One line of explanation.
     pub doc: String,
-    /// How prominent it is.
+    /// Prominence.
     pub role: Role,
-    /// What it is about.
+    /// Topic.
     pub topic: Topic,
     /// Short name for tables; empty for the last key of its path.
     pub label: String,
     /// Half-widths of its 95 % interval by cause.
     pub estimate: Option<Estimate>,
-    /// How the terminal words it.
+    /// Form on the terminal.
     pub wording: Wording,
-    /// Why runs of this case have no value for it; `None` where they have.
+    /// Reason why runs of this case have no value for it; `None` where they have one.
     pub lacks: Option<&'static str>,
 }
 
 /// One step of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PathStep {
     /// Key of an object.
     Key(String),
-    /// Place in a list.
+    /// Index in a list.
     Place(usize),
 }
 
 impl Quantity {
-    /// Its path as one text, `wear.bodies.0.volume`.
+    /// Returns the path as one text, `wear.bodies.0.volume`.
     pub fn name(&self) -> String {
         self.spelled(|k| k.to_string())
     }
 
-    /// Its path with `*` for places in lists.
+    /// Returns the path with `*` for indices in lists.
     pub fn pattern(&self) -> String {
         self.spelled(|_| "*".to_owned())
     }
 
     fn spelled(&self, place: impl Fn(usize) -> String) -> String {
         let steps = self.path.iter().map(|step| match step {
-            Step::Key(key) => key.clone(),
-            Step::Place(k) => place(*k),
+            PathStep::Key(key) => key.clone(),
+            PathStep::Place(k) => place(*k),
         });
         steps.collect::<Vec<_>>().join(".")
     }
 
-    /// Its short name.
+    /// Returns the short name.
     pub fn label(&self) -> String {
         match (self.label.as_str(), self.path.last()) {
-            ("", Some(Step::Key(key))) => key.replace('_', " "),
+            ("", Some(PathStep::Key(key))) => key.replace('_', " "),
             ("", _) => self.name(),
             (label, _) => label.to_owned(),
         }
@@ -163,31 +163,31 @@ impl Quantity {
         self
     }
 
-    /// Says something after its value on the terminal.
+    /// Adds a remark after its value on the terminal.
     pub fn remark(&mut self, remark: impl Into<String>) -> &mut Self {
         self.wording = Wording::Value(remark.into());
         self
     }
 
-    /// Shows a sentence in place of the value on the terminal.
+    /// Shows a sentence instead of the value on the terminal.
     pub fn sentence(&mut self, label: impl Into<String>, text: impl Into<String>) -> &mut Self {
         self.wording = Wording::Sentence(label.into(), text.into());
         self
     }
 
-    /// Leaves it out on the terminal, since another sentence has it.
+    /// Omits it on the terminal, since another sentence contains it.
     pub fn silent(&mut self) -> &mut Self {
         self.wording = Wording::Silent;
         self
     }
 
-    /// Says what it is about.
+    /// Sets the topic.
     pub fn about(&mut self, topic: Topic) -> &mut Self {
         self.topic = topic;
         self
     }
 
-    /// Says why runs of this case have no value for it.
+    /// Sets the reason why runs of this case have no value for it.
     pub fn lacks(&mut self, why: &'static str) -> &mut Self {
         self.lacks = Some(why);
         self

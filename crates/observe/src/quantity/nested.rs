@@ -1,30 +1,30 @@
 //! Quantities as nested objects and lists, in the order in which they were added.
 
-use super::{Findings, Quantity, Step};
+use super::{Findings, PathStep, Quantity};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
-/// A value, or what is below a key.
+/// A value, or the entries below a key.
 enum Node<'a> {
     Leaf(&'a Value),
     Map(Vec<(&'a str, Node<'a>)>),
     List(Vec<Node<'a>>),
 }
 
-/// What stands for an entry that has no value.
+/// Value of an entry that has none.
 const NOTHING: &Value = &Value::Null;
 
 impl<'a> Node<'a> {
-    fn insert(&mut self, path: &'a [Step], value: &'a Value) {
+    fn insert(&mut self, path: &'a [PathStep], value: &'a Value) {
         let Some((step, rest)) = path.split_first() else {
-            // An empty group says nothing beside its entries.
+            // A group without entries is replaced by the entry.
             if matches!(self, Self::Leaf(_)) {
                 *self = Self::Leaf(value);
             }
             return;
         };
         let below = match step {
-            Step::Key(key) => {
+            PathStep::Key(key) => {
                 if !matches!(self, Self::Map(_)) {
                     *self = Self::Map(Vec::new());
                 }
@@ -36,7 +36,7 @@ impl<'a> Node<'a> {
                 });
                 &mut map[place].1
             }
-            Step::Place(k) => {
+            PathStep::Place(k) => {
                 if !matches!(self, Self::List(_)) {
                     *self = Self::List(Vec::new());
                 }
@@ -68,7 +68,7 @@ impl Serialize for Node<'_> {
 }
 
 impl Serialize for Findings {
-    /// Nested objects by the paths, and under `quantities` the catalogue of what each path is.
+    /// Returns nested objects by the paths, and under `quantities` the catalogue of each path.
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut root = Node::Map(Vec::new());
         for Quantity { path, value, .. } in self.all() {

@@ -1,4 +1,4 @@
-//! First bodies whose motion is prescribed or forced.
+//! First bodies with imposed motion or force.
 
 use crate::figures;
 use crate::observer::{Observer, RunEnd};
@@ -7,23 +7,23 @@ use crate::quantity::unit::{FORCE, METRE, SPEED};
 use crate::statistics::Column;
 use fretwork_core::view::RunView;
 
-/// Observes the driven bodies: places, velocities and contact forces.
+/// Observes the driven bodies: positions, velocities and contact forces.
 #[derive(Clone, Debug)]
 pub struct DrivenBodies {
-    /// Place among the driven bodies, and name.
+    /// Index among the driven bodies, and name.
     shown: Vec<(usize, String)>,
     /// Number of dimensions.
     dimension: usize,
-    /// Body and axis of an oscillating friction test, whose loops are drawn by themselves.
+    /// Body and axis of an oscillating friction test, whose loops are drawn separately.
     test: Option<(String, usize)>,
 }
 
 impl DrivenBodies {
-    /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may
-    /// be left out of the figures.
+    /// Creates the observer of the driven bodies of a simulation; a body and an axis whose force is
+    /// drawn elsewhere may be omitted from the figures.
     pub fn of(run: &dyn RunView, test: Option<(String, usize)>) -> Self {
         let named = run.bodies().driven.iter().enumerate();
-        // Walls that a scene file brought are not worth columns.
+        // Walls from a scene file get no columns.
         let shown = named.filter(|(_, d)| !d.name.starts_with("wall_"));
         Self {
             shown: shown.map(|(k, d)| (k, d.name.clone())).collect(),

@@ -1,8 +1,8 @@
-//! What the ledgers of energy and momentum say at the end of a run.
+//! Results of the ledgers of energy and momentum at the end of a run.
 
 use super::{BondsOfCase, NO_BONDS, NO_DAMAGE};
 use crate::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, MOMENTUM, ONE};
-use crate::quantity::{COURSE, Findings, Role, Topic, number, quantity};
+use crate::quantity::{DESCRIBES_THE_RUN, Findings, Role, Topic, number, quantity};
 use crate::warning::Warning;
 use fretwork_core::energy::Energy;
 use fretwork_core::momentum::Momentum;
@@ -11,8 +11,8 @@ use serde::Serialize;
 /// Residual of the energy ledger, and of the account of heat, relative to the largest energy or
 /// heat, above which it is not explained by rounding: ledgers close to 1e-9 and better, also over
 /// millions of steps.
-pub const LEDGER: f64 = 1e-6;
-/// Share of the energy taken by friction that friction may give back without a warning.
+pub const LEDGER_TOLERANCE: f64 = 1e-6;
+/// Share of the energy dissipated by friction that friction may return without a warning.
 const GIVEN: f64 = 0.05;
 /// Energies below this fraction of the largest are omitted, as in the energy figure.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -73,7 +73,7 @@ pub(super) fn report(e: &Energy, momentum: Momentum, bonds: BondsOfCase, found: 
     let doc = "largest energy seen, to which the residual is compared";
     found
         .add("energy.scale", e.scale, ENERGY, doc)
-        .lacks(COURSE);
+        .lacks(DESCRIBES_THE_RUN);
     let doc = "energy that friction of compliant contacts gave back, summed over steps in which it dissipated less than nothing";
     found.add("energy.given_by_friction", e.given_by_friction, ENERGY, doc);
     let doc = "energy that no entry explains, over the largest energy seen: round-off where the bookkeeping is right";
@@ -98,7 +98,7 @@ pub(super) fn report(e: &Energy, momentum: Momentum, bonds: BondsOfCase, found: 
     found.part("momentum", &drift, "");
 }
 
-/// Short name of an entry of the ledger.
+/// Returns the short name of an entry of the ledger.
 fn label(name: &str) -> String {
     match name {
         "viscous" => "damping".to_owned(),
@@ -115,8 +115,8 @@ fn largest(e: &Energy) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// Sentences of the terminal: external work + gravity + kinetic energy at the start = dissipated +
-/// stored.
+/// Returns the sentences for the terminal: external work + gravity + kinetic energy at the start =
+/// dissipated + stored.
 fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)> {
     let largest = largest(e);
     let shown = |x: f64| x.is_nan() || x.abs() > NEGLIGIBLE * largest;
@@ -170,7 +170,7 @@ fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)
     out
 }
 
-/// Warnings of the ledger.
+/// Adds the warnings of the ledger.
 pub(super) fn warn(e: &Energy, found: &mut Findings) {
     let energies = [
         e.kinetic,
@@ -187,16 +187,16 @@ pub(super) fn warn(e: &Energy, found: &mut Findings) {
             .then(Warning::infinite),
     );
     let share = e.relative_residual();
-    found.warn((share > LEDGER).then(|| {
+    found.warn((share > LEDGER_TOLERANCE).then(|| {
         let text = format!(
-            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER:.0e}): a law's energies \
+            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER_TOLERANCE:.0e}): a law's energies \
              may be wrong, see fretwork law certify"
         );
         Warning::serious("ENERGY DOES NOT ADD UP", text)
     }));
     let taken = e.friction + e.given_by_friction;
     let gives = e.given_by_friction > GIVEN * taken.max(0.0);
-    found.warn((gives && e.given_by_friction > LEDGER * e.scale).then(|| {
+    found.warn((gives && e.given_by_friction > LEDGER_TOLERANCE * e.scale).then(|| {
         let text = format!(
             "friction gave {:.1e} J in steps in which it dissipated less than nothing, and took {taken:.1e} J in the others: take a \
              smaller time.step; if it stays, a contact law makes energy by friction (fretwork law certify)",
@@ -253,7 +253,8 @@ mod tests {
 
     #[test]
     fn energies_are_named_as_in_the_ledger_and_balance() {
-        // A fall: 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J in bonds.
+        // In this fall forces do 12 J of work and gravity 80 J, of which 5 J are kinetic and 3 J in
+        // bonds.
         let mut e = Energy {
             external_work: 12.0,
             potential: -80.0,

@@ -1,27 +1,27 @@
-//! The state of a run: what every run says of its steps, contacts, bonds, energies and its solver.
+//! The state of a run: results of every run on its steps, contacts, bonds, energies and its solver.
 
 mod driven;
 mod energy;
-mod missed;
 mod phases;
 mod solver;
 mod step_size;
+mod unconverged;
 
 pub use driven::DrivenBodies;
-pub use energy::{LEDGER, MomentumSummary};
-pub use missed::Missed;
+pub use energy::{LEDGER_TOLERANCE, MomentumSummary};
 pub use phases::Phases;
+pub use unconverged::UnconvergedSteps;
 
 use super::figures;
 use super::output::Output;
 use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, Unit, WORD};
-use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
+use super::quantity::{DESCRIBES_THE_RUN, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
 use crate::observer::{Observer, RunEnd};
-use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
+use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::energy::Energy;
 use fretwork_core::laws::Interface;
 use fretwork_core::momentum::Momentum;
@@ -29,7 +29,7 @@ use fretwork_core::process::cycle::CycleClock;
 use fretwork_core::step::{ImpossibleMotions, StepReport};
 use fretwork_core::view::RunView;
 
-/// Broken bonds over bonds made.
+/// Returns broken bonds over bonds made.
 pub fn damage_ratio(run: &dyn RunView) -> f64 {
     let made = run.bonds_made();
     if made > 0 {
@@ -39,7 +39,7 @@ pub fn damage_ratio(run: &dyn RunView) -> f64 {
     }
 }
 
-/// What the simulation counts, between two steps.
+/// Counters of the simulation, between two steps.
 #[derive(Clone, Debug, Default)]
 struct Counts {
     steps: u64,
@@ -55,7 +55,7 @@ struct Counts {
 }
 
 impl Counts {
-    /// Of a simulation with so many contacts.
+    /// Creates the counters of a simulation with this number of contacts.
     fn of(run: &dyn RunView, contacts: usize) -> Self {
         Self {
             steps: run.steps(),
@@ -124,7 +124,7 @@ impl Counts {
         let doc = "whether the step was small enough to detect every contact in time";
         found.fields("step_size", &self.step_size, &step_size::FIELDS, doc);
         found.edit_all(&["step_size"], |q| {
-            q.lacks(COURSE);
+            q.lacks(DESCRIBES_THE_RUN);
         });
     }
 }
@@ -162,15 +162,16 @@ pub struct RunState {
     bonds: BondsOfCase,
     iterations: u64,
     couplings: u64,
-    /// Number of contacts in the last step; none before it.
+    /// Number of contacts in the last step; `None` before it.
     contacts: Option<usize>,
-    /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance
-    /// was reached.
+    /// Number of contacts with an impulse in the last step, iterations, error, and whether the
+    /// tolerance was reached.
     last: [f64; 5],
 }
 
 impl RunState {
-    /// Of a run from the current state of a simulation; its friction test may have cycles.
+    /// Creates the observer of a run from the current state of a simulation; its friction test may
+    /// have cycles.
     pub fn new(run: &dyn RunView, clock: Option<CycleClock>) -> Self {
         let options = &run.options().solver;
         Self {
@@ -218,7 +219,7 @@ impl RunState {
                 .map(|text| Warning::serious("IMPOSSIBLE MOTION", text)),
         );
         found.warn(step_size::warnings(&counts.step_size));
-        let missed = Missed {
+        let missed = UnconvergedSteps {
             steps: solver
                 .unconverged_steps
                 .saturating_sub(self.impossible.squeezed_steps),
@@ -234,7 +235,7 @@ impl RunState {
     }
 }
 
-/// What is said of motions that could not be obeyed.
+/// Fields of imposed motions that were impossible.
 const IMPOSSIBLE: [Field; 7] = [
     field(
         "squeezed_steps",
@@ -383,7 +384,7 @@ impl Observer for RunState {
         ]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
         encode(&(
             &self.solver,
             &self.impossible,
@@ -392,7 +393,7 @@ impl Observer for RunState {
         ))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
         (
             self.solver,
             self.impossible,

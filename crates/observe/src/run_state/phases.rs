@@ -5,10 +5,10 @@ use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Topic, field, quantity};
 use crate::statistics::Column;
 use crate::warning::{NOT_REACHED, Warning};
-use fretwork_core::step::control::Begun;
+use fretwork_core::step::control::StartedPhase;
 use fretwork_core::view::RunView;
 
-/// What is said of a phase that began.
+/// Fields of a phase that began.
 const PHASE: [Field; 5] = [
     field("name", WORD, "name of the phase"),
     field("start", SECOND, "time at which it began"),
@@ -17,8 +17,9 @@ const PHASE: [Field; 5] = [
     field("ended_by", WORD, "what ended it"),
 ];
 
-/// When a phase began and ended; of one that recurs its first and last times.
-fn times(begun: &[Begun], phase: &Begun) -> (String, String) {
+/// Returns start and end of a phase; for a repeated phase the start of the first and the end of the
+/// last.
+fn times(begun: &[StartedPhase], phase: &StartedPhase) -> (String, String) {
     let same = || begun.iter().filter(|q| q.name == phase.name);
     let end = same().next_back().and_then(|last| last.end);
     let end = end.map_or_else(|| "the end of the run".to_owned(), |t| quantity(t, "s"));
@@ -38,7 +39,7 @@ pub struct Phases {
 }
 
 impl Phases {
-    /// Of the phases of a simulation.
+    /// Creates the observer of the phases of a simulation.
     pub fn of(run: &dyn RunView) -> Self {
         Self {
             any: !run.phase_names().is_empty(),

@@ -1,13 +1,12 @@
-//! What a run says of its solver.
+//! Results of a run on its solver.
 
 use crate::quantity::{Findings, Role, Topic};
 use crate::solving::SolverSummary;
 use crate::warning::Warning;
 
-/// Overlap of rigid contacts, over the radius of the smaller grain, from which they are not where
-/// the model says.
+/// Overlap of rigid contacts, over the radius of the smaller grain, above which a warning is given.
 const OVERLAP: f64 = 1e-2;
-/// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
+/// Residual velocities, relative to those of the contacts, below which they are not reported.
 const LOOSE: f64 = 1e-3;
 /// Mean share of the friction, and largest share of an attraction, by which steps may differ from
 /// their laws.
@@ -76,11 +75,11 @@ impl SolverSummary {
         out
     }
 
-    /// What is wrong with the solutions of a run of so many steps; `possible` unless motions could
-    /// not be obeyed.
+    /// Returns the warnings on the solutions of a run with this number of steps; `possible` unless
+    /// imposed motions were impossible.
     pub(super) fn warnings(&self, steps: u64, possible: bool) -> Vec<Warning> {
         let reasons = [
-            // No smaller step helps against a motion that cannot be obeyed.
+            // A smaller step does not help against an impossible motion.
             ("OVERLAP", self.overlap().filter(|_| possible)),
             ("LOOSE VELOCITIES", self.loose_velocities()),
             ("NOT COUPLED", self.uncoupled(steps)),
@@ -93,7 +92,7 @@ impl SolverSummary {
         reasons.chain(several).collect()
     }
 
-    /// Rigid bodies that overlap.
+    /// Returns the warning about overlaps of rigid bodies.
     fn overlap(&self) -> Option<String> {
         (self.overlap_max > OVERLAP).then(|| {
             let left = if self.overlap_after > OVERLAP {
@@ -109,12 +108,12 @@ impl SolverSummary {
         })
     }
 
-    /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to
-    /// resolve.
+    /// Returns a warning for steps that reached their tolerance, but whose residuals exceed the
+    /// slip that they should resolve.
     fn loose_velocities(&self) -> Option<String> {
         let parts = &self.error_parts;
         let loose = parts.contact_law > 1.0 && parts.velocity > LOOSE;
-        // Where steps missed it, NOT CONVERGED says so.
+        // Where steps missed the tolerance, NOT CONVERGED reports it.
         (self.unconverged_steps == 0 && loose).then(|| {
             format!(
                 "the residuals of the steps make {:.1} times the heat of slip: slow sliding, and with it friction, may be wrong although \
@@ -153,9 +152,9 @@ impl SolverSummary {
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 
-    /// Steps of which another solution was found, with those in which it was not sought: alone
-    /// these say nothing, as all dense flows have them, but where first bodies alone may hold a
-    /// grain.
+    /// Returns a warning for steps in which another solution was found, with the number of those in
+    /// which it was not searched. The latter alone gives no warning, since all dense flows have
+    /// such steps, except where only first bodies may hold a grain.
     fn several_solutions(&self) -> Option<String> {
         let [several, not_searched, pinched] = [
             self.several_steps,
@@ -249,14 +248,14 @@ mod tests {
             })
         };
         assert_eq!(parts(1e-2, 0.3), []);
-        // At rest both are small, whatever their ratio.
+        // At rest both parts are small, for any ratio.
         assert_eq!(parts(1e-7, 4.0), []);
         let list = parts(3e-2, 1.8);
         assert!(list.len() == 1 && list[0].serious && list[0].of == "LOOSE VELOCITIES");
     }
 
-    /// Steps in which no other solution was sought say nothing alone, as dense flows have them, but
-    /// where grains between first bodies let go.
+    /// Steps in which no other solution was searched give no warning alone, as in dense flows,
+    /// except where first bodies release grains between them.
     #[test]
     fn several_solutions_are_a_note_and_grains_between_first_bodies_that_let_go() {
         let told = |several: u64, pinched: u64| {

@@ -19,7 +19,7 @@ const fn first(name: &'static str, doc: &'static str) -> Field {
     }
 }
 
-/// What is said of the diagnostics.
+/// Fields of the diagnostics.
 pub(super) const FIELDS: [Field; 19] = [
     field(
         "late",
@@ -82,7 +82,7 @@ pub(super) const FIELDS: [Field; 19] = [
     ),
 ];
 
-/// Warnings of too large a step.
+/// Returns warnings of a step that is too large.
 pub(super) fn warnings(diagnostics: &StepSizeDiagnostics) -> Vec<Warning> {
     let reasons = [
         ("TOO FAST", diagnostics.warning()),
@@ -91,7 +91,7 @@ pub(super) fn warnings(diagnostics: &StepSizeDiagnostics) -> Vec<Warning> {
     ];
     let reasons = reasons.into_iter();
     let reasons = reasons.filter_map(|(of, text)| Some(Warning::serious(of, text?)));
-    // A reason where they are many for the bodies of the scene.
+    // The warning is serious where they are many in relation to the number of bodies.
     let edges = diagnostics.edges_warning().map(|(many, text)| match many {
         true => Warning::serious("EDGES MET", text),
         false => Warning::note("EDGES MET", text),
@@ -104,8 +104,8 @@ mod tests {
     use super::*;
     use fretwork_core::contact::Occurrence;
 
-    /// Bodies that slid into low edges are a reason from one to a thousand pieces, and a note
-    /// below.
+    /// A warning of bodies that slid into low edges is serious from one to a thousand pieces, and a
+    /// note below.
     #[test]
     fn low_edges_are_a_reason_where_they_are_many() {
         let told = |edges: u64| {

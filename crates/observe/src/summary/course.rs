@@ -1,4 +1,4 @@
-//! How a run went, read back from its `summary.json`.
+//! Course of a run, read back from its `summary.json`.
 
 use crate::quantity::find;
 use serde_json::Value;
@@ -6,26 +6,26 @@ use serde_json::Value;
 /// Key of the residual of the energy ledger over the largest energy.
 pub const RELATIVE_RESIDUAL: &str = "energy_residual_relative";
 
-/// How a run went.
+/// Course of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
-    /// Steps done; `None` where there is no summary.
+    /// Number of completed steps; `None` where there is no summary.
     pub steps: Option<f64>,
-    /// Steps that missed the tolerance of the solver.
+    /// Number of steps that missed the tolerance of the solver.
     pub unconverged: f64,
-    /// Steps that missed the tolerance of the damage coupling.
+    /// Number of steps that missed the tolerance of the damage coupling.
     pub uncoupled: f64,
     /// Energy that no entry of the ledger explains, over the largest energy; `None` where it is not
     /// finite.
     pub residual: Option<f64>,
     /// Processor time (s).
     pub cpu_seconds: Option<f64>,
-    /// Reasons why it is not trustworthy.
+    /// Reasons why the run is not trustworthy.
     pub reasons: Vec<String>,
 }
 
 impl Course {
-    /// Of the run of a summary.
+    /// Reads the course of the run of a summary.
     pub fn of(summary: &Value) -> Self {
         let number = |path: &str| find(summary, path).and_then(Value::as_f64);
         let reasons = summary["reasons"].as_array().into_iter().flatten();
@@ -41,7 +41,8 @@ impl Course {
     }
 }
 
-/// Whether a quantity is a residual, which is zero without errors; and whether it is a pure number.
+/// Returns whether a quantity is a residual, which is zero without errors; and whether it is a pure
+/// number.
 pub fn residual(path: &str) -> Option<bool> {
     match path {
         RELATIVE_RESIDUAL => Some(true),

@@ -4,7 +4,7 @@ use crate::error_estimate::{Change, Effects, Repeats};
 use crate::friction_report::Friction;
 pub use crate::quantity::Estimate;
 use crate::quantity::unit::{ENERGY, VOLUME, WORD};
-use crate::quantity::{COURSE, Findings, Role, Topic, number, part};
+use crate::quantity::{DESCRIBES_THE_RUN, Findings, Role, Topic, number, part};
 use crate::scatter;
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ crate::described! {
 }
 
 impl Uncertainty {
-    /// Of what the observers found, with what repeated steps say.
+    /// Creates the estimates from the results of the observers and of repeated steps.
     pub fn new(found: &Findings, repeats: Repeats) -> Self {
         let mut all = Self::scattered(found);
         let energy = found.number("energy.friction");
@@ -43,7 +43,7 @@ impl Uncertainty {
         all
     }
 
-    /// Values, and their scatter within the run.
+    /// Returns the values, and their scatter within the run.
     fn scattered(found: &Findings) -> Self {
         let mut all = Self::default();
         let friction = found.get::<Friction>();
@@ -74,7 +74,7 @@ impl Uncertainty {
         all
     }
 
-    /// Adds the estimates, puts them to the quantities that they are of, and warns of large errors.
+    /// Adds the estimates to their quantities, and warns of large errors.
     pub fn report(&self, found: &mut Findings) {
         found.begin(Topic::Run, Role::Diagnostic);
         found.part("uncertainty", self, "");
@@ -86,7 +86,7 @@ impl Uncertainty {
             });
         }
         found.edit_all(&["uncertainty"], |q| {
-            q.lacks(COURSE);
+            q.lacks(DESCRIBES_THE_RUN);
         });
         for (name, estimate) in [
             ("friction_coefficient", &self.friction_coefficient),
@@ -120,7 +120,7 @@ impl Uncertainty {
     }
 }
 
-/// Puts in what repeated steps say of a result.
+/// Adds the results of repeated steps for a result.
 fn repeated(result: &mut Estimate, repeats: &Repeats, part: fn(&Effects) -> Option<Change>) {
     let size = result.value.map(f64::abs);
     let half = |effects: &Effects| Some(size? * part(effects)?.bound());

@@ -1,5 +1,5 @@
-//! `summary.json`, and the text at the end of a run: the facts of a run and all that its observers
-//! found.
+//! `summary.json`, and the text at the end of a run: the facts of a run and the results of its
+//! observers.
 
 mod course;
 mod estimate;
@@ -41,7 +41,7 @@ crate::described! {
 /// JSON pointers to the values that may differ between the summaries of two runs of a case: wall
 /// and processor times, and the number of threads. All others are bit-identical, see
 /// `docs/checkpoints.md`.
-pub const FROM_THE_CLOCK: [&str; 5] = [
+pub const NOT_REPRODUCIBLE: [&str; 5] = [
     "/wall_seconds",
     "/cpu_seconds",
     "/time_spent",
@@ -50,7 +50,7 @@ pub const FROM_THE_CLOCK: [&str; 5] = [
 ];
 
 crate::described! {
-    /// What is known of a run besides what its observers found.
+    /// Facts of a run, in addition to the results of its observers.
     #[derive(Clone, Debug, Default, Serialize)]
     pub struct RunFacts {
         /// Title of the case.
@@ -90,7 +90,7 @@ crate::described! {
     }
 }
 
-/// What is said of a wear coefficient.
+/// Fields of a wear coefficient.
 const COEFFICIENT: [Field; 10] = [
     field(
         "interface",
@@ -117,17 +117,17 @@ const COEFFICIENT: [Field; 10] = [
 pub struct Summary {
     /// Facts of the run.
     pub run: RunFacts,
-    /// What its observers found.
+    /// Results of the observers.
     pub found: Findings,
 }
 
 impl Summary {
-    /// Puts in the warnings of the observers and of the run itself; returns them, worst first.
+    /// Adds the warnings of the observers and of the run itself; returns them, worst first.
     pub fn check(&mut self) -> Vec<Warning> {
         let run = &mut self.run;
         let mut list = self.found.warnings().to_vec();
         list.extend(run.own_warnings());
-        // A run that was stopped did not reach what comes later.
+        // A stopped run did not reach later events.
         list.retain(|w| run.stopped.is_none() || w.of != warning::NOT_REACHED);
         warning::sort(&mut list);
         run.warnings = list.iter().map(Warning::to_string).collect();
@@ -137,7 +137,7 @@ impl Summary {
         list
     }
 
-    /// All of it as quantities.
+    /// Returns all facts and results as quantities.
     pub fn quantities(&self) -> Findings {
         let mut all = Findings::new(self.run.dimension);
         all.begin(Topic::Run, Role::Diagnostic);
@@ -153,7 +153,7 @@ impl Summary {
 }
 
 impl RunFacts {
-    /// Warnings of what no observer sees.
+    /// Returns warnings that no observer gives.
     fn own_warnings(&self) -> Vec<Warning> {
         let stopped = self.stopped.as_ref().map(|why| match self.interrupted {
             true => Warning::serious(
@@ -176,7 +176,7 @@ impl RunFacts {
         stopped.into_iter().chain(uncertified).collect()
     }
 
-    /// Sentences of the terminal.
+    /// Sets the sentences for the terminal.
     fn word(&self, found: &Findings, all: &mut Findings) {
         for (k, p) in self.plugins.iter().enumerate() {
             let hash = &p.sha256[..12.min(p.sha256.len())];

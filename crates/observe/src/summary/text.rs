@@ -1,4 +1,4 @@
-//! The text at the end of a run: warnings, then what the observers found, by topic.
+//! Text at the end of a run: warnings, then the results of the observers, by topic.
 
 use super::Summary;
 use crate::quantity::{Findings, Quantity, Role, Topic, Wording, number, quantity};
@@ -26,7 +26,7 @@ impl Summary {
     }
 }
 
-/// Labels and texts, by topic; details of all topics come before the course of the run.
+/// Returns labels and texts, by topic; details of all topics come before the course of the run.
 fn lines(all: &Findings, verbose: bool) -> Vec<(String, String)> {
     let mut list: Vec<&Quantity> = all
         .all()
@@ -67,7 +67,8 @@ fn line(q: &Quantity, dimension: usize) -> Option<(String, String)> {
     }
 }
 
-/// A value with its half-widths: `0.4020 +- 0.0006 (how) +- 0.001 (step); 0.4010 in cycle 50`.
+/// Returns a value with its half-widths: `0.4020 +- 0.0006 (how) +- 0.001 (step); 0.4010 in cycle
+/// 50`.
 fn with_remark(q: &Quantity, remark: &str, dimension: usize) -> Option<String> {
     let unit = q.unit.symbol(dimension);
     let value = match &q.value {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::first_bodies::BodyWear;
-use crate::fretting::{self, Regime};
+use crate::fretting::{self, SlipRegime};
 use crate::friction::{Cycle, Cycles};
 use crate::friction_report;
 use crate::quantity::unit::{ENERGY, METRE, ONE};
@@ -8,8 +8,8 @@ use crate::summary::Uncertainty;
 use crate::warning::Warning;
 use crate::wear::WearSummary;
 
-/// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip at
-/// the end.
+/// Returns fifty cycles of a fretting test with damage and wear, partial slip at first and gross
+/// slip at the end.
 fn fretting() -> Summary {
     let cycle = |k: u32| Cycle {
         cycle: k,
@@ -25,9 +25,9 @@ fn fretting() -> Summary {
         work: 2e-3,
         energy_ratio: if k < 10 { 0.1 } else { 0.8 },
         regime: if k < 10 {
-            Regime::Partial
+            SlipRegime::Partial
         } else {
-            Regime::Gross
+            SlipRegime::Gross
         },
         wear_volume: 1e-15,
         ..Cycle::default()
@@ -56,7 +56,11 @@ fn fretting() -> Summary {
         ..WearSummary::default()
     };
     wear.report(true, &mut found);
-    friction_report::report(&cycles, fretting::Outcome::new(&cycles.list), &mut found);
+    friction_report::report(
+        &cycles,
+        fretting::FrettingOutcome::new(&cycles.list),
+        &mut found,
+    );
     for k in 0..31 {
         found.measure(&format!("layer_{k:02}"), 1.0, METRE, "a measure");
     }
@@ -107,8 +111,8 @@ fn warnings_come_first_then_friction_damage_wear_energies() {
 fn results_have_units_and_intervals_and_no_lists() {
     let text = fretting().text(false);
     assert!(!text.contains("NOT TRUSTWORTHY"));
-    // k in 26..=50: each of 0.400 to 0.404 five times, mean 0.402, deviation 1e-3 sqrt(2 * 25/24),
-    // t(24, 0.975) = 2.0639: 0.000596.
+    // For k in 26..=50 each of 0.400 to 0.404 occurs five times: mean 0.402, deviation 1e-3
+    // sqrt(2 * 25/24), t(24, 0.975) = 2.0639: 0.000596.
     place(&text, "0.4020 +- 0.00060 (95 %, Student, cycles 26 to 50");
     place(
         &text,

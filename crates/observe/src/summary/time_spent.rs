@@ -1,4 +1,4 @@
-//! What the wall time of a run was spent on.
+//! Wall time of the parts of a run.
 
 use crate::quantity::quantity;
 use crate::quantity::unit::SECOND;
@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 crate::described! {
-    /// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and
-    /// the report page are not part of a run.
+    /// Wall time of a run (s) by parts. Reading the case, searching for plugins and the report page
+    /// are not part of a run.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct TimeSpent {
         /// Detection of contacts, in the steps.
@@ -29,7 +29,7 @@ crate::described! {
 }
 
 impl TimeSpent {
-    /// Adds steps that took a wall time, of which detection, laws and solver had theirs.
+    /// Adds steps with their wall time, and the time of their detection, laws and solver.
     pub fn add_steps(&mut self, all: Duration, [detection, laws, solver]: [Duration; 3]) {
         self.detection += detection.as_secs_f64();
         self.laws += laws.as_secs_f64();
@@ -50,7 +50,7 @@ impl TimeSpent {
         ]
     }
 
-    /// Sentence of the terminal; none where nothing was timed.
+    /// Returns the sentence for the terminal; `None` where nothing was timed.
     pub(super) fn sentence(&self) -> Option<String> {
         let parts = self.parts();
         let sum: f64 = parts.iter().map(|p| p.1).sum();

@@ -1,20 +1,20 @@
 //! Grains taken from a state of another run: positions, orientations, velocities, spins and shapes
 //! as recorded there.
 
-use super::grains::Seed;
+use super::grains::NewBall;
 use super::{Builder, Origin};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
-use fretwork_core::assembly::{Filling, RecordedPiece, Start, turned};
+use fretwork_core::assembly::{InitialState, MaterialDensity, RecordedPiece, turned};
 use nalgebra::Vector3;
 
 /// Grains other than single balls, from one entry of `grains`.
-pub(super) struct Others {
+pub(super) struct ShapedEntry {
     /// Index of the entry in the list.
     k: usize,
     /// Material index, and its density (kg/m^3).
-    of: Filling,
+    of: MaterialDensity,
     /// The grains.
     grains: Vec<ShapedGrain>,
 }
@@ -25,7 +25,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &StateSpec,
-    ) -> Result<(Vec<Seed>, Others), InputError> {
+    ) -> Result<(Vec<NewBall>, ShapedEntry), InputError> {
         let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
         let mut path = self.folder.join(&spec.results);
         if path.is_dir() {
@@ -72,7 +72,7 @@ impl Builder<'_> {
         let mut seeds = Vec::with_capacity(balls);
         for grain in &read.grains {
             let motion = &grain.motion;
-            seeds.push(Seed {
+            seeds.push(NewBall {
                 radius: grain.radius,
                 of,
                 start: self.start(k, motion)?,
@@ -80,11 +80,11 @@ impl Builder<'_> {
             });
         }
         let grains = read.shaped;
-        Ok((seeds, Others { k, of, grains }))
+        Ok((seeds, ShapedEntry { k, of, grains }))
     }
 
-    /// Where a recorded grain is and how it moves.
-    fn start(&self, k: usize, motion: &Motion) -> Result<Start, InputError> {
+    /// Returns position and motion of a recorded grain.
+    fn start(&self, k: usize, motion: &Motion) -> Result<InitialState, InputError> {
         // The orientation of a ball has no effect.
         let known = |numbers: &[f64; 4]| turned(self.dimension(), numbers, [0.0; 3]).is_some();
         if let Some(numbers) = motion.rotation.as_ref().filter(|r| !known(r)) {
@@ -93,7 +93,7 @@ impl Builder<'_> {
             );
             return Err(self.fail(format!("grains.{k}.results"), message));
         }
-        Ok(Start {
+        Ok(InitialState {
             position: motion.at,
             rotation: motion.rotation,
             velocity: motion.velocity,
@@ -102,7 +102,7 @@ impl Builder<'_> {
     }
 
     /// Adds the grains other than single balls.
-    pub(super) fn shaped_grains(&mut self, others: Others) -> Result<(), InputError> {
+    pub(super) fn shaped_grains(&mut self, others: ShapedEntry) -> Result<(), InputError> {
         let (k, of) = (others.k, others.of);
         for grain in others.grains {
             let start = self.start(k, &grain.motion)?;
@@ -121,8 +121,8 @@ impl Builder<'_> {
     fn shaped_grain(
         &mut self,
         grain: ShapedGrain,
-        mut start: Start,
-        (material, density): Filling,
+        mut start: InitialState,
+        (material, density): MaterialDensity,
     ) -> Result<(), String> {
         let first = match (grain.balls.first(), grain.pieces.first()) {
             (Some(ball), _) => ball.offset,
@@ -156,7 +156,12 @@ impl Builder<'_> {
     }
 
     /// Adds a body with its recorded mass and inertia, scaled if the density differs.
-    fn weighing(&mut self, of: &ShapedBody, start: &Start, density: f64) -> Result<u32, String> {
+    fn weighing(
+        &mut self,
+        of: &ShapedBody,
+        start: &InitialState,
+        density: f64,
+    ) -> Result<u32, String> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let numbers = [of.mass, of.density, of.length];
         let axes = if self.dimension() == 2 { 1 } else { 3 };
@@ -166,7 +171,7 @@ impl Builder<'_> {
         {
             return Err("its position, mass or inertia is not a valid number".to_owned());
         }
-        // Exactly one if the material is the same.
+        // The ratio is exactly one if the material is the same.
         let ratio = density / of.density;
         self.assembly
             .add_weighed(of.mass * ratio, &of.inertia, ratio, of.length, start)

@@ -3,7 +3,7 @@
 use super::Builder;
 use crate::case::{Edges, GrainSpec};
 use crate::source::InputError;
-use fretwork_core::assembly::{Block, Start};
+use fretwork_core::assembly::{ConvexBody, InitialState};
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,9 +11,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const MAX_BLOCKS: usize = 10_000;
 
 impl Builder<'_> {
-    /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for
-    /// other kinds of grains.
-    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block>, InputError> {
+    /// Returns the blocks of an arch between its radial joints, from right to left; an empty list
+    /// for other kinds of grains.
+    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<ConvexBody>, InputError> {
         let GrainSpec::Arch {
             blocks,
             radius,
@@ -57,7 +57,7 @@ impl Builder<'_> {
                 corner(inner, to),
             ];
             let part = self.polygon(here, &corners, 0.0)?;
-            let block = Block::of(part);
+            let block = ConvexBody::of(part);
             let (at, volume, inertia) = match edges {
                 Edges::Straight => (Vector3::from(block.start.position), block.volume, None),
                 Edges::Curved => {
@@ -65,13 +65,13 @@ impl Builder<'_> {
                     (Vector3::new(x, y, 0.0), volume, Some(inertia))
                 }
             };
-            out.push(Block {
+            out.push(ConvexBody {
                 volume,
                 inertia,
                 offset: (Vector3::from(block.start.position) - at).into(),
-                start: Start {
+                start: InitialState {
                     position: (centre + at).into(),
-                    ..Start::default()
+                    ..InitialState::default()
                 },
                 part: block.part,
             });
@@ -80,7 +80,8 @@ impl Builder<'_> {
     }
 }
 
-/// Centroid, area and polar moment of area about it of a ring sector between two angles.
+/// Returns centroid, area and polar moment of area about the centroid of a ring sector between two
+/// angles.
 fn ring_piece(inner: f64, outer: f64, from: f64, to: f64) -> ([f64; 2], f64, f64) {
     let (angle, middle) = (to - from, 0.5 * (from + to));
     let area = 0.5 * angle * (outer * outer - inner * inner);

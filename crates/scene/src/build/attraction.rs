@@ -1,4 +1,4 @@
-//! The alert distance of a case, against how far its laws attract.
+//! The alert distance of a case, compared with the range of attraction of its laws.
 
 use crate::case::Case;
 use crate::source::{InputError, Source, ValidationError};
@@ -8,8 +8,8 @@ use fretwork_core::laws::Interface;
 /// distances that laws with a `range` need.
 ///
 /// # Errors
-/// A law that attracts beyond the given one, where no contact is known: how far it acts would
-/// depend on that.
+/// Fails if a law attracts beyond the given distance, where no contact is known: its range would
+/// then depend on that distance.
 pub(super) fn alert(
     source: &Source,
     case: &Case,
@@ -25,8 +25,8 @@ pub(super) fn alert(
                 continue;
             };
             let range = law.parameters[at];
-            // A range of the law's own goes as far as contacts are known; one that is given is
-            // meant.
+            // Without a range in the case, a law acts as far as contacts are known; a given range
+            // is intended.
             let slot = law.plugin.kind.word();
             let given = range != law.plugin.parameters[at].default;
             match case.detection.alert {

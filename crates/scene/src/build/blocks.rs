@@ -6,14 +6,14 @@ use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{InputError, ValidationError};
-use fretwork_core::assembly::Block;
+use fretwork_core::assembly::ConvexBody;
 use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use nalgebra::Vector3;
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 100_000;
-/// Limit on Lloyd iterations; beyond some hundred the cells no longer change visibly.
+/// Limit on Lloyd iterations; after a few hundred the cells no longer change visibly.
 const MAX_ROUNDS: usize = 1_000;
 /// Limit on cells times Lloyd iterations in 2D and 3D, which take some seconds. Building the cells
 /// counts as one iteration.
@@ -25,7 +25,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &VoronoiSpec,
-    ) -> Result<Vec<Block>, InputError> {
+    ) -> Result<Vec<ConvexBody>, InputError> {
         let here = format!("grains.{k}");
         let low = self.corner(&format!("{here}.low"), &spec.low)?;
         let high = self.corner(&format!("{here}.high"), &spec.high)?;
@@ -93,7 +93,7 @@ impl Builder<'_> {
         spec: &VoronoiSpec,
         [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block>, String), InputError> {
+    ) -> Result<(Vec<ConvexBody>, String), InputError> {
         let corners = Corners {
             low: low.xy(),
             high: high.xy(),
@@ -116,7 +116,7 @@ impl Builder<'_> {
                 let message = "a cell with several very short sides lost its shape; take another `seed`, or some `rounds`";
                 self.fail(here, message)
             })?;
-            out.push(Block::of(part));
+            out.push(ConvexBody::of(part));
         }
         let note = match tiling.merged {
             0 => String::new(),
@@ -129,14 +129,14 @@ impl Builder<'_> {
         Ok((out, note))
     }
 
-    /// Makes the cells of a box; also returns a note on what was changed in them.
+    /// Creates the cells of a box; also returns a note on changes of the cells.
     fn cells_in_space(
         &self,
         here: &str,
         spec: &VoronoiSpec,
         [low, high]: [Vector3<f64>; 2],
         seed: u64,
-    ) -> Result<(Vec<Block>, String), InputError> {
+    ) -> Result<(Vec<ConvexBody>, String), InputError> {
         let (size, periodic) = (spec.size, self.assembly.periodic());
         let corners = Corners { low, high };
         let tiling = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
@@ -157,7 +157,11 @@ impl Builder<'_> {
                 (cell.points, cell.faces)
             };
             let core = Polyhedron::from_faces(points, faces).map_err(|_| short())?;
-            out.push(Block::of(self.polyhedron(here, &core, spec.rounding)?));
+            out.push(ConvexBody::of(self.polyhedron(
+                here,
+                &core,
+                spec.rounding,
+            )?));
         }
         let note = match tiling.moved {
             0 => String::new(),
@@ -201,12 +205,12 @@ impl Builder<'_> {
         self.fail(format!("{here}.{field}"), message)
     }
 
-    /// Makes a wall in running bond, course by course from the ground up and from left to right.
+    /// Creates a wall in running bond, course by course from the ground up and from left to right.
     pub(super) fn block_wall(
         &self,
         here: &str,
         spec: &BlockWallSpec,
-    ) -> Result<Vec<Block>, InputError> {
+    ) -> Result<Vec<ConvexBody>, InputError> {
         let at = self.vector(&format!("{here}.at"), &spec.at)?;
         let wide = self.length(&format!("{here}.block.0"), spec.block.0)?;
         let high = self.length(&format!("{here}.block.1"), spec.block.1)?;
@@ -246,7 +250,7 @@ impl Builder<'_> {
             };
             let mut left = 0.0;
             for width in widths {
-                let mut block = Block::of(self.brick(here, width, thick, high)?);
+                let mut block = ConvexBody::of(self.brick(here, width, thick, high)?);
                 let middle = [left + 0.5 * width, 0.5 * thick, low + 0.5 * high];
                 let middle = match self.dimension() {
                     2 => Vector3::new(middle[0], middle[2], 0.0),

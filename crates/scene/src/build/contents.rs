@@ -1,16 +1,16 @@
 //! Complete content of a case: its own text in normal form, and the content of the files that it
 //! names.
 
-use super::Loaded;
-use crate::source::{InputError, Kind, Node, Tree};
+use super::LoadedCase;
+use crate::source::{InputError, Node, Tree, ValueKind};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-impl Loaded {
-    /// The case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and content of
-    /// each file that one of its texts names: materials, parameters, profiles, meshes, samples, and
-    /// the summary of another run. Two cases with equal contents are the same scene under the same
-    /// laws, without building it.
+impl LoadedCase {
+    /// Returns the case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and
+    /// content of each file that one of its texts names: materials, parameters, profiles, meshes,
+    /// samples, and the summary of another run. Two cases with equal contents are the same scene
+    /// with the same laws, which is known without building it.
     ///
     /// # Errors
     /// The case cannot be written as text.
@@ -48,8 +48,8 @@ impl Loaded {
 /// The texts in a value.
 fn collect(node: &Node, text: &str, out: &mut BTreeSet<String>) {
     match &node.kind {
-        Kind::Text => out.extend(node.string(text)),
-        Kind::Group(group) => {
+        ValueKind::Text => out.extend(node.string(text)),
+        ValueKind::Group(group) => {
             for entry in &group.entries {
                 collect(&entry.value, text, out);
             }
@@ -67,7 +67,8 @@ mod tests {
         grains: [List(material: "steel", grains: [(at: [0.0, 0.0], radius: 0.01)])],
     )"#;
 
-    /// Another spelling has the same contents; another value, or another text of a file, has not.
+    /// Another spelling has the same contents; another value, or another text of a file, has
+    /// different contents.
     #[test]
     fn contents_tell_cases_apart_and_not_spellings() {
         let folder = std::env::temp_dir().join(format!("fretwork-contents-{}", std::process::id()));

@@ -1,29 +1,29 @@
-//! Grains that deform, across two runs: their deformation in a state of another run, and their
-//! records.
+//! Deformable grains in two runs: their deformation in a state of another run, and their records.
 
 use super::Builder;
 use super::elastic_grains::Shapes;
 use crate::recorded::{Deformed, Motion, ShapedBall, ShapedBody, ShapedGrain, ShapedPiece};
 use crate::source::InputError;
-use fretwork_core::assembly::Parts;
+use fretwork_core::assembly::SceneParts;
 use fretwork_core::bodies::{Bodies, von_mises};
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_elastic::grain::shape::stresses;
 use fretwork_elastic::{Elasticity, GrainShape};
 
-/// Most that a point of a mesh may lie elsewhere than in the other run, over the size of the grain.
+/// Largest difference of the position of a mesh point from the other run, relative to the size of
+/// the grain.
 const SAME_PLACE: f64 = 1e-6;
-/// Most that a stress may differ from that of the other run, as a share of the largest of the
+/// Largest difference of a stress from the other run, as a share of the largest stress of the
 /// grain.
 const SAME_STRESS: f64 = 1e-6;
 
 impl Builder<'_> {
-    /// Displacements of the points of a grain in its frame (m) and their rates (m/s), where a state
-    /// of another run has them; empty otherwise.
+    /// Returns the displacements of the points of a grain in its frame (m) and their rates (m/s),
+    /// if a state of another run has them; empty otherwise.
     pub(super) fn taken_over<S: Space>(
         &self,
-        parts: &Parts<S>,
+        parts: &SceneParts<S>,
         body: u32,
         here: &str,
         material: &str,
@@ -97,7 +97,7 @@ impl Builder<'_> {
         Ok([displacement, rates.collect()])
     }
 
-    /// A grain that deforms as a state records it: without load, as if it were rigid.
+    /// Returns the record of a deformable grain without load, as if it were rigid.
     pub(super) fn unloaded<S: Space>(
         &self,
         bodies: &Bodies<S>,
@@ -131,7 +131,7 @@ impl Builder<'_> {
             }
         };
         ShapedGrain {
-            // Numbered once the scene is whole.
+            // Identities are assigned once the scene is complete.
             body: ShapedBody {
                 id: 0,
                 mass: bodies.mass[b],

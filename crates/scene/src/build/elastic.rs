@@ -15,7 +15,7 @@ use fretwork_elastic::{AnyMesh, BodyError, BodySpec, Elasticity, Support, Touchi
 use std::collections::BTreeMap;
 
 impl Builder<'_> {
-    /// The deformable bodies of the case, in its order.
+    /// Returns the deformable bodies of the case, in its order.
     pub(super) fn elastic_bodies(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
@@ -31,7 +31,7 @@ impl Builder<'_> {
         Ok(out)
     }
 
-    /// Names of bodies and of their held parts name columns and files.
+    /// Checks names of bodies and of their held parts, which name columns and files.
     pub(super) fn check_elastic_names(&self) -> Result<(), InputError> {
         let good = |name: &str| word_fault(name).is_none();
         let rigid = self.case.bodies.iter().map(|b| b.name.as_str());
@@ -78,7 +78,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Bodies that have an interface must be able to touch.
+    /// Checks that bodies with an interface can touch.
     pub(super) fn check_elastic_pairs(&self) -> Result<(), InputError> {
         let elastic = self.case.elastic.iter().enumerate().map(|(k, spec)| {
             let points = match spec.touches {
@@ -127,13 +127,13 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Grains that fit between the points of a body would fall into it. Every cut through the
-    /// centre of one holds a disk of the radius of the ball in it: where that is larger than the
-    /// gaps between points, one of them stops it.
+    /// Refuses grains that fit between the points of a body, since they would fall into it. Every
+    /// section through the centre of a grain contains a disk with the radius of its ball: where
+    /// that is larger than the gaps between points, a point stops the grain.
     pub(super) fn check_elastic_points(&self, systems: &[AnySystem]) -> Result<(), InputError> {
         let thinnest = self.assembly.thinnest_grain();
         // The size of a point is half of the distance to the next, in space the radius of the disk
-        // of its area a: a disk of the radius sqrt(a/2) fits between four.
+        // with its area a: a disk of radius sqrt(a/2) fits between four points.
         let wide = match self.dimension() {
             2 => 1.0,
             _ => std::f64::consts::FRAC_PI_2.sqrt(),
@@ -154,7 +154,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Where in the case a field of a deformable body is.
+    /// Returns the path of a field of a deformable body in the case.
     fn deformable_place(&self, name: &str, field: &str) -> String {
         let elastic = self.case.elastic.iter().position(|e| e.name == name);
         let half_space = self.case.half_spaces.iter().position(|e| e.name == name);
@@ -164,7 +164,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The elasticity of a material of the case, and its index.
+    /// Returns the elasticity of a material of the case, and its index.
     pub(super) fn elasticity(
         &self,
         here: &str,

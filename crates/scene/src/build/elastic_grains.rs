@@ -1,12 +1,12 @@
-//! Grains that deform: those of a material are taken out of the rigid bodies and become dynamical
-//! systems.
+//! Deformable grains: the grains of a material are removed from the rigid bodies and become
+//! dynamical systems.
 
 use super::{Builder, Origin};
 use crate::case::ElasticGrainSpec;
 use crate::material::Sourced;
 use crate::measures::MeasureSpec;
 use crate::source::InputError;
-use fretwork_core::assembly::{self, AnyParts, AnySystem, Parts};
+use fretwork_core::assembly::{self, AnySceneParts, AnySystem, SceneParts};
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
@@ -16,15 +16,15 @@ use fretwork_elastic::{ElasticGrain, ElasticGrainSpec as Grain, Elasticity, Grai
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Most elements along the radius of a grain, by dimension: modes of finer meshes take minutes to
-/// find.
+/// Largest number of elements along the radius of a grain, by dimension: modes of finer meshes take
+/// minutes to compute.
 const MAX_ELEMENTS: [usize; 2] = [12, 5];
 
-/// Grains that were taken out of the rigid bodies, with their entries in the case.
+/// Deformable grains, with their entries in the case.
 pub(super) type ElasticGrains = Vec<(AnySystem, Origin)>;
 
-/// What the case says of the grains of a material that deform: path and content of its entry,
-/// elasticity, and elements along the radius.
+/// Deformable grains of a material in the case: path and content of the entry, elasticity, and
+/// elements along the radius.
 type OfMaterial<'a> = BTreeMap<u16, (String, &'a ElasticGrainSpec, Elasticity, usize)>;
 
 /// Key of grains that share their modes: a number for their kind, and all data on which the modes
@@ -38,14 +38,14 @@ pub(super) struct Shapes<'a, S: Space> {
 }
 
 impl<S: Space> Shapes<'_, S> {
-    /// Radius of the ball of its volume (m).
+    /// Returns the radius of the ball of the same volume (m).
     fn radius(&self) -> f64 {
         let ball = self.balls.first().map(|ball| ball.radius);
         let piece = self.pieces.first().map(|piece| piece.size);
         ball.or(piece).unwrap_or_default()
     }
 
-    /// Radius of the ball around it (m).
+    /// Returns the radius of the ball around it (m).
     fn bound(&self) -> f64 {
         let ball = self.balls.first().map(|ball| ball.radius);
         let piece = self.pieces.first().map(|piece| piece.bound);
@@ -54,8 +54,8 @@ impl<S: Space> Shapes<'_, S> {
 }
 
 impl Builder<'_> {
-    /// Takes the grains of the materials that deform out of the rigid bodies. Called after the
-    /// grains and before all other bodies.
+    /// Removes the grains of deformable materials from the rigid bodies and returns them. Called
+    /// after the grains and before all other bodies are added.
     pub(super) fn elastic_grains(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
@@ -121,11 +121,11 @@ impl Builder<'_> {
         let none = assembly::empty(self.dimension(), *self.assembly.periodic());
         let mut assembly = std::mem::replace(&mut self.assembly, none);
         let made = match assembly.parts() {
-            AnyParts::Plane(parts) => {
+            AnySceneParts::Plane(parts) => {
                 let grains = self.deform(parts, &of_material)?;
                 in_any(grains, AnySystem::Plane)
             }
-            AnyParts::Space(parts) => {
+            AnySceneParts::Space(parts) => {
                 let grains = self.deform(parts, &of_material)?;
                 in_any(grains, AnySystem::Space)
             }
@@ -134,10 +134,10 @@ impl Builder<'_> {
         Ok(made)
     }
 
-    /// Makes grains of the parts of these materials, and leaves them out there.
+    /// Makes deformable grains from the parts of these materials, and removes the parts.
     fn deform<S: Space>(
         &mut self,
-        parts: &mut Parts<S>,
+        parts: &mut SceneParts<S>,
         of_material: &OfMaterial<'_>,
     ) -> Result<GrainsIn<S>, InputError> {
         let mut shapes: Vec<Shapes<'_, S>> = Vec::new();
@@ -215,7 +215,7 @@ impl Builder<'_> {
         Ok(out)
     }
 
-    /// The shape of a grain, and the length of its unit (m).
+    /// Returns the shape of a grain, and the length of its unit (m).
     fn grain_shape<S: Space>(
         &self,
         own: &Shapes<'_, S>,
@@ -259,7 +259,7 @@ impl Builder<'_> {
     }
 }
 
-/// Grains in their dimension, with their entries in the case.
+/// Deformable grains in their dimension, with their entries in the case.
 type GrainsIn<S> = Vec<(Box<dyn DynamicalSystem<S>>, Origin)>;
 
 fn in_any<S: Space>(
@@ -285,7 +285,7 @@ fn ball_mesh<S: Space>(elements: usize) -> Result<Mesh<S>, String> {
     mesh.map_err(|e| e.to_string())
 }
 
-/// The mesh of a convex part about its centre (m).
+/// Returns the mesh of a convex part about its centre (m).
 fn piece_mesh<S: Space>(piece: &ConvexCollider<S>, elements: usize) -> Result<Mesh<S>, String> {
     let boundary = piece.core.boundary();
     if boundary.corners.len() <= S::D {
@@ -311,7 +311,7 @@ fn piece_mesh<S: Space>(piece: &ConvexCollider<S>, elements: usize) -> Result<Me
         ]
     });
     let longest = longest.fold(0.0, f64::max);
-    // Edges of a face of a cube are as long as 1.6 radii of the ball of its volume.
+    // Edges of a face of a cube are as long as 1.6 radii of the ball with its volume.
     let parts = (longest / (1.6 * size)).round().max(1.0) as usize;
     let surface = Triangles { points, triangles }.cut(parts);
     shells::<S>(&surface, &centre, elements).map_err(|e| e.to_string())

@@ -3,7 +3,7 @@
 use super::{Builder, Origin};
 use crate::case::{BodySpec, ShapeSpec};
 use crate::source::InputError;
-use fretwork_core::assembly::{Inertia, Start, Weight};
+use fretwork_core::assembly::{Inertia, InitialState, MassProperties};
 use fretwork_core::bodies::Driven;
 
 impl Builder<'_> {
@@ -34,13 +34,15 @@ impl Builder<'_> {
             None if volume > 0.0 => Inertia::OfShapes(density),
             None => Inertia::Uniform(1.0),
         };
-        let start = Start {
+        let start = InitialState {
             position: position.into(),
-            ..Start::default()
+            ..InitialState::default()
         };
         let first = self.assembly.surface_count();
-        let weight = Weight::First(mass, inertia);
-        let body = self.assembly.add_union(union, weight, material, &start);
+        let mass_properties = MassProperties::First(mass, inertia);
+        let body = self
+            .assembly
+            .add_union(union, mass_properties, material, &start);
         self.assembly.drive(Driven {
             name: spec.name.clone(),
             body,
@@ -50,8 +52,7 @@ impl Builder<'_> {
     }
 
     /// Rejects half-spaces that are not parallel to a periodic axis. A half-space normal to the
-    /// axis is accepted: it is a wall of a case that was made periodic by `--set`, and it is
-    /// dropped.
+    /// axis is accepted: it is a wall of a case that became periodic by `--set`, and is removed.
     fn check_periods(&self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
         let periods = self.assembly.periodic().period;
         for (k, shape) in spec.shapes.iter().enumerate() {

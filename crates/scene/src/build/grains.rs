@@ -4,7 +4,7 @@ use super::{Builder, Origin, components};
 use crate::case::{GrainSpec, OneGrain};
 use crate::sample::lattice::lattice;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::assembly::{Filling, Start};
+use fretwork_core::assembly::{InitialState, MaterialDensity};
 use nalgebra::Vector3;
 
 /// Limit on grains read from a file; more do not fit into memory.
@@ -13,23 +13,23 @@ pub(super) const MAX_READ: usize = 10_000_000;
 pub(super) const MAX_GENERATED: usize = 2_000_000;
 
 /// A ball to be added to the scene.
-pub(super) struct Seed {
+pub(super) struct NewBall {
     /// Radius (m).
     pub radius: f64,
     /// Material index, and its density (kg/m^3).
-    pub of: Filling,
+    pub of: MaterialDensity,
     /// Position and motion.
-    pub start: Start,
+    pub start: InitialState,
     /// Entry in the case.
     pub origin: Origin,
 }
 
-impl Seed {
+impl NewBall {
     /// A ball at rest.
-    pub fn still(at: Vector3<f64>, radius: f64, of: Filling, origin: Origin) -> Self {
-        let start = Start {
+    pub fn at_rest(at: Vector3<f64>, radius: f64, of: MaterialDensity, origin: Origin) -> Self {
+        let start = InitialState {
             position: at.into(),
-            ..Start::default()
+            ..InitialState::default()
         };
         Self {
             radius,
@@ -42,7 +42,7 @@ impl Seed {
 
 impl Builder<'_> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
-        let mut balls: Vec<Seed> = Vec::new();
+        let mut balls: Vec<NewBall> = Vec::new();
         let mut shaped = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
             match spec {
@@ -56,7 +56,7 @@ impl Builder<'_> {
                     low,
                     high,
                 } => balls.extend(self.lattice(k, material, *count, *radius, [low, high])?),
-                // Made after the balls, which come first in memory.
+                // These are added after the balls, which come first in memory.
                 GrainSpec::Polygons { .. }
                 | GrainSpec::Arch { .. }
                 | GrainSpec::Polyhedra { .. }
@@ -92,7 +92,7 @@ impl Builder<'_> {
         k: usize,
         material: &str,
         grains: &[OneGrain],
-        out: &mut Vec<Seed>,
+        out: &mut Vec<NewBall>,
     ) -> Result<(), InputError> {
         let of = self.material(&format!("grains.{k}.material"), material)?;
         for (g, grain) in grains.iter().enumerate() {
@@ -101,7 +101,7 @@ impl Builder<'_> {
             let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
             let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
             let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-            let mut seed = Seed::still(at, radius, of, Origin::Grain(k, Some(g)));
+            let mut seed = NewBall::at_rest(at, radius, of, Origin::Grain(k, Some(g)));
             (seed.start.velocity, seed.start.spin) = (velocity.into(), spin);
             out.push(seed);
         }
@@ -115,7 +115,7 @@ impl Builder<'_> {
         count: usize,
         radius: (f64, f64),
         [low, high]: [&[f64]; 2],
-    ) -> Result<impl Iterator<Item = Seed> + use<>, InputError> {
+    ) -> Result<impl Iterator<Item = NewBall> + use<>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         for r in [radius.0, radius.1] {
@@ -146,24 +146,25 @@ impl Builder<'_> {
             ));
         }
         let seed = move |(x, r): (Vec<f64>, f64)| {
-            Seed::still(components(&x), r, of, Origin::Grain(k, None))
+            NewBall::at_rest(components(&x), r, of, Origin::Grain(k, None))
         };
         Ok(list.into_iter().map(seed))
     }
 
-    /// The balls of a scene file; adds its walls, if they are wanted.
+    /// Returns the balls of a scene file; adds its walls, if they are requested.
     fn grains_of_scene(
         &mut self,
         k: usize,
         file: &str,
         material: &str,
         walls: Option<&str>,
-    ) -> Result<Vec<Seed>, InputError> {
+    ) -> Result<Vec<NewBall>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), material)?;
         let scene = self.scene_file(&here, file)?;
-        let ball =
-            |(x, r): &(Vec<f64>, f64)| Seed::still(components(x), *r, of, Origin::Grain(k, None));
+        let ball = |(x, r): &(Vec<f64>, f64)| {
+            NewBall::at_rest(components(x), *r, of, Origin::Grain(k, None))
+        };
         let balls = scene.balls.iter().map(ball).collect();
         if let Some(walls) = walls {
             let (m, _) = self.material(&format!("{here}.walls"), walls)?;
@@ -177,7 +178,7 @@ impl Builder<'_> {
     }
 
     /// Adds balls, sorted so that neighbours in space are neighbours in memory.
-    fn add_balls(&mut self, mut balls: Vec<Seed>) {
+    fn add_balls(&mut self, mut balls: Vec<NewBall>) {
         let width = 4.0 * balls.iter().map(|g| g.radius).fold(0.0, f64::max);
         let dimension = self.dimension();
         let cell = |x: &[f64; 3]| -> Vec<i64> {
@@ -193,8 +194,8 @@ impl Builder<'_> {
         }
     }
 
-    /// An angular velocity of the case (rad/s), about the third axis in the plane; zero where it is
-    /// left out.
+    /// Returns an angular velocity of the case (rad/s), in the plane about the third axis; zero
+    /// where it is omitted.
     pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<[f64; 3], InputError> {
         let count = if self.dimension() == 2 { 1 } else { 3 };
         if !values.is_empty() && values.len() != count {
@@ -207,7 +208,8 @@ impl Builder<'_> {
         Ok(self.about_axes(components(values).into()))
     }
 
-    /// An angular velocity about the axes, of numbers of which the first alone counts in the plane.
+    /// Returns an angular velocity about the axes, from numbers of which only the first is used in
+    /// the plane.
     pub(super) fn about_axes(&self, numbers: [f64; 3]) -> [f64; 3] {
         match self.dimension() {
             2 => [0.0, 0.0, numbers[0]],
@@ -215,7 +217,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The corner of a box as a vector; an error if it is missing.
+    /// Returns the corner of a box as a vector; an error if it is missing.
     pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<Vector3<f64>, InputError> {
         if corner.is_empty() {
             return Err(self.source.locate(

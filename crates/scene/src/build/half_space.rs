@@ -8,18 +8,21 @@ use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::assembly::AnySystem;
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_elastic::half_space::{self, Cells, Fills, Grid, HalfSpaceError, Profile, Reach};
+use fretwork_elastic::half_space::{
+    self, CellGrid, Cells, FilledSide, HalfSpaceError, Profile, Reach,
+};
 use std::collections::BTreeMap;
 
-/// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
-/// theta)/theta in a step, and near 1/2 single steps win energy.
+/// Smallest theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
+/// theta)/theta in a step, and near 1/2 single steps gain energy.
 const MIN_THETA: f64 = 0.55;
 
-/// Creepage of one surface over another that may come on top of rolling by one cell a step.
-const MOST_CREEPAGE: f64 = 0.01;
+/// Creepage of one surface over another that is permitted in addition to rolling by one cell per
+/// step.
+const MAX_CREEPAGE: f64 = 0.01;
 
 impl Builder<'_> {
-    /// The half-spaces of the case, in its order.
+    /// Returns the half-spaces of the case, in its order.
     pub(super) fn half_spaces(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
@@ -68,8 +71,8 @@ impl Builder<'_> {
             name: &spec.name,
             material: elasticity,
             fills: match spec.side {
-                Side::Below => Fills::Below,
-                Side::Above => Fills::Above,
+                Side::Below => FilledSide::Below,
+                Side::Above => FilledSide::Above,
             },
             position: self
                 .vector(&format!("{here}.position"), &spec.position)?
@@ -102,7 +105,7 @@ impl Builder<'_> {
         })
     }
 
-    fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Grid, InputError> {
+    fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<CellGrid, InputError> {
         let line = |name: &str, line: &CellSpec| {
             let CellSpec { from, to, size } = *line;
             if !(from.is_finite() && to.is_finite() && to > from) {
@@ -136,7 +139,7 @@ impl Builder<'_> {
                 return Err(self.fail(here, message));
             }
         };
-        Ok(Grid {
+        Ok(CellGrid {
             from: [x.0, y.0],
             size: [x.1, y.1],
             cells: [x.2, y.2],
@@ -161,7 +164,12 @@ impl Builder<'_> {
     }
 
     /// Whether the surface repeats with the period of the case.
-    fn repeats(&self, here: &str, spec: &HalfSpaceSpec, grid: &Grid) -> Result<bool, InputError> {
+    fn repeats(
+        &self,
+        here: &str,
+        spec: &HalfSpaceSpec,
+        grid: &CellGrid,
+    ) -> Result<bool, InputError> {
         let [x, across @ ..] = self.assembly.periodic().period;
         if across.iter().any(Option::is_some) || (self.dimension() == 3 && x.is_some()) {
             let message = "an elastic half-space can repeat along x in two dimensions; take other periods of the case away";
@@ -192,12 +200,12 @@ impl Builder<'_> {
         Ok(out)
     }
 
-    /// A surface that rolls passes no more than a cell in a step.
+    /// Checks that a rolling surface passes at most one cell per step.
     fn check_rolling(
         &self,
         here: &str,
         rolling: &TimeFunction,
-        grid: &Grid,
+        grid: &CellGrid,
     ) -> Result<(), InputError> {
         if let Some(why) = rolling.error() {
             return Err(self.fail(here, why));
@@ -211,8 +219,8 @@ impl Builder<'_> {
             } => amplitude.abs() + offset.abs(),
             TimeFunction::Table(points) => points.iter().fold(0.0, |m, p| p.1.abs().max(m)),
         };
-        // A small creepage on top of a velocity of one cell a step is no matter.
-        if fastest * h > (1.0 + MOST_CREEPAGE) * grid.size[0] {
+        // A small creepage in addition to a velocity of one cell per step is permitted.
+        if fastest * h > (1.0 + MAX_CREEPAGE) * grid.size[0] {
             let message = format!(
                 "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",
                 fastest * h,
@@ -228,7 +236,7 @@ impl Builder<'_> {
         &self,
         here: &str,
         spec: &HalfSpaceSpec,
-        grid: &Grid,
+        grid: &CellGrid,
     ) -> Result<Profile, InputError> {
         let positive = |name: &str, value: f64| {
             if value > 0.0 {

@@ -1,4 +1,4 @@
-//! Shapes that exist in one dimension alone, for a case of either.
+//! Shapes that exist in one dimension only, for a case of either dimension.
 
 use crate::case::Side;
 use fretwork_core::geometry::any_shape::{AnyPart, AnySurface};
@@ -10,10 +10,10 @@ use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use nalgebra::{Vector2, Vector3};
 
-/// Makes a profile from its points, left to right (m).
+/// Creates a profile from its points, left to right (m).
 ///
 /// # Errors
-/// The reason why the points are not a valid profile, or that the dimension has no profiles.
+/// Returns why the points are not a valid profile, or that the dimension has no profiles.
 pub(super) fn profile(
     dimension: usize,
     points: Vec<(f64, f64)>,
@@ -43,11 +43,11 @@ pub(super) fn profile(
     Ok(AnySurface::Plane(Box::new(line)))
 }
 
-/// Makes a height field of so many points along x and y, their distances and heights (m), and along
-/// which axes it repeats.
+/// Creates a height field from the numbers of points along x and y, their distances and heights
+/// (m), and the axes along which it is periodic.
 ///
 /// # Errors
-/// The reason why the heights are not a valid field, or that the dimension has no height fields.
+/// Returns why the heights are not a valid field, or that the dimension has no height fields.
 pub(super) fn height_field(
     dimension: usize,
     points: (usize, usize),

@@ -8,7 +8,7 @@ use fretwork_core::contact::detect::LawTable;
 /// [`Builder::refuse_wide_skin`].
 const MAX_PAIRS: f64 = 2e8;
 /// Limits on the pairs of grains at the start, in total and per grain, see
-/// [`Builder::refuse_piles`].
+/// [`Builder::refuse_overcrowding`].
 const MAX_PAIRS_AT_ALL: usize = 2_000_000;
 const MAX_PAIRS_A_GRAIN: usize = 100;
 
@@ -38,7 +38,7 @@ impl Builder<'_> {
     /// Rejects grains that overlap in large numbers, such as all at one position: they make more
     /// pairs than fit into memory. The test runs before any pair is stored. Grains that only touch
     /// have about twenty neighbours each, whatever their sizes.
-    pub(super) fn refuse_piles(
+    pub(super) fn refuse_overcrowding(
         &self,
         alert: f64,
         skin: f64,
@@ -52,22 +52,22 @@ impl Builder<'_> {
                 skin
             };
         let most = |shapes: usize| MAX_PAIRS_AT_ALL + MAX_PAIRS_A_GRAIN * shapes;
-        let Some(pile) = self.assembly.pile(reach, &most, table) else {
+        let Some(crowded) = self.assembly.overcrowding(reach, &most, table) else {
             return Ok(());
         };
-        let (most, examined) = (most(self.assembly.radii().len()), pile.pairs);
-        let at = pile.at[..self.dimension()].iter();
+        let (most, examined) = (most(self.assembly.radii().len()), crowded.pairs);
+        let at = crowded.at[..self.dimension()].iter();
         let at: Vec<String> = at.map(|x| format!("{x:e}")).collect();
         let message = format!(
             "more than {most} pairs of grains are within reach of each other (up to {examined:.1e}), while grains that \
              touch make about 20 each: {} of them are within {:.1e} m of ({}) m",
-            pile.count,
-            pile.size,
+            crowded.count,
+            crowded.size,
             at.join(", ")
         );
         let origin = self
             .origins
-            .get(pile.body as usize)
+            .get(crowded.body as usize)
             .map_or_else(|| "grains".to_owned(), |o| o.path());
         let fault = ValidationError::new(origin, message).expected(
             "grains beside each other: look for positions that occur twice, radii in another unit, or too large a \

@@ -1,6 +1,6 @@
-//! From text, a reader or a value to a case that was read and checked.
+//! Loading of a case from text, a reader or a value, with all checks.
 
-use super::Loaded;
+use super::LoadedCase;
 use crate::case::Case;
 use crate::material::{InterfaceParameters, Material, MaterialLibrary};
 use crate::recorded::RecordReader;
@@ -13,8 +13,8 @@ use std::path::Path;
 /// Reads a case file and applies `--set`s.
 ///
 /// # Errors
-/// At file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+/// Returns an error with file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     read(Source::read(path)?, path, sets)
 }
 
@@ -22,7 +22,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
 /// and `materials/`, are searched relative to `folder` (an empty path for the working folder).
 ///
 /// # Errors
-/// At name, line and column.
+/// Returns an error with name, line and column.
 ///
 /// # Examples
 /// ```
@@ -44,7 +44,7 @@ pub fn load_text(
     text: &str,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     read(Source::from_text(name, text), &folder.join(name), sets)
 }
 
@@ -57,26 +57,25 @@ pub fn load_reader(
     mut from: impl Read,
     folder: &Path,
     sets: &[String],
-) -> Result<Loaded, InputError> {
+) -> Result<LoadedCase, InputError> {
     let text = source::read_text_from(Path::new(name), &mut from)?;
     load_text(name, &text, folder, sets)
 }
 
-fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     for set in sets {
         source.set::<Case>(set)?;
     }
     let case: Case = source.parse()?;
-    Loaded::checked(source, case, path)
+    LoadedCase::checked(source, case, path)
 }
 
-impl Loaded {
-    /// Checks a case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder).
-    /// Errors give positions in the text from [`Case::to_ron`]. Files are searched as in
-    /// [`load_text`].
+impl LoadedCase {
+    /// Checks a case made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors
+    /// give positions in the text from [`Case::to_ron`]. Files are searched as in [`load_text`].
     ///
     /// # Errors
-    /// The errors of a case file with the same content.
+    /// Returns the errors of a case file with the same content.
     pub fn from_case(case: Case, folder: &Path) -> Result<Self, InputError> {
         let name = "case.ron (built in Rust)";
         let text = case.to_ron()?;
@@ -94,7 +93,7 @@ impl Loaded {
         })
     }
 
-    /// Reads grains of other runs by `reader`.
+    /// Sets the reader of grains of other runs.
     #[must_use]
     pub fn reading_records(self, reader: RecordReader) -> Self {
         Self {
@@ -103,19 +102,20 @@ impl Loaded {
         }
     }
 
-    /// Adds a material, which `materials` of the case finds under `file` before any file of that
-    /// name.
+    /// Adds a material under a file name, which precedes any file with that name when `materials`
+    /// of the case refers to it.
     ///
     /// # Errors
-    /// A material that cannot be written as text.
+    /// The material cannot be written as text.
     pub fn with_material(self, file: &str, material: &Material) -> Result<Self, InputError> {
         self.with_file(file, material)
     }
 
-    /// Adds parameters of laws, which `parameters_from` of an interface finds under `file`.
+    /// Adds parameters of laws under a file name, to which `parameters_from` of an interface
+    /// refers.
     ///
     /// # Errors
-    /// Parameters that cannot be written as text.
+    /// The parameters cannot be written as text.
     pub fn with_parameters(
         self,
         file: &str,

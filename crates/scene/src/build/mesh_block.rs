@@ -1,17 +1,17 @@
-//! Blocks as meshes of deformable bodies: their cells, and sides that are round.
+//! Blocks as meshes of deformable bodies: their cells, and their rounded sides.
 
 use super::Builder;
 use crate::case::{CoarsenSpec, LineSpec, MeshProfileSpec, RoundSpec};
 use crate::source::InputError;
 use fretwork_elastic::AnyMesh;
-use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded};
+use fretwork_elastic::generate::{BlockGrid, Coarsening, GridError, even, graded};
 use fretwork_elastic::mesh::MeshError;
 
-/// Most points of a block along an axis, and at all.
+/// Largest number of points of a block along an axis, and in total.
 const MAX_LINE: f64 = 1e5;
 const MAX_POINTS: usize = 1_000_000;
 
-/// Options of a block besides its lines.
+/// Options of a block in addition to its lines.
 pub(super) struct BlockShape<'a> {
     pub(super) round: Option<&'a RoundSpec>,
     pub(super) profile: Option<&'a MeshProfileSpec>,
@@ -58,7 +58,7 @@ impl Builder<'_> {
         here: &str,
         lines: &[Vec<f64>],
         coarsen: Option<&CoarsenSpec>,
-    ) -> Result<Grid, InputError> {
+    ) -> Result<BlockGrid, InputError> {
         let built = match coarsen {
             None => {
                 let points: usize = lines.iter().map(Vec::len).product();
@@ -68,14 +68,14 @@ impl Builder<'_> {
                     );
                     return Err(self.fail(here, message));
                 }
-                Grid::new(lines)
+                BlockGrid::new(lines)
             }
             Some(CoarsenSpec { from, ratio }) => {
                 let coarsening = Coarsening {
                     from,
                     ratio: *ratio,
                 };
-                Grid::coarsened(lines, &coarsening, MAX_POINTS)
+                BlockGrid::coarsened(lines, &coarsening, MAX_POINTS)
             }
         };
         built.map_err(|error| {
@@ -91,11 +91,11 @@ impl Builder<'_> {
         })
     }
 
-    /// Cuts the cells of a grid whose points are moved.
+    /// Divides the cells of a grid whose points are moved.
     pub(super) fn mapped(
         &self,
         here: &str,
-        grid: &Grid,
+        grid: &BlockGrid,
         map: &dyn Fn([f64; 3]) -> [f64; 3],
     ) -> Result<AnyMesh, InputError> {
         AnyMesh::mapped(self.dimension(), grid, map).map_err(|error| {
@@ -111,8 +111,13 @@ impl Builder<'_> {
         })
     }
 
-    /// Bends a side of a block, and the points behind it less with depth.
-    fn rounded(&self, here: &str, grid: &Grid, round: &RoundSpec) -> Result<AnyMesh, InputError> {
+    /// Rounds a side of a block; the displacement of points behind it decreases with depth.
+    fn rounded(
+        &self,
+        here: &str,
+        grid: &BlockGrid,
+        round: &RoundSpec,
+    ) -> Result<AnyMesh, InputError> {
         let up = self.dimension() - 1;
         let ends: Vec<[f64; 2]> = grid
             .lines()
@@ -156,7 +161,7 @@ impl Builder<'_> {
     }
 }
 
-/// The points of a line, or the field that is wrong and why.
+/// Returns the points of a line, or the invalid field and the reason.
 fn coordinates(line: &LineSpec) -> Result<Vec<f64>, (&'static str, String)> {
     let LineSpec {
         from,

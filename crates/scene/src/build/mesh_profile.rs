@@ -6,20 +6,19 @@ use crate::case::{MeshProfileSpec, ProfileShape};
 use crate::profile_file;
 use crate::source::InputError;
 use fretwork_elastic::AnyMesh;
-use fretwork_elastic::generate::Grid;
+use fretwork_elastic::generate::BlockGrid;
 use std::f64::consts::TAU;
 
-/// Part of the height of a block by which a side may rise or fall.
+/// Fraction of the height of a block by which a side may rise or fall.
 const DEEPEST: f64 = 0.5;
-/// Most points of a rough profile for each of its shortest waves.
+/// Largest number of points of a rough profile per shortest wave.
 const POINTS_A_WAVE: f64 = 16.0;
 
 /// Heights (m) over a flat side.
 enum Heights {
-    /// Amplitude, and lengths along x and y; an infinite one is no wave.
+    /// Amplitude, and lengths along x and y; an infinite length is a factor of 1.
     Wave(f64, [f64; 2]),
-    /// Between the places of a table, of which the last repeats the first where it has a period
-    /// (m).
+    /// Linear interpolation in a table, whose last height repeats the first if it has a period (m).
     Table(Vec<(f64, f64)>),
 }
 
@@ -43,11 +42,12 @@ impl Heights {
 }
 
 impl Builder<'_> {
-    /// Returns a block with a profile on one side; points behind the side move less with depth.
+    /// Returns a block with a profile on one side; the displacement of points behind it decreases
+    /// with depth.
     pub(super) fn profiled(
         &self,
         here: &str,
-        grid: &Grid,
+        grid: &BlockGrid,
         spec: &MeshProfileSpec,
     ) -> Result<AnyMesh, InputError> {
         let (up, lines) = (self.dimension() - 1, grid.lines());

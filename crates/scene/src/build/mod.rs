@@ -28,7 +28,7 @@ pub use load::{load, load_reader, load_text};
 use super::case::Case;
 use super::interfaces;
 use super::material::{Material, MaterialLibrary, Sourced};
-use super::methods::{Demands, Service};
+use super::methods::{SolverRequirements, SolverSupport};
 use super::recorded::{Deformed, RecordReader, ShapedGrain};
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
@@ -47,7 +47,7 @@ use std::path::{Path, PathBuf};
 
 /// A case file that was read and parsed.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedCase {
     /// The text, with `--set` applied.
     pub source: Source,
     /// The parsed case.
@@ -57,7 +57,7 @@ pub struct Loaded {
     /// Reader of grains from the results of other runs; with `None` cases that need it are
     /// rejected.
     pub records: Option<RecordReader>,
-    /// Texts of material and parameter files that the program gives itself, by name.
+    /// Texts of material and parameter files that the program supplies, by name.
     pub(super) own_files: BTreeMap<String, String>,
 }
 
@@ -66,7 +66,7 @@ pub struct Loaded {
 pub struct Built {
     /// The simulation.
     pub simulation: AnySimulation,
-    /// Name and text of the material files that were read.
+    /// Names and texts of the material files that were read.
     pub materials: Vec<(String, String)>,
     /// Densities of the materials, times `inertia_scaling` (kg/m^3).
     pub densities: Vec<f64>,
@@ -76,13 +76,13 @@ pub struct Built {
     pub samples: Vec<String>,
     /// The entry of the case that made each body, by body index.
     pub origins: Vec<Origin>,
-    /// The grains that deform, without load, in the order of their systems.
+    /// The deformable grains, without load, in the order of their systems.
     pub deforming: Vec<ShapedGrain>,
     /// Wear coefficients that follow from the hardness of materials.
     pub wear_coefficients: Vec<WearCoefficient>,
 }
 
-impl Loaded {
+impl LoadedCase {
     /// Builds the scene.
     ///
     /// # Errors
@@ -164,8 +164,8 @@ impl Loaded {
     /// Builds the simulation alone, in the dimension of the case.
     ///
     /// # Errors
-    /// An [`InputError`] with file, line and column; it also says where the case has another
-    /// dimension.
+    /// Creates an [`InputError`] with file, line and column; it also says where the case has
+    /// another dimension.
     pub fn build_in<S: Space>(&self, path: &SearchPath) -> Result<Simulation<S>, InputError> {
         let simulation = self.build(path)?.simulation.into_dimension();
         simulation.map_err(|other| {
@@ -179,7 +179,7 @@ impl Loaded {
         })
     }
 
-    /// Density of a material of the case (kg/m^3), without inertia scaling.
+    /// Returns the density of a material of the case (kg/m^3), without inertia scaling.
     pub fn density(&self, name: &str) -> Option<f64> {
         let materials = self.materials(&self.material_library()).ok()?;
         materials.densities.get(name).map(|d| d.1)
@@ -195,7 +195,7 @@ impl Loaded {
                 Ok(missing) => self.source.locate(
                     ValidationError::new(
                         format!("materials.{name}"),
-                        format!("there is no file `{file}.ron` in {}", missing.looked),
+                        format!("there is no file `{file}.ron` in {}", missing.searched),
                     )
                     .expected(format!("one of {}", missing.available))
                     .nearest(missing.nearest.as_deref()),
@@ -238,9 +238,10 @@ struct Builder<'a> {
     origins: Vec<Origin>,
     /// Descriptions of the samples, for [`Built::samples`].
     samples: Vec<String>,
-    /// Grains that were deformed in a state of another run, by body, with their identity there.
+    /// Grains that were deformed in a state of another run, by body, with their identity in that
+    /// state.
     deformed: BTreeMap<u32, (u64, Deformed)>,
-    /// Grains that deform, for [`Built::deforming`].
+    /// Deformable grains, for [`Built::deforming`].
     deforming: Vec<ShapedGrain>,
 }
 
@@ -258,7 +259,7 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// Dotted path of the entry.
+    /// Returns the dotted path of the entry.
     pub fn path(self) -> String {
         match self {
             Self::Grain(k, None) => format!("grains.{k}"),
@@ -290,7 +291,8 @@ impl Builder<'_> {
         self.case.dimension as usize
     }
 
-    /// A vector of the case, zero where it is left out; in the plane its third component is zero.
+    /// Returns a vector of the case, zero where it is omitted; in the plane its third component is
+    /// zero.
     fn vector(&self, path: &str, values: &[f64]) -> Result<Vector3<f64>, InputError> {
         if values.is_empty() {
             return Ok(Vector3::zeros());
@@ -357,7 +359,7 @@ impl Builder<'_> {
             return Err(self.fail("detection.alert", message));
         }
         self.refuse_wide_skin(alert, skin, largest)?;
-        self.refuse_piles(alert, skin, &table)?;
+        self.refuse_overcrowding(alert, skin, &table)?;
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let wears = self.deformable_wear()?;
@@ -374,8 +376,8 @@ impl Builder<'_> {
             }
         }
         let simulation = built.setup();
-        let service = Demands::of(simulation).service(case.solver.method);
-        if let Service::Refuses(reason) = service {
+        let support = SolverRequirements::of(simulation).support(case.solver.method);
+        if let SolverSupport::Refuses(reason) = support {
             return Err(source.locate(ValidationError::new("solver.method", reason)));
         }
         simulation.set_gravity(gravity.into(), None);
@@ -390,14 +392,14 @@ impl Builder<'_> {
             h: case.time.step,
             theta: case.time.theta,
         };
-        // A scene of springs can be slow: its error is measured by the heat of slip, unless the
-        // case gives a tolerance of its own.
+        // A scene of springs can be slow, so that its error is measured by the heat of slip, unless
+        // the case has its own tolerance.
         let norm = case
             .solver
             .norm
             .unwrap_or(if by_heat { Norm::Power } else { Norm::Balance });
         let tolerance = case.solver.tolerance;
-        options.solver = solve::Options {
+        options.solver = solve::SolverOptions {
             tolerance: tolerance.unwrap_or(norm.default_tolerance()),
             norm,
             max_iterations: case.solver.max_iterations,

@@ -3,7 +3,7 @@
 use super::{Builder, Origin, in_dimension};
 use crate::case::{Coordinates, GrainSpec, OnePolygon};
 use crate::source::InputError;
-use fretwork_core::assembly::{Block, Filling, Start};
+use fretwork_core::assembly::{ConvexBody, InitialState, MaterialDensity};
 use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
 use nalgebra::{Vector2, Vector3};
@@ -48,12 +48,12 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn add_block(&mut self, block: Block, of: Filling, origin: Origin) {
+    pub(super) fn add_block(&mut self, block: ConvexBody, of: MaterialDensity, origin: Origin) {
         self.assembly.add_block(block, of);
         self.origins.push(origin);
     }
 
-    fn one_polygon(&self, here: &str, grain: &OnePolygon) -> Result<Block, InputError> {
+    fn one_polygon(&self, here: &str, grain: &OnePolygon) -> Result<ConvexBody, InputError> {
         let at = self.vector(&format!("{here}.at"), &grain.at)?;
         let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
         let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
@@ -83,9 +83,9 @@ impl Builder<'_> {
             .map(|(x, y)| (c * x - s * y, s * x + c * y))
             .collect();
         let part = self.polygon(here, &turned, grain.rounding)?;
-        let mut block = Block::of(part);
+        let mut block = ConvexBody::of(part);
         let centre = Vector3::from(block.start.position);
-        block.start = Start {
+        block.start = InitialState {
             position: (at + centre).into(),
             rotation: None,
             velocity: velocity.into(),

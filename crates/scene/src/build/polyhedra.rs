@@ -4,7 +4,7 @@ use super::{Builder, Origin, in_dimension};
 use crate::case::{GrainSpec, OnePolyhedron};
 use crate::mesh_file;
 use crate::source::InputError;
-use fretwork_core::assembly::{Block, Start};
+use fretwork_core::assembly::{ConvexBody, InitialState};
 use fretwork_core::geometry::any_shape::AnyPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -28,7 +28,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn one_polyhedron(&self, here: &str, grain: &OnePolyhedron) -> Result<Block, InputError> {
+    fn one_polyhedron(&self, here: &str, grain: &OnePolyhedron) -> Result<ConvexBody, InputError> {
         let at = self.vector(&format!("{here}.at"), &grain.at)?;
         let given = [
             !grain.points.is_empty(),
@@ -50,8 +50,8 @@ impl Builder<'_> {
         };
         let core = self.placed(here, &core, &grain.turned)?;
         let part = self.polyhedron(here, &core, grain.rounding)?;
-        let mut block = Block::of(part);
-        block.start = Start {
+        let mut block = ConvexBody::of(part);
+        block.start = InitialState {
             position: (at + V::from(block.start.position)).into(),
             rotation: None,
             velocity: self
@@ -73,7 +73,7 @@ impl Builder<'_> {
         Polyhedron::new(&points).map_err(|e| bad(e.to_string()))
     }
 
-    /// Makes a cuboid about the origin from the lengths of its edges (m).
+    /// Creates a cuboid about the origin from the lengths of its edges (m).
     pub(super) fn cuboid(
         &self,
         here: &str,

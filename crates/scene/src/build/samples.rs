@@ -1,6 +1,6 @@
 //! Samples that are generated at random, and grains read from tables.
 
-use super::grains::{MAX_GENERATED, MAX_READ, Seed};
+use super::grains::{MAX_GENERATED, MAX_READ, NewBall};
 use super::{Builder, Origin, components};
 use crate::sample::deposit::deposit_between;
 use crate::sample::sizes::Sizes;
@@ -14,7 +14,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &DepositSpec,
-    ) -> Result<Vec<Seed>, InputError> {
+    ) -> Result<Vec<NewBall>, InputError> {
         let here = format!("grains.{k}");
         let of = self.material(&format!("{here}.material"), &spec.material)?;
         let sizes = self.sizes(&format!("{here}.sizes"), &spec.sizes)?;
@@ -56,7 +56,7 @@ impl Builder<'_> {
         ));
         let seeds = deposited.grains.into_iter();
         Ok(seeds
-            .map(|(at, r)| Seed::still(at.into(), r, of, Origin::Grain(k, None)))
+            .map(|(at, r)| NewBall::at_rest(at.into(), r, of, Origin::Grain(k, None)))
             .collect())
     }
 
@@ -128,7 +128,7 @@ impl Builder<'_> {
         &mut self,
         k: usize,
         spec: &CsvSpec,
-    ) -> Result<Vec<Seed>, InputError> {
+    ) -> Result<Vec<NewBall>, InputError> {
         let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
         let place = &["x", "y", "z"][..self.dimension()];
         let moving = &["velocity_x", "velocity_y", "velocity_z"][..self.dimension()];
@@ -155,7 +155,8 @@ impl Builder<'_> {
             if r <= 0.0 {
                 return Err(table.fail(row, format!("a radius must be positive, got {r}")));
             }
-            let mut seed = Seed::still(components(&values(&place)), r, of, Origin::Grain(k, None));
+            let mut seed =
+                NewBall::at_rest(components(&values(&place)), r, of, Origin::Grain(k, None));
             seed.start.velocity = components(&values(&moving)).into();
             seed.start.spin = self.about_axes(components(&values(&turning)).into());
             found.push(seed);

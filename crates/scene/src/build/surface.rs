@@ -124,7 +124,7 @@ impl Builder<'_> {
         Ok(AnySurface::drum(self.dimension(), radius, axis))
     }
 
-    /// Points of a profile, from the case or from a file.
+    /// Returns the points of a profile, from the case or from a file.
     fn profile_points(
         &self,
         here: &str,
@@ -142,7 +142,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A random profile over one period.
+    /// Returns a random profile over one period.
     fn rough_profile(
         &self,
         here: &str,
@@ -166,7 +166,7 @@ impl Builder<'_> {
             .map_err(|why| self.fail(here, why))
     }
 
-    /// Random heights at equal distances over a period (m).
+    /// Returns random heights at equal distances over a period (m).
     pub(super) fn rough_heights(
         &self,
         here: &str,
@@ -193,7 +193,7 @@ impl Builder<'_> {
         }
         let longest = longest.unwrap_or(period);
         self.few_terms(here, points, period, (longest, shortest))?;
-        // A seed of its own for each body: rail and wheel must not be mirror images.
+        // Each body has its own seed: rail and wheel must not be mirror images.
         let salt = here
             .bytes()
             .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
@@ -203,7 +203,7 @@ impl Builder<'_> {
         ))
     }
 
-    /// A field of given heights, or of random ones of a standard deviation.
+    /// Creates a field of given heights, or of random heights with a standard deviation.
     fn height_field(
         &self,
         here: &str,
@@ -281,7 +281,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Makes a profile from its points; one that spans the period is periodic.
+    /// Creates a profile from its points; one that spans the period is periodic.
     fn chain(
         &self,
         here: &str,

@@ -3,7 +3,7 @@
 use super::{Builder, Origin, components};
 use crate::case::{GrainSpec, ShapeSpec};
 use crate::source::{self, InputError, ValidationError};
-use fretwork_core::assembly::{AnyUnion, Start, Weight};
+use fretwork_core::assembly::{AnyUnion, InitialState, MassProperties};
 use std::f64::consts::PI;
 
 impl Builder<'_> {
@@ -90,8 +90,8 @@ impl Builder<'_> {
         Ok(cluster.1.iter().map(ball).collect())
     }
 
-    /// Makes the balls of a plate with a hole, so close that no grain of their size passes between
-    /// them.
+    /// Returns the balls of a plate with a hole, so close that no grain of their size passes
+    /// between them.
     fn plate(
         &self,
         here: &str,
@@ -146,14 +146,15 @@ impl Builder<'_> {
                     let message = "a grain is made of Balls, Polygon, Capsule, Polyhedron, Box or Cluster; a surface belongs to a first body";
                     return Err(self.fail(format!("{here}.shapes"), message));
                 }
-                let start = Start {
+                let start = InitialState {
                     position: at.into(),
                     rotation: None,
                     velocity: velocity.into(),
                     spin,
                 };
-                let weight = Weight::Grain(density);
-                self.assembly.add_union(union, weight, material, &start);
+                let mass_properties = MassProperties::Grain(density);
+                self.assembly
+                    .add_union(union, mass_properties, material, &start);
                 self.origins.push(Origin::Grain(k, Some(g)));
             }
         }

@@ -1,4 +1,4 @@
-//! Set-up of the surfaces that wear, with checks that a wear law can act on them.
+//! Setup of the surfaces that wear, with checks that a wear law can act on them.
 
 use super::Builder;
 use crate::case::{BodySpec, CellTouch, InterfaceSpec, TouchSpec, WearSpec};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 /// Wear of a deformable body, from the case.
 pub(super) struct DeformableWear {
-    /// Place in the case.
+    /// Path in the case.
     here: String,
     name: String,
     wears: WearSpec,
@@ -47,7 +47,8 @@ impl DeformableWear {
     }
 }
 
-/// The first place of an outline that does not face the side that most of it faces, up or down.
+/// Returns the first position of an outline that does not face the side that most of it faces, up
+/// or down.
 fn wall(dimension: usize, outline: &[Vec<[f64; 3]>]) -> Option<Vector3<f64>> {
     let facing = |face: &[[f64; 3]]| {
         if dimension == 2 {
@@ -73,7 +74,7 @@ fn wall(dimension: usize, outline: &[Vec<[f64; 3]>]) -> Option<Vector3<f64>> {
 }
 
 impl Builder<'_> {
-    /// Makes the scars of a body whose surfaces begin at index `first` of the list.
+    /// Adds the scars of a body whose surfaces begin at index `first` of the list.
     pub(super) fn wears(
         &mut self,
         here: &str,
@@ -251,8 +252,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Whether a body can slide relative to a body that an interface pairs it with; false if all
-    /// are held in all degrees of freedom at all times.
+    /// Returns whether a body can slide relative to a body with which it has an interface; false if
+    /// all are held in all degrees of freedom at all times.
     fn slips(&self, body: &BodySpec, law: &InterfaceSpec) -> bool {
         let other = if law.between.0 == body.material {
             &law.between.1

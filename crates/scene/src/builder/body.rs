@@ -28,7 +28,8 @@ drives! {
 }
 
 impl BodySpec {
-    /// A first body at the origin that does not move, of one shape; more by [`BodySpec::shape`].
+    /// Creates a first body at the origin that does not move, of one shape; more shapes by
+    /// [`BodySpec::shape`].
     ///
     /// # Examples
     /// ```
@@ -57,28 +58,28 @@ impl BodySpec {
         }
     }
 
-    /// With one shape more.
+    /// Adds a shape.
     #[must_use]
     pub fn shape(mut self, shape: ShapeSpec) -> Self {
         self.shapes.push(shape);
         self
     }
 
-    /// Position of its frame (m).
+    /// Sets the position of the frame (m).
     #[must_use]
     pub fn position(mut self, position: impl Into<Vec<f64>>) -> Self {
         self.position = position.into();
         self
     }
 
-    /// Mass (kg; 2D kg/m), in place of that of its density and volume.
+    /// Sets the mass (kg; 2D kg/m), which replaces that from density and volume.
     #[must_use]
     pub fn mass(mut self, mass: f64) -> Self {
         self.mass = Some(mass);
         self
     }
 
-    /// Moment of inertia (kg m^2; 2D kg m), in place of that of its density and shape.
+    /// Sets the moment of inertia (kg m^2; 2D kg m), which replaces that from density and shape.
     #[must_use]
     pub fn inertia(mut self, inertia: f64) -> Self {
         self.inertia = Some(inertia);
@@ -96,7 +97,7 @@ impl BodySpec {
         self
     }
 
-    /// Lets the body move freely: every degree of freedom under its contacts, gravity and inertia.
+    /// Lets the body move freely: every degree of freedom follows contacts, gravity and inertia.
     #[must_use]
     pub fn free(mut self) -> Self {
         self.dofs = DofSpec {

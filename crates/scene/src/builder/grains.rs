@@ -1,9 +1,9 @@
-//! Grains made in Rust; kinds that are not here are written as the variants of [`GrainSpec`].
+//! Grains made in Rust; kinds without a function here are written as variants of [`GrainSpec`].
 
 use crate::case::{GrainSpec, OneGrain, OnePolygon, OnePolyhedron};
 
 impl GrainSpec {
-    /// Balls, one by one.
+    /// Creates balls, one by one.
     pub fn balls(material: impl Into<String>, grains: impl IntoIterator<Item = OneGrain>) -> Self {
         Self::List {
             material: material.into(),
@@ -11,8 +11,8 @@ impl GrainSpec {
         }
     }
 
-    /// A hexagonal (2D) or cubic (3D) lattice that fills a box from its low corner (m) up: at most
-    /// `count` balls, radii (m) drawn uniformly between two.
+    /// Creates a hexagonal (2D) or cubic (3D) lattice that fills a box from its low corner (m) up:
+    /// at most `count` balls, with radii (m) distributed uniformly between two values.
     pub fn lattice(
         material: impl Into<String>,
         count: usize,
@@ -29,7 +29,7 @@ impl GrainSpec {
         }
     }
 
-    /// Convex polygons, one by one (2D).
+    /// Creates convex polygons, one by one (2D).
     pub fn polygons(
         material: impl Into<String>,
         grains: impl IntoIterator<Item = OnePolygon>,
@@ -40,7 +40,7 @@ impl GrainSpec {
         }
     }
 
-    /// Convex polyhedra, one by one (3D).
+    /// Creates convex polyhedra, one by one (3D).
     pub fn polyhedra(
         material: impl Into<String>,
         grains: impl IntoIterator<Item = OnePolyhedron>,
@@ -63,14 +63,14 @@ impl OneGrain {
         }
     }
 
-    /// With a velocity (m/s).
+    /// Sets the velocity (m/s).
     #[must_use]
     pub fn velocity(mut self, velocity: impl Into<Vec<f64>>) -> Self {
         self.velocity = velocity.into();
         self
     }
 
-    /// With an angular velocity (rad/s): one number in 2D, three in 3D.
+    /// Sets the angular velocity (rad/s): one number in 2D, three in 3D.
     #[must_use]
     pub fn spin(mut self, spin: impl Into<Vec<f64>>) -> Self {
         self.spin = spin.into();
@@ -79,7 +79,7 @@ impl OneGrain {
 }
 
 impl OnePolygon {
-    /// A polygon at rest by its corners (m), against the clock, about a place (m).
+    /// Creates a polygon at rest from its corners (m), anticlockwise, relative to a position (m).
     pub fn new(at: impl Into<Vec<f64>>, points: impl Into<Vec<(f64, f64)>>) -> Self {
         Self {
             at: at.into(),
@@ -92,7 +92,7 @@ impl OnePolygon {
         }
     }
 
-    /// A regular polygon at rest: its number of sides and circumscribed radius (m).
+    /// Creates a regular polygon at rest from its number of sides and circumscribed radius (m).
     pub fn regular(at: impl Into<Vec<f64>>, sides: usize, radius: f64) -> Self {
         Self {
             regular: Some((sides, radius)),
@@ -102,7 +102,7 @@ impl OnePolygon {
 }
 
 impl OnePolyhedron {
-    /// A polyhedron at rest, the hull of its corners (m) about a place (m).
+    /// Creates a polyhedron at rest, the hull of its corners (m) relative to a position (m).
     pub fn new(at: impl Into<Vec<f64>>, points: impl Into<Vec<(f64, f64, f64)>>) -> Self {
         Self {
             at: at.into(),
@@ -117,7 +117,7 @@ impl OnePolyhedron {
         }
     }
 
-    /// A cuboid at rest by its centre and the lengths of its edges (m).
+    /// Creates a cuboid at rest from its centre and the lengths of its edges (m).
     pub fn cuboid(at: impl Into<Vec<f64>>, size: (f64, f64, f64)) -> Self {
         Self {
             size: Some(size),

@@ -2,20 +2,20 @@
 
 use crate::case::slots::BySlot;
 use crate::case::{InterfaceSpec, SlotValues};
-use crate::material::Given;
+use crate::material::NumberSpec;
 use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use std::collections::BTreeMap;
 
-fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, Given> {
+fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, NumberSpec> {
     let given = parameters.iter();
     given
-        .map(|(name, value)| ((*name).to_owned(), Given::from(*value)))
+        .map(|(name, value)| ((*name).to_owned(), NumberSpec::from(*value)))
         .collect()
 }
 
 impl InterfaceSpec {
-    /// An interface between two materials, by their names in the case, with a contact law and its
-    /// parameters in the units of the law (SI). `fretwork law show contact/NAME` lists the
+    /// Creates an interface between two materials, by their names in the case, with a contact law
+    /// and its parameters in the units of the law (SI). `fretwork law show contact/NAME` lists the
     /// parameters and their ranges.
     pub fn new(
         name: impl Into<String>,
@@ -38,7 +38,7 @@ impl InterfaceSpec {
         spec.with(Kind::CONTACT, contact, parameters)
     }
 
-    /// With a law of a kind and its parameters in the law's units.
+    /// Adds a law of a kind with its parameters in the law's units.
     #[must_use]
     pub fn with(mut self, kind: Kind, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
         self.laws.set(kind, law.into());
@@ -48,32 +48,32 @@ impl InterfaceSpec {
         self
     }
 
-    /// With a cohesion law and its parameters in the law's units.
+    /// Adds a cohesion law with its parameters in the law's units.
     #[must_use]
     pub fn cohesion(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
         self.with(Kind::COHESION, law, parameters)
     }
 
-    /// With a damage law and its parameters in the law's units.
+    /// Adds a damage law with its parameters in the law's units.
     #[must_use]
     pub fn damage(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
         self.with(Kind::DAMAGE, law, parameters)
     }
 
-    /// With a wear law and its parameters in the law's units.
+    /// Adds a wear law with its parameters in the law's units.
     #[must_use]
     pub fn wear(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
         self.with(Kind::WEAR, law, parameters)
     }
 
-    /// When bonds are made; at the first step by default.
+    /// Sets when bonds form; at the first step by default.
     #[must_use]
     pub fn bonds(mut self, rule: BondRule) -> Self {
         self.bonds = rule;
         self
     }
 
-    /// Largest gap at which a bond is made (m); the alert distance by default.
+    /// Sets the largest gap at which a bond forms (m); the alert distance by default.
     #[must_use]
     pub fn bonds_within(mut self, gap: f64) -> Self {
         self.bonds_within = Some(gap);
@@ -87,7 +87,8 @@ impl InterfaceSpec {
         self
     }
 
-    /// Factor of the contact's area, see [`AreaRule`](fretwork_core::laws::AreaRule); 1 by default.
+    /// Sets the factor of the contact's area, see [`AreaRule`](fretwork_core::laws::AreaRule); 1 by
+    /// default.
     #[must_use]
     pub fn area_factor(mut self, factor: f64) -> Self {
         self.area_factor = factor;

@@ -9,7 +9,7 @@ mod grains;
 mod interface;
 mod shapes;
 
-use crate::build::{Built, Loaded};
+use crate::build::{Built, LoadedCase};
 use crate::case::HeatSpec;
 use crate::case::{
     AccuracySpec, BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec,
@@ -23,8 +23,8 @@ use std::path::PathBuf;
 /// Builds a [`Case`] in two or three dimensions, and from it a simulation.
 ///
 /// # Examples
-/// A ball rests on a plane; both have a material defined here. The laws come from the search path;
-/// the crate `fretwork` has one with all shipped laws,
+/// In the example a ball rests on a plane; both have a material defined there. The laws come from
+/// the search path; the crate `fretwork` has one with all shipped laws,
 /// `fretwork::shipped::search_path()`.
 /// ```
 /// use fretwork_scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
@@ -53,13 +53,13 @@ pub struct CaseBuilder {
 }
 
 impl CaseBuilder {
-    /// A case of two dimensions with a title and nothing in it: it still needs its
-    /// [time](Self::time), materials and bodies.
+    /// Creates an empty case of two dimensions with a title: it still needs its [time](Self::time),
+    /// materials and bodies.
     pub fn in_plane(name: impl Into<String>) -> Self {
         Self::new(name.into(), 2)
     }
 
-    /// A case of three dimensions with a title and nothing in it; see [`Self::in_plane`].
+    /// Creates an empty case of three dimensions with a title; see [`Self::in_plane`].
     pub fn in_space(name: impl Into<String>) -> Self {
         Self::new(name.into(), 3)
     }
@@ -122,50 +122,50 @@ impl CaseBuilder {
         self
     }
 
-    /// Computes heat, and electric current where it has a circuit.
+    /// Computes heat, and electric current if there is a circuit.
     #[must_use]
     pub fn heat(mut self, heat: HeatSpec) -> Self {
         self.case.heat = Some(heat);
         self
     }
 
-    /// Acceleration of gravity (m/s^2), one number an axis; none by default.
+    /// Sets the acceleration of gravity (m/s^2), one number per axis; none by default.
     #[must_use]
     pub fn gravity(mut self, gravity: impl Into<Vec<f64>>) -> Self {
         self.case.gravity = gravity.into();
         self
     }
 
-    /// Lengths of the periodic cell along x, y and z (m); not periodic by default.
+    /// Sets the lengths of the periodic cell along x, y and z (m); not periodic by default.
     #[must_use]
     pub fn periodic(mut self, [x, y, z]: [Option<f64>; 3]) -> Self {
         self.case.periodic = PeriodicSpec { x, y, z };
         self
     }
 
-    /// Seed of everything random; 0 by default.
+    /// Sets the seed of all random numbers; 0 by default.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.case.seed = seed;
         self
     }
 
-    /// Options of the solver.
+    /// Sets the options of the solver.
     #[must_use]
     pub fn solver(mut self, solver: SolverSpec) -> Self {
         self.case.solver = solver;
         self
     }
 
-    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built
-    /// in, such as `rail_steel_r260`.
+    /// Adds a material from the file `FILE.ron` in a folder `materials`, or from the built-in ones,
+    /// such as `rail_steel_r260`.
     #[must_use]
     pub fn material(mut self, name: impl Into<String>, file: impl Into<String>) -> Self {
         self.case.materials.insert(name.into(), file.into());
         self
     }
 
-    /// A material of the case by its density (kg/m^3) and where that number comes from.
+    /// Adds a material by its density (kg/m^3) and the source of that number.
     #[must_use]
     pub fn own_material(
         mut self,
@@ -203,21 +203,21 @@ impl CaseBuilder {
         self
     }
 
-    /// Grains.
+    /// Adds grains.
     #[must_use]
     pub fn grains(mut self, grains: GrainSpec) -> Self {
         self.case.grains.push(grains);
         self
     }
 
-    /// Anything else that a case holds: phases, measures, detection, output.
+    /// Changes any other part of the case: phases, measures, detection, output.
     #[must_use]
     pub fn change(mut self, change: impl FnOnce(&mut Case)) -> Self {
         change(&mut self.case);
         self
     }
 
-    /// The folder relative to which files that the case names are found; the working folder by
+    /// Sets the folder to which paths of files in the case are relative; the working folder by
     /// default.
     #[must_use]
     pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
@@ -234,9 +234,9 @@ impl CaseBuilder {
     /// Checks the case, as if it had been read from a file.
     ///
     /// # Errors
-    /// The errors of [`Loaded::from_case`].
-    pub fn load(self) -> Result<Loaded, InputError> {
-        let mut loaded = Loaded::from_case(self.case, &self.folder)?;
+    /// The errors of [`LoadedCase::from_case`].
+    pub fn load(self) -> Result<LoadedCase, InputError> {
+        let mut loaded = LoadedCase::from_case(self.case, &self.folder)?;
         for (name, material) in &self.materials {
             loaded = loaded.with_material(name, material)?;
         }
@@ -246,7 +246,7 @@ impl CaseBuilder {
     /// Checks the case and builds its simulation with the laws of a search path.
     ///
     /// # Errors
-    /// The errors of a case file with the same content: laws and materials that are not
+    /// Returns the errors of a case file with the same content: laws and materials that are not
     /// found, parameters out of range, bodies that overlap.
     pub fn build(self, laws: &SearchPath) -> Result<Built, InputError> {
         self.load()?.build(laws)

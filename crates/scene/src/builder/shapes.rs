@@ -1,10 +1,10 @@
-//! Shapes of first bodies made in Rust; those that are not here are written as the variants of
+//! Shapes of first bodies made in Rust; shapes without a function here are written as variants of
 //! [`ShapeSpec`].
 
 use crate::case::{Coordinates, ShapeSpec, Side};
 
 impl ShapeSpec {
-    /// Solid behind a plane with an outward normal, through a point (m).
+    /// Creates a half-space, solid behind a plane with an outward normal, through a point (m).
     pub fn half_space(normal: impl Into<Vec<f64>>, at: impl Into<Vec<f64>>) -> Self {
         Self::HalfSpace {
             normal: normal.into(),
@@ -12,7 +12,7 @@ impl ShapeSpec {
         }
     }
 
-    /// Balls that move together: centres in the body's frame and radii (m).
+    /// Creates balls that move together, from centres in the body's frame and radii (m).
     pub fn balls<C: Into<Vec<f64>>>(balls: impl IntoIterator<Item = (C, f64)>) -> Self {
         let balls = balls.into_iter();
         Self::Balls(
@@ -22,7 +22,7 @@ impl ShapeSpec {
         )
     }
 
-    /// A convex polygon (2D) by its corners (m), against the clock.
+    /// Creates a convex polygon (2D) from its corners (m), anticlockwise.
     pub fn polygon(points: impl Into<Vec<(f64, f64)>>) -> Self {
         Self::Polygon {
             points: points.into(),
@@ -30,8 +30,8 @@ impl ShapeSpec {
         }
     }
 
-    /// A profile (2D) by its points (m) from left to right, and the side of it on which the solid
-    /// is.
+    /// Creates a profile (2D) from its points (m) from left to right, and the side on which the
+    /// solid is.
     pub fn profile(points: impl Into<Vec<(f64, f64)>>, side: Side) -> Self {
         Self::Profile {
             points: points.into(),
@@ -40,7 +40,7 @@ impl ShapeSpec {
         }
     }
 
-    /// A convex polyhedron (3D) by its corners (m), in any order.
+    /// Creates a convex polyhedron (3D) from its corners (m), in any order.
     pub fn polyhedron(points: impl Into<Vec<(f64, f64, f64)>>) -> Self {
         Self::Polyhedron {
             points: points.into(),
@@ -48,7 +48,8 @@ impl ShapeSpec {
         }
     }
 
-    /// A cuboid (3D) about the origin of the body's frame, by the lengths of its edges (m).
+    /// Creates a cuboid (3D) about the origin of the body's frame, from the lengths of its edges
+    /// (m).
     pub fn cuboid(x: f64, y: f64, z: f64) -> Self {
         Self::Box {
             size: (x, y, z),
@@ -58,7 +59,7 @@ impl ShapeSpec {
         }
     }
 
-    /// All that is within a radius (m) of the segment between two points (m).
+    /// Creates a capsule: all points within a radius (m) of the segment between two points (m).
     pub fn capsule(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>, radius: f64) -> Self {
         Self::Capsule {
             from: Coordinates(from.into()),

@@ -1,13 +1,13 @@
-//! Accuracy that a run is asked for: it then chooses step and tolerance itself.
+//! Requested accuracy of a run, which then chooses step and tolerance itself.
 
 use serde::de::{MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// The result whose error is to stay below a share of it.
+/// Result whose relative error is bounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum AccurateResult {
-    /// The friction coefficient of the friction test; in a case without one the energy of friction,
-    /// or forces where nothing is driven.
+    /// Friction coefficient of the friction test; in a case without one the energy of friction, or
+    /// forces where nothing is driven.
     #[default]
     Friction,
     /// Forces of contacts: for scenes that are at rest or come to rest.
@@ -20,9 +20,9 @@ pub enum AccurateResult {
     Wear,
 }
 
-/// The accuracy asked for, and the bounds within which the run chooses its settings.
-/// `solver.tolerance` is the coarsest one; `time.step` is the coarsest one where bodies move, and
-/// grows where nothing does. A share alone stands for the struct with it: `accuracy: 0.03`.
+/// Requested accuracy, and the bounds within which the run chooses its settings. `solver.tolerance`
+/// is the coarsest tolerance; `time.step` is the longest step where bodies move, and longer steps
+/// are used where nothing moves. A number alone is the share: `accuracy: 0.03`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AccuracySpec {
     /// Share of the result by which step and tolerance together may change it.
@@ -39,25 +39,24 @@ pub struct AccuracySpec {
     /// Smallest tolerance; 1/256 of the case's by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_tolerance: Option<f64>,
-    /// Share of the cost of the run that may go into the repeated steps by which it measures its
-    /// error.
+    /// Share of the cost of the run that repeated steps may take, by which it measures its error.
     pub effort: f64,
 }
 
 impl AccuracySpec {
-    /// Largest step (s) where nothing moves, of a case with this `time.step`.
+    /// Returns the largest step (s) where nothing moves, for a case with this `time.step`.
     pub fn largest(&self, step: f64) -> f64 {
         self.largest_step.unwrap_or(LARGEST * step)
     }
 }
 
-/// Largest step over that of the case, if nothing is said.
+/// Default ratio of the largest step to that of the case.
 const LARGEST: f64 = 100.0;
 
-/// The fields of [`AccuracySpec`] as a case gives them.
+/// Fields of [`AccuracySpec`] as a case gives them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename = "AccuracySpec")]
-struct Fields {
+struct AccuracyFields {
     #[serde(default = "share")]
     share: f64,
     #[serde(default)]
@@ -80,8 +79,8 @@ fn effort() -> f64 {
     0.2
 }
 
-impl From<Fields> for AccuracySpec {
-    fn from(fields: Fields) -> Self {
+impl From<AccuracyFields> for AccuracySpec {
+    fn from(fields: AccuracyFields) -> Self {
         Self {
             share: fields.share,
             of: fields.of,
@@ -124,7 +123,7 @@ impl<'de> Deserialize<'de> for AccuracySpec {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AccuracySpec, A::Error> {
-                Fields::deserialize(MapAccessDeserializer::new(map)).map(AccuracySpec::from)
+                AccuracyFields::deserialize(MapAccessDeserializer::new(map)).map(AccuracySpec::from)
             }
         }
 

@@ -15,12 +15,12 @@ pub struct ElasticSpec {
     pub name: String,
     /// Name of its material in this case; its file has the properties `young` and `poisson`.
     pub material: String,
-    /// Its mesh.
+    /// Mesh of the body.
     pub mesh: MeshSpec,
-    /// How its strain is measured; in small strain by default.
+    /// Measure of strain; small strain by default.
     #[serde(default)]
     pub strain: Strain,
-    /// Where the origin of the mesh is (m); the origin by default.
+    /// Position of the origin of the mesh (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
     /// Velocity at the start (m/s); at rest by default.
@@ -30,20 +30,20 @@ pub struct ElasticSpec {
     /// not in small strain.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
-    /// What holds and drives it.
+    /// Supports and drives of parts of the boundary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub supports: Vec<SupportSpec>,
-    /// What of it touches: `Surface("top")` or `Points("bottom")`; nothing by default.
+    /// Contact surface: `Surface("top")` or `Points("bottom")`; none by default.
     #[serde(default)]
     pub touches: TouchSpec,
-    /// Whether what touches as a surface recedes as it wears; it does not by default.
+    /// Wear of the contact surface; it does not recede by default.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub wears: Option<WearSpec>,
-    /// Its damping; none by default.
+    /// Damping of the body; none by default.
     #[serde(default)]
     pub damping: Rayleigh,
 }
@@ -80,7 +80,7 @@ pub enum MeshSpec {
             skip_serializing_if = "Option::is_none"
         )]
         profile: Option<Box<MeshProfileSpec>>,
-        /// Cells that double along the side, too, as they grow with the distance from it.
+        /// Cells that join along the side too as their height grows with the distance from it.
         #[serde(
             default,
             deserialize_with = "some",
@@ -93,7 +93,7 @@ pub enum MeshSpec {
     Gmsh {
         /// The file, beside the case.
         file: String,
-        /// Length of its unit (m).
+        /// Length of the unit of the file (m).
         #[serde(default = "one")]
         scale: f64,
     },
@@ -109,15 +109,15 @@ pub struct LineSpec {
     pub to: f64,
     /// Size of an element.
     pub size: f64,
-    /// Where elements have this size: from the first to the second of these; beyond they grow.
-    /// Everywhere by default.
+    /// Range of coordinates where elements have this size; outside they grow. Everywhere by
+    /// default.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub fine: Option<(f64, f64)>,
-    /// Ratio of the sizes of neighbours where they grow.
+    /// Ratio of the sizes of neighbouring elements where they grow.
     #[serde(default = "growth")]
     pub growth: f64,
 }
@@ -128,7 +128,7 @@ pub struct LineSpec {
 pub struct CoarsenSpec {
     /// The side, of which all cells are kept.
     pub from: String,
-    /// A pair joins where it is no wider than this many times the height of its row.
+    /// Largest ratio of the width of a joined pair to the height of its row.
     #[serde(default = "one")]
     pub ratio: f64,
 }
@@ -142,7 +142,7 @@ pub struct RoundSpec {
     pub side: String,
     /// Radius (m).
     pub radius: f64,
-    /// Whether a side in 3D is that of a cylinder along y, and not of a sphere.
+    /// Whether the side in 3D is part of a cylinder along y instead of a sphere.
     #[serde(default)]
     pub cylinder: bool,
 }
@@ -153,7 +153,7 @@ pub struct RoundSpec {
 pub struct MeshProfileSpec {
     /// `top` or `bottom`.
     pub side: String,
-    /// Its heights, outward.
+    /// Heights of the side, outward.
     pub shape: ProfileShape,
 }
 
@@ -163,12 +163,12 @@ pub struct MeshProfileSpec {
 pub enum ProfileShape {
     /// A wave with a crest at the origin of the mesh.
     Wave {
-        /// Its amplitude (m).
+        /// Amplitude of the wave (m).
         amplitude: f64,
-        /// Its length along x (m).
+        /// Wavelength along x (m).
         #[serde(default = "straight")]
         x: f64,
-        /// Its length along y (3D, m): a product of both waves.
+        /// Wavelength along y (3D, m): the surface is a product of both waves.
         #[serde(default = "straight")]
         y: f64,
     },
@@ -189,36 +189,36 @@ pub enum ProfileShape {
         /// Shortest wave (m).
         shortest: f64,
     },
-    /// A table of places `x` and heights `z` (m), straight between them (2D): a measured profile,
-    /// or one that a run wrote.
+    /// A table of positions `x` and heights `z` (m), with linear interpolation (2D): a measured
+    /// profile, or one that a run wrote.
     Table {
         /// The file, beside the case.
         file: String,
     },
 }
 
-/// A part of the boundary in a holder that does not turn, see [`fretwork_elastic::Support`].
+/// A part of the boundary in a holder that does not rotate, see [`fretwork_elastic::Support`].
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// Name of the part.
     pub part: String,
-    /// Along x: `Free` as one, `Fixed`, `Velocity(...)`, `Displacement(...)` or `Force(...)`; left
-    /// to its points by default.
+    /// Drive along x: `Free` as a whole, `Fixed`, `Velocity(...)`, `Displacement(...)` or
+    /// `Force(...)`; by default each point moves by itself.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub x: Option<Dof>,
-    /// Along y.
+    /// Drive along y.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub y: Option<Dof>,
-    /// Along z (3D).
+    /// Drive along z (3D).
     #[serde(
         default,
         deserialize_with = "some",
@@ -227,12 +227,12 @@ pub struct SupportSpec {
     pub z: Option<Dof>,
 }
 
-/// What of a deformable body touches. Where two such bodies meet, one of them touches by its
+/// Contact surface of a deformable body. Where two such bodies meet, one of them must touch by its
 /// points.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum TouchSpec {
-    /// Nothing.
+    /// The body does not touch.
     #[default]
     Nothing,
     /// The points of a part: against balls, pieces and surfaces.
@@ -241,7 +241,7 @@ pub enum TouchSpec {
     Surface(String),
 }
 
-/// Takes a value without `Some(...)` around it.
+/// Deserializes a value without `Some(...)` around it.
 pub(super) fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     from: D,
 ) -> Result<Option<T>, D::Error> {

@@ -133,10 +133,10 @@ pub enum Edges {
 pub struct OnePolygon {
     /// Position of the origin of its corners (m).
     pub at: Vec<f64>,
-    /// Corners (m), against the clock.
+    /// Corners (m), anticlockwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<(f64, f64)>,
-    /// Sides and circumscribed radius (m) of a regular polygon, in place of points.
+    /// Number of sides and circumscribed radius (m) of a regular polygon, instead of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regular: Option<(usize, f64)>,
     /// Rounding radius of the corners (m).
@@ -153,7 +153,7 @@ pub struct OnePolygon {
     pub spin: Vec<f64>,
 }
 
-/// One polyhedron: a cuboid, the hull of its corners, or that of a mesh.
+/// One polyhedron: a cuboid, the hull of its corners, or the hull of a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolyhedron {
@@ -162,16 +162,16 @@ pub struct OnePolyhedron {
     /// Corners (m), in any order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<(f64, f64, f64)>,
-    /// Lengths of the edges of a cuboid (m), in place of points.
+    /// Lengths of the edges of a cuboid (m), instead of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<(f64, f64, f64)>,
-    /// An STL or OBJ file beside the case whose hull it is, in place of points.
+    /// An STL or OBJ file, relative to the case, whose hull is used instead of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Factor on the lengths in the file.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Rotation vector (rad) by which the corners are turned about their origin.
+    /// Rotation vector (rad) by which the corners are rotated about their origin.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub turned: Vec<f64>,
     /// Rounding radius of the edges (m).
@@ -191,7 +191,7 @@ pub struct OnePolyhedron {
 pub struct OneCluster {
     /// Position of the origin of its shapes (m).
     pub at: Vec<f64>,
-    /// Balls and convex shapes; overlaps of them count twice in the mass.
+    /// Balls and convex shapes; overlaps count twice in the mass.
     pub shapes: Vec<ShapeSpec>,
     /// Velocity of its centre of mass (m/s).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -5,9 +5,9 @@ use super::{Side, WearSpec};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use serde::{Deserialize, Serialize};
 
-/// A body that is large against what touches it: its surface deforms as that of a half-space, at
-/// once and without inertia. Young's modulus and Poisson's ratio are those of its material; in 2D
-/// the strain is plane.
+/// A body that is large compared with its contacts: its surface deforms as that of a half-space,
+/// instantaneously and without inertia. Young's modulus and Poisson's ratio are those of its
+/// material; in 2D the strain is plane.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfSpaceSpec {
@@ -15,52 +15,53 @@ pub struct HalfSpaceSpec {
     pub name: String,
     /// Name of its material in this case; its file has the properties `young` and `poisson`.
     pub material: String,
-    /// Which side of its surface is solid.
+    /// Side of the surface that is solid.
     #[serde(default = "below")]
     pub side: Side,
-    /// Where the origin of its surface is (m); the origin by default.
+    /// Position of the origin of the surface (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
-    /// The cells of its surface along x.
+    /// Cells of the surface along x.
     pub x: CellSpec,
-    /// Those along y (3D).
+    /// Cells of the surface along y (3D).
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub y: Option<CellSpec>,
-    /// Depth below a load at which the displacement is zero (m): needed in 2D and where the cells
-    /// repeat; in 3D it is infinite.
+    /// Depth below a load at which the displacement is zero (m): required in 2D and where the cells
+    /// are periodic; infinite in 3D.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub depth: Option<f64>,
-    /// Whether the cells and their loads repeat along the surface; with them the surface itself,
-    /// where the case is periodic along x.
+    /// Whether the cells and their loads are periodic along the surface; the surface itself is,
+    /// too, where the case is periodic along x.
     #[serde(default)]
     pub periodic: bool,
     /// Shape of the surface without load; flat by default.
     #[serde(default)]
     pub profile: HalfSpaceProfile,
-    /// Mass that moves with it (kg; kg/m in 2D): needed where it is free or under a force.
+    /// Mass that moves with the half-space (kg; kg/m in 2D): required where it is free or under a
+    /// force.
     #[serde(default)]
     pub mass: f64,
-    /// How it is held and driven far away.
+    /// Supports and drives of the distant holder.
     #[serde(default)]
     pub dofs: HolderSpec,
-    /// Velocity of its material along x through the cells (m/s), of a surface that rolls.
+    /// Velocity of the material along x through the cells (m/s), for a rolling surface.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub rolling: Option<TimeFunction>,
-    /// How its cells touch.
+    /// How the cells of the surface touch.
     pub touches: CellTouch,
-    /// Whether its surface recedes as it wears; it does not by default.
+    /// Wear of the surface; it does not recede by default.
     #[serde(
         default,
         deserialize_with = "some",
@@ -73,11 +74,11 @@ pub struct HalfSpaceSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellSpec {
-    /// Where they begin.
+    /// Start of the cells (m).
     pub from: f64,
-    /// Where they end.
+    /// End of the cells (m).
     pub to: f64,
-    /// Size of a cell, rounded such that a whole number fits.
+    /// Size of a cell (m), rounded so that a whole number fits.
     pub size: f64,
 }
 
@@ -88,24 +89,24 @@ pub enum HalfSpaceProfile {
     /// A plane.
     #[default]
     Flat,
-    /// A summit at the origin with radii of curvature (m): a cylinder where one is left out, a
-    /// sphere where both are the same.
+    /// A summit at the origin with radii of curvature (m): a cylinder where one is omitted, a
+    /// sphere where both are equal.
     Summit {
-        /// In the plane of x.
+        /// Radius in the plane of x (m).
         #[serde(default = "straight")]
         x: f64,
-        /// In the plane of y (3D).
+        /// Radius in the plane of y (3D, m).
         #[serde(default = "straight")]
         y: f64,
     },
     /// A wave with a crest at the origin.
     Wave {
-        /// Its amplitude (m).
+        /// Amplitude of the wave (m).
         amplitude: f64,
-        /// Its length along x (m).
+        /// Wavelength along x (m).
         #[serde(default = "straight")]
         x: f64,
-        /// Its length along y (3D, m): a product of both waves.
+        /// Wavelength along y (3D, m): the surface is a product of both waves.
         #[serde(default = "straight")]
         y: f64,
     },
@@ -116,7 +117,7 @@ pub enum HalfSpaceProfile {
         /// Hurst exponent.
         #[serde(default = "hurst")]
         hurst: f64,
-        /// Longest wave (m); the extent by default.
+        /// Longest wave (m); the extent of the cells by default.
         #[serde(
             default,
             deserialize_with = "some",
@@ -126,36 +127,36 @@ pub enum HalfSpaceProfile {
         /// Shortest wave (m).
         shortest: f64,
     },
-    /// Heights over the plane (m), outward, of each cell: row by row along x. A file has them as
+    /// Outward heights over the plane (m) of each cell: row by row along x. A file has them as
     /// numbers, in lines along x.
     Heights {
         /// The file, beside the case.
         file: String,
-        /// Length of its unit (m).
+        /// Length of the unit of the heights (m).
         #[serde(default = "one")]
         scale: f64,
     },
 }
 
-/// How a half-space is held: fixed along each axis by default.
+/// Supports and drives of a half-space: fixed along each axis by default.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct HolderSpec {
-    /// Along x.
+    /// Drive along x.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub x: Option<Dof>,
-    /// Along y.
+    /// Drive along y.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub y: Option<Dof>,
-    /// Along z (3D).
+    /// Drive along z (3D).
     #[serde(
         default,
         deserialize_with = "some",
@@ -164,13 +165,13 @@ pub struct HolderSpec {
     pub z: Option<Dof>,
 }
 
-/// How the cells of a half-space touch. Where two deformable bodies meet, one of them touches by
+/// How the cells of a half-space touch. Where two deformable bodies meet, one of them must touch by
 /// its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CellTouch {
-    /// The middle of each cell: against balls, pieces and surfaces.
+    /// The middle of each cell touches balls, pieces and surfaces.
     Points,
-    /// As a surface: against grains and points.
+    /// The cells form a surface, which touches grains and points.
     Surface,
 }
 

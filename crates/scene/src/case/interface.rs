@@ -1,7 +1,7 @@
 //! The law between two materials.
 
 use super::slots::{BySlot, Field, FieldName, with_kinds};
-use crate::material::Given;
+use crate::material::NumberSpec;
 use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::{Error as _, SerializeStruct};
@@ -10,10 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
-pub type SlotValues = BySlot<BTreeMap<String, Given>>;
+pub type SlotValues = BySlot<BTreeMap<String, NumberSpec>>;
 
-/// The law between two materials: a slot for each kind of law, each a plugin's name. In the text
-/// each slot is a field with the word of its kind: `contact: "coulomb", wear: "archard"`.
+/// The law between two materials: a slot for each kind of law, each with the name of a plugin. In
+/// the text each slot is a field with the keyword of its kind: `contact: "coulomb", wear:
+/// "archard"`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterfaceSpec {
     /// Name.
@@ -22,24 +23,24 @@ pub struct InterfaceSpec {
     pub between: (String, String),
     /// File in `materials/` with parameters of laws.
     pub parameters_from: Option<String>,
-    /// The laws; there is one of the kind [`Kind::CONTACT`].
+    /// Laws by slot; the slot [`Kind::CONTACT`] must have one.
     pub laws: BySlot<String>,
-    /// Parameters given here win over those of the file.
+    /// Parameters given here, which take precedence over those of the file.
     pub parameters: SlotValues,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Largest gap at which a bond is made (m), at most the alert distance, which it is without
-    /// one.
+    /// Largest gap at which a bond forms (m), at most the alert distance, which is the default.
     pub bonds_within: Option<f64>,
     /// Opening at which bonds begin.
     pub bond_opening: BondOpening,
-    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    /// Time under compression (s) after which a contact forms a bond, including after an earlier
+    /// bond broke.
     pub healing: Option<f64>,
     /// Factor of the contact's area, see `AreaRule`.
     pub area_factor: f64,
 }
 
-/// Its fields but for the slots, which stand after the first three.
+/// Names of the fields other than slots; the slots come after the first three.
 const OWN: [&str; 9] = [
     "name",
     "between",
@@ -58,8 +59,8 @@ impl InterfaceSpec {
         self.laws.get(kind).map(String::as_str)
     }
 
-    /// A parameter that the case gives a slot.
-    pub fn parameter(&self, kind: Kind, name: &str) -> Option<&Given> {
+    /// Returns a parameter that the case gives for a slot.
+    pub fn parameter(&self, kind: Kind, name: &str) -> Option<&NumberSpec> {
         self.parameters.get(kind)?.get(name)
     }
 }
@@ -73,7 +74,7 @@ impl<'de> Deserialize<'de> for InterfaceSpec {
 
 struct SpecVisitor(&'static [&'static str]);
 
-/// Takes the next value for a field that must not have one yet.
+/// Reads the next value for a field that must not have one yet.
 fn once<'de, A: MapAccess<'de>, T: Deserialize<'de>>(
     map: &mut A,
     field: &mut Option<T>,

@@ -50,7 +50,7 @@ use std::collections::BTreeMap;
 pub struct Case {
     /// Title.
     pub name: String,
-    /// What it shows, and where its numbers come from.
+    /// What the case shows, and the sources of its numbers.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub doc: String,
     /// Dimension, 2 or 3.
@@ -60,17 +60,17 @@ pub struct Case {
     pub seed: u64,
     /// Time step and end time.
     pub time: TimeSpec,
-    /// Acceleration of gravity (m/s^2), one number an axis.
+    /// Acceleration of gravity (m/s^2), one number per axis.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gravity: Vec<f64>,
-    /// How gravity changes in time.
+    /// Time dependence of gravity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_drive: Option<GravityDrive>,
     /// Phases of the run, one after another.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
     /// Factor on all densities, for quasi-static runs without gravity. With scaled inertia the time
-    /// step has to resolve the motion only, not sound waves; results do not depend on the factor
+    /// step must resolve only the motion, not sound waves; results do not depend on the factor
     /// while the inertial number stays below 1e-3 (da Cruz et al. 2005). Reported densities and
     /// wear are unscaled.
     #[serde(default = "one")]
@@ -92,8 +92,8 @@ pub struct Case {
     pub materials: BTreeMap<String, String>,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
-    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one
-    /// may be any.
+    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without an
+    /// entry may have any.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub pins: BTreeMap<String, String>,
     /// First bodies.
@@ -111,13 +111,13 @@ pub struct Case {
     /// Grains that deform, by their material.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub elastic_grains: Vec<ElasticGrainSpec>,
-    /// Heat and electric current; none are computed without it.
+    /// Heat and electric current; not computed if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heat: Option<HeatSpec>,
-    /// What is measured as a friction test.
+    /// Definition of a friction test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionSpec>,
-    /// What is measured as a biaxial test.
+    /// Definition of a biaxial test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub biaxial: Option<BiaxialSpec>,
     /// The account of grains between first bodies, contact and outside.
@@ -129,11 +129,11 @@ pub struct Case {
     /// Other quantities that are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
-    /// Accuracy that the run is asked for; without it step and tolerance are those of the case
+    /// Requested accuracy of the run; if omitted, step and tolerance are those of the case
     /// throughout.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracySpec>,
-    /// How the run estimates its own error.
+    /// Estimate of the run's own error.
     #[serde(default, skip_serializing_if = "is_default")]
     pub uncertainty: UncertaintySpec,
     /// Output files and their intervals.
@@ -154,7 +154,7 @@ pub struct TimeSpec {
     pub theta: f64,
 }
 
-/// Leaves out what says nothing when a case is written.
+/// Returns whether a value is the default, which is omitted when a case is written.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -182,14 +182,14 @@ pub struct PeriodicSpec {
     pub z: Option<f64>,
 }
 
-/// Detection distances (m); by default a fraction of the smallest radius.
+/// Detection distances (m); by default fractions of the smallest radius.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DetectionSpec {
-    /// Pairs nearer than this are contacts.
+    /// Distance below which pairs are contacts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alert: Option<f64>,
-    /// How much farther the neighbour list looks.
+    /// Range of the neighbour list beyond the alert distance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub skin: Option<f64>,
 }
@@ -201,7 +201,7 @@ pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`;
     /// see `docs/solvers.md`.
     pub method: Method,
-    /// Bound on the error; by default the norm's own, [`Norm::default_tolerance`].
+    /// Bound on the error; by default that of the norm, [`Norm::default_tolerance`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Definition of the error, `Balance`, `Velocity` or `Power`, see
@@ -249,24 +249,24 @@ pub struct BodySpec {
     pub name: String,
     /// Name of its material in this case.
     pub material: String,
-    /// Its shapes.
+    /// Shapes of the body.
     pub shapes: Vec<ShapeSpec>,
     /// Position of its frame (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
-    /// Mass (kg; kg/m in 2D). From density and balls where not given.
+    /// Mass (kg; kg/m in 2D); by default from density and balls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
     /// Moment of inertia (kg m^2; per metre in 2D).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<f64>,
-    /// When the body is taken away (s); never by default.
+    /// Time at which the body is removed (s); never by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vanishes: Option<f64>,
-    /// Whether and how far its profiles and height fields follow their wear; not by default.
+    /// Recession of its profiles and height fields by wear; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wears: Option<WearSpec>,
-    /// Degrees of freedom; fixed where not given.
+    /// Degrees of freedom; fixed by default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub dofs: DofSpec,
 }
@@ -313,7 +313,7 @@ impl Default for DofSpec {
     }
 }
 
-/// A friction test: the body that rubs, along which axis, pressed along which.
+/// A friction test: the rubbed body, the axis of sliding and the axis of the load.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
@@ -325,7 +325,7 @@ pub struct FrictionSpec {
     /// Axis of the normal load.
     #[serde(default = "axis_y")]
     pub normal: usize,
-    /// Time at which the motion starts to count (s).
+    /// Time from which the motion counts (s).
     #[serde(default)]
     pub start: f64,
     /// Length of a cycle (s); by default the period of the body's sine.
@@ -345,12 +345,12 @@ pub struct BiaxialSpec {
     pub axial: (String, String),
     /// Names of the walls on the low and high side of the other axis.
     pub lateral: (String, String),
-    /// Time at which the confined sample is at rest: strains are measured from here (s).
+    /// Time at which the confined sample is at rest, from which strains are measured (s).
     #[serde(default)]
     pub start: f64,
 }
 
-/// What is written.
+/// Output of a run.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSpec {
@@ -358,33 +358,35 @@ pub struct OutputSpec {
     pub frames: u32,
     /// Number of states recorded in `results.h5` over the run.
     pub views: u32,
-    /// Steps between rows of the statistics.
+    /// Number of steps between rows of the statistics.
     pub every: u64,
     /// Whether figures are drawn at the end.
     pub figures: bool,
     /// Width of a picture (pixels).
     pub width: u32,
-    /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
+    /// Section shown in frames (m): xmin, xmax, ymin, ymax (2D); the extent of the scene by
+    /// default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<[f64; 4]>,
-    /// Thickness (m) of layers along the last axis that frames tell apart by colour.
+    /// Thickness (m) of layers along the last axis that frames show in different colours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<f64>,
-    /// The local shear that is darkest in pictures of it; recorded and drawn where given.
+    /// Local shear with the darkest colour in pictures; if given, local shear is recorded and
+    /// drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear: Option<f64>,
-    /// Steps between those written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
+    /// Number of steps between FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
-    /// When checkpoints, from which `--resume` continues, are written.
+    /// Interval of checkpoints, from which `--resume` continues.
     pub checkpoint: Checkpoint,
 }
 
-/// When checkpoints are written.
+/// Interval of checkpoints.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Checkpoint {
-    /// At intervals of wall time (s); longer if checkpoints would take more than 5 % of the time.
+    /// Interval of wall time (s); longer if checkpoints would take more than 5 % of the time.
     Seconds(f64),
-    /// At intervals of steps.
+    /// Interval in steps.
     Steps(u64),
     /// Never.
     Never,
@@ -408,7 +410,7 @@ impl Default for OutputSpec {
 }
 
 impl BodySpec {
-    /// The degrees of freedom in the order of the dimension: translations, then rotations.
+    /// Returns the degrees of freedom in the order of the dimension: translations, then rotations.
     pub fn ordered(&self, dimension: usize) -> Vec<Dof> {
         let d = self.dofs.clone();
         if dimension == 2 {
@@ -418,7 +420,7 @@ impl BodySpec {
         }
     }
 
-    /// Names of the degrees of freedom, in the order of [`BodySpec::ordered`].
+    /// Returns the names of the degrees of freedom, in the order of [`BodySpec::ordered`].
     pub fn names(dimension: usize) -> &'static [&'static str] {
         if dimension == 2 {
             &["x", "y", "rz"]

@@ -3,7 +3,7 @@
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Serialize};
 
-/// On which side of a profile the solid is.
+/// Side of a profile on which the solid is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Side {
     /// Solid below, open above: a rail.
@@ -38,8 +38,8 @@ pub enum ShapeSpec {
         /// Points (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         points: Vec<(f64, f64)>,
-        /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to
-        /// the case.
+        /// A table of the points with the columns `x` and `z`, instead of `points`: a path relative
+        /// to the case.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         file: Option<String>,
         /// Side of the solid.
@@ -52,17 +52,17 @@ pub enum ShapeSpec {
         /// Longest segment (m).
         #[serde(default = "half_millimetre")]
         spacing: f64,
-        /// Where it begins and ends along the standard's own lateral axis (m); all of it by
+        /// Start of the section along the standard's lateral axis (m); the whole profile by
         /// default.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         from: Option<f64>,
-        /// Its other end (m).
+        /// End of the section (m).
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to: Option<f64>,
-        /// n of an inclination 1:n (rail); upright by default.
+        /// Inclination 1:n, given by n (rail); upright by default.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         inclination: Option<f64>,
-        /// Where the solid is; of a wheel above, of a rail below by default.
+        /// Side of the solid; by default above for a wheel, below for a rail.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         side: Option<Side>,
     },
@@ -116,10 +116,10 @@ pub enum ShapeSpec {
     Box {
         /// Edge lengths (m).
         size: (f64, f64, f64),
-        /// Its centre (m).
+        /// Centre of the shape (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
-        /// Rotation vector (rad) by which it is turned about its centre.
+        /// Rotation vector (rad) about its centre.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         turned: Vec<f64>,
         /// Rounding radius of the edges (m).
@@ -133,7 +133,7 @@ pub enum ShapeSpec {
         /// Factor on the lengths in the file.
         #[serde(default = "one")]
         scale: f64,
-        /// Where the origin of the file stands (m).
+        /// Position of the origin of the file (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
     },
@@ -170,7 +170,7 @@ pub enum ShapeSpec {
         points: (usize, usize),
         /// Spacing (m).
         spacing: (f64, f64),
-        /// Heights (m), row by row; or none with `rms`.
+        /// Heights (m), row by row; omitted with `rms`.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         heights: Vec<f64>,
         /// Root-mean-square of random heights (m).
@@ -187,7 +187,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// A point by its coordinates (m), (x, y) or (x, y, z).
+/// A point given by its coordinates (m), (x, y) or (x, y, z).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinates(pub Vec<f64>);
 

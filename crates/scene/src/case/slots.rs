@@ -1,5 +1,5 @@
-//! What a case says of the slots of an interface, by kind of law. The fields of the text are the
-//! words of the kinds, so that a registered kind is one of them: see [`Kind::register`].
+//! Values by slot of an interface, that is, by kind of law. The fields in the text are the keywords
+//! of the kinds, including registered ones: see [`Kind::register`].
 
 use fretwork_core::laws::Kind;
 use serde::de::{DeserializeSeed, Error as _, MapAccess, Visitor};
@@ -10,7 +10,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
-/// A value by slot: what a slot does not have is the default.
+/// Values by slot; a missing slot has the default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BySlot<T>(BTreeMap<Kind, T>);
 
@@ -21,7 +21,7 @@ impl<T> Default for BySlot<T> {
 }
 
 impl<T> BySlot<T> {
-    /// One slot.
+    /// Creates values with one slot.
     pub fn of(kind: Kind, value: T) -> Self {
         Self(BTreeMap::from([(kind, value)]))
     }
@@ -31,21 +31,23 @@ impl<T> BySlot<T> {
         self.0.insert(kind, value);
     }
 
-    /// The value of a slot, if there is one.
+    /// Returns the value of a slot, if there is one.
     pub fn get(&self, kind: Kind) -> Option<&T> {
         self.0.get(&kind)
     }
 
-    /// The slots that have a value, in the order of their kinds.
+    /// Iterates over the slots that have a value, in the order of their kinds.
     pub fn iter(&self) -> impl Iterator<Item = (Kind, &T)> {
         self.0.iter().map(|(kind, value)| (*kind, value))
     }
 }
 
-/// The names of a struct's fields: its own, with the words of all kinds after so many of them.
+/// Returns the names of a struct's fields: its own, with the keywords of all kinds inserted after a
+/// number of them.
 ///
 /// # Errors
-/// A registered kind has the word of one of its own fields, which could then not be told apart.
+/// A registered kind has the keyword of one of the struct's own fields, from which it could not be
+/// distinguished.
 pub(crate) fn with_kinds(
     own: &[&'static str],
     after: usize,
@@ -66,7 +68,7 @@ pub(crate) fn with_kinds(
     if let Some(same) = known.get(names.as_slice()) {
         return Ok(same);
     }
-    // serde wants them for ever; there is one list for each struct and set of kinds.
+    // serde requires static names; one list is leaked for each struct and set of kinds.
     let names: &'static [&'static str] = names.leak();
     known.insert(names);
     Ok(names)

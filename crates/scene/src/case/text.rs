@@ -7,12 +7,12 @@ use ron::ser::PrettyConfig;
 use serde::Serialize;
 
 impl Case {
-    /// The case as RON, with all numbers written out, defaults too; lists and options that are
-    /// empty are left out. Read again it gives an equal case, to the last bit. Comments of a file,
-    /// `source`s beside numbers and the spelling are lost.
+    /// Returns the case as RON, with all numbers, including defaults; empty lists and options are
+    /// omitted. Reading it gives an equal case, to the last bit. Comments of a file, `source`s of
+    /// numbers and the spelling are lost.
     ///
     /// # Errors
-    /// A value that no case file can hold: the error norm `Field`.
+    /// The case has a value that no case file can contain: the error norm `Field`.
     ///
     /// # Examples
     /// ```
@@ -30,7 +30,7 @@ impl Case {
 
 /// A value as RON in the spelling of case files.
 pub(crate) fn write(what: &str, value: &impl Serialize) -> Result<String, InputError> {
-    // The spelling that case files are read in, see `Source::parse`.
+    // This is the spelling in which case files are read, see `Source::parse`.
     let spelling = Extensions::IMPLICIT_SOME
         | Extensions::UNWRAP_NEWTYPES
         | Extensions::UNWRAP_VARIANT_NEWTYPES;

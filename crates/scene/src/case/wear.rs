@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a first body says of its wear.
+/// Wear of a first body.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct WearSpec {

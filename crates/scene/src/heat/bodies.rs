@@ -3,15 +3,15 @@
 use crate::case::{BodyHeatSpec, Case, DepthSpec, HeatSpec, StoreSpec};
 use crate::source::ValidationError;
 use fretwork_core::heat::{
-    BodyNodes, Columns, Edge, Grid, HalfSpace, Imposed, Node, PieceAxis, Pieces, Store,
+    BodyNodes, Columns, Edge, Grid, HalfSpace, ImposedHeatFlow, Node, PieceAxis, Pieces, Store,
     ThermalMaterial,
 };
 use fretwork_core::view::RunView;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Growth of the spacing with depth, the first spacing over the distance that heat comes in a step,
-/// and the depth over that of the run.
+/// Default growth of the spacing with depth, ratio of the first spacing to the diffusion length of
+/// a step, and ratio of the depth to that of the run.
 const GROWTH: f64 = 1.2;
 const FIRST: f64 = 0.3;
 const DEEP: f64 = 6.0;
@@ -25,7 +25,7 @@ pub(super) struct Nodes {
     pub elements: Vec<Edge>,
     /// Nodes of each first body, for [`fretwork_core::heat::Heat::first_bodies`].
     pub first_bodies: Vec<(String, Range<usize>)>,
-    pub imposed: Vec<Imposed>,
+    pub imposed: Vec<ImposedHeatFlow>,
 }
 
 /// Inputs from which the nodes of bodies are made.
@@ -38,7 +38,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Nodes {
-    /// Of the bodies of a case.
+    /// Creates the nodes of the bodies of a case.
     pub fn of(
         case: &Case,
         spec: &HeatSpec,
@@ -169,7 +169,7 @@ impl Nodes {
                 node.ambient = face.ambient;
             }
             if spec.power != 0.0 {
-                self.imposed.push(Imposed {
+                self.imposed.push(ImposedHeatFlow {
                     body: Some(body as u32),
                     node,
                     flow: spec.power * share,
@@ -185,7 +185,7 @@ impl Scene<'_> {
         &self.materials[usize::from(self.material[body])]
     }
 
-    /// Temperature of a grain at the start (K).
+    /// Returns the initial temperature of a grain (K).
     pub fn temperature_of_grain(&self, body: usize) -> f64 {
         let mut names = self.case.materials.keys();
         let name = names.nth(usize::from(self.material[body]));
@@ -193,7 +193,8 @@ impl Scene<'_> {
         given.copied().unwrap_or(self.spec.initial)
     }
 
-    /// Heat capacity of a body with a volume (J/K; J/(K m) in 2D), without inertia scaling.
+    /// Returns the heat capacity of a body with a volume (J/K; J/(K m) in 2D), without inertia
+    /// scaling.
     fn capacity(&self, body: usize) -> f64 {
         let mass = self.simulation.bodies().mass[body] / self.case.inertia_scaling;
         mass * self.material_of(body).heat_capacity
@@ -210,8 +211,8 @@ impl Scene<'_> {
         balls.chain(pieces).any(|b| b as usize == body)
     }
 
-    /// Surface of each grain (m^2; circumference in 2D, m): of others than balls that of the ball
-    /// of the same volume.
+    /// Returns the surface of each grain (m^2; circumference in 2D, m); for shapes other than balls
+    /// that of the ball of the same volume.
     fn surface_of_grains(&self) -> Vec<f64> {
         let s = self.simulation;
         let mut surface = vec![0.0; s.bodies().len()];
@@ -295,7 +296,8 @@ impl Scene<'_> {
         Ok(Pieces { axes: out })
     }
 
-    /// Strips along an axis over the period, or over the extent of the surfaces of the body.
+    /// Returns strips along an axis over the period, or over the extent of the surfaces of the
+    /// body.
     fn strips(
         &self,
         here: &str,

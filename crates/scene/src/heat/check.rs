@@ -10,7 +10,7 @@ use fretwork_core::view::RunView;
 /// Checks numbers and names.
 ///
 /// # Errors
-/// The first error, with its path in the case.
+/// Returns the first error, with its path in the case.
 pub(crate) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(heat) = &case.heat else {
         return Ok(());
@@ -240,7 +240,7 @@ fn temperature(here: &str, t: f64) -> Result<(), ValidationError> {
     Err(ValidationError::new(here, message))
 }
 
-/// Refuses laws that read temperatures in a case without any.
+/// Refuses laws that read temperatures in a case without heat.
 pub(super) fn refuse_laws_without_heat(
     case: &Case,
     s: &dyn RunView,

@@ -1,4 +1,4 @@
-//! Which bodies of a case expand with their temperature.
+//! Thermal expansion of the bodies of a case.
 
 use super::Properties;
 use crate::case::{Case, HeatSpec};
@@ -24,7 +24,7 @@ impl Coefficients<'_> {
         self.properties[material].contains_key("expansion")
     }
 
-    /// Of a material (1/K).
+    /// Returns the coefficient of a material (1/K).
     fn of(&mut self, material: usize) -> Result<f64, ValidationError> {
         if let Some(found) = self.found.get(&material) {
             return Ok(*found);
@@ -53,7 +53,7 @@ impl Coefficients<'_> {
 }
 
 /// Lets bodies of a case expand with temperature: rigid bodies of balls, polygons and polyhedra
-/// that have one temperature which may change, and bodies of finite elements.
+/// with a single, variable temperature, and bodies of finite elements.
 pub(super) fn install(
     case: &Case,
     spec: &HeatSpec,
@@ -77,7 +77,7 @@ pub(super) fn install(
     Ok(())
 }
 
-/// The coefficient of each rigid body (1/K), 0 of those that do not expand.
+/// Returns the coefficient of each rigid body (1/K), 0 for those that do not expand.
 fn rigid(
     coefficients: &mut Coefficients<'_>,
     material: &[u16],
@@ -151,7 +151,7 @@ fn spans_period(s: &dyn RunView, body: u32) -> bool {
     })
 }
 
-/// The bodies that deform and expand.
+/// Returns the deformable bodies that expand.
 fn systems(
     coefficients: &mut Coefficients<'_>,
     spec: &HeatSpec,

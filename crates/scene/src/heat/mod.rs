@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 /// Properties of the materials of a case, in its order.
 pub(crate) type Properties = [BTreeMap<String, Sourced>];
 
-/// Lets a simulation compute heat if its case asks for it. Densities are without inertia scaling
+/// Adds heat to a simulation if its case requests it. Densities are without inertia scaling
 /// (kg/m^3).
 pub(crate) fn install(
     case: &Case,
@@ -71,7 +71,7 @@ pub(crate) fn install(
     }
 }
 
-/// Refuses temperatures of grains of materials that no grain has.
+/// Refuses initial temperatures of grains of materials that no grain has.
 fn refuse_materials_without_grains(
     case: &Case,
     spec: &HeatSpec,
@@ -94,7 +94,7 @@ fn refuse_materials_without_grains(
     }
 }
 
-/// The material of each body: that of its shapes.
+/// Returns the material of each body: that of its shapes.
 fn material_of_bodies(s: &dyn RunView) -> Vec<u16> {
     let mut of = vec![0; s.bodies().len()];
     let balls = s.balls().into_iter().map(|b| (b.body, b.material));
@@ -106,7 +106,7 @@ fn material_of_bodies(s: &dyn RunView) -> Vec<u16> {
     of
 }
 
-/// Thermal properties of the materials.
+/// Returns the thermal properties of the materials.
 fn materials(
     case: &Case,
     spec: &HeatSpec,

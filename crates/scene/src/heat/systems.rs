@@ -1,11 +1,11 @@
-//! The thermal nodes of bodies that deform.
+//! The thermal nodes of deformable bodies.
 
 use super::bodies::{Nodes, Scene};
 use crate::case::{BodyHeatSpec, Case, MeshHeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
 use fretwork_core::bodies::Conduction;
 use fretwork_core::geometry::space::ball_radius;
-use fretwork_core::heat::{BodyNodes, Edge, Imposed, Node, Store};
+use fretwork_core::heat::{BodyNodes, Edge, ImposedHeatFlow, Node, Store};
 use fretwork_core::view::SystemView;
 use std::f64::consts::PI;
 
@@ -84,7 +84,7 @@ impl Nodes {
             node.ambient = face.ambient;
         }
         if spec.power != 0.0 {
-            self.imposed.push(Imposed {
+            self.imposed.push(ImposedHeatFlow {
                 body,
                 node: first,
                 flow: spec.power,
@@ -129,7 +129,7 @@ impl Nodes {
                 let node = &mut self.list[(first + point) as usize];
                 let own = convection.coefficient * area;
                 let all = node.surroundings + own;
-                // Of two parts that share a point the mean.
+                // A point shared by two parts has the mean.
                 if all > 0.0 {
                     node.ambient =
                         (node.ambient * node.surroundings + convection.ambient * own) / all;
@@ -139,7 +139,7 @@ impl Nodes {
         }
         for (name, flux) in &spec.flux {
             for (point, area) in part("flux", name)? {
-                self.imposed.push(Imposed {
+                self.imposed.push(ImposedHeatFlow {
                     body: None,
                     node: first + point,
                     flow: flux * area,
@@ -168,7 +168,7 @@ impl Nodes {
 }
 
 impl Scene<'_> {
-    /// The node of a grain that deforms, which has one temperature.
+    /// Adds the node of a deformable grain, which has one temperature.
     fn grain_that_deforms(&self, system: &dyn SystemView, body: usize) -> Node {
         let material = self.material_of(body);
         let mass = system.mass() / self.case.inertia_scaling;
@@ -177,7 +177,7 @@ impl Scene<'_> {
             Store::Lumped(mass * material.heat_capacity),
         );
         if let Some(convection) = self.spec.convection {
-            // Of the ball of the same volume.
+            // The surface is that of the ball of the same volume.
             let dimension = self.simulation.dimension();
             let radius = ball_radius(dimension, mass / material.density);
             let surface = match dimension {
@@ -191,7 +191,7 @@ impl Scene<'_> {
     }
 }
 
-/// Place of the material of a deformable body among those of the case.
+/// Returns the index of the material of a deformable body among those of the case.
 pub(super) fn material_of(case: &Case, name: &str) -> usize {
     let elastic = case.elastic.iter().map(|e| (&e.name, &e.material));
     let half_spaces = case.half_spaces.iter().map(|h| (&h.name, &h.material));

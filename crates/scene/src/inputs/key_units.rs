@@ -49,8 +49,8 @@ const OF_SHAPES: [(&str, &str); 12] = [
     ("heights", "m"),
 ];
 
-/// The SI unit of the key at a path of names, with the names of variants between them; empty for
-/// pure numbers, texts, and parameters of laws, which have the units of their law.
+/// Returns the SI unit of the key at a path of names, with the names of variants between them;
+/// empty for pure numbers, texts, and parameters of laws, whose unit is that of their law.
 pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
     let Some(last) = named.last().map(String::as_str) else {
@@ -62,7 +62,7 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     if named.first().is_some_and(|n| n == "heat") {
         return heat(last, named, dimension);
     }
-    // A variant that holds its value directly, `bonds: At(0.024)`, is itself last.
+    // A variant that contains its value directly, `bonds: At(0.024)`, is itself the last name.
     match (last, dimension) {
         ("mass", 2) => return "kg/m",
         ("mass", _) => return "kg",
@@ -102,7 +102,7 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     find(&ANYWHERE).unwrap_or_default()
 }
 
-/// Units of the keys of heat.
+/// Returns the units of the keys of heat.
 fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
     match (last, dimension) {
@@ -124,7 +124,7 @@ fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
     }
 }
 
-/// The unit of a function of time that drives a degree of freedom, or gravity.
+/// Returns the unit of a function of time that drives a degree of freedom, or gravity.
 fn drive(named: &[String], dimension: u32) -> &'static str {
     let last_of = |names: &[&str]| named.iter().rposition(|n| names.contains(&n.as_str()));
     if let Some(k) = last_of(&["Turned", "Scaled", "Axes"]) {

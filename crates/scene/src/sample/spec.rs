@@ -10,7 +10,7 @@ pub struct DepositSpec {
     pub material: String,
     /// Number of grains.
     pub count: usize,
-    /// Their sizes.
+    /// Sizes of the grains.
     pub sizes: SizeSpec,
     /// Low corner of the box (m).
     pub low: Vec<f64>,
@@ -54,7 +54,7 @@ pub struct BlockWallSpec {
     pub columns: usize,
     /// Width and height of a block (m).
     pub block: (f64, f64),
-    /// Thickness of the wall along y (m), in 3D alone.
+    /// Thickness of the wall along y (m), in 3D only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
     /// Width of the open joints between blocks (m).
@@ -98,10 +98,10 @@ pub enum SizeSpec {
 /// Quantity by which a distribution weights grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Counted {
-    /// By number.
+    /// Number of grains.
     #[default]
     Number,
-    /// By mass.
+    /// Mass of grains.
     Mass,
 }
 
@@ -132,7 +132,7 @@ pub struct StateSpec {
 /// A state of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum FrameSpec {
-    /// The last one.
+    /// The last state.
     #[default]
     Last,
     /// A state by its index, from 0.

@@ -18,19 +18,19 @@ impl Table {
     /// Reads a table with required and optional columns. Lines that begin with `#` are comments.
     ///
     /// # Errors
-    /// An error at the line that is wrong: a missing, unknown or repeated column, a row of another
-    /// length, or a value that is not a finite number.
+    /// Returns an error at the invalid line: a missing, unknown or repeated column, a row of
+    /// another length, or a value that is not a finite number.
     pub fn read(path: &Path, required: &[&str], optional: &[&str]) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let name = path.display().to_string();
         Self::parse(name, text, required, optional, false)
     }
 
-    /// Reads a table of lengths, whose columns may have a unit behind the name, `z [mm]`; values
-    /// are converted to metres.
+    /// Reads a table of lengths, whose columns may have a unit after the name, `z [mm]`; values are
+    /// converted to metres.
     ///
     /// # Errors
-    /// The errors of [`Table::read`], or a unit that is not a length.
+    /// Returns the errors of [`Table::read`], or a unit that is not a length.
     pub fn read_lengths(
         path: &Path,
         required: &[&str],
@@ -99,12 +99,12 @@ impl Table {
         self.rows.len()
     }
 
-    /// Whether there are no rows; never true for a table that was read.
+    /// Returns whether there are no rows; never true for a table that was read.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Index of a column, if the table has it.
+    /// Returns the index of a column, if the table has it.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|h| h == name)
     }
@@ -121,7 +121,7 @@ impl Table {
     }
 }
 
-/// Names of the columns, and of a table of lengths the unit of each in metres.
+/// Returns the names of the columns, and for a table of lengths the unit of each in metres.
 fn parse_header(
     record: &StringRecord,
     lengths: bool,
@@ -233,7 +233,7 @@ fn check_header(
     }
 }
 
-/// Byte range of the line that ends before a position.
+/// Returns the byte range of the line that ends before a position.
 fn line_before(text: &str, end: usize) -> Range<usize> {
     let before = text[..end.min(text.len())].trim_end_matches(['\r', '\n']);
     let start = before.rfind('\n').map_or(0, |k| k + 1);

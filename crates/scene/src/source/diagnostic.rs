@@ -9,11 +9,11 @@ use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
 use super::nearest::nearest;
 
-/// Lines longer than this (in characters) are not shown, since the location could not be found in
+/// Length in characters above which lines are not shown, since the location could not be found in
 /// them.
 const LONGEST_LINE: usize = 400;
 
-/// For texts with more lines than this only the one-line form is given.
+/// Number of lines of a text above which only the one-line form is given.
 const MAX_LINES: usize = 200_000;
 
 /// An error in an input, with its location.
@@ -23,7 +23,7 @@ const MAX_LINES: usize = 200_000;
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", self.render(false))]
 pub struct InputError {
-    /// The file, or the argument, that has the error.
+    /// File or argument that contains the error.
     pub file: String,
     /// The line, from 1; 0 if the error has no location in a file.
     pub line: usize,
@@ -150,17 +150,17 @@ impl InputError {
         self
     }
 
-    /// The message without its location.
+    /// Returns the message without its location.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// Line and column, if the error has a location in a file.
+    /// Returns line and column, if the error has a location in a file.
     pub fn position(&self) -> Option<(usize, usize)> {
         (self.line > 0).then_some((self.line, self.column))
     }
 
-    /// File and message, for use within another message.
+    /// Returns file and message, for use within another message.
     pub fn in_short(&self) -> String {
         super::clean(&format!("{} {}", self.file, self.message))
     }
@@ -173,7 +173,7 @@ impl InputError {
         }
     }
 
-    /// Whether the error concerns a whole file: it is missing, unreadable or empty.
+    /// Returns whether the error concerns a whole file: it is missing, unreadable or empty.
     pub fn is_about_a_whole_file(&self) -> bool {
         self.context
             .text
@@ -181,17 +181,17 @@ impl InputError {
             .is_none_or(|text| text.is_empty())
     }
 
-    /// Byte range in the file, if the error has a location in a file.
+    /// Returns the byte range in the file, if the error has a location in a file.
     pub fn span(&self) -> Option<Range<usize>> {
         (self.line > 0).then(|| self.context.span.clone())
     }
 
-    /// The `--set` argument that contained the text.
+    /// Returns the `--set` argument that contained the text.
     pub fn set(&self) -> Option<&str> {
         self.context.set.as_ref().map(|(set, _)| set.as_str())
     }
 
-    /// The error on one line.
+    /// Returns the error on one line.
     pub fn compact(&self) -> String {
         self.one_line("error")
     }
@@ -220,8 +220,8 @@ impl InputError {
         super::clean(&line)
     }
 
-    /// The error on one line, followed by the source line with the location marked; with terminal
-    /// colours if `colour`.
+    /// Returns the error on one line, followed by the source line with the location marked; with
+    /// terminal colours if `colour`.
     pub fn render(&self, colour: bool) -> String {
         let mut out = if colour {
             let line = self.compact();
@@ -289,8 +289,8 @@ fn picture(
     let end = text[begin..]
         .find('\n')
         .map_or(text.len(), |length| begin + length);
-    // Only this line is passed on. Characters that ariadne takes for a line break, or a terminal
-    // for a control sequence, are replaced by blanks one by one.
+    // Only this line is passed on. Characters that ariadne interprets as a line break, or a
+    // terminal as a control sequence, are replaced by blanks one by one.
     let clean = |c: char| match c {
         '\t' => c,
         '\u{2028}' | '\u{2029}' => ' ',
@@ -341,7 +341,7 @@ fn boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// A file beside the missing one with a similar name.
+/// Returns a file in the same folder with a name similar to that of the missing one.
 fn similar_file(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent()?;

@@ -1,7 +1,7 @@
 //! Comparison of two texts by content: comments, white space and the format of numbers are ignored.
 
 use super::Source;
-use super::tree::{Group, Kind, Node, Shape, join_path};
+use super::tree::{Group, Node, Shape, ValueKind, join_path};
 
 /// A place where two texts differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub struct Difference {
     pub other: Option<String>,
 }
 
-/// The first difference between two texts, except below the dotted paths in `but`.
+/// Returns the first difference between two texts, except below the dotted paths in `but`.
 pub fn first_difference(one: &Source, other: &Source, but: &[&str]) -> Option<Difference> {
     let mut path = Vec::new();
     let nodes = [&one.tree().root, &other.tree().root].map(Option::as_ref);
@@ -42,7 +42,7 @@ fn compare(
     let [Some(a), Some(b)] = nodes else {
         return match nodes {
             [None, None] => None,
-            // A group that holds only ignored values equals an absent one.
+            // A group that contains only ignored values equals an absent one.
             [a, b] => {
                 let holds = |p: &&str| p.strip_prefix(&here).is_some_and(|r| r.starts_with('.'));
                 let group = a.or(b).and_then(Node::group);
@@ -111,7 +111,7 @@ fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
     let [a, b] = [0, 1].map(|k| &texts[k][nodes[k].span.clone()]);
     let number = |text: &str| text.replace('_', "").parse::<f64>().ok();
     match (&nodes[0].kind, &nodes[1].kind) {
-        (Kind::Number, Kind::Number) => {
+        (ValueKind::Number, ValueKind::Number) => {
             let same = number(a).zip(number(b));
             a == b || same.is_some_and(|(x, y)| x.to_bits() == y.to_bits())
         }

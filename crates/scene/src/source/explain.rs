@@ -1,4 +1,4 @@
-//! Translation of errors from ron into messages about the user's file.
+//! Translation of errors from ron to messages about the user's file.
 
 use std::ops::Range;
 
@@ -6,11 +6,11 @@ use ron::error::{Error as RonError, Position, SpannedError};
 
 use super::respell::Step;
 use super::set::{one_of, shorten};
-use super::tree::{Kind, Node, Shape, join_path, plain};
+use super::tree::{Node, Shape, ValueKind, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
 
 impl Source {
-    /// Byte offset of a position reported by ron (lines and columns in characters).
+    /// Returns the byte offset of a position reported by ron (lines and columns in characters).
     pub(super) fn offset(&self, position: &Position) -> usize {
         let lines = self.text.split_inclusive('\n');
         let before = lines.take(position.line.saturating_sub(1));
@@ -108,7 +108,8 @@ impl Source {
         }
     }
 
-    /// The first field of this name in the struct that contains the repeated field at `again`.
+    /// Returns the first field of this name in the struct that contains the repeated field at
+    /// `again`.
     fn earlier_field(&self, field: &str, again: &Range<usize>) -> Option<Range<usize>> {
         let group = self.tree.around(again.start)?.group()?;
         let mut keys = group.entries.iter().filter_map(|entry| entry.key.as_ref());
@@ -127,7 +128,7 @@ impl Source {
         })
     }
 
-    /// ` in Name`, from the type, the written name, or the path of the struct.
+    /// Returns ` in Name`, from the type, the written name, or the path of the struct.
     fn owner(&self, outer: Option<&str>, inside: &Range<usize>) -> String {
         let outer = outer.map(str::to_owned);
         let written = || {
@@ -175,14 +176,14 @@ impl Source {
         }
     }
 
-    /// The value that a type has just validated: the one that ends or begins here.
+    /// Returns the value that a type has just validated: the one that ends or begins here.
     fn validated_span(&self, start: usize, end: usize) -> Range<usize> {
         let node = self.tree.ending_at(end).or_else(|| self.tree.around(end));
         node.map_or(start..end, |node| node.head(&self.text))
     }
 
-    /// An error reported by a type's validation; its message may continue a sentence that begins
-    /// with the field's name.
+    /// Creates an error reported by a type's validation; its message may continue a sentence that
+    /// begins with the field's name.
     fn validation_error(&self, message: &str, start: usize, end: usize) -> InputError {
         let span = self.validated_span(start, end);
         let predicate = ["must ", "is ", "has ", "cannot "];
@@ -202,7 +203,7 @@ impl Source {
             return self.error_in(&fault.span, fault.message.clone());
         }
         let text = &self.text;
-        // Skips the white space that ron left before the token.
+        // The white space that ron left before the token is skipped.
         let rest = text[end..].trim_start();
         let token = if rest.is_empty() {
             end
@@ -228,14 +229,14 @@ impl Source {
                 | RonError::TrailingCharacters
         );
         if let Some(node) = node {
-            let within = node.span.start < end && matches!(node.kind, Kind::Number);
+            let within = node.span.start < end && matches!(node.kind, ValueKind::Number);
             if within && spare {
                 return self.wrong_type(node, "an integer");
             }
             if matches!(code, RonError::ExpectedIdentifier) && self.is_time_function(node) {
                 let error = self.wrong_type(node, TIME_FUNCTION);
                 return match node.kind {
-                    Kind::Text => error.help("numbers here are in SI units, without a unit"),
+                    ValueKind::Text => error.help("numbers here are in SI units, without a unit"),
                     _ => error,
                 };
             }
@@ -278,7 +279,7 @@ impl Source {
         }
     }
 
-    /// Whether a function of time is expected at this value.
+    /// Returns whether a function of time is expected at this value.
     fn is_time_function(&self, node: &Node) -> bool {
         let way = self.steps_to(&node.span);
         // The list of `Axes([...])` adds one level to the path.
@@ -293,12 +294,12 @@ impl Source {
     fn wrong_type(&self, node: &Node, expected: &str) -> InputError {
         let written = shorten(&self.text[node.span.clone()]);
         let found = match &node.kind {
-            Kind::Number => format!("the number `{written}`"),
-            Kind::Text => format!("the text `{written}`"),
-            Kind::Char => format!("the character `{written}`"),
-            Kind::Word => format!("the word `{written}`"),
-            Kind::Other => format!("`{written}`"),
-            Kind::Group(group) => match group.shape {
+            ValueKind::Number => format!("the number `{written}`"),
+            ValueKind::Text => format!("the text `{written}`"),
+            ValueKind::Char => format!("the character `{written}`"),
+            ValueKind::Word => format!("the word `{written}`"),
+            ValueKind::Other => format!("`{written}`"),
+            ValueKind::Group(group) => match group.shape {
                 Shape::List => "a list".to_owned(),
                 Shape::Map => "a map".to_owned(),
                 Shape::Tuple | Shape::Struct => match &group.name {
@@ -313,8 +314,8 @@ impl Source {
             &node.head(&self.text),
             format!("wrong type{place}: found {found}"),
         );
-        let quotes = matches!(node.kind, Kind::Word) && expected == "a text in quotes";
-        let unquoted = matches!(node.kind, Kind::Text) && expected.starts_with("a name");
+        let quotes = matches!(node.kind, ValueKind::Word) && expected == "a text in quotes";
+        let unquoted = matches!(node.kind, ValueKind::Text) && expected.starts_with("a name");
         let error = error.expected(expected);
         if quotes {
             error.help(format!("write `\"{written}\"`"))
@@ -330,7 +331,7 @@ impl Source {
 const TIME_FUNCTION: &str =
     "a number, or a function of time: `Constant(...)`, `Ramp(...)`, `Sine(...)`, `Table([...])`";
 
-/// Description of the type expected at this location.
+/// Returns a description of the type expected at this location.
 fn expected_type(code: &RonError) -> Option<String> {
     Some(match code {
         RonError::ExpectedBoolean => "`true` or `false`".into(),
@@ -350,7 +351,7 @@ fn expected_type(code: &RonError) -> Option<String> {
     })
 }
 
-/// ron's message in lower case, to continue a sentence.
+/// Returns ron's message in lower case, to continue a sentence.
 fn sentence(code: &RonError) -> String {
     let words = code.to_string();
     let mut letters = words.chars();

@@ -40,7 +40,8 @@ pub fn open(path: &Path, most: u64) -> Result<(File, u64), InputError> {
     };
     judge(&std::fs::metadata(path).map_err(unreadable)?)?;
     let file = File::open(path).map_err(unreadable)?;
-    // Checked again on the open handle, since the file may have been replaced in between.
+    // The type is checked again on the open handle, since the file may have been replaced in
+    // between.
     let length = judge(&file.metadata().map_err(unreadable)?)?;
     if length == 0 {
         return Err(empty(path));
@@ -55,7 +56,8 @@ fn empty(path: &Path) -> InputError {
 /// Reads a whole file with the checks of [`open`].
 ///
 /// # Errors
-/// The errors of [`open`], or the file grows beyond `most` bytes while it is read.
+/// Returns the errors of [`open`], or an error if the file grows beyond `most` bytes while it is
+/// read.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let (file, length) = open(path, most)?;
     let capacity = usize::try_from(length).unwrap_or(0);
@@ -82,7 +84,8 @@ fn read_at_most(
 /// Reads a text file.
 ///
 /// # Errors
-/// The errors of [`read_bytes`], or the file is not UTF-8 or holds white space only.
+/// Returns the errors of [`read_bytes`], or an error if the file is not UTF-8 or contains white
+/// space only.
 pub fn read_text(path: &Path) -> Result<String, InputError> {
     decode(path, read_bytes(path, MAX_BYTES)?)
 }
@@ -90,7 +93,7 @@ pub fn read_text(path: &Path) -> Result<String, InputError> {
 /// Reads a text from a stream, to its end; errors name it by `path`.
 ///
 /// # Errors
-/// The text cannot be read, is too long, is not UTF-8, or holds white space only.
+/// The text cannot be read, is too long, is not UTF-8, or contains white space only.
 pub fn read_text_from(path: &Path, from: &mut dyn Read) -> Result<String, InputError> {
     decode(path, read_at_most(path, from, MAX_BYTES, 0)?)
 }

@@ -37,7 +37,7 @@ pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
 pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
-pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree, split_path};
+pub use tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind, split_path};
 
 pub(crate) use schema::fields_at;
 use source_map::SourceMap;
@@ -83,7 +83,7 @@ impl Source {
         }
     }
 
-    /// Path of the file, or the given name.
+    /// Returns the path of the file, or the given name.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -98,22 +98,21 @@ impl Source {
         &self.tree
     }
 
-    /// The `key=value` arguments applied so far.
+    /// Returns the `key=value` arguments applied so far.
     pub fn sets(&self) -> &[String] {
         &self.sets
     }
 
     /// Parses the text.
     ///
-    /// `Some` may be omitted, newtypes are written as their content, and the
-    /// fields of a struct in a variant may be written in the variant's own
-    /// parentheses, `Sine(frequency: 5)`, or in theirs, `Sine((frequency: 5))`.
-    /// Lists and tuples are interchangeable, and a number is accepted for `Constant(number)`
-    /// where an enum has that variant.
+    /// `Some` may be omitted, newtypes are written as their content, and the fields of a struct in
+    /// a variant may be written in the parentheses of the variant, `Sine(frequency: 5)`, or in
+    /// those of the struct, `Sine((frequency: 5))`. Lists and tuples are interchangeable, and a
+    /// number is accepted for `Constant(number)` where an enum has that variant.
     ///
     /// # Errors
-    /// An error from ron or from the validation of `T`, at the token that caused it; or a key that
-    /// a map gives twice.
+    /// Returns an error from ron or from the validation of `T`, at the token that caused it; or an
+    /// error for a key that a map gives twice.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         if let Some(refusal) = self.refuse_depth() {
             return Err(refusal);
@@ -135,7 +134,7 @@ impl Source {
             };
             match other.read_once() {
                 Ok(value) => return Ok(value),
-                // Keep only a spelling with which ron gets past the value.
+                // Only a spelling with which ron gets past the value is kept.
                 Err(next) if passes(&other, &next, passed) => {
                     source = Cow::Owned(other);
                     error = next;
@@ -173,7 +172,7 @@ impl Source {
         }
     }
 
-    /// Makes an error at a dotted path, or at its nearest existing parent if the text omits it.
+    /// Creates an error at a dotted path, or at its nearest existing parent if the text omits it.
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> InputError {
         let parts = tree::split_path(path).unwrap_or_default();
         match self.tree.find(&self.text, &parts) {
@@ -189,7 +188,7 @@ impl Source {
         }
     }
 
-    /// Line and column of a path in the file, if the text has it.
+    /// Returns line and column of a path in the file, if the text has it.
     pub fn position_of(&self, path: &str) -> Option<(usize, usize)> {
         let parts = tree::split_path(path)?;
         let node = self.tree.find(&self.text, &parts).ok()?;
@@ -248,12 +247,12 @@ impl Source {
 /// place of the schema.
 const MAX_SPELLINGS: usize = 256;
 
-/// Whether ron parsed beyond a byte and the white space after it.
+/// Returns whether ron parsed beyond a byte and the white space after it.
 fn passes(source: &Source, error: &SpannedError, byte: usize) -> bool {
     source.offset(&error.span.end) > byte
 }
 
-/// Whether `one` occurred further on in the text than `other`.
+/// Returns whether `one` occurred further on in the text than `other`.
 fn further(one: &SpannedError, other: &SpannedError) -> bool {
     let end = |error: &SpannedError| (error.span.end.line, error.span.end.col);
     end(one) > end(other)

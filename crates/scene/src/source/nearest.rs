@@ -1,9 +1,9 @@
 //! Suggestion of the candidate that a misspelt name was most probably meant to be.
 
-/// Longer names are not compared, since the cost is the product of the lengths.
+/// Length above which names are not compared, since the cost is the product of the lengths.
 const LONGEST: usize = 64;
 
-/// The candidate nearest to `name`, if it is close enough to suggest.
+/// Returns the candidate nearest to `name`, if it is close enough to suggest.
 ///
 /// Case, underscores, hyphens and spaces are ignored; beyond that one edit (insertion, deletion,
 /// substitution, transposition) per three letters is allowed, rounded to the nearest integer.
@@ -24,7 +24,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, _, candidate)| candidate)
 }
 
-/// The significant letters in lower case; `None` for an empty or too long name.
+/// Returns the significant letters in lower case; `None` for an empty or too long name.
 fn fold(name: &str) -> Option<String> {
     if name.len() > 4 * LONGEST || name.chars().count() > LONGEST {
         return None;

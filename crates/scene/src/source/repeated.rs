@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::tree::{Kind, Node, Shape};
+use super::tree::{Node, Shape, ValueKind};
 use super::{InputError, Source};
 
 /// A repeated key of a map.
@@ -20,7 +20,7 @@ impl Source {
         let mut found: Option<Repeated> = None;
         let mut stack: Vec<&Node> = self.tree.root.iter().collect();
         while let Some(node) = stack.pop() {
-            let Kind::Group(group) = &node.kind else {
+            let ValueKind::Group(group) = &node.kind else {
                 continue;
             };
             stack.extend(group.entries.iter().map(|entry| &entry.value));
@@ -57,7 +57,7 @@ impl Source {
         Some(self.error_in(&again, message).help("remove one of the two"))
     }
 
-    /// Line and column of a range, and the `--set` that contained it.
+    /// Returns line and column of a range, and the `--set` that contained it.
     pub(super) fn place_in_words(&self, span: &Range<usize>) -> String {
         let error = self.error_in(span, "");
         let (line, column) = error.position().unwrap_or_default();

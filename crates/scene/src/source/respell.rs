@@ -9,7 +9,7 @@ use ron::error::{Error as RonError, SpannedError};
 use std::ops::Range;
 
 use super::Source;
-use super::tree::{Kind, Node, Shape, Tree};
+use super::tree::{Node, Shape, Tree, ValueKind};
 
 /// The rewriting of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,22 +36,22 @@ pub(super) enum Step {
 }
 
 impl Source {
-    /// The text with the value at which ron stopped rewritten, and the byte that ron must pass for
-    /// the rewriting to be correct; `None` if no other notation applies.
+    /// Returns the text with the value at which ron stopped rewritten, and the byte that ron must
+    /// pass for the rewriting to be correct; `None` if no other notation applies.
     pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
         let node = self.stopped_at(error)?;
         let change = match (&error.code, &node.kind) {
-            (RonError::ExpectedArray, Kind::Group(group)) => {
+            (RonError::ExpectedArray, ValueKind::Group(group)) => {
                 (group.shape == Shape::Tuple && group.name.is_none()).then_some(Change::List)
             }
-            (RonError::ExpectedStructLike, Kind::Group(group)) => {
+            (RonError::ExpectedStructLike, ValueKind::Group(group)) => {
                 (group.shape == Shape::List).then_some(Change::Tuple)
             }
             (
                 RonError::ExpectedIdentifier
                 | RonError::SuggestRawIdentifier(_)
                 | RonError::NoSuchEnumVariant { .. },
-                Kind::Number,
+                ValueKind::Number,
             ) => Some(Change::Constant),
             _ => None,
         }?;
@@ -71,7 +71,8 @@ impl Source {
             Change::List | Change::Tuple => node.span.start,
         };
         let mut other = self.clone();
-        // From the last one on, so that the positions of the others stay valid.
+        // Values are rewritten from the last one on, so that the positions of the others stay
+        // valid.
         for span in alike.iter().rev() {
             other.write(span, change);
         }
@@ -79,7 +80,7 @@ impl Source {
         Some((other, pass))
     }
 
-    /// The value that begins where ron stopped.
+    /// Returns the value that begins where ron stopped.
     fn stopped_at(&self, error: &SpannedError) -> Option<&Node> {
         let end = self.offset(&error.span.end);
         let rest = self.text.get(end..)?;
@@ -135,11 +136,11 @@ impl Source {
     ) {
         let Some(((name, step), rest)) = way.split_first() else {
             let fits = match (&node.kind, change) {
-                (Kind::Group(group), Change::List) => {
+                (ValueKind::Group(group), Change::List) => {
                     group.shape == Shape::Tuple && group.name.is_none()
                 }
-                (Kind::Group(group), Change::Tuple) => group.shape == Shape::List,
-                (Kind::Number, Change::Constant) => true,
+                (ValueKind::Group(group), Change::Tuple) => group.shape == Shape::List,
+                (ValueKind::Number, Change::Constant) => true,
                 _ => false,
             };
             if fits {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree};
+use super::tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind};
 
 /// Scans `text`; the first malformed position is recorded and scanning continues.
 pub(super) fn scan(text: &str) -> Tree {
@@ -58,12 +58,12 @@ impl<'a> Scanner<'a> {
         self.rest().chars().next()
     }
 
-    /// Byte range of the next character.
+    /// Returns the byte range of the next character.
     fn here(&self) -> Range<usize> {
         self.at..self.at + self.peek().map_or(0, char::len_utf8)
     }
 
-    /// Only the first error is kept, since later ones are mostly consequences of it.
+    /// Records an error. Only the first is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
         if self.fault.is_none() {
             self.fault = Some(SyntaxError {
@@ -149,24 +149,24 @@ impl<'a> Scanner<'a> {
             '(' | '[' | '{' => return self.group(start, None, depth),
             '"' => {
                 self.string();
-                Kind::Text
+                ValueKind::Text
             }
             '\'' => self.character(),
             '0'..='9' | '+' | '-' | '.' => {
                 self.skip_while(|c| continues_word(c) || matches!(c, '.' | '+' | '-'));
-                Kind::Number
+                ValueKind::Number
             }
-            'r' if self.raw_string(1) => Kind::Text,
-            'b' if self.rest().starts_with("br") && self.raw_string(2) => Kind::Other,
+            'r' if self.raw_string(1) => ValueKind::Text,
+            'b' if self.rest().starts_with("br") && self.raw_string(2) => ValueKind::Other,
             'b' if self.rest().starts_with("b\"") => {
                 self.at += 1;
                 self.string();
-                Kind::Other
+                ValueKind::Other
             }
             'b' if self.rest().starts_with("b'") => {
                 self.at += 1;
                 self.character();
-                Kind::Other
+                ValueKind::Other
             }
             c if starts_word(c) => {
                 self.word();
@@ -177,15 +177,15 @@ impl<'a> Scanner<'a> {
                 }
                 self.at = name.end;
                 match &self.text[name] {
-                    "inf" | "NaN" | "inff32" | "inff64" | "NaNf32" | "NaNf64" => Kind::Number,
-                    _ => Kind::Word,
+                    "inf" | "NaN" | "inff32" | "inff64" | "NaNf32" | "NaNf64" => ValueKind::Number,
+                    _ => ValueKind::Word,
                 }
             }
             c => {
                 self.fault(self.here(), format!("unexpected character {c:?}"));
                 self.at += c.len_utf8();
                 self.skip_while(|c| !is_blank(c) && !"()[]{},:\"'".contains(c));
-                Kind::Other
+                ValueKind::Other
             }
         };
         Some(Node {
@@ -242,7 +242,7 @@ impl<'a> Scanner<'a> {
         true
     }
 
-    fn character(&mut self) -> Kind {
+    fn character(&mut self) -> ValueKind {
         let rest = self.rest();
         let body = &rest[1..];
         let length = if let Some(escape) = body.strip_prefix('\\') {
@@ -254,12 +254,12 @@ impl<'a> Scanner<'a> {
         match length {
             Some(length) if length <= 12 && body[length..].starts_with('\'') => {
                 self.at += length + 2;
-                Kind::Char
+                ValueKind::Char
             }
             _ => {
                 self.fault(self.here(), "this character is never closed by `'`");
                 self.at += 1;
-                Kind::Other
+                ValueKind::Other
             }
         }
     }
@@ -294,7 +294,7 @@ impl<'a> Scanner<'a> {
                 Some(c @ (')' | ']' | '}')) => {
                     let message = format!("`{c}` does not close the `{opener}` before it");
                     self.fault(self.here(), message);
-                    // Not consumed: it most probably closes an outer group.
+                    // The bracket is not consumed: it most probably closes an outer group.
                     break;
                 }
                 Some(c @ (',' | ':')) => {
@@ -314,7 +314,7 @@ impl<'a> Scanner<'a> {
             match self.peek() {
                 Some(',') => self.at += 1,
                 Some(')' | ']' | '}') | None => {}
-                // A list has no names: the list was not closed before this one.
+                // A list has no names, so that an earlier list was not closed.
                 Some(':') if shape == Shape::List => {
                     let message = format!("this `{opener}` is not closed by `{closer}`");
                     self.fault(open..open + 1, message);
@@ -325,7 +325,7 @@ impl<'a> Scanner<'a> {
         entries.shrink_to_fit();
         Some(Node {
             span: start..self.at,
-            kind: Kind::Group(Box::new(Group {
+            kind: ValueKind::Group(Box::new(Group {
                 shape,
                 name,
                 open,
@@ -362,7 +362,7 @@ impl<'a> Scanner<'a> {
         Some(Entry { key, value })
     }
 
-    /// Byte range of a field name that is followed by a colon, if there is one.
+    /// Returns the byte range of a field name that is followed by a colon, if there is one.
     fn field_name(&mut self) -> Option<Range<usize>> {
         let start = self.at;
         if !self.peek().is_some_and(starts_word) || self.rest().starts_with("r\"") {

@@ -31,8 +31,8 @@ pub(super) enum Level {
     Value,
 }
 
-/// The types of `T` along `path`: first that of the root, then of each component, as far as the
-/// type has them. `root` is the value in the text; it determines the variants of enums.
+/// Returns the types of `T` along `path`: first that of the root, then of each component, as far as
+/// the type has them. `root` is the value in the text; it determines the variants of enums.
 pub(super) fn levels<T: DeserializeOwned>(
     text: &str,
     root: Option<&Node>,
@@ -50,7 +50,7 @@ pub(super) fn levels<T: DeserializeOwned>(
     found
 }
 
-/// Names of the fields of the struct at a path of `T`; none if there is no struct.
+/// Returns the names of the fields of the struct at a path of `T`; empty if there is no struct.
 pub(crate) fn fields_at<T: DeserializeOwned>(
     text: &str,
     root: Option<&Node>,
@@ -79,7 +79,7 @@ impl<'a> Probe<'a> {
         self.found.push(level);
     }
 
-    /// The next component, and the probe for the value it names.
+    /// Returns the next component, and the probe for the value that it names.
     fn deeper(self) -> Option<(&'a str, Probe<'a>)> {
         let (first, rest) = self.path.split_first()?;
         let node = self.node.and_then(|node| node.step(self.text, first));

@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 
 use super::schema::{self, Level};
-use super::tree::{Kind, Node, Shape, Tree, join_path, split_path};
+use super::tree::{Node, Shape, Tree, ValueKind, join_path, split_path};
 use super::{InputError, Source, scan};
 
 /// A parsed `--set` argument; ranges are bytes of the argument.
@@ -53,14 +53,14 @@ impl<'a> Assignment<'a> {
         &self.argument[self.value.clone()]
     }
 
-    /// Whether the value is a name, and may be a text whose quotes the shell removed.
+    /// Returns whether the value is a name, and may be a text whose quotes the shell removed.
     fn is_word(&self) -> bool {
         let tree = scan::scan(self.value());
-        let word = matches!(tree.root.map(|root| root.kind), Some(Kind::Word));
+        let word = matches!(tree.root.map(|root| root.kind), Some(ValueKind::Word));
         word && !matches!(self.value(), "true" | "false")
     }
 
-    /// Whether the value is not valid RON, such as a path, and may be a text.
+    /// Returns whether the value is not valid RON, such as a path, and may be a text.
     fn is_bare(&self) -> bool {
         !self
             .value()
@@ -68,7 +68,7 @@ impl<'a> Assignment<'a> {
             && !is_value(self.value())
     }
 
-    /// The value, if it is one complete RON value; otherwise an error.
+    /// Returns the value, if it is one complete RON value; otherwise an error.
     fn complete(&self) -> Result<String, InputError> {
         let value = self.value();
         if is_value(value) {
@@ -84,7 +84,7 @@ impl<'a> Assignment<'a> {
         Err(error.expected("one number, text, name, list or struct"))
     }
 
-    /// Name of the value that the first components lead to, for messages.
+    /// Returns the name of the value to which the first components lead, for messages.
     fn place(&self, depth: usize) -> String {
         if depth == 0 {
             "the file".to_owned()
@@ -98,7 +98,7 @@ impl<'a> Assignment<'a> {
     }
 }
 
-/// Position of the first `=` outside quotes: a quoted map key may contain one.
+/// Returns the position of the first `=` outside quotes: a quoted map key may contain one.
 fn equals_sign(argument: &str) -> Option<usize> {
     let mut quoted = false;
     argument.bytes().position(|byte| {
@@ -107,14 +107,14 @@ fn equals_sign(argument: &str) -> Option<usize> {
     })
 }
 
-/// Whether the text is one complete RON value, with nothing after it.
+/// Returns whether the text is one complete RON value, with nothing after it.
 fn is_value(text: &str) -> bool {
     let tree = scan::scan(text);
     let whole = tree.root.is_some_and(|root| root.span == (0..text.len()));
     whole && tree.fault.is_none() && tree.too_deep.is_none()
 }
 
-/// `text` as a RON string.
+/// Returns `text` as a RON string.
 fn quote(text: &str) -> String {
     let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{escaped}\"")
@@ -178,7 +178,9 @@ impl Source {
             return false;
         };
         let node = self.tree.around(offset);
-        let Some(node) = node.filter(|node| matches!(node.kind, Kind::Word | Kind::Number)) else {
+        let Some(node) =
+            node.filter(|node| matches!(node.kind, ValueKind::Word | ValueKind::Number))
+        else {
             return false;
         };
         let span = node.span.clone();
@@ -257,7 +259,7 @@ impl Source {
             }
             Shape::Tuple | Shape::List => key(levels.get(depth), &wanted.path[depth]),
         };
-        // The structs and maps between the parent and the value, which the text omits.
+        // These are the structs and maps between the parent and the value, which the text omits.
         let (mut before, mut after) = (format!("{first}: "), String::new());
         for (k, part) in wanted.path.iter().enumerate().skip(depth + 1) {
             let level = levels.get(k);
@@ -365,7 +367,7 @@ impl Source {
 }
 
 impl Node {
-    /// The value inside nested `Some(...)` and one-tuples.
+    /// Returns the value inside nested `Some(...)` and one-tuples.
     fn inner(&self, text: &str) -> &Node {
         let mut node = self.unwrap_some(text);
         while let Some(group) = node.group() {
@@ -389,7 +391,7 @@ fn replacement(
     let held = node.unwrap_some(text);
     // An existing `Some` around the old value is kept, unless the new value has its own.
     let target = if option { node } else { held };
-    let is_text = matches!(held.kind, Kind::Text);
+    let is_text = matches!(held.kind, ValueKind::Text);
     let unquoted = wanted.is_word() || wanted.is_bare();
     let new = if is_text && unquoted && !option {
         quote(value)
@@ -427,7 +429,7 @@ fn as_one_value<T: DeserializeOwned>(wanted: &Assignment<'_>, levels: &[Level]) 
     })
 }
 
-/// `one of `a`, `b``.
+/// Returns `one of `a`, `b``.
 pub(super) fn one_of<S: AsRef<str>>(names: &[S]) -> String {
     const MAX_NAMED: usize = 24;
     let quoted: Vec<String> = names

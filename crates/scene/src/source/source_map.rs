@@ -6,12 +6,12 @@ use std::ops::Range;
 #[derive(Debug, Clone)]
 struct SourceRange {
     length: usize,
-    from: Origin,
+    from: RangeOrigin,
 }
 
 /// Origin of a range of the text.
 #[derive(Debug, Clone)]
-enum Origin {
+enum RangeOrigin {
     /// The file, from this byte on.
     File(usize),
     /// Inserted by the parser for the text at this byte of the file.
@@ -29,7 +29,7 @@ enum Origin {
 
 /// Location of a range of the text in use.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
+pub(super) struct RangeLocation {
     /// Byte range in the file.
     pub span: Range<usize>,
     /// Index of the `--set` that contained the text, and the byte range in its argument.
@@ -44,17 +44,17 @@ pub(super) struct Place {
 pub(super) struct SourceMap(Vec<SourceRange>);
 
 impl SourceMap {
-    /// The map of an unmodified file of this length.
+    /// Returns the map of an unmodified file of this length.
     pub fn whole(length: usize) -> Self {
-        let from = Origin::File(0);
+        let from = RangeOrigin::File(0);
         Self(vec![SourceRange { length, from }])
     }
 
-    /// Location of a range of the text in use.
-    pub fn place(&self, span: &Range<usize>) -> Place {
+    /// Returns the location of a range of the text in use.
+    pub fn place(&self, span: &Range<usize>) -> RangeLocation {
         let (start, first) = self.range_at(span.start);
         match &first.from {
-            Origin::Set {
+            RangeOrigin::Set {
                 set,
                 argument,
                 landed,
@@ -67,26 +67,26 @@ impl SourceMap {
                 } else {
                     argument.clone()
                 };
-                Place {
+                RangeLocation {
                     span: landed.clone(),
                     set: Some((*set, within)),
                 }
             }
-            Origin::Added(file) => Place {
+            RangeOrigin::Added(file) => RangeLocation {
                 span: *file..*file,
                 set: None,
             },
-            Origin::File(file) => {
+            RangeOrigin::File(file) => {
                 let begin = file + (span.start - start).min(first.length);
                 let (last_start, last) = self.range_at(span.end.saturating_sub(1).max(span.start));
                 let end = match &last.from {
-                    Origin::File(file) => {
+                    RangeOrigin::File(file) => {
                         file + (span.end - last_start.min(span.end)).min(last.length)
                     }
-                    Origin::Added(file) => *file,
-                    Origin::Set { landed, .. } => landed.end,
+                    RangeOrigin::Added(file) => *file,
+                    RangeOrigin::Set { landed, .. } => landed.end,
                 };
-                Place {
+                RangeLocation {
                     span: begin..end.max(begin),
                     set: None,
                 }
@@ -94,7 +94,8 @@ impl SourceMap {
         }
     }
 
-    /// The range that contains a byte (the last one, for the end of the text), and its start.
+    /// Returns the range that contains a byte (the last one, for the end of the text), and its
+    /// start.
     fn range_at(&self, at: usize) -> (usize, &SourceRange) {
         let mut start = 0;
         for piece in &self.0 {
@@ -105,7 +106,7 @@ impl SourceMap {
         }
         const NOTHING: &SourceRange = &SourceRange {
             length: 0,
-            from: Origin::File(0),
+            from: RangeOrigin::File(0),
         };
         let last = self.0.last().unwrap_or(NOTHING);
         (start - last.length, last)
@@ -115,12 +116,12 @@ impl SourceMap {
     pub fn insert(&mut self, at: usize, length: usize) {
         let place = self.place(&(at..at));
         let from = match place.set {
-            Some((set, argument)) => Origin::Set {
+            Some((set, argument)) => RangeOrigin::Set {
                 set,
                 argument: argument.start..argument.start,
                 landed: place.span,
             },
-            None => Origin::Added(place.span.start),
+            None => RangeOrigin::Added(place.span.start),
         };
         let mut pieces = Vec::with_capacity(self.0.len() + 2);
         let mut start = 0;
@@ -162,7 +163,7 @@ impl SourceMap {
         }
         pieces.extend(parts.iter().map(|(length, argument)| SourceRange {
             length: *length,
-            from: Origin::Set {
+            from: RangeOrigin::Set {
                 set,
                 argument: argument.clone(),
                 landed: landed.clone(),
@@ -176,16 +177,16 @@ impl SourceMap {
 impl SourceRange {
     fn part(&self, skip: usize, length: usize) -> SourceRange {
         let from = match &self.from {
-            Origin::File(start) => Origin::File(start + skip),
-            Origin::Added(at) => Origin::Added(*at),
-            Origin::Set {
+            RangeOrigin::File(start) => RangeOrigin::File(start + skip),
+            RangeOrigin::Added(at) => RangeOrigin::Added(*at),
+            RangeOrigin::Set {
                 set,
                 argument,
                 landed,
             } => {
                 let begin = argument.start + skip;
                 let exact = argument.len() == self.length;
-                Origin::Set {
+                RangeOrigin::Set {
                     set: *set,
                     argument: if exact {
                         begin..begin + length

@@ -3,14 +3,14 @@
 //! A title with escape sequences could clear the screen, set the window's title or hide lines of
 //! the output; bidirectional control characters could display other words than the file contains.
 
-/// Whether a terminal interprets a character as a control sequence, or as a change of text
+/// Returns whether a terminal interprets a character as a control sequence, or as a change of text
 /// direction.
 pub fn commands_a_terminal(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The text on one line, with such characters replaced by blanks.
+/// Returns the text on one line, with such characters replaced by blanks.
 pub fn clean(text: &str) -> String {
     let plain = |c| if commands_a_terminal(c) { ' ' } else { c };
     text.chars().map(plain).collect()
@@ -26,7 +26,7 @@ pub fn clean_lines(text: &str) -> String {
     text.chars().map(plain).collect()
 }
 
-/// JSON with such characters escaped: `serde_json` does not escape characters beyond ASCII.
+/// Returns JSON with such characters escaped: `serde_json` does not escape characters beyond ASCII.
 pub fn clean_json(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -35,12 +35,12 @@ pub struct Node {
     /// Byte range of the value.
     pub span: Range<usize>,
     /// Kind of the value.
-    pub kind: Kind,
+    pub kind: ValueKind,
 }
 
 /// Kind of a value.
 #[derive(Debug, Clone)]
-pub enum Kind {
+pub enum ValueKind {
     /// A number, `inf` and `NaN` included.
     Number,
     /// A string, raw or not.
@@ -92,7 +92,7 @@ pub struct Entry {
 
 /// A path that does not exist in the text, and how much of it does.
 #[derive(Debug)]
-pub struct Missing<'t> {
+pub struct MissingPath<'t> {
     /// The deepest value that exists.
     pub parent: Option<&'t Node>,
     /// Number of components that exist.
@@ -101,8 +101,8 @@ pub struct Missing<'t> {
     pub choices: Vec<String>,
 }
 
-impl Missing<'_> {
-    /// The path with its first wrong component corrected, if a similar one exists.
+impl MissingPath<'_> {
+    /// Returns the path with its first wrong component corrected, if a similar one exists.
     pub fn correction(&self, path: &[String]) -> Option<Vec<String>> {
         let wrong = path.get(self.depth)?;
         let right = nearest(wrong, self.choices.iter().map(String::as_str))?;
@@ -159,14 +159,14 @@ impl Tree {
     /// Components are field names, map keys, indices, and in a list also the `name` of an element.
     /// `Some(x)` counts as `x`; the value of a one-tuple is its `.0`, and the components of that
     /// value may follow directly.
-    pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, Missing<'_>> {
-        let mut node = self.root.as_ref().ok_or(Missing {
+    pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, MissingPath<'_>> {
+        let mut node = self.root.as_ref().ok_or(MissingPath {
             parent: None,
             depth: 0,
             choices: Vec::new(),
         })?;
         for (depth, part) in path.iter().enumerate() {
-            node = node.step(text, part).ok_or_else(|| Missing {
+            node = node.step(text, part).ok_or_else(|| MissingPath {
                 parent: Some(node),
                 depth,
                 choices: node.choices(text),
@@ -175,7 +175,7 @@ impl Tree {
         Ok(node)
     }
 
-    /// The value that ends exactly at `offset`.
+    /// Returns the value that ends exactly at `offset`.
     pub(super) fn ending_at(&self, offset: usize) -> Option<&Node> {
         let mut node = self.root.as_ref()?;
         while node.span.end != offset {
@@ -196,11 +196,11 @@ impl Tree {
         Some(node)
     }
 
-    /// The dotted path of the value with this span; empty for the root.
+    /// Returns the dotted path of the value with this span; empty for the root.
     pub(super) fn path_of(&self, text: &str, span: &Range<usize>) -> Vec<String> {
         let mut path = Vec::new();
         let mut node = self.root.as_ref();
-        while let Some(Kind::Group(group)) = node.map(|node| &node.kind) {
+        while let Some(ValueKind::Group(group)) = node.map(|node| &node.kind) {
             let holds = |child: &Range<usize>| child.start <= span.start && span.end <= child.end;
             let entries = &group.entries;
             let Some(index) = entries.iter().position(|entry| holds(&entry.value.span)) else {
@@ -226,7 +226,7 @@ impl Tree {
         };
         while let Some(node) = stack.pop() {
             match &node.kind {
-                Kind::Group(group) => {
+                ValueKind::Group(group) => {
                     group.name.iter().for_each(&mut offer);
                     for entry in &group.entries {
                         entry.key.iter().for_each(&mut offer);
@@ -241,15 +241,15 @@ impl Tree {
 }
 
 impl Node {
-    /// The group, if the value is one.
+    /// Returns the group, if the value is one.
     pub fn group(&self) -> Option<&Group> {
         match &self.kind {
-            Kind::Group(group) => Some(group),
+            ValueKind::Group(group) => Some(group),
             _ => None,
         }
     }
 
-    /// The value inside any number of `Some(...)`.
+    /// Returns the value inside any number of `Some(...)`.
     pub fn unwrap_some(&self, text: &str) -> &Node {
         let mut node = self;
         while let Some(group) = node.group().filter(|group| group.is_some(text)) {
@@ -258,7 +258,7 @@ impl Node {
         node
     }
 
-    /// Range to mark: the whole value, or its head if it spans several lines.
+    /// Returns the range to mark: the whole value, or its head if it spans several lines.
     pub fn head(&self, text: &str) -> Range<usize> {
         match self.group() {
             Some(group) if text[self.span.clone()].contains('\n') => {
@@ -272,8 +272,8 @@ impl Node {
     pub fn string(&self, text: &str) -> Option<String> {
         let written = &text[self.span.clone()];
         match self.kind {
-            Kind::Text => ron::from_str(written).ok(),
-            Kind::Word => Some(plain(written).to_owned()),
+            ValueKind::Text => ron::from_str(written).ok(),
+            ValueKind::Word => Some(plain(written).to_owned()),
             _ => None,
         }
     }
@@ -306,7 +306,7 @@ impl Node {
         }
     }
 
-    /// A field of this struct, or of the struct in this one-tuple.
+    /// Returns a field of this struct, or of the struct in this one-tuple.
     fn field(&self, text: &str, name: &str) -> Option<&Node> {
         let mut node = self;
         loop {
@@ -327,7 +327,7 @@ impl Node {
         }
     }
 
-    /// Valid components after this value in a path.
+    /// Returns valid components after this value in a path.
     pub(super) fn choices(&self, text: &str) -> Vec<String> {
         let node = self.unwrap_some(text);
         let Some(group) = node.group() else {
@@ -343,7 +343,7 @@ impl Node {
 }
 
 impl Group {
-    /// Whether this is `Some(x)`.
+    /// Returns whether this is `Some(x)`.
     pub fn is_some(&self, text: &str) -> bool {
         let named = self
             .name
@@ -352,7 +352,7 @@ impl Group {
         named && self.shape == Shape::Tuple && self.entries.len() == 1
     }
 
-    /// The index of the entry with this key, or in a list with this `name`.
+    /// Returns the index of the entry with this key, or in a list with this `name`.
     fn position(&self, text: &str, part: &str) -> Option<usize> {
         (0..self.entries.len()).find(|&index| {
             let entry = &self.entries[index];
@@ -361,7 +361,7 @@ impl Group {
         })
     }
 
-    /// The component that leads to an entry.
+    /// Returns the component that leads to an entry.
     fn component(&self, text: &str, index: usize) -> String {
         self.label(text, index).unwrap_or_else(|| index.to_string())
     }

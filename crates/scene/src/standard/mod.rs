@@ -17,7 +17,7 @@ pub struct Cut {
     pub spacing: f64,
     /// Start along the standard's lateral axis (m).
     pub from: Option<f64>,
-    /// End (m).
+    /// End along the standard's lateral axis (m).
     pub to: Option<f64>,
     /// n of an inclination 1:n.
     pub inclination: Option<f64>,
@@ -26,13 +26,14 @@ pub struct Cut {
 /// A profile as drawn in its standard: lateral positions and heights in mm, heights positive as in
 /// the standard.
 trait Drawing {
-    /// Lateral positions where its segments meet, and its ends, from left to right (mm).
+    /// Returns the lateral positions where its segments meet, and its ends, from left to right
+    /// (mm).
     fn joints(&self) -> Vec<f64>;
     /// Height at a lateral position between the ends (mm).
     fn height(&self, y: f64) -> f64;
 }
 
-/// Side of the profile on which the solid is.
+/// Returns the side of the profile on which the solid is.
 pub fn side(name: StandardName) -> Side {
     match name {
         StandardName::S1002 => Side::Above,

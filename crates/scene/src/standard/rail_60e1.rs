@@ -52,12 +52,12 @@ impl Rail60E1 {
         }
     }
 
-    /// Half of the width at the end of the flank (mm).
+    /// Returns half of the width at the end of the flank (mm).
     fn reach(&self) -> f64 {
         self.tangent[0] + (FLANK_END - self.tangent[1]) / FLANK
     }
 
-    /// Highest point of the rail inclined 1:n, in the axes of the upright rail (mm).
+    /// Returns the highest point of the rail inclined 1:n, in the axes of the upright rail (mm).
     fn apex(&self, n: f64) -> [f64; 2] {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         if CROWN * sin <= HALF[0] {
@@ -131,7 +131,7 @@ mod tests {
             let d = 1e-6;
             let left = (rail.height(joint - d) - rail.height(joint - 2.0 * d)) / d;
             let right = (rail.height(joint + 2.0 * d) - rail.height(joint + d)) / d;
-            // Near the flank z changes rapidly with y: compare angles.
+            // Near the flank z changes rapidly with y, so that angles are compared.
             assert!(
                 (left.atan() - right.atan()).abs() < 1e-5,
                 "{joint} {left} {right}"

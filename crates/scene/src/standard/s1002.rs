@@ -51,7 +51,7 @@ fn polynomial(coefficients: &[f64], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c)
 }
 
-/// Height of a circle above its centre at a lateral distance from it.
+/// Returns the height of a circle above its centre at a lateral distance from it.
 fn arc(radius: f64, off: f64) -> f64 {
     (radius * radius - off * off).max(0.0).sqrt()
 }
@@ -84,7 +84,7 @@ mod tests {
         S1002.height(y)
     }
 
-    /// Slope by central differences (error below 1e-8 for radii of 10 mm and more).
+    /// Returns the slope by central differences (error below 1e-8 for radii of 10 mm and more).
     fn slope(y: f64) -> f64 {
         let d = 1e-4;
         (z(y + d) - z(y - d)) / (2.0 * d)
@@ -98,7 +98,7 @@ mod tests {
         assert!((slope(-39.0) + 70f64.to_radians().tan()).abs() < 1e-6);
         // The field side has a slope of 1 in 15.
         assert!((slope(50.0) + 1.0 / 15.0).abs() < 1e-8);
-        // Back of the flange 70 mm from the datum; 49.5 + 20.5.
+        // The back of the flange is 70 mm from the datum: 49.5 + 20.5.
         assert!((z(-70.0) - 9.519259302).abs() < 1e-9);
     }
 
@@ -122,7 +122,7 @@ mod tests {
         for joint in &JOINTS[1..8] {
             let d = 1e-9;
             let step = (z(joint + d) - z(joint - d)).abs();
-            // Limited by the printed digits of the throat's polynomial.
+            // The accuracy is limited by the printed digits of the throat's polynomial.
             let allowed = if *joint == -35.0 { 2e-4 } else { 5e-5 };
             assert!(step < allowed, "{joint}: {step}");
             let d = 1e-5;

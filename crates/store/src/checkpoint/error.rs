@@ -1,7 +1,7 @@
 //! Errors in resuming a run.
 
 use crate::folder_lock::LockError;
-use fretwork_observe::code::CodeError;
+use fretwork_observe::encoding::EncodingError;
 use std::path::PathBuf;
 
 /// Reason why a run cannot be resumed from a folder.
@@ -36,7 +36,7 @@ pub enum ResumeError {
     NoState {
         /// The file.
         path: PathBuf,
-        /// Why it ended.
+        /// Reason why the original run ended.
         why: String,
     },
     /// The file was written by another version.
@@ -48,7 +48,7 @@ pub enum ResumeError {
     Version {
         /// The file.
         path: PathBuf,
-        /// Version that wrote the file, with its checkpoint format.
+        /// Version of the program that wrote the file, with its checkpoint format.
         theirs: String,
         /// Version of this program, with its checkpoint format.
         ours: String,
@@ -73,7 +73,7 @@ pub enum ResumeError {
     Longer {
         /// The file.
         path: PathBuf,
-        /// What depends on the end.
+        /// The quantity that depends on the end.
         why: &'static str,
     },
     /// An intact checkpoint does not fit the case.
@@ -82,12 +82,12 @@ pub enum ResumeError {
         /// The file.
         path: PathBuf,
         /// Reason.
-        source: CodeError,
+        source: EncodingError,
     },
 }
 
 impl ResumeError {
-    /// Whether the user's input differs from that of the original run; otherwise the file is at
+    /// Whether the user's input differs from that of the original run. Otherwise the file is at
     /// fault.
     pub fn is_input(&self) -> bool {
         matches!(

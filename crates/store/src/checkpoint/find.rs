@@ -1,9 +1,9 @@
 //! Search of a results folder for a state to resume from.
 
-use super::{Frame, Identity, Kind, ResumeError};
+use super::{Frame, FrameKind, Identity, ResumeError};
 use crate::folder_lock::{FolderLock, RUN_LOCK};
 use crate::results::PreviousResults;
-use fretwork_observe::code::decode;
+use fretwork_observe::encoding::decode;
 use std::path::Path;
 
 /// Result of the search.
@@ -20,63 +20,63 @@ pub enum FolderState {
 /// A saved state of a stopped run.
 #[derive(Debug)]
 pub struct ResumePoint {
-    /// Its results file, opened.
+    /// The results file of the stopped run, open for reading.
     pub results: PreviousResults,
     /// Number of the frame.
     pub number: u64,
-    /// Serialized state.
+    /// Serialized state of the last checkpoint.
     pub state: Vec<u8>,
-    /// The folder is this run's from then on, so that no other goes on from the same state.
+    /// Lock by which this run owns the folder, so that no other run continues from this state.
     pub lock: FolderLock,
 }
 
-/// The file that a run writes last, and removes before it starts: if it exists, all others are
-/// complete.
-pub const LAST: &str = "summary.json";
+/// Name of the file that a run writes last and removes before it starts: if it exists, all others
+/// are complete.
+pub const SUMMARY_FILE: &str = "summary.json";
 
-/// Whether the run in a folder, with this identity, finished without an error.
+/// Whether the run with this identity in a folder finished without an error.
 fn finished(folder: &Path, identity: &str) -> bool {
-    let text = std::fs::read_to_string(folder.join(LAST)).unwrap_or_default();
+    let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
-/// Why the run in a folder, with this identity, ended, where it wrote that.
+/// Returns the reason why the run with this identity in a folder ended, if the run recorded one.
 fn ended(folder: &Path, identity: &str) -> Option<String> {
-    let text = std::fs::read_to_string(folder.join(LAST)).ok()?;
+    let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).ok()?;
     let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
     let ours = summary["identity"] == identity;
     ours.then(|| summary["stopped"].as_str().map(str::to_owned))?
 }
 
-/// What distinguishes a file from one written since: its length and time of writing.
+/// Length and modification time of a file, which distinguish it from a file written later.
 fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
     let data = std::fs::metadata(path).ok()?;
     Some((data.len(), data.modified().ok()?))
 }
 
-/// Searches a folder for a run with this identity. The folder is owned only where there is
-/// something to go on with: a finished run may lie where nobody writes.
+/// Searches a folder for a run with this identity. The folder is locked only if there is a state to
+/// continue from, since a finished run may be in a folder without write access.
 ///
 /// # Errors
-/// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to
-/// another version or case, or it has rows and no state.
+/// Another run is writing in the folder, a file cannot be read, its checkpoints are damaged, it
+/// belongs to another version or case, or it has rows but no state.
 pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
         return Ok(FolderState::Nothing);
     }
     loop {
-        let reading = FolderLock::read(folder, RUN_LOCK)?;
+        let reading = FolderLock::shared(folder, RUN_LOCK)?;
         let before = version(&path);
         let saved = match look(folder, &path, identity)? {
-            Seen::Nothing => return Ok(FolderState::Nothing),
-            Seen::Finished => return Ok(FolderState::Finished),
-            Seen::State(saved) => saved,
+            FolderContents::Nothing => return Ok(FolderState::Nothing),
+            FolderContents::Finished => return Ok(FolderState::Finished),
+            FolderContents::State(saved) => saved,
         };
         drop(reading);
-        let lock = FolderLock::own(folder, RUN_LOCK)?;
-        // Between the two another run may have gone on from there.
+        let lock = FolderLock::exclusive(folder, RUN_LOCK)?;
+        // Another run may have continued in the folder between the search and the lock.
         if version(&path) == before {
             let (results, number, state) = *saved;
             return Ok(FolderState::State(ResumePoint {
@@ -89,15 +89,15 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<FolderState, ResumeErr
     }
 }
 
-/// What a folder holds.
-enum Seen {
+/// Content of a folder.
+enum FolderContents {
     Nothing,
     Finished,
     /// The results, and number and bytes of the last state.
     State(Box<(PreviousResults, u64, Vec<u8>)>),
 }
 
-fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeError> {
+fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<FolderContents, ResumeError> {
     let path = path.to_owned();
     let unreadable = |reason: String| ResumeError::Unreadable {
         path: path.clone(),
@@ -114,8 +114,8 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     let Some(frame) = frames.last() else {
         return Err(ResumeError::Damaged { path });
     };
-    // A sealed slot held a frame; one that was being written when the run was killed has no seal
-    // yet.
+    // A sealed slot contained a valid frame. A frame that was being written when the run was killed
+    // has no seal yet.
     let written = |slot: &&Option<Vec<u8>>| {
         slot.as_ref()
             .is_none_or(|bytes| bytes.iter().take(Frame::SEAL).any(|b| *b != 0))
@@ -139,16 +139,16 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     }
     let later = theirs.ends_later(identity);
     let name = frame.identity.clone();
-    // The results file is marked complete, and the summary of the same run shows that all others
-    // are.
+    // The results file is marked as complete, and the summary of this run shows that all other
+    // files are complete too.
     let is_finished =
-        frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
+        frame.kind == FrameKind::Ended && finished(folder, &Identity::name(&frame.identity));
     if !later && is_finished {
-        return Ok(Seen::Finished);
+        return Ok(FolderContents::Finished);
     }
-    let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
+    let mut states = frames.into_iter().filter(|f| f.kind == FrameKind::State);
     match states.next_back() {
-        // To start over would replace what the run recorded.
+        // Starting again would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),
         None if is_finished => Err(ResumeError::NoState {
             path,
@@ -156,8 +156,12 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
         }),
         None => match ended(folder, &Identity::name(&name)).filter(|_| results.has_rows()) {
             Some(why) => Err(ResumeError::NoState { path, why }),
-            None => Ok(Seen::Nothing),
+            None => Ok(FolderContents::Nothing),
         },
-        Some(frame) => Ok(Seen::State(Box::new((results, frame.number, frame.state)))),
+        Some(frame) => Ok(FolderContents::State(Box::new((
+            results,
+            frame.number,
+            frame.state,
+        )))),
     }
 }

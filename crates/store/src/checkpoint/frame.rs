@@ -1,4 +1,4 @@
-//! Frame: the bytes of a checkpoint, protected by a checksum.
+//! Frames: the bytes of a checkpoint, protected by a checksum.
 //!
 //! ```text
 //! 0  "FRETWORK"       8  format (u32)       12  kind (u32)         16  number of the frame (u64)
@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 /// Kind of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FrameKind {
     /// The run has started, without a state to resume from.
     Begun,
     /// A state to resume from.
@@ -24,13 +24,13 @@ pub enum Kind {
 /// A checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Kind.
-    pub kind: Kind,
+    /// Kind of the frame.
+    pub kind: FrameKind,
     /// Number of the frame in its run, increasing with time.
     pub number: u64,
     /// Format of the identity and the state, see [`Frame::FORMAT`].
     pub format: u32,
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the frame.
     pub version: String,
     /// Serialized identity of the run.
     pub identity: Vec<u8>,
@@ -43,19 +43,19 @@ const HASH: usize = 48;
 const BODY: usize = 80;
 
 impl Frame {
-    /// Form of identities and states that this program writes: one more whenever anything of them
-    /// changes.
+    /// Version of the format of identities and states that this program writes. It increases by one
+    /// with every change of their content.
     pub const FORMAT: u32 = 19;
 
-    /// First bytes of a frame, which are written when all others are on disk: zeros until then.
+    /// First bytes of a frame. They are zero until all other bytes are on disk.
     pub const SEAL: usize = MAGIC.len();
 
     /// Serializes the frame.
     pub fn bytes(&self) -> Vec<u8> {
         let kind: u32 = match self.kind {
-            Kind::Begun => 0,
-            Kind::State => 1,
-            Kind::Ended => 2,
+            FrameKind::Begun => 0,
+            FrameKind::State => 1,
+            FrameKind::Ended => 2,
         };
         let parts = [self.version.as_bytes(), &self.identity, &self.state];
         let mut bytes = Vec::with_capacity(BODY + parts.iter().map(|p| p.len()).sum::<usize>());
@@ -93,9 +93,9 @@ impl Frame {
             return None;
         }
         let kind = match word(12)? {
-            0 => Kind::Begun,
-            1 => Kind::State,
-            2 => Kind::Ended,
+            0 => FrameKind::Begun,
+            1 => FrameKind::State,
+            2 => FrameKind::Ended,
             _ => return None,
         };
         Some(Self {
@@ -123,7 +123,7 @@ mod tests {
 
     fn frame() -> Frame {
         Frame {
-            kind: Kind::State,
+            kind: FrameKind::State,
             number: 7,
             format: Frame::FORMAT,
             version: "0.1.0".into(),

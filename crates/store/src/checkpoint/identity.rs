@@ -4,17 +4,17 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Grid, HalfSpace, Node, Store};
 use fretwork_core::in_dimension;
 use fretwork_core::step::State;
-use fretwork_observe::code::{CodeError, encode};
+use fretwork_observe::encoding::{EncodingError, encode};
 use fretwork_scene::source::{Source, first_difference};
-use fretwork_scene::{Built, Loaded};
+use fretwork_scene::{Built, LoadedCase};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// Values of the case that may differ in a resumed run, since they do not affect the computation.
+/// Keys of the case that may differ in a resumed run, since they do not affect the computation.
 const FREE: [&str; 2] = ["output.checkpoint", "output.figures"];
-/// Value that may increase in a resumed run.
+/// Key whose value may increase in a resumed run.
 const END: &str = "time.end";
 
 /// Identity of a run.
@@ -30,7 +30,7 @@ pub struct Identity {
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
     plugins: Vec<(String, String)>,
-    /// SHA-256 of the built scene without the depths of its half-spaces of heat, which includes the
+    /// SHA-256 of the built scene without the depths of its thermal half-spaces. It includes the
     /// effect of files named in the case (profiles, meshes, samples).
     scene: String,
 }
@@ -40,7 +40,7 @@ impl Identity {
     ///
     /// # Errors
     /// The scene cannot be serialized.
-    pub fn of(loaded: &Loaded, built: &Built) -> Result<Self, CodeError> {
+    pub fn of(loaded: &LoadedCase, built: &Built) -> Result<Self, EncodingError> {
         let mut plugins: Vec<(String, String)> = Vec::new();
         for law in built.simulation.laws().iter().flat_map(|l| l.loaded()) {
             let p = &law.plugin;
@@ -49,7 +49,7 @@ impl Identity {
                 plugins.push(stamp);
             }
         }
-        let mut hash = Hashed(Sha256::new());
+        let mut hash = HashWriter(Sha256::new());
         in_dimension!(&built.simulation, |s| {
             hash.0.update(encode(&*without_depths(&s.state))?);
             // Writing to the hash never fails.
@@ -70,7 +70,7 @@ impl Identity {
         hex(&Sha256::digest(bytes))
     }
 
-    /// Whether `now` is the same run with a later end.
+    /// Whether `now` describes the same run with a later end.
     pub fn ends_later(&self, now: &Self) -> bool {
         now.end > self.end
     }
@@ -128,9 +128,9 @@ impl Identity {
     }
 }
 
-/// A state in which half-spaces of heat have no depth. Their grids follow from what else is in an
-/// identity, except for the depth that a case does not give: it follows from `time.end`, and a run
-/// that is extended keeps the one that it began with.
+/// Returns a state whose thermal half-spaces have no depth. Their grids follow from the rest of an
+/// identity, except for a depth that the case does not give: that depth follows from `time.end`,
+/// and an extended run keeps the one with which it began.
 fn without_depths<S: Space>(state: &State<S>) -> Cow<'_, State<S>> {
     let deep = |node: &Node| matches!(node.store, Store::HalfSpace(_));
     let heat = state.heat.as_ref();
@@ -158,10 +158,10 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// Writer that hashes the text.
-struct Hashed(Sha256);
+/// Writer that hashes what is written to it.
+struct HashWriter(Sha256);
 
-impl Write for Hashed {
+impl Write for HashWriter {
     fn write_str(&mut self, text: &str) -> std::fmt::Result {
         self.0.update(text.as_bytes());
         Ok(())

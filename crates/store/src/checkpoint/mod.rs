@@ -5,7 +5,7 @@
 //! /checkpoints/even, /checkpoints/odd   bytes of a frame each, written in turn
 //! ```
 //! A frame contains the identity of the run (case, materials, laws, scene: [`Identity`]) and its
-//! state, protected by a checksum. While one of the two frames is being written the other is
+//! state, protected by a checksum. The file has two frames. While one is being written the other is
 //! intact, so there is always one to resume from. The guarantees are documented in
 //! `docs/checkpoints.md`.
 
@@ -16,7 +16,7 @@ mod identity;
 mod writer;
 
 pub use error::ResumeError;
-pub use find::{FolderState, LAST, ResumePoint, find};
-pub use frame::{Frame, Kind};
+pub use find::{FolderState, ResumePoint, SUMMARY_FILE, find};
+pub use frame::{Frame, FrameKind};
 pub use identity::Identity;
 pub use writer::CheckpointWriter;

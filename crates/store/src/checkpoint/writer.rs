@@ -1,7 +1,7 @@
 //! Schedule of checkpoints.
 
-use super::{Frame, Identity, Kind};
-use fretwork_observe::code::{CodeError, encode};
+use super::{Frame, FrameKind, Identity};
+use fretwork_observe::encoding::{EncodingError, encode};
 use fretwork_scene::case::Checkpoint;
 use std::time::{Duration, Instant};
 
@@ -20,11 +20,11 @@ pub struct CheckpointWriter {
 }
 
 impl CheckpointWriter {
-    /// Makes a writer for a run with this identity, starting with this frame number.
+    /// Returns a writer for a run with this identity, whose first frame has this number.
     ///
     /// # Errors
     /// The identity cannot be serialized.
-    pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, CodeError> {
+    pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, EncodingError> {
         Ok(Self {
             rule,
             identity: encode(identity)?,
@@ -46,13 +46,13 @@ impl CheckpointWriter {
         }
     }
 
-    /// Name of the run's identity, which its summary contains.
+    /// Name of the run's identity, which is written to the summary.
     pub fn name(&self) -> String {
         Identity::name(&self.identity)
     }
 
-    /// Makes the next frame: its number, which determines its slot, and its bytes.
-    pub fn frame(&mut self, kind: Kind, state: Vec<u8>) -> (u64, Vec<u8>) {
+    /// Returns the next frame: its number, which determines its slot, and its bytes.
+    pub fn frame(&mut self, kind: FrameKind, state: Vec<u8>) -> (u64, Vec<u8>) {
         let frame = Frame {
             kind,
             number: self.next,
@@ -65,7 +65,7 @@ impl CheckpointWriter {
         (frame.number, frame.bytes())
     }
 
-    /// Records that a checkpoint was written, which started at this instant.
+    /// Records that the checkpoint begun at this instant was written.
     pub fn written(&mut self, begun: Instant) {
         self.last = Instant::now();
         self.cost = begun.elapsed();

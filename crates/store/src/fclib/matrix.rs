@@ -10,7 +10,7 @@ use super::source::Source;
 use fretwork_core::solve::local::Csr;
 
 /// A matrix as stored in the file.
-pub struct Stored {
+pub struct StoredMatrix {
     name: String,
     rows: usize,
     columns: usize,
@@ -29,7 +29,7 @@ pub enum Order {
     Rows,
 }
 
-impl Stored {
+impl StoredMatrix {
     /// Reads the arrays; the sizes must match those of the problem's vectors.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Stored {
         })
     }
 
-    /// The order of its triplets, if its indices are valid in one order only.
+    /// Returns the order of the triplets if their indices are valid in one order only.
     ///
     /// # Errors
     /// The indices are valid in neither order: one of them is outside the matrix.
@@ -178,7 +178,7 @@ impl Stored {
     }
 }
 
-/// Checks the number of rows and columns, and reads the storage code and the room for entries.
+/// Checks the number of rows and columns, and reads the storage code and the capacity for entries.
 fn read_sizes(
     source: &Source,
     name: &str,
@@ -233,7 +233,7 @@ fn entries(nz: i64, p: &mut Vec<i64>, lines: usize) -> Result<usize, String> {
 ///
 /// # Errors
 /// An index is outside its matrix in either order, or two matrices require different orders.
-pub fn order(source: &Source, matrices: &[&Stored]) -> Result<Order, FclibError> {
+pub fn order(source: &Source, matrices: &[&StoredMatrix]) -> Result<Order, FclibError> {
     let mut known: Option<(Order, &str)> = None;
     for matrix in matrices {
         match (matrix.order(source)?, known) {

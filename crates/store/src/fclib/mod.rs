@@ -132,7 +132,7 @@ pub enum FclibError {
         path: PathBuf,
         /// Group or dataset.
         place: String,
-        /// What it is, and what to do.
+        /// What the file contains instead, and what to do.
         reason: String,
     },
     /// A required group or dataset is missing.

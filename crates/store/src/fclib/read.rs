@@ -1,6 +1,6 @@
 //! Reader of FCLIB problems.
 
-use super::matrix::{Stored, order};
+use super::matrix::{StoredMatrix, order};
 use super::source::Source;
 use super::{FclibError, Global, Info, Local, Problem};
 use fretwork_core::solve::local::{Equalities, GlobalProblem, LocalProblem, Multipliers};
@@ -44,13 +44,13 @@ fn local(source: &Source) -> Result<Local, FclibError> {
         (&at("vectors/q"), q.len()),
     )?;
     let m = q.len();
-    let w = Stored::read(source, &at("W"), (m, m))?;
+    let w = StoredMatrix::read(source, &at("W"), (m, m))?;
     let both = match (source.has_group(&at("V")), source.has_group(&at("R"))) {
         (false, false) => None,
         (true, true) => {
             let s = source.reals(&at("vectors/s"))?;
-            let v = Stored::read(source, &at("V"), (m, s.len()))?;
-            let r = Stored::read(source, &at("R"), (s.len(), s.len()))?;
+            let v = StoredMatrix::read(source, &at("V"), (m, s.len()))?;
+            let r = StoredMatrix::read(source, &at("R"), (s.len(), s.len()))?;
             Some((v, r, s))
         }
         (v, _) => {
@@ -97,11 +97,11 @@ fn global(source: &Source) -> Result<Global, FclibError> {
         (&at("vectors/w"), w.len()),
     )?;
     let n = f.len();
-    let m = Stored::read(source, &at("M"), (n, n))?;
-    let h = Stored::read(source, &at("H"), (n, w.len()))?;
+    let m = StoredMatrix::read(source, &at("M"), (n, n))?;
+    let h = StoredMatrix::read(source, &at("H"), (n, w.len()))?;
     let constraints = if source.has_group(&at("G")) {
         let b = source.reals(&at("vectors/b"))?;
-        Some((Stored::read(source, &at("G"), (n, b.len()))?, b))
+        Some((StoredMatrix::read(source, &at("G"), (n, b.len()))?, b))
     } else {
         None
     };

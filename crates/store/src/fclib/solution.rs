@@ -5,8 +5,8 @@ use super::write::{complete, put};
 use super::{FclibError, Problem};
 use std::path::Path;
 
-/// A solution, with the names of the layout. The sizes are those of the problem: n degrees of
-/// freedom, p constraints, and m components of all contacts, 2 or 3 per contact.
+/// Solution of a problem, with the names of the layout. The sizes are those of the problem: n
+/// degrees of freedom, p constraints, and m components of all contacts (2 or 3 per contact).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution {
     /// Velocities of the degrees of freedom (n); global problems only.
@@ -19,7 +19,7 @@ pub struct Solution {
     pub r: Vec<f64>,
 }
 
-/// Writes a file with a problem and its solution: v for a global problem only, l only with
+/// Writes a file with a problem and its solution: v only for a global problem, l only with
 /// constraints.
 ///
 /// # Errors
@@ -43,8 +43,8 @@ pub fn write_with_solution(
     })
 }
 
-/// Reads the solution of a file, if it has the group; vectors that are missing are empty. Many
-/// files have a group that was never filled and reads as zeros.
+/// Reads the solution of a file, if the file has the group; missing vectors are empty. Many files
+/// have a group that was never filled, which reads as zeros.
 ///
 /// # Errors
 /// The file or the group is damaged.

@@ -23,7 +23,7 @@ impl Source {
     /// Opens a file and lists its datasets.
     ///
     /// # Errors
-    /// It is missing, not HDF5, or damaged.
+    /// The file is missing, not HDF5, or damaged.
     pub fn open(path: &Path) -> Result<Self, FclibError> {
         let length = signed(path)?;
         let damaged = |reason| FclibError::Damaged {
@@ -79,7 +79,7 @@ impl Source {
     /// Reads a scalar integer.
     ///
     /// # Errors
-    /// It is missing, damaged, not an integer or not a scalar.
+    /// The dataset is missing, damaged, not an integer or not a scalar.
     pub fn integer(&self, name: &str) -> Result<i64, FclibError> {
         match self.integers(name)?[..] {
             [one] => Ok(one),
@@ -93,7 +93,7 @@ impl Source {
     /// Reads integers of any width.
     ///
     /// # Errors
-    /// They are missing, damaged or of another type.
+    /// The dataset is missing, damaged or of another type.
     pub fn integers(&self, name: &str) -> Result<Vec<i64>, FclibError> {
         let dataset = self.dataset(name, "whole numbers", |t| {
             matches!(t, DatatypeMessage::FixedPoint { .. })
@@ -104,7 +104,7 @@ impl Source {
     /// Reads finite real numbers.
     ///
     /// # Errors
-    /// They are missing, damaged, of another type, or one is not finite.
+    /// The dataset is missing, damaged, of another type, or has a value that is not finite.
     pub fn reals(&self, name: &str) -> Result<Vec<f64>, FclibError> {
         let dataset = self.dataset(name, "real numbers", |t| {
             matches!(t, DatatypeMessage::FloatingPoint { .. })

@@ -30,7 +30,7 @@ impl Drop for File {
     }
 }
 
-/// nz, nzmax, p, i, x of a matrix group.
+/// Values nz, nzmax, p, i, x of a matrix group.
 type Arrays<'a> = (i64, i64, &'a [i64], &'a [i64], &'a [f64]);
 
 fn matrix(t: &Target, name: &str, m: i64, n: i64, arrays: Arrays) -> Result<(), FclibError> {
@@ -44,7 +44,7 @@ fn matrix(t: &Target, name: &str, m: i64, n: i64, arrays: Arrays) -> Result<(), 
     t.reals(&format!("{name}/x"), x)
 }
 
-/// One contact in 2D with this W.
+/// A problem with one contact in 2D and this W.
 fn local(w: Arrays) -> File {
     File::with(|t| {
         t.group("/fclib_local")?;
@@ -68,7 +68,7 @@ fn every_storage_gives_the_same_matrix() {
     // [2 3; 0 4]
     let exact = Csr::from_triplets(2, 2, &[(0, 0, 2.0), (0, 1, 3.0), (1, 1, 4.0)]);
     let cases: [Arrays; 5] = [
-        // p columns, i rows, with unused capacity
+        // p holds columns and i rows, and the arrays have unused capacity.
         (3, 5, &[1, 0, 1], &[0, 0, 1], &[3.0, 2.0, 4.0]),
         (
             3,
@@ -79,7 +79,7 @@ fn every_storage_gives_the_same_matrix() {
         ),
         (-1, 3, &[0, 1, 3], &[0, 1, 0], &[2.0, 4.0, 3.0]),
         (-2, 3, &[0, 2, 3], &[1, 0, 1], &[3.0, 2.0, 4.0]),
-        // one entry split into two
+        // One entry is split into two, which must be added.
         (4, 4, &[1, 0, 1, 1], &[0, 0, 1, 0], &[1.0, 2.0, 4.0, 2.0]),
     ];
     for (k, case) in cases.into_iter().enumerate() {
@@ -204,7 +204,7 @@ fn what_makes_no_matrix_is_refused() {
     );
 }
 
-/// A local problem with these sizes and coefficients, and a W of two rows.
+/// A local problem with this dimension, these coefficients, and a W of two rows.
 fn around(dimension: i64, q: &[f64], mu: &[f64], rows: i64) -> File {
     File::with(|t| {
         t.group("/fclib_local")?;

@@ -19,7 +19,7 @@ impl Target {
     /// Creates a temporary file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn create(path: &Path) -> Result<Self, FclibError> {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{}.part", std::process::id()));
@@ -32,7 +32,7 @@ impl Target {
         })
     }
 
-    /// Creates a group in an existing one.
+    /// Creates a group in an existing group.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -43,7 +43,7 @@ impl Target {
     /// Writes a scalar: a 32-bit integer in an array of length 1.
     ///
     /// # Errors
-    /// It does not fit into 32 bits, or the file cannot be written.
+    /// The value does not fit into 32 bits, or the file cannot be written.
     pub fn integer(&self, name: &str, value: i64) -> Result<(), FclibError> {
         self.integers(name, [value])
     }
@@ -51,7 +51,7 @@ impl Target {
     /// Writes 32-bit integers.
     ///
     /// # Errors
-    /// One does not fit into 32 bits, or the file cannot be written.
+    /// A value does not fit into 32 bits, or the file cannot be written.
     pub fn integers(
         &self,
         name: &str,

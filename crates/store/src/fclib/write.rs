@@ -52,7 +52,7 @@ pub fn put(file: &Target, problem: &Problem) -> Result<(), FclibError> {
     }
 }
 
-/// Writes a file and completes it; on an error no file is left.
+/// Writes a file and completes it. If this fails, no file is left.
 pub fn complete(
     path: &Path,
     fill: impl FnOnce(&Target) -> Result<(), FclibError>,

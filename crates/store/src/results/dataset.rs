@@ -2,15 +2,15 @@
 
 /// Handle of a dataset that grows along its first axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Growing {
+pub struct GrowingDataset {
     /// Index in [`Store::grown`](super::store::Store::grown).
     pub(super) place: usize,
 }
 
 /// Bookkeeping of a growing dataset.
 #[derive(Clone, Debug)]
-pub struct Grown {
-    /// Its path.
+pub struct GrowthRecord {
+    /// Path of the dataset.
     pub path: String,
     /// Number of rows, including those buffered in memory.
     pub rows: u64,
@@ -18,14 +18,14 @@ pub struct Grown {
     pub sum: u32,
     /// Numbers per row.
     pub width: u64,
-    /// Whether they are integers.
+    /// Whether the numbers are integers.
     pub whole: bool,
     /// Buffered numbers of the last rows, as bits.
     pub(super) buffered: Vec<u64>,
 }
 
-impl Grown {
-    /// Its path from the root, as readers give it.
+impl GrowthRecord {
+    /// Path from the root, in the form that readers use.
     pub fn name(&self) -> &str {
         self.path.trim_start_matches('/')
     }
@@ -91,7 +91,7 @@ impl Number for i64 {
     }
 }
 
-/// The bytes of values, one after the other. (`flat_map` over bytes is much slower.)
+/// Returns the bytes of values, one value after the other. (`flat_map` over bytes is much slower.)
 pub(super) fn to_bytes<T: Copy>(values: &[T], convert: impl Fn(T) -> [u8; 8]) -> Vec<u8> {
     let mut bytes = vec![0; 8 * values.len()];
     let places = bytes.as_chunks_mut::<8>().0;

@@ -1,7 +1,7 @@
 //! Declaration of the contents of the results file before the first row: groups, attributes, texts,
 //! datasets.
 
-use super::dataset::{Growing, Number, Slot};
+use super::dataset::{GrowingDataset, Number, Slot};
 use super::store::{ResultsError, Store};
 use hdf5::types::VarLenUnicode;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
@@ -10,9 +10,9 @@ use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
 const SLOT_CHUNK: usize = 1 << 15;
 
 /// Chunk size, in rows, of a dataset with many rows per state.
-pub const MANY: usize = 2048;
+pub const LONG_CHUNK: usize = 2048;
 /// Chunk size, in rows, of a dataset with one row per state.
-pub const FEW: usize = 128;
+pub const SHORT_CHUNK: usize = 128;
 
 impl Store {
     fn declared_group(&self, path: &str) -> Result<H5Group, ResultsError> {
@@ -69,7 +69,7 @@ impl Store {
         self.named(group.set_attr_typed(name, datatype, text.as_bytes().to_vec()))
     }
 
-    /// Writes integers as an attribute, a scalar if there is one.
+    /// Writes integers as an attribute; a single integer becomes a scalar.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -125,7 +125,8 @@ impl Store {
         self.named(describe(&dataset, unit, doc))
     }
 
-    /// Writes a column of pure numbers of one byte each, as VTK requires of kinds of cells.
+    /// Writes a column of dimensionless numbers of one byte each, as VTK requires for the types of
+    /// cells.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -144,7 +145,7 @@ impl Store {
     }
 
     /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and
-    /// description, and its chunk size in rows ([`MANY`], [`FEW`]).
+    /// description, and its chunk size in rows ([`LONG_CHUNK`], [`SHORT_CHUNK`]).
     ///
     /// # Errors
     /// The file cannot be written.
@@ -154,7 +155,7 @@ impl Store {
         width: u64,
         (unit, doc): (&str, &str),
         chunk: usize,
-    ) -> Result<Growing, ResultsError> {
+    ) -> Result<GrowingDataset, ResultsError> {
         let numbers = width as usize;
         let (shape, most, chunk) = match width {
             1 => (vec![0], vec![None], vec![chunk]),
@@ -208,7 +209,7 @@ fn text_attribute(dataset: &H5Dataset, name: &str, text: &str) -> hdf5::Result<(
     attribute.write_string(text)
 }
 
-/// Path of the parent, and name in it.
+/// Splits a path into that of the parent and the name in it.
 fn split(path: &str) -> (&str, &str) {
     match path.rsplit_once('/') {
         Some(("", name)) => ("/", name),

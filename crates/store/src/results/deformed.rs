@@ -4,7 +4,7 @@ use super::reader::Reader;
 use fretwork_scene::recorded::Deformed;
 use std::collections::{BTreeSet, HashMap};
 
-/// Group of the meshes of grains that deform.
+/// Group of the meshes of deformable grains.
 const ROOT: &str = "views/elastic_grains";
 
 /// Reads the deformation of all deformable grains in the state with the index `frame`, by the
@@ -65,7 +65,7 @@ fn of_material(
 }
 
 impl Reader {
-    /// Names of the groups directly in a group.
+    /// Returns the names of the groups directly in a group.
     pub fn groups_in(&self, group: &str) -> BTreeSet<String> {
         let inside = self.names().filter_map(|n| {
             let rest = n.strip_prefix(group)?.strip_prefix('/')?;

@@ -1,7 +1,7 @@
 //! Event tables: columns that grow by one value per event, buffered until the file is flushed.
 
-use super::dataset::Growing;
-use super::declare::MANY;
+use super::dataset::GrowingDataset;
+use super::declare::LONG_CHUNK;
 use super::store::{ResultsError, Store};
 use fretwork_observe::observer::{Event, EventTable};
 
@@ -9,10 +9,10 @@ use fretwork_observe::observer::{Event, EventTable};
 #[derive(Debug)]
 pub(super) struct Events {
     name: &'static str,
-    columns: Vec<Growing>,
+    columns: Vec<GrowingDataset>,
     buffered: Vec<Vec<f64>>,
-    /// Column of which an event has any number of values.
-    list: Option<Growing>,
+    /// Column with any number of values per event.
+    list: Option<GrowingDataset>,
     buffered_list: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Events {
                     &path,
                     1,
                     (c.unit.heading(dimension), c.doc),
-                    MANY,
+                    LONG_CHUNK,
                 )?);
             }
             let list = table.list.as_ref().and_then(|_| grown.pop());
@@ -51,7 +51,7 @@ impl Events {
         declared.collect()
     }
 
-    /// Whether it is the table of an event.
+    /// Whether this is the table of an event.
     pub fn is_of(&self, event: &Event) -> bool {
         self.name == event.table && self.columns.len() == event.row.len()
     }

@@ -1,15 +1,15 @@
-//! A file that grows in place by HDF5's single-writer multiple-reader protocol: first the rows are
-//! written, then their index, then their number, so that the file can be read at any moment.
+//! In-place growth of a file by HDF5's single-writer multiple-reader protocol: first the rows are
+//! written, then their index, then their number, so that the file can be read at any time.
 //!
-//! The crate syncs the file after each dataset of a flush, some 200 times for a results file.
+//! The HDF5 crate syncs the file after each dataset of a flush, about 200 times for a results file.
 //! In-place growth is therefore used only for files too large to be copied.
 
-use super::dataset::{Grown, to_bytes};
+use super::dataset::{GrowthRecord, to_bytes};
 use hdf5::FileLocking;
 use hdf5::swmr::SwmrFileWriter;
 use std::path::Path;
 
-/// Writer of such a file; `None` once it is closed.
+/// Writer of a file that grows in place; `None` once it is closed.
 pub(super) struct Growth(Option<SwmrFileWriter>);
 
 impl Growth {
@@ -31,7 +31,7 @@ impl Growth {
     }
 
     /// Writes rows to the file without a sync. Readers see them after the next [`Growth::flush`].
-    pub fn write(&mut self, grown: &mut [Grown]) -> hdf5::Result<()> {
+    pub fn write(&mut self, grown: &mut [GrowthRecord]) -> hdf5::Result<()> {
         for dataset in grown.iter_mut().filter(|g| !g.buffered.is_empty()) {
             let index = self.index(dataset.name())?;
             let (first, count) = (dataset.written(), dataset.rows - dataset.written());

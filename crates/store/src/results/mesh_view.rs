@@ -1,14 +1,14 @@
-//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: the unloaded
-//! points and the cells are in the file once, and every state refers to them; only the data change.
-//! A reader of the file moves the points by the field `displacement`.
+//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid. The unloaded
+//! points and the cells are stored once, and every state refers to them; only the data change. A
+//! reader of the file moves the points by the field `displacement`.
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 
-use super::dataset::Growing;
-use super::declare::{FEW, MANY};
+use super::dataset::GrowingDataset;
+use super::declare::{LONG_CHUNK, SHORT_CHUNK};
 use super::store::{ResultsError, Store};
 
-/// Kinds of cells of VTK by their number of corners: a line, a triangle, a tetrahedron.
+/// VTK types of cells by their number of corners: line, triangle, tetrahedron.
 const KINDS: [(usize, u8); 3] = [(2, 3), (3, 5), (4, 10)];
 
 /// A mesh, and the fields that it carries.
@@ -24,7 +24,7 @@ pub struct Mesh {
     pub corners: usize,
     /// Fields, in the order of their values.
     pub fields: Vec<Field>,
-    /// Identity of the body of each point and of each cell in a mesh of several bodies; empty
+    /// Identity of the body of each point and of each cell in a mesh of several bodies. Empty
     /// otherwise.
     pub bodies: [Vec<i64>; 2],
 }
@@ -40,7 +40,7 @@ pub struct Field {
     pub doc: &'static str,
     /// Numbers per value.
     pub width: usize,
-    /// Whether there is a value per cell; otherwise per point.
+    /// Whether there is one value per cell. Otherwise there is one per point.
     pub of_cells: bool,
 }
 
@@ -51,19 +51,19 @@ impl Mesh {
     }
 }
 
-/// A mesh that is declared in the file, to which states are appended.
+/// A mesh declared in the file, to which states are appended.
 #[derive(Debug)]
 pub struct MeshView {
     /// Time of each state (s).
-    values: Growing,
+    values: GrowingDataset,
     /// For each state: first part, number of parts, first point, first cell, first corner.
-    steps: [Growing; 5],
+    steps: [GrowingDataset; 5],
     /// Values of each field.
-    data: Vec<Growing>,
+    data: Vec<GrowingDataset>,
     /// For each field: the row of its first value in each state.
-    data_offsets: Vec<Growing>,
+    data_offsets: Vec<GrowingDataset>,
     /// Offsets of data that all states share: always 0.
-    shared_offsets: Vec<Growing>,
+    shared_offsets: Vec<GrowingDataset>,
     /// Number of states.
     count: i64,
     path: String,
@@ -91,9 +91,9 @@ impl MeshView {
         }
         store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
         let doc = ("s", "time of the state");
-        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, SHORT_CHUNK)?;
         let mut whole = |name: &str, doc: &str| {
-            store.growing::<i64>(&format!("{path}/Steps/{name}"), 1, ("", doc), FEW)
+            store.growing::<i64>(&format!("{path}/Steps/{name}"), 1, ("", doc), SHORT_CHUNK)
         };
         let steps = [
             whole("PartOffsets", "number of the first part of each state; 0")?,
@@ -111,10 +111,10 @@ impl MeshView {
             };
             let name = format!("{path}/{place}/{}", field.name);
             let doc = (field.unit, field.doc);
-            data.push(store.growing::<f64>(&name, field.width as u64, doc, MANY)?);
+            data.push(store.growing::<f64>(&name, field.width as u64, doc, LONG_CHUNK)?);
             let name = format!("{path}/Steps/{place}Offsets/{}", field.name);
             let doc = ("", "first value of each state");
-            data_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+            data_offsets.push(store.growing::<i64>(&name, 1, doc, SHORT_CHUNK)?);
         }
         let mut shared_offsets = Vec::new();
         for (place, ids) in ["PointData", "CellData"].into_iter().zip(&mesh.bodies) {
@@ -125,7 +125,7 @@ impl MeshView {
             store.numbers(&format!("{path}/{place}/body"), 1, ids, doc)?;
             let name = format!("{path}/Steps/{place}Offsets/body");
             let doc = ("", "first value of each state; 0");
-            shared_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+            shared_offsets.push(store.growing::<i64>(&name, 1, doc, SHORT_CHUNK)?);
         }
         Ok(Self {
             values,

@@ -1,5 +1,5 @@
-//! `results.h5`: one self-contained file, readable while it is written and after a crash, see
-//! `store`.
+//! `results.h5`: one self-contained file that is readable while it is written and after a crash,
+//! see `store`.
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
@@ -35,8 +35,8 @@ pub use view::{Cells, Part};
 use super::checkpoint::Frame;
 use super::folder_lock::FolderLock;
 use super::summary::PluginStamp;
-use dataset::{Growing, Slot};
-use declare::MANY;
+use dataset::{GrowingDataset, Slot};
+use declare::LONG_CHUNK;
 use events::Events;
 use fretwork_observe::observer::{Event, EventTable};
 use fretwork_observe::statistics::Column;
@@ -47,7 +47,7 @@ use std::time::{Duration, Instant};
 use store::Store;
 use view::{View, ViewColumns};
 
-/// Contents that are known before the first step.
+/// Content that is known before the first step.
 #[derive(Clone, Debug, Default)]
 pub struct Header {
     /// Title of the case.
@@ -56,9 +56,9 @@ pub struct Header {
     pub case_text: String,
     /// Material files: name and text.
     pub materials: Vec<(String, String)>,
-    /// Laws.
+    /// Libraries of the laws.
     pub plugins: Vec<PluginStamp>,
-    /// Seed.
+    /// Seed of the case.
     pub seed: u64,
     /// Dimension, 2 or 3.
     pub dimension: usize,
@@ -87,11 +87,11 @@ const MAX_BUFFERED_ROWS: usize = 8192;
 const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Minimum time between flushes of a file that grows in place, since each flush syncs once per
-/// dataset, some 200 times. Checkpoints also flush it, usually earlier; in between, rows are
-/// written without a sync.
+/// dataset, about 200 times. Checkpoints also flush the file, usually earlier. Between flushes,
+/// rows are written without a sync.
 const FLUSH_INTERVAL_IN_PLACE: Duration = Duration::from_secs(60);
 
-/// Flushes take at most 1/`FLUSH_COST_FACTOR` of the time, however slow the disk.
+/// Flushes take at most 1/`FLUSH_COST_FACTOR` of the time on any disk.
 const FLUSH_COST_FACTOR: u32 = 20;
 
 /// The two checkpoint slots, written in turn.
@@ -101,7 +101,7 @@ const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
 #[derive(Debug, Default)]
 pub struct Results {
     store: Option<Store>,
-    statistics: Vec<Growing>,
+    statistics: Vec<GrowingDataset>,
     buffered: Vec<Vec<f64>>,
     events: Vec<Events>,
     views: Vec<View>,
@@ -114,7 +114,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Creates the file with a temporary name until [`Results::publish`], and writes what is known.
+    /// Creates the file under a temporary name, which it keeps until [`Results::publish`], and
+    /// writes the header.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -130,7 +131,7 @@ impl Results {
                 &path,
                 1,
                 (c.unit.heading(header.dimension), c.doc),
-                MANY,
+                LONG_CHUNK,
             )?);
         }
         let events = Events::declare(&mut store, &header.events, header.dimension)?;
@@ -155,7 +156,7 @@ impl Results {
         })
     }
 
-    /// Sets the lock by which every write first checks that the folder is still the owned one.
+    /// Sets the lock, with which every write first checks that the folder is still owned.
     pub fn owned_by(&mut self, lock: FolderLock) {
         if let Some(store) = &mut self.store {
             store.owned_by(lock);
@@ -195,8 +196,8 @@ impl Results {
             return Ok(());
         };
         let clock = Instant::now();
-        // The rows that the checkpoint counts must be written first: without its first word the
-        // checkpoint is invalid.
+        // The rows that the checkpoint counts must be written first. Until its first word is
+        // written, the checkpoint is invalid.
         let slot = self.checkpoints[(number % 2) as usize];
         store.write(slot, bytes, Frame::SEAL)?;
         self.flushed = Some((Instant::now(), clock.elapsed()));
@@ -224,8 +225,8 @@ impl Results {
     /// Appends an event to its table.
     ///
     /// # Errors
-    /// The file cannot be written, or has no such table: [`Observer::event_tables`] of its observer
-    /// did not declare it with as many columns.
+    /// The file cannot be written, or it has no such table: [`Observer::event_tables`] did not
+    /// declare it with this number of columns.
     ///
     /// [`Observer::event_tables`]: fretwork_observe::Observer::event_tables
     pub fn append_event(&mut self, event: &Event) -> Result<(), ResultsError> {
@@ -284,8 +285,8 @@ impl Results {
             .try_for_each(|table| table.write(store))
     }
 
-    /// Appends the same state of the meshes: the values of each field of each. To be called before
-    /// [`Results::append_views`].
+    /// Appends one state of all meshes: the values of each field of each mesh. Must be called
+    /// before [`Results::append_views`].
     ///
     /// # Errors
     /// The file cannot be written.
@@ -389,7 +390,7 @@ fn declare_meshes(store: &mut Store, meshes: &[Mesh]) -> Result<Vec<MeshView>, R
     declared.collect()
 }
 
-/// Names of the files that link to the views, for ParaView, and these views.
+/// Names of the files that link to the views, for ParaView, with these views.
 fn companions(meshes: &[Mesh]) -> Vec<[String; 2]> {
     let always = ["grains", "contacts", "bodies"].map(str::to_owned);
     let of_meshes = meshes.iter().map(|mesh| mesh.group.clone());

@@ -1,6 +1,6 @@
 //! Reads checkpoints and rows of a stopped run from its `results.h5`.
 
-use super::dataset::Grown;
+use super::dataset::GrowthRecord;
 use super::store::{ResultsError, Store};
 use super::{CHECKPOINTS, Results};
 use crate::fclib::guard;
@@ -46,16 +46,17 @@ impl PreviousResults {
         })
     }
 
-    /// Its path.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The bytes of its checkpoints, intact or not: empty where none was written, none where they
-    /// cannot be read.
+    /// Returns the bytes of its checkpoints, intact or not. A slot that was never written is empty;
+    /// there are none if they cannot be read.
     ///
     /// # Errors
-    /// The file has no checkpoints: it was written by an older version, or is not a results file.
+    /// The file has no checkpoints: it was written by an older version, or it is not a results
+    /// file.
     pub fn checkpoints(&self) -> Result<[Option<Vec<u8>>; 2], String> {
         let names = CHECKPOINTS.map(|name| name.trim_start_matches('/'));
         if !names
@@ -95,7 +96,7 @@ impl PreviousResults {
     /// # Errors
     /// The store cannot be written, or the rows are missing or differ.
     pub(super) fn copy(&self, rows: &[(u64, u32)], to: &mut Store) -> Result<(), ResultsError> {
-        let grown: Vec<Grown> = to.grown().to_vec();
+        let grown: Vec<GrowthRecord> = to.grown().to_vec();
         let unreadable = |reason: String| ResultsError::unreadable(&self.path, reason);
         if rows.len() != grown.len() {
             return Err(unreadable(
@@ -172,7 +173,7 @@ impl PreviousResults {
 }
 
 impl Results {
-    /// Copies the rows of a stopped run up to its checkpoint.
+    /// Rows of a stopped run are copied up to its checkpoint.
     ///
     /// # Errors
     /// The file cannot be written, or the rows are missing.

@@ -4,10 +4,10 @@ use crate::fclib::guard;
 use hdf5::{DatatypeMessage, H5File, H5Type};
 use std::path::Path;
 
-/// A file of results, open for reading: its datasets by their paths, see [`crate::results`].
+/// A results file open for reading: its datasets by their paths, see [`crate::results`].
 ///
 /// # Examples
-/// A file with one column of statistics is written, and read again.
+/// This example writes a file with one column of statistics and reads it.
 /// ```
 /// use fretwork_observe::statistics::Column;
 /// use fretwork_store::results::{Header, Reader, Results};
@@ -63,17 +63,17 @@ impl Reader {
         })
     }
 
-    /// Whether it has a dataset of this name.
+    /// Whether the file has a dataset of this name.
     pub fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
 
-    /// Names of all datasets, with their groups.
+    /// Returns the names of all datasets, with their groups.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
     }
 
-    /// Whether it has a dataset in this group, or in a group of it.
+    /// Whether the file has a dataset in this group or in a subgroup.
     pub fn has_group(&self, name: &str) -> bool {
         let inside = |n: &String| {
             n.strip_prefix(name)
@@ -82,7 +82,7 @@ impl Reader {
         self.names.iter().any(inside)
     }
 
-    /// Names of the datasets directly in a group, in the order of the file.
+    /// Returns the names of the datasets directly in a group, in the order of the file.
     pub fn datasets_in<'a>(&'a self, group: &'a str) -> impl Iterator<Item = &'a str> {
         self.names().filter_map(move |name| {
             let rest = name.strip_prefix(group)?.strip_prefix('/')?;
@@ -90,7 +90,7 @@ impl Reader {
         })
     }
 
-    /// Unit (empty for a pure number) and description of a dataset, as far as it has them.
+    /// Returns the unit (empty for a pure number) and the description of a dataset, if it has them.
     pub fn described(&self, name: &str) -> (String, String) {
         let text = |attribute: &str| {
             let read = guard(|| self.file.dataset(name)?.attr(attribute)?.read_string());
@@ -100,7 +100,7 @@ impl Reader {
         (if unit == "1" { String::new() } else { unit }, text("doc"))
     }
 
-    /// The texts of a dataset; none if there is no such dataset.
+    /// Returns the texts of a dataset; empty if there is no such dataset.
     pub fn texts(&self, name: &str) -> Vec<String> {
         if !self.has(name) {
             return Vec::new();

@@ -1,5 +1,5 @@
-//! Shapes of the grains other than single balls, and of those that deform, without load, in
-//! `results.h5`, stored once in the grains' own frames.
+//! Shapes of the grains other than single balls, and of deformable grains without load, in
+//! `results.h5`. They are stored once, in the grains' own frames.
 //!
 //! ```text
 //! /shapes/bodies/id, mass, density, length, inertia     one row per grain; inertia has 9 numbers, row by row
@@ -17,15 +17,15 @@ use super::store::{ResultsError, Store};
 use fretwork_core::unit::{INERTIA, MASS};
 pub use fretwork_scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
-/// All grains other than single balls, and those that deform, with their parts, in the order of the
-/// grains' view.
+/// All grains other than single balls and all deformable grains, with their parts, in the order of
+/// the grains' view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaped {
     /// The grains.
     pub bodies: Vec<ShapedBody>,
-    /// Their balls.
+    /// Balls of these grains.
     pub balls: Vec<ShapedBall>,
-    /// Their convex parts.
+    /// Convex parts of these grains.
     pub pieces: Vec<ShapedPiece>,
 }
 
@@ -130,7 +130,7 @@ impl Shaped {
     /// Reads the shapes; `None` if the file has none.
     ///
     /// # Errors
-    /// A description of what is wrong with them.
+    /// Returns a description of the error if the shapes are invalid.
     pub fn read(reader: &Reader) -> Result<Option<Self>, String> {
         if !reader.has("shapes/bodies/id") {
             return Ok(None);
@@ -155,7 +155,7 @@ impl ShapeColumns<'_> {
         }
     }
 
-    /// Integers, none of them negative.
+    /// Reads a column of non-negative integers.
     fn whole(&self, name: &str) -> Result<Vec<u64>, String> {
         if !self.0.has(name) {
             return Ok(Vec::new());
@@ -245,7 +245,7 @@ impl ShapeColumns<'_> {
     }
 }
 
-/// The next face of the list: the number of its corners, then their indices.
+/// Reads the next face of the list: the number of its corners, then their indices.
 fn next_face(listed: &mut impl Iterator<Item = u64>) -> Result<Vec<u32>, String> {
     let mut next = || listed.next().ok_or("`shapes/faces` is cut short");
     let mut face = Vec::new();

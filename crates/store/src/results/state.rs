@@ -11,7 +11,7 @@ use std::path::Path;
 /// Reads the state with the index `frame`, or the last one, for a case of a dimension (2 or 3).
 ///
 /// # Errors
-/// The file is missing, not a results file, damaged, of the other dimension, without that state, or
+/// The file is missing, not a results file, damaged, of the other dimension, without this state, or
 /// without the shapes of its grains.
 pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State, StateError> {
     let unreadable = |reason: String| StateError::Unreadable {
@@ -65,9 +65,9 @@ const ROOT: &str = "views/grains";
 /// The grains of a file.
 struct Grains {
     reader: Reader,
-    /// Columns of the angular velocity.
+    /// Names of the columns of the angular velocity.
     spins: &'static [&'static str],
-    /// Columns of the orientation; empty if the file has none.
+    /// Names of the columns of the orientation; empty if the file has none.
     turns: &'static [&'static str],
 }
 
@@ -104,7 +104,7 @@ impl Grains {
         self.frame(asked, shaped).map_err(unreadable)
     }
 
-    /// Reads the state with an index that the file has.
+    /// Reads the state with an index that exists in the file.
     fn frame(&self, frame: usize, shaped: Option<Shaped>) -> Result<State, String> {
         let time = self
             .reader
@@ -118,7 +118,8 @@ impl Grains {
         let points = self.reader.numbers(&format!("{ROOT}/Points"), rows, 3)?;
         let place = |name: &str| format!("{ROOT}/PointData/{name}");
         let column = |name: &str| self.reader.numbers(&place(name), rows, 1);
-        // Columns absent from files of older versions, or of cases without such grains, are zero.
+        // Columns that are absent from files of older versions, or from cases without such grains,
+        // read as zero.
         let where_listed = |name: &str| match self.reader.has(&place(name)) {
             true => column(name),
             false => Ok(vec![0.0; count]),
@@ -142,7 +143,7 @@ impl Grains {
             std::array::from_fn(|axis| columns.get(axis).map_or(0.0, |c| c[k]))
         }
         let mut deformed = deformed::read(&self.reader, frame)?;
-        let mut sorted = Sorted::of(shaped.unwrap_or_default())?;
+        let mut shapes = ShapesByGrain::of(shaped.unwrap_or_default())?;
         let mut state = State {
             frame,
             time,
@@ -166,14 +167,14 @@ impl Grains {
                 ));
             }
             let body = id[k] as u64;
-            match sorted.take(body, motion) {
-                Known::First(mut grain) => {
+            match shapes.take(body, motion) {
+                RowShape::New(mut grain) => {
                     grain.deformed = deformed.remove(&body);
                     state.shaped.push(*grain);
                 }
-                Known::Again => {}
-                Known::Not if corners[k] > 0.0 => return Err(shapeless(frame)),
-                Known::Not => {
+                RowShape::AlreadyTaken => {}
+                RowShape::None if corners[k] > 0.0 => return Err(shapeless(frame)),
+                RowShape::None => {
                     balls.push(body);
                     let radius = radius[k];
                     state.grains.push(Grain { radius, motion });
@@ -191,7 +192,7 @@ impl Grains {
     }
 }
 
-/// Error for grains whose shapes the file does not have.
+/// Returns the error for grains whose shapes are not in the file.
 fn shapeless(frame: usize) -> String {
     format!(
         "state {frame} holds grains that are no balls, and the file does not say of what shape: it is of an older version; \
@@ -200,20 +201,20 @@ fn shapeless(frame: usize) -> String {
 }
 
 /// Shapes of grains by the identity of the grain; `None` once taken.
-struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
+struct ShapesByGrain(HashMap<u64, Option<Box<ShapedGrain>>>);
 
-/// What is known of the shape of the grain of a row.
-enum Known {
-    /// A shape, which this row is the first to have.
-    First(Box<ShapedGrain>),
+/// Shape of the grain in a row.
+enum RowShape {
+    /// A shape that no earlier row has taken.
+    New(Box<ShapedGrain>),
     /// A shape that was returned for an earlier row.
-    Again,
-    /// No shape: a single ball.
-    Not,
+    AlreadyTaken,
+    /// The grain has no shape: it is a single ball.
+    None,
 }
 
-impl Sorted {
-    /// Gives each grain its balls and pieces.
+impl ShapesByGrain {
+    /// Sorts the balls and pieces by grain.
     fn of(shaped: Shaped) -> Result<Self, String> {
         let mut grains: HashMap<u64, Option<Box<ShapedGrain>>> = HashMap::new();
         for body in shaped.bodies {
@@ -247,14 +248,14 @@ impl Sorted {
         Ok(Self(grains))
     }
 
-    /// Takes the shape of the grain of a row, and gives it the motion of that row.
-    fn take(&mut self, body: u64, motion: Motion) -> Known {
+    /// Returns the shape of the grain in a row, with the motion of that row.
+    fn take(&mut self, body: u64, motion: Motion) -> RowShape {
         match self.0.get_mut(&body).map(Option::take) {
-            None => Known::Not,
-            Some(None) => Known::Again,
+            None => RowShape::None,
+            Some(None) => RowShape::AlreadyTaken,
             Some(Some(mut grain)) => {
                 grain.motion = motion;
-                Known::First(grain)
+                RowShape::New(grain)
             }
         }
     }

@@ -1,5 +1,5 @@
-//! The results file: declared once, then growing by rows that are buffered in memory and written at
-//! intervals.
+//! The results file: its contents are declared once; then it grows by rows that are buffered in
+//! memory and written at intervals.
 //!
 //! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is
 //! renamed over it. The named file is therefore always complete, and a flush takes one `fdatasync`.
@@ -9,7 +9,7 @@
 //! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the
 //! HDF5 crate.
 
-use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
+use super::dataset::{Bytes, GrowingDataset, GrowthRecord, Number, Slot, to_bytes};
 use super::declare::group;
 use super::growth::Growth;
 use crate::folder_lock::{FolderLock, LockError};
@@ -28,10 +28,10 @@ const MAX_BUFFERED: usize = 8 << 20;
 /// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
-    /// Their folder no longer belongs to the run.
+    /// The folder of the results no longer belongs to the run.
     #[error(transparent)]
     Lock(#[from] LockError),
-    /// They cannot be written.
+    /// The results cannot be written.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
@@ -39,7 +39,7 @@ pub enum ResultsError {
         /// Reason.
         reason: String,
     },
-    /// An event is of no table that was declared.
+    /// An event belongs to no declared table.
     #[error(
         "an observer gave an event of {columns} values for the table `{table}`, which no observer declares with so many columns: let its \
          `event_tables` return the table"
@@ -47,10 +47,10 @@ pub enum ResultsError {
     UnknownEvent {
         /// Name of the table.
         table: &'static str,
-        /// Values of the event.
+        /// Number of values of the event.
         columns: usize,
     },
-    /// They cannot be read.
+    /// The results cannot be read.
     #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Read {
         /// The file.
@@ -71,15 +71,15 @@ impl ResultsError {
 
 /// An HDF5 file being written.
 pub struct Store {
-    /// Temporary path at which it is written.
+    /// Temporary path at which the file is written.
     part: PathBuf,
-    /// Its final path, once it is published.
+    /// Final path, once the file is published.
     name: Option<PathBuf>,
     /// The file, during the declarations.
     draft: Option<H5File>,
     /// The file, once it grows in place.
     growth: Option<Growth>,
-    grown: Vec<Grown>,
+    grown: Vec<GrowthRecord>,
     slots: Vec<Bytes>,
     /// Pending attributes of groups: group, name, value.
     attributes: Vec<(String, String, i64)>,
@@ -87,7 +87,7 @@ pub struct Store {
     buffered: usize,
     /// Size from which the file grows in place, in bytes.
     large: u64,
-    /// The lock by which its folder is owned.
+    /// The lock by which the folder is owned.
     lock: Option<FolderLock>,
 }
 
@@ -124,13 +124,16 @@ impl Store {
         })
     }
 
-    /// Sets the lock by which every write first checks that the folder is still the owned one.
+    /// Sets the lock, with which every write first checks that the folder is still owned.
     pub fn owned_by(&mut self, lock: FolderLock) {
         self.lock = Some(lock);
     }
 
-    fn kept(&self) -> Result<(), ResultsError> {
-        Ok(self.lock.as_ref().map_or(Ok(()), FolderLock::kept)?)
+    fn check_still_owned(&self) -> Result<(), ResultsError> {
+        Ok(self
+            .lock
+            .as_ref()
+            .map_or(Ok(()), FolderLock::check_still_owned)?)
     }
 
     /// Current path of the file.
@@ -142,8 +145,8 @@ impl Store {
         self.named(self.draft.as_ref().ok_or("all was declared before"))
     }
 
-    pub(super) fn add_grown(&mut self, path: &str, width: u64, whole: bool) -> Growing {
-        self.grown.push(Grown {
+    pub(super) fn add_grown(&mut self, path: &str, width: u64, whole: bool) -> GrowingDataset {
+        self.grown.push(GrowthRecord {
             path: path.to_owned(),
             rows: 0,
             sum: 0,
@@ -151,7 +154,7 @@ impl Store {
             whole,
             buffered: Vec::new(),
         });
-        Growing {
+        GrowingDataset {
             place: self.grown.len() - 1,
         }
     }
@@ -221,7 +224,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&mut self, slot: Slot, bytes: &[u8], seal: usize) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         let Some(growth) = &mut self.growth else {
             self.buffer_slot(slot, bytes);
             self.flush()?;
@@ -239,12 +242,12 @@ impl Store {
     }
 
     /// The growing datasets, in the order of their declaration.
-    pub fn grown(&self) -> &[Grown] {
+    pub fn grown(&self) -> &[GrowthRecord] {
         &self.grown
     }
 
     /// Number of rows of a dataset.
-    pub fn rows(&self, dataset: Growing) -> u64 {
+    pub fn rows(&self, dataset: GrowingDataset) -> u64 {
         self.grown[dataset.place].rows
     }
 
@@ -254,7 +257,7 @@ impl Store {
     /// The file cannot be written.
     pub fn append<T: Number>(
         &mut self,
-        dataset: Growing,
+        dataset: GrowingDataset,
         values: &[T],
     ) -> Result<(), ResultsError> {
         let bytes = to_bytes(values, T::bytes);
@@ -280,14 +283,14 @@ impl Store {
             return Ok(());
         }
         match &mut self.growth {
-            // Written to the file, but not counted in it before the next flush.
+            // The rows are written to the file, but are not counted in it before the next flush.
             Some(growth) => {
                 let written = growth.write(&mut self.grown);
                 self.buffered = 0;
                 self.named(written)
             }
             None if self.name.is_none() => self.flush(),
-            // A partial state must not be visible: it waits for the flush.
+            // A partial state must not be visible, so the rows wait for the flush.
             None => Ok(()),
         }
     }
@@ -307,7 +310,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         if let Some(growth) = &mut self.growth {
             let written = growth.write(&mut self.grown).and_then(|()| growth.flush());
             self.buffered = 0;
@@ -410,7 +413,7 @@ impl Store {
     }
 
     fn take_name(&self, name: &Path) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         named(name, std::fs::rename(&self.part, name))
     }
 
@@ -419,7 +422,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn close(mut self) -> Result<(), ResultsError> {
-        self.kept()?;
+        self.check_still_owned()?;
         if let Some(mut growth) = self.growth.take() {
             let rows = growth.write(&mut self.grown);
             let slots = self.slots.iter_mut().try_for_each(|slot| {
@@ -446,7 +449,8 @@ impl Store {
 
 impl Drop for Store {
     fn drop(&mut self) {
-        // Dropped without `close`: written data remains, and no errors are printed to the terminal.
+        // A file dropped without `close` keeps the written data, and no errors are printed to the
+        // terminal.
         if let Some(file) = self.draft.take() {
             let _ = file.close_no_sync();
         }

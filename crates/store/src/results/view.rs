@@ -3,8 +3,8 @@
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0 (all four kinds of cells must be present).
 
-use super::dataset::Growing;
-use super::declare::{FEW, MANY};
+use super::dataset::GrowingDataset;
+use super::declare::{LONG_CHUNK, SHORT_CHUNK};
 use super::store::{ResultsError, Store};
 use fretwork_observe::statistics::Column;
 
@@ -41,20 +41,20 @@ pub struct Part {
     pub cells: Vec<Vec<i64>>,
     /// One column per field, one value per point (vertices) or cell.
     pub data: Vec<Vec<f64>>,
-    /// Integer fields, likewise.
+    /// Integer fields, with one value per point or cell.
     pub numbers: Vec<Vec<i64>>,
-    /// Vector fields, likewise, three numbers per value.
+    /// Vector fields, with three numbers per point or cell.
     pub vectors: Vec<Vec<f64>>,
 }
 
 /// The fields of a view, in the order of the columns of its [`Part`]s.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewColumns<'a> {
-    /// Of numbers.
+    /// Fields of real numbers.
     pub data: &'a [Column],
-    /// Of integers.
+    /// Fields of integers.
     pub numbers: &'a [Column],
-    /// Of vectors.
+    /// Fields of vectors.
     pub vectors: &'a [Column],
     /// Dimension of the run.
     pub dimension: usize,
@@ -64,19 +64,19 @@ pub struct ViewColumns<'a> {
 #[derive(Debug)]
 pub struct View {
     cells: Cells,
-    points: Growing,
-    number_of_points: Growing,
-    numbers: [[Growing; 2]; 4],
-    connectivity: [Growing; 4],
-    offsets: [Growing; 4],
-    data: Vec<Growing>,
-    whole: Vec<Growing>,
-    vectors: Vec<Growing>,
-    values: Growing,
-    steps: [Growing; 3],
-    cell_offsets: Growing,
-    connectivity_offsets: Growing,
-    data_offsets: Vec<Growing>,
+    points: GrowingDataset,
+    number_of_points: GrowingDataset,
+    numbers: [[GrowingDataset; 2]; 4],
+    connectivity: [GrowingDataset; 4],
+    offsets: [GrowingDataset; 4],
+    data: Vec<GrowingDataset>,
+    whole: Vec<GrowingDataset>,
+    vectors: Vec<GrowingDataset>,
+    values: GrowingDataset,
+    steps: [GrowingDataset; 3],
+    cell_offsets: GrowingDataset,
+    connectivity_offsets: GrowingDataset,
+    data_offsets: Vec<GrowingDataset>,
     count: i64,
     path: String,
 }
@@ -105,23 +105,23 @@ impl View {
         store.group(&format!("{path}/Steps/{place}Offsets"))?;
         store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
         let doc = "points of each state";
-        let number_of_points = declare_whole(store, path, "NumberOfPoints", (1, FEW), doc)?;
+        let number_of_points = declare_whole(store, path, "NumberOfPoints", (1, SHORT_CHUNK), doc)?;
         let all = declare_cells(store, path, cells)?;
         let doc = "number of the first part of each state";
-        let parts = declare_whole(store, path, "Steps/PartOffsets", (1, FEW), doc)?;
+        let parts = declare_whole(store, path, "Steps/PartOffsets", (1, SHORT_CHUNK), doc)?;
         let doc = "parts of each state; 1";
-        let number = declare_whole(store, path, "Steps/NumberOfParts", (1, FEW), doc)?;
+        let number = declare_whole(store, path, "Steps/NumberOfParts", (1, SHORT_CHUNK), doc)?;
         let doc = "first point of each state";
-        let first_points = declare_whole(store, path, "Steps/PointOffsets", (1, FEW), doc)?;
+        let first_points = declare_whole(store, path, "Steps/PointOffsets", (1, SHORT_CHUNK), doc)?;
         let doc = "first cell of each state, by kind: vertices, lines, polygons, strips";
-        let cell_offsets = declare_whole(store, path, "Steps/CellOffsets", (4, FEW), doc)?;
+        let cell_offsets = declare_whole(store, path, "Steps/CellOffsets", (4, SHORT_CHUNK), doc)?;
         let doc = "first corner of each state, by kind: vertices, lines, polygons, strips";
         let name = "Steps/ConnectivityIdOffsets";
-        let connectivity_offsets = declare_whole(store, path, name, (4, FEW), doc)?;
+        let connectivity_offsets = declare_whole(store, path, name, (4, SHORT_CHUNK), doc)?;
         let doc = ("s", "time of the state");
-        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, SHORT_CHUNK)?;
         let doc = ("m", "coordinates");
-        let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
+        let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, LONG_CHUNK)?;
         let mut data_offsets = Vec::new();
         let [data, whole, vectors] = [
             (columns.data, 1, false),
@@ -133,12 +133,12 @@ impl View {
                 let name = format!("{path}/{place}/{}", field.name);
                 let doc = (field.unit.heading(columns.dimension), field.doc);
                 let values = match whole {
-                    true => store.growing::<i64>(&name, width, doc, MANY)?,
-                    false => store.growing::<f64>(&name, width, doc, MANY)?,
+                    true => store.growing::<i64>(&name, width, doc, LONG_CHUNK)?,
+                    false => store.growing::<f64>(&name, width, doc, LONG_CHUNK)?,
                 };
                 let name = format!("Steps/{place}Offsets/{}", field.name);
                 let doc = "first value of each state";
-                data_offsets.push(declare_whole(store, path, &name, (1, FEW), doc)?);
+                data_offsets.push(declare_whole(store, path, &name, (1, SHORT_CHUNK), doc)?);
                 Ok(values)
             };
             let fields = fields.iter().map(&mut declare);
@@ -175,7 +175,7 @@ impl View {
         time: f64,
         part: &Part,
     ) -> Result<(), ResultsError> {
-        // Offsets of this part, taken before anything is appended.
+        // The offsets of this part are taken before anything is appended.
         let first_cells: Vec<i64> = (0..4)
             .map(|k| store.rows(self.offsets[k]) as i64 - self.count)
             .collect();
@@ -241,7 +241,7 @@ fn declare_whole(
     name: &str,
     (width, chunk): (u64, usize),
     doc: &str,
-) -> Result<Growing, ResultsError> {
+) -> Result<GrowingDataset, ResultsError> {
     store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
 }
 
@@ -250,12 +250,12 @@ fn declare_cells(
     store: &mut Store,
     path: &str,
     cells: Cells,
-) -> Result<[[Growing; 4]; 4], ResultsError> {
+) -> Result<[[GrowingDataset; 4]; 4], ResultsError> {
     let mut kinds = Vec::new();
     for kind in KINDS {
         store.group(&format!("{path}/{kind}"))?;
         let used = KINDS[cells.kind()] == kind;
-        let many = if used { MANY } else { FEW };
+        let many = if used { LONG_CHUNK } else { SHORT_CHUNK };
         let mut column = |name: &str, chunk: usize, doc: &str| {
             declare_whole(store, path, &format!("{kind}/{name}"), (1, chunk), doc)
         };
@@ -263,8 +263,8 @@ fn declare_cells(
         let bounds = "where the corners of each cell begin, and where those of the last end";
         let corners = "points of the corners, counted in their state from 0";
         kinds.push([
-            column("NumberOfCells", FEW, "cells of each state")?,
-            column("NumberOfConnectivityIds", FEW, doc)?,
+            column("NumberOfCells", SHORT_CHUNK, "cells of each state")?,
+            column("NumberOfConnectivityIds", SHORT_CHUNK, doc)?,
             column("Offsets", many, bounds)?,
             column("Connectivity", many, corners)?,
         ]);

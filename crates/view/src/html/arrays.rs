@@ -1,4 +1,4 @@
-//! Arrays of numbers for the page: quantised, named, packed as gzip in base64.
+//! Arrays of numbers for the page: quantised, named, compressed with gzip and encoded in base64.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -8,13 +8,13 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::io::Write as _;
 
-/// How the numbers of an array are stored.
+/// Number format of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Kind {
-    /// Between the smallest and the largest, in 254 intervals.
+pub(crate) enum NumberType {
+    /// 254 intervals between the smallest and the largest value.
     U8,
-    /// Between the smallest and the largest, in 65,534 intervals.
+    /// 65,534 intervals between the smallest and the largest value.
     U16,
     /// Integers below 2^32.
     U32,
@@ -27,26 +27,26 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug, Serialize)]
 struct Head {
     name: String,
-    kind: Kind,
+    kind: NumberType,
     count: usize,
     at: usize,
     low: f64,
     high: f64,
 }
 
-/// Named arrays: the head of each in JSON, then the numbers of all, each at a multiple of eight
-/// bytes.
+/// Named arrays: a JSON header for each, then the numbers of all arrays, each starting at a
+/// multiple of eight bytes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arrays {
     heads: Vec<Head>,
     bytes: Vec<u8>,
-    /// Names of arrays by the bits of their values, of those that were added to be found again.
+    /// Names of the arrays that can be found again, by the bits of their values.
     known: HashMap<Vec<u64>, String>,
 }
 
 impl Arrays {
     /// Adds an array.
-    pub fn push(&mut self, name: impl Into<String>, kind: Kind, values: &[f64]) {
+    pub fn push(&mut self, name: impl Into<String>, kind: NumberType, values: &[f64]) {
         let finite = || values.iter().copied().filter(|v| v.is_finite());
         let low = finite().fold(f64::INFINITY, f64::min);
         let high = finite().fold(f64::NEG_INFINITY, f64::max);
@@ -62,53 +62,54 @@ impl Arrays {
             low,
             high,
         });
-        // The largest code stands for what is not a number.
+        // The largest code represents a value that is not a number.
         let code = |v: f64, most: f64| match (v.is_finite(), high > low) {
             (false, _) => most,
             (true, false) => 0.0,
             (true, true) => ((v - low) / (high - low) * (most - 1.0)).round(),
         };
         match kind {
-            Kind::U8 => self
+            NumberType::U8 => self
                 .bytes
                 .extend(values.iter().map(|v| code(*v, 255.0) as u8)),
-            Kind::U16 => {
-                // Differences of neighbours are small: low and high bytes apart are packed better.
+            NumberType::U16 => {
+                // Differences between neighbours are small: they compress better with low and high
+                // bytes stored separately.
                 let codes: Vec<u16> = values.iter().map(|v| code(*v, 65535.0) as u16).collect();
                 self.bytes.extend(codes.iter().map(|c| *c as u8));
                 self.bytes.extend(codes.iter().map(|c| (c >> 8) as u8));
             }
-            Kind::U32 => self
+            NumberType::U32 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| (*v as u32).to_le_bytes())),
-            Kind::F32 => self
+            NumberType::F32 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| (*v as f32).to_le_bytes())),
-            Kind::F64 => self
+            NumberType::F64 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| v.to_le_bytes())),
         }
     }
 
-    /// Adds an array of numbers, unless the same is there; returns its name.
+    /// Adds an array of numbers unless an identical one exists; returns its name.
     pub fn number(&mut self, values: &[f64]) -> String {
         let bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
         if let Some(name) = self.known.get(&bits) {
             return name.clone();
         }
         let name = format!("#{}", self.known.len());
-        self.push_known(&name, Kind::F32, values);
+        self.push_known(&name, NumberType::F32, values);
         name
     }
 
     /// Adds an array that [`Self::number`] finds again.
-    pub fn push_known(&mut self, name: &str, kind: Kind, values: &[f64]) {
+    pub fn push_known(&mut self, name: &str, kind: NumberType, values: &[f64]) {
         self.push(name, kind, values);
         let bits = values.iter().map(|v| v.to_bits()).collect();
         self.known.entry(bits).or_insert_with(|| name.to_owned());
     }
 
-    /// Leaves out the arrays that are the same in another set, bit by bit.
+    /// Removes the arrays that another set contains with identical bits.
     pub fn without_those_of(&self, other: &Self) -> Self {
         let theirs: HashMap<&str, (&Head, &[u8])> = other
             .parts()
@@ -136,16 +137,16 @@ impl Arrays {
     fn parts(&self) -> impl Iterator<Item = (&Head, &[u8])> {
         self.heads.iter().map(|head| {
             let size = match head.kind {
-                Kind::U8 => 1,
-                Kind::U16 => 2,
-                Kind::U32 | Kind::F32 => 4,
-                Kind::F64 => 8,
+                NumberType::U8 => 1,
+                NumberType::U16 => 2,
+                NumberType::U32 | NumberType::F32 => 4,
+                NumberType::F64 => 8,
             };
             (head, &self.bytes[head.at..head.at + size * head.count])
         })
     }
 
-    /// All as one text: length of the heads, heads, numbers; gzip, base64.
+    /// Returns all arrays as one text: length of the headers, headers, numbers; gzip, base64.
     pub fn packed(&self) -> String {
         let mut heads = serde_json::to_vec(&self.heads).unwrap_or_default();
         while !(4 + heads.len()).is_multiple_of(8) {
@@ -159,7 +160,7 @@ impl Arrays {
     }
 }
 
-/// Bytes as gzip in base64. Writing to memory cannot fail.
+/// Returns bytes compressed with gzip and encoded in base64. Writing to memory cannot fail.
 pub(crate) fn gzip_base64(bytes: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::new(6));
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
@@ -173,11 +174,11 @@ mod tests {
     #[test]
     fn what_is_equal_is_left_out_and_the_rest_keeps_its_bytes() {
         let mut first = Arrays::default();
-        first.push("a", Kind::U8, &[0.0, 1.0, f64::NAN]);
-        first.push("b", Kind::F64, &[2.5]);
+        first.push("a", NumberType::U8, &[0.0, 1.0, f64::NAN]);
+        first.push("b", NumberType::F64, &[2.5]);
         let mut second = Arrays::default();
-        second.push("a", Kind::U8, &[0.0, 1.0, f64::NAN]);
-        second.push("b", Kind::F64, &[3.5]);
+        second.push("a", NumberType::U8, &[0.0, 1.0, f64::NAN]);
+        second.push("b", NumberType::F64, &[3.5]);
         let rest = second.without_those_of(&first);
         let parts: Vec<_> = rest
             .parts()
@@ -186,9 +187,9 @@ mod tests {
         assert_eq!(parts, [("b".to_owned(), 3.5f64.to_le_bytes().to_vec())]);
         let codes: Vec<_> = first.parts().map(|(_, b)| b.to_vec()).collect();
         assert_eq!(codes[0], [0, 254, 255]);
-        // The range belongs to the array: the same codes over another range are another array.
+        // The range belongs to the array: equal codes over another range are another array.
         let mut third = Arrays::default();
-        third.push("a", Kind::U8, &[0.0, 2.0, f64::NAN]);
+        third.push("a", NumberType::U8, &[0.0, 2.0, f64::NAN]);
         assert_eq!(third.without_those_of(&first).parts().count(), 1);
     }
 }

@@ -10,7 +10,7 @@ use fretwork_observe::chart::Figure;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Rows of the statistics of a run.
+/// Number of rows of the statistics of a run in the page.
 const ROWS: usize = 3000;
 
 /// Makes a page of several runs side by side; returns its size in bytes.
@@ -27,7 +27,7 @@ pub fn compare(folders: &[PathBuf], to: &Path) -> Result<usize, ReportError> {
     Ok(html.len())
 }
 
-/// Names of the folders, whole paths where two are named alike.
+/// Returns the names of the folders, or their full paths if two have the same name.
 fn names(runs: &[RunFolder]) -> Vec<String> {
     let short: Vec<String> = runs.iter().map(RunFolder::name).collect();
     let name = |k: usize| {
@@ -126,7 +126,7 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
     )
 }
 
-/// Results, one column a run.
+/// Returns the table of results, one column per run.
 fn result_table(runs: &[RunFolder], names: &[String]) -> String {
     let all: Vec<Vec<(&'static str, ResultRow)>> = runs
         .iter()

@@ -1,16 +1,16 @@
-//! Figures in a page: the charts that observers and other programs describe, as its scripts read
-//! them. Numbers stand packed beside them.
+//! Figures of a page: the charts that observers and other programs describe, in the form that the
+//! page's scripts read. Their numbers are packed separately.
 
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use crate::html::statistics::Statistics;
-use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series, Style};
+use fretwork_observe::chart::{Axis, Chart, Colours, FieldMap, Figure, Series, Style};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
-const MOST_CELLS: usize = 20_000;
+const MAX_CELLS: usize = 20_000;
 
-/// The figures that the observers of a run described, with numbers from its statistics.
+/// Returns the figures that the observers of a run described, with numbers from its statistics.
 pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>) -> Vec<Figure> {
     let text = std::fs::read_to_string(run.path.join(Figure::FILE));
     let parsed = text
@@ -25,13 +25,13 @@ pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>)
     });
     for figure in &mut figures {
         *figure = figure.resolve(rows);
-        let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MOST_CELLS);
+        let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MAX_CELLS);
         let all = figure.charts.len();
         figure.charts.retain(small);
         if figure.charts.len() < all {
             let name = &figure.name;
             gaps.push(format!(
-                "A map of more than {MOST_CELLS} cells is in {name}.png alone."
+                "A map of more than {MAX_CELLS} cells is in {name}.png alone."
             ));
         }
     }
@@ -46,8 +46,8 @@ pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
     charts.map(|(name, c)| chart(name, c, numbers)).collect()
 }
 
-/// The charts of several runs over each other: of each that has more than one curve the entries
-/// name run and curve, and of cycles the last is drawn.
+/// Returns the charts of several runs drawn over each other. If a chart has more than one curve,
+/// the legend gives run and curve; of a chart over cycles only the last cycle is drawn.
 pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
     let mut all: Vec<(&str, Chart)> = Vec::new();
     for (run, figure) in runs
@@ -116,7 +116,7 @@ pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// What to read in a chart, and under which conditions it holds.
+/// Explains how to read a chart, and under which conditions it holds.
 fn note(chart: &Chart) -> String {
     match (chart.note.as_str(), chart.subtitle.as_deref()) {
         ("", said) => said.unwrap_or_default().to_owned(),
@@ -153,7 +153,7 @@ fn series(index: usize, series: &Series, numbers: &mut Arrays) -> Value {
     })
 }
 
-fn field(field: &Field, numbers: &mut Arrays) -> Value {
+fn field(field: &FieldMap, numbers: &mut Arrays) -> Value {
     let corners = || field.cells.iter().flatten();
     let mut starts = vec![0.0];
     starts.extend(field.cells.iter().scan(0, |sum, cell| {
@@ -188,17 +188,18 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// Double precision where rows are closer than single precision resolves, as times of long runs.
-fn kind(values: &[f64]) -> Kind {
+/// Double precision is used where rows are closer than single precision resolves, such as the times
+/// of long runs.
+fn kind(values: &[f64]) -> NumberType {
     let merges = |pair: &[f64]| pair[0] != pair[1] && pair[0] as f32 == pair[1] as f32;
     match values.windows(2).any(merges) {
-        true => Kind::F64,
-        false => Kind::F32,
+        true => NumberType::F64,
+        false => NumberType::F32,
     }
 }
 
-/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers
-/// are named after `prefix`.
+/// Returns the columns of the statistics of a run, any of which can be drawn over any other. The
+/// names of their arrays begin with `prefix`.
 pub(crate) fn columns(
     name: &str,
     prefix: &str,

@@ -1,4 +1,4 @@
-//! The folder of a run: its files of results and summary, and what is missing of them.
+//! The folder of a run: its results and summary, and what is missing.
 
 use crate::html::ReportError;
 use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
@@ -12,9 +12,9 @@ pub(crate) struct RunFolder {
     pub path: PathBuf,
     /// `results.h5`.
     pub reader: Reader,
-    /// `summary.json`; null where there is none.
+    /// Content of `summary.json`; null if there is none.
     pub summary: Value,
-    /// The case as it was run.
+    /// Text of the case, as it was run.
     pub case_text: String,
     /// Title of the case.
     pub title: String,
@@ -27,10 +27,10 @@ pub(crate) struct RunFolder {
 }
 
 impl RunFolder {
-    /// Opens the folder of a run, finished or not.
+    /// Opens the folder of a run that may not have finished.
     ///
     /// # Errors
-    /// It holds no results of a run that can be read.
+    /// The folder has no readable results of a run.
     pub fn open(path: &Path) -> Result<Self, ReportError> {
         let no_run = |reason: String| ReportError::NoRun {
             path: path.to_owned(),
@@ -52,7 +52,7 @@ impl RunFolder {
                 "there is no results.h5 in it; name the folder that `fretwork run` wrote, such as results/CASE".to_owned(),
             ));
         }
-        let lock = FolderLock::read(path, RUN_LOCK).map_err(|_| {
+        let lock = FolderLock::shared(path, RUN_LOCK).map_err(|_| {
             no_run(
                 "a run is writing in it; make the page when it has ended, or stop it first (Ctrl-C, and later --resume)"
                     .to_owned(),
@@ -101,7 +101,7 @@ impl RunFolder {
     }
 }
 
-/// The summary of the run, if it is there and of the same case.
+/// Returns the summary of the run, if it exists and belongs to this case.
 fn summary(folder: &Path, title: &str, gaps: &mut Vec<String>) -> Value {
     let Ok(text) = std::fs::read_to_string(folder.join("summary.json")) else {
         gaps.push(

@@ -1,4 +1,4 @@
-//! Laws of a run: which were loaded, and the parameters that they had.
+//! Laws of a run: the loaded libraries, and the parameters in use.
 
 use crate::html::folder::RunFolder;
 use crate::html::materials::Files;
@@ -13,7 +13,7 @@ pub struct LawInfo {
     pub doc: String,
     /// Paper or DOI.
     pub reference: String,
-    /// Its parameters.
+    /// Parameters of the law.
     pub parameters: Vec<LawParameter>,
 }
 
@@ -30,45 +30,45 @@ pub struct LawParameter {
     pub doc: String,
 }
 
-/// A library that was loaded.
+/// A loaded library of a law.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Loaded {
+pub(crate) struct LoadedLaw {
     /// Kind of the law.
     pub kind: String,
     /// Name.
     pub name: String,
-    /// Its version.
+    /// Version of the law.
     pub version: String,
     /// SHA-256 of the library.
     pub sha256: String,
-    /// Whether it passed certification; unknown where the run did not end.
+    /// Whether the law passed certification; unknown if the run did not end.
     pub certified: Option<bool>,
 }
 
-/// A law in an interface with its parameters.
+/// A law of an interface with its parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Used {
     /// Kind of the law.
     pub kind: String,
-    /// Its name.
+    /// Name of the law.
     pub name: String,
-    /// Name, value, unit, where the value comes from, description.
+    /// Name, value, unit, source of the value, and description of each parameter.
     pub parameters: Vec<[String; 5]>,
 }
 
 /// An interface with its laws.
 #[derive(Clone, Debug)]
 pub(crate) struct Interface {
-    /// Its name.
+    /// Name of the interface.
     pub name: String,
     /// The two materials.
     pub between: [String; 2],
-    /// Its laws.
+    /// Laws of the interface.
     pub laws: Vec<Used>,
 }
 
-/// The libraries that a run loaded.
-pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
+/// Returns the libraries that a run loaded.
+pub(crate) fn loaded(run: &RunFolder) -> Vec<LoadedLaw> {
     let column = |name: &str| run.reader.texts(&format!("plugins/{name}"));
     let (kinds, names, versions, sums) = (
         column("kind"),
@@ -82,7 +82,7 @@ pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
         let (kind, name) = (text(&kinds), text(&names));
         let stamp =
             stamps.and_then(|s| s.iter().find(|s| s["kind"] == *kind && s["name"] == *name));
-        Loaded {
+        LoadedLaw {
             kind,
             name,
             version: text(&versions),
@@ -93,7 +93,8 @@ pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
     (0..names.len()).map(law).collect()
 }
 
-/// The interfaces of a case with the parameters of their laws; `None` if the case cannot be read.
+/// Returns the interfaces of a case with the parameters of their laws; `None` if the case cannot be
+/// read.
 pub(crate) fn interfaces(
     run: &RunFolder,
     files: &Files,
@@ -128,7 +129,7 @@ pub(crate) fn interfaces(
     case.interfaces.iter().map(of).collect()
 }
 
-/// What a run derived from `K` for the wear law of an interface.
+/// Returns the parameters that a run derived from `K` for the wear law of an interface.
 fn derived_wear<'a>(
     summary: &'a serde_json::Value,
     interface: &str,
@@ -139,8 +140,8 @@ fn derived_wear<'a>(
         .find(|w| w["interface"] == *interface && w["law"] == *law)
 }
 
-/// Parameters of a law: those that a run derived from a hardness, then those of the case win over
-/// those of the file, properties of materials and defaults.
+/// Returns the parameters of a law. Those that a run derived from a hardness take precedence, then
+/// those of the case, of the file, properties of materials, and defaults.
 fn parameters(
     case: &Case,
     spec: &fretwork_scene::case::InterfaceSpec,

@@ -7,7 +7,7 @@ use fretwork_scene::material::{InterfaceParameters, Material, Sourced};
 use fretwork_scene::source::Source;
 use std::collections::BTreeMap;
 
-/// The files that a run recorded, by their names.
+/// The files that a run recorded, by name.
 #[derive(Debug, Default)]
 pub(crate) struct Files {
     /// Materials.
@@ -21,7 +21,7 @@ pub(crate) struct Files {
 pub(crate) struct LawFile(InterfaceParameters);
 
 impl LawFile {
-    /// The numbers that it gives a law.
+    /// Returns the numbers that the file gives for a law.
     pub fn of(&self, kind: &str, law: &str) -> Vec<(String, Sourced)> {
         let slots = self.0.slots.iter().filter(|(k, _)| k.word() == kind);
         let numbers = slots.filter_map(|(_, laws)| laws.get(law)).flatten();
@@ -32,7 +32,8 @@ impl LawFile {
 }
 
 impl Files {
-    /// Reads the texts in `results.h5`; one that is neither is left out.
+    /// Reads the texts in `results.h5`; texts that are neither materials nor parameters are
+    /// omitted.
     pub fn read(run: &RunFolder) -> Self {
         let mut out = Self::default();
         for name in run.reader.datasets_in("materials") {
@@ -57,16 +58,16 @@ impl Files {
         out
     }
 
-    /// The parameters of laws that an interface takes from a file: of a material of the case, or of
-    /// one of parameters.
+    /// Returns the parameters of laws that an interface takes from a file, either the file of a
+    /// material or a file of parameters.
     pub fn laws_of(&self, case: &Case, spec: &InterfaceSpec) -> Option<&LawFile> {
         let name = spec.parameters_from.as_ref()?;
         let material = case.materials.get(name).and_then(|f| self.laws.get(f));
         material.or_else(|| self.laws.get(name))
     }
 
-    /// The property of a material that a parameter named `young_1` or `young_2` takes, and the file
-    /// of the material.
+    /// Returns the property of a material that a parameter named `young_1` or `young_2` takes, and
+    /// the file of the material.
     pub fn property(
         &self,
         case: &Case,

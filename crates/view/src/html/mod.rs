@@ -1,11 +1,11 @@
-//! Pages as HTML: reports of runs, several runs side by side, and sheets of studies and fits.
+//! Pages as HTML: reports of runs, comparisons of several runs, and pages of studies and fits.
 //!
 //! ```text
 //! folder of a run ─► folder (results.h5, summary.json) ─► statistics, figures, scene, materials ─► page ─► report.html
 //! ```
-//! Data stand in the page as gzip in base64 and are unpacked by the browser; names, units and
+//! Data are in the page as gzip in base64 and are unpacked by the browser. Names, units and
 //! descriptions of columns and fields are those of the attributes in `results.h5`. A page loads
-//! nothing from a network, and its policy forbids it to.
+//! nothing from a network; its content security policy forbids it.
 
 mod arrays;
 mod compare;
@@ -31,10 +31,10 @@ pub use fretwork_observe::output::REPORT as FILE;
 /// Default size of a page in bytes.
 pub const DEFAULT_BYTES: usize = 5_000_000;
 
-/// How a report is made.
+/// Options of a report.
 pub struct Options<'a> {
-    /// Largest size of the page in bytes, `None` for all that was recorded: states in time, fields
-    /// and rows are left out to stay below it, which the page says.
+    /// Largest size of the page in bytes, `None` for no limit. States, fields and rows are omitted
+    /// to keep within it, and the page states what was omitted.
     pub bytes: Option<usize>,
     /// Looks up a law by kind and name, for its parameters and reference.
     pub law: &'a dyn Fn(&str, &str) -> Option<LawInfo>,
@@ -48,15 +48,15 @@ impl std::fmt::Debug for Options<'_> {
     }
 }
 
-/// Why there is no report.
+/// Reason why there is no report.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReportError {
-    /// The folder holds no run that can be read.
+    /// The folder contains no readable run.
     #[error("{}: {reason}", path.display())]
     NoRun {
         /// The folder.
         path: PathBuf,
-        /// Why not, and what to do.
+        /// Reason, and what to do.
         reason: String,
     },
     /// The page cannot be written.
@@ -76,8 +76,8 @@ impl ReportError {
     }
 }
 
-/// Makes the report of the run in a folder, `report.html` in it; returns its path and its size in
-/// bytes.
+/// Writes the report of the run in a folder as `report.html` in that folder; returns its path and
+/// its size in bytes.
 ///
 /// # Errors
 /// The folder holds no run, or the page cannot be written.

@@ -1,4 +1,4 @@
-//! Results of a run with their uncertainty, and what they mean.
+//! Results of a run with their uncertainty and their definitions.
 
 use crate::html::folder::RunFolder;
 use fretwork_observe::quantity::{Catalogue, Entry, Estimate, Role, Topic};
@@ -7,20 +7,20 @@ use serde_json::Value;
 /// A result.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResultRow {
-    /// What it is.
+    /// Name of the result.
     pub label: String,
-    /// Its value, with unit.
+    /// Value with unit.
     pub value: String,
-    /// Half-widths of its 95 % interval by cause; empty where not estimated.
+    /// Half-widths of the 95 % interval by cause; empty if not estimated.
     pub interval: String,
-    /// How it is defined, in a sentence.
+    /// Definition in one sentence.
     pub meaning: String,
 }
 
-/// A group of results with its heading.
+/// Heading and rows of a group of results.
 pub(crate) type ResultGroup = (&'static str, Vec<ResultRow>);
 
-/// A number with its unit, a prefix that suits it, and four digits.
+/// Formats a number with four digits, a suitable prefix and its unit.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
     let text = fretwork_observe::quantity::quantity(value, unit);
     let (number, unit) = text.split_once(' ').unwrap_or((&text, ""));
@@ -52,7 +52,7 @@ fn trimmed(digits: &str) -> &str {
     }
 }
 
-/// The main results of a run, by topic and in the order in which it lists them.
+/// Returns the main results of a run by topic, in the order in which the run lists them.
 pub(crate) fn groups(run: &RunFolder) -> Vec<ResultGroup> {
     let catalogue = Catalogue::of(&run.summary);
     let mut groups: Vec<(Topic, Vec<ResultRow>)> = Vec::new();
@@ -63,7 +63,7 @@ pub(crate) fn groups(run: &RunFolder) -> Vec<ResultGroup> {
             None => groups.push((entry.topic, vec![row])),
         }
     }
-    // What a run did stands with its provenance.
+    // The topic of the run itself is shown with its provenance.
     groups.retain(|g| g.0 != Topic::Run);
     groups.sort_by_key(|g| g.0);
     groups
@@ -87,7 +87,7 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
     let mean = estimate.and_then(|e| e.value).or(own);
     let text = value.as_str().map(str::to_owned);
     let shown_value = mean.map(shown).or(text);
-    // Where an estimate is of a mean, the value itself stands beside it.
+    // If an estimate is that of a mean, the value itself is shown beside it.
     let itself = own
         .filter(|own| Some(*own) != mean)
         .map_or(String::new(), |own| {
@@ -101,7 +101,7 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
     }
 }
 
-/// Half-widths of an estimate, ` ± 0.008 (scatter)`.
+/// Formats the half-widths of an estimate, as ` ± 0.008 (scatter)`.
 fn interval(estimate: &Estimate, shown: impl Fn(f64) -> String) -> String {
     let (settings, unknown) = estimate.known();
     let scatter = estimate.scatter.map(|half| ("scatter", half));
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(interval(&Estimate::default(), |h| h.to_string()), "");
     }
 
-    /// A row is made of what the run says of a quantity, whatever it is called.
+    /// A row is made of what the run records about a quantity, whatever its name is.
     #[test]
     fn a_row_has_value_unit_interval_and_meaning() {
         let entry = Entry {

@@ -1,4 +1,4 @@
-//! Pages that are not of one run: sections of text, tables and figures.
+//! Pages that do not belong to one run: sections of text, tables and figures.
 
 use crate::html::arrays::Arrays;
 use crate::html::figures;
@@ -17,7 +17,7 @@ pub struct Sheet {
     pub lead: String,
     /// Sections.
     pub sections: Vec<Section>,
-    /// The command that made it.
+    /// The command that made the page.
     pub command: String,
 }
 
@@ -30,14 +30,14 @@ pub struct Section {
     pub blocks: Vec<Block>,
 }
 
-/// Contents of a section.
+/// A block of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A paragraph.
     Text(String),
     /// Items of a list.
     List(Vec<String>),
-    /// Text as it is, line by line.
+    /// Preformatted text.
     Code(String),
     /// A table.
     Table(SheetTable),
@@ -48,7 +48,7 @@ pub enum Block {
 /// A table of texts; the first column heads the rows.
 #[derive(Clone, Debug, Default)]
 pub struct SheetTable {
-    /// What it shows, as a sentence; may be empty.
+    /// Caption of the table, as a sentence; may be empty.
     pub note: String,
     /// Heads of the columns.
     pub heads: Vec<String>,
@@ -60,7 +60,7 @@ impl Sheet {
     /// Writes the page; returns its size in bytes.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write(&self, to: &Path) -> Result<usize, ReportError> {
         let html = self.page().html();
         write(to, &html)?;
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use fretwork_observe::chart::{Axis, Series};
 
-    /// Texts are escaped, and figures stand in the data in their order.
+    /// Texts are escaped, and figures are stored in the data in their order.
     #[test]
     fn a_sheet_has_its_tables_and_figures() {
         let figure = |title: &str| {
@@ -196,7 +196,7 @@ mod tests {
             (&json!(true), &json!("curve"))
         );
         assert_eq!(chart["series"][1]["place"], 1);
-        // Both charts have the same numbers, which stand in the page once.
+        // Both charts have the same numbers, which are stored in the page once.
         assert_eq!(chart["series"], page.data["figures"][1]["series"]);
     }
 }

@@ -1,10 +1,10 @@
-//! Columns of the statistics of a run, thinned out in time where there are many rows.
+//! Columns of the statistics of a run, with fewer rows in time if there are many.
 
 use crate::html::folder::RunFolder;
 use fretwork_observe::chart::Columns;
 use std::rc::Rc;
 
-/// Rows that are read at a time.
+/// Number of rows that are read at a time.
 const BLOCK: usize = 1 << 16;
 
 /// A column of the statistics.
@@ -25,9 +25,9 @@ pub(crate) struct Column {
 pub(crate) struct Statistics {
     /// Rows in the file.
     pub rows: usize,
-    /// Rows from one that is kept to the next.
+    /// Distance, in rows of the file, from one kept row to the next.
     pub every: usize,
-    /// Columns that change or say something, in the order of the file.
+    /// Columns that are not constant or are otherwise informative, in the order of the file.
     pub columns: Vec<Column>,
 }
 
@@ -38,7 +38,7 @@ impl Statistics {
         let names: Vec<&str> = reader.datasets_in("statistics").collect();
         let path = |name: &str| format!("statistics/{name}");
         let counts = names.iter().filter_map(|n| reader.rows(&path(n)).ok());
-        // The columns of a run that was killed may differ in length by the last rows.
+        // In the file of a killed run, columns may differ in length by the last rows.
         let rows = counts.min().unwrap_or(0);
         let every = rows.div_ceil(most.max(2)).max(1);
         let mut columns = Vec::new();
@@ -77,7 +77,7 @@ impl Columns for Statistics {
     }
 }
 
-/// One of `every` rows of a column, and the last.
+/// Returns every `every`-th row of a column, and the last row.
 fn sampled(run: &RunFolder, name: &str, rows: usize, every: usize) -> Result<Vec<f64>, String> {
     let mut out = Vec::with_capacity(rows / every + 2);
     for first in (0..rows).step_by(BLOCK) {

@@ -79,7 +79,7 @@ pub(crate) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
     joined(&words, " ", size, room)
 }
 
-/// Joins parts in as few lines of a width as hold them.
+/// Joins parts into the fewest lines of a given width.
 pub(crate) fn joined<T: AsRef<str>>(
     parts: &[T],
     between: &str,
@@ -185,7 +185,7 @@ impl Canvas {
         let pixels = self.pixmap.data_mut();
         for row in rows {
             let dy = row as f32 + 0.5 - y;
-            // Columns that the disk does not reach in this row are not looked at.
+            // Columns that the disk does not reach in this row are skipped.
             let reach = (radius + 1.0) * (radius + 1.0) - dy * dy;
             if reach <= 0.0 {
                 continue;
@@ -320,9 +320,9 @@ impl Canvas {
         }
     }
 
-    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed
-    /// fast, some ten times as fast as tiny-skia's own writer. What it shows stands in the file as
-    /// the text `Description`, unless it is empty.
+    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and with fast
+    /// compression, about ten times as fast as tiny-skia's own writer. A description of what it
+    /// shows is stored in the file as the text `Description`, unless it is empty.
     pub fn save(&self, path: &Path, shows: &str) -> Result<(), DrawError> {
         match notice::current() {
             Some(text) => notice::banded(self, &text)?.write_file(path, shows),
@@ -344,7 +344,7 @@ impl Canvas {
     }
 }
 
-/// Rows of red, green and blue bytes as a PNG file.
+/// Writes rows of red, green and blue bytes as a PNG file.
 fn write_png(
     path: &Path,
     size: (u32, u32),
@@ -356,8 +356,8 @@ fn write_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
-    // Differences between rows: choosing among all filters for each row takes longer than the rest
-    // and saves a tenth of the size.
+    // The filter encodes differences between rows. Choosing among all filters for each row takes
+    // longer than the rest and saves a tenth of the size.
     encoder.set_filter(png::Filter::Up);
     if !shows.is_empty() {
         encoder.add_itxt_chunk("Description".to_owned(), shows.to_owned())?;

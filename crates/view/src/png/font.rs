@@ -23,8 +23,8 @@ pub(crate) struct TextStyle {
     pub size: f32,
     pub colour: Rgb,
     pub anchor: Anchor,
-    /// The light face is thin at small sizes: its outline is thickened by this fraction of the em,
-    /// so that one face serves as regular and semi-bold.
+    /// Width by which the outline of the light face is thickened, as a fraction of the em. One face
+    /// thereby serves as regular and semi-bold, and is readable at small sizes.
     pub weight: f32,
     /// Rotated to read upwards, for vertical axes.
     pub upwards: bool,
@@ -89,7 +89,7 @@ fn glyph(character: char) -> Option<(usize, GlyphId)> {
 }
 
 /// A glyph of a line.
-struct Set {
+struct PlacedGlyph {
     face: usize,
     id: GlyphId,
     /// Horizontal position, and em size, pixels.
@@ -135,7 +135,7 @@ fn levels(text: &str) -> Vec<(char, Level)> {
 }
 
 /// Glyphs of a line with their positions, and its width, in pixels.
-fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
+fn set_line(text: &str, size: f32) -> (Vec<PlacedGlyph>, f32) {
     let mut pen = 0.0;
     let mut previous = None;
     let mut glyphs = Vec::with_capacity(text.len());
@@ -157,7 +157,7 @@ fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
         {
             pen += scale * face.kern_unscaled(before, id);
         }
-        glyphs.push(Set {
+        glyphs.push(PlacedGlyph {
             face: face_index,
             id,
             pen,
@@ -203,7 +203,7 @@ pub(crate) fn text_path(text: &str, style: &TextStyle) -> Option<Path> {
                 OutlineCurve::Quad(a, _, b) => (a, b),
                 OutlineCurve::Cubic(a, _, _, b) => (a, b),
             };
-            // The font gives one list of curves: a jump between them starts a new contour.
+            // The font gives one list of curves; a jump between them starts a new contour.
             if last != Some(from) {
                 if last.is_some() {
                     builder.close();

@@ -10,7 +10,7 @@ thread_local! {
     static NOTICE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `draw` such that each picture has a band at its top with this text, if there is one.
+/// Runs `draw` such that each picture has a band with this text, if any, at its top.
 pub fn noted<T>(notice: Option<String>, draw: impl FnOnce() -> T) -> T {
     let before = NOTICE.replace(notice);
     let drawn = draw();

@@ -59,15 +59,17 @@ impl Law for CamanhoDavila {
 }
 
 impl CamanhoDavila {
-    /// Onset and fracture energy for the mode mix of a normal (not negative) and a tangential
-    /// opening.
+    /// Returns onset and fracture energy for the mode mix of a normal (not negative) and a
+    /// tangential opening.
     fn mix(&self, n: f64, t: f64) -> (f64, f64) {
         let u = n.hypot(t);
         let (c, s) = if u > 0.0 { (n / u, t / u) } else { (1.0, 0.0) };
         let (d3, ds) = (self.strength_n / self.k, self.strength_t / self.k);
-        // The onset with cosine and sine of the mixed-mode angle, which have no pole in mode II.
+        // The onset is computed from cosine and sine of the mixed-mode angle, which have no pole in
+        // mode II.
         let onset = d3 * ds / (ds * c).hypot(d3 * s);
-        // Not g_1 + (g_2 - g_1) share, which loses digits if one is much larger than the other.
+        // This form is used instead of g_1 + (g_2 - g_1) share, which loses digits if one energy is
+        // much larger than the other.
         let share = (s * s).powf(self.eta).min(1.0);
         (onset, self.g_1 * (1.0 - share) + self.g_2 * share)
     }
@@ -104,7 +106,7 @@ mod tests {
     use super::*;
     use fretwork_law::testing;
 
-    /// AS4/PEEK: G_c of 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by
+    /// For AS4/PEEK G_c is 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by
     /// integration of the traction at a fixed mode mix.
     #[test]
     fn mixed_modes_take_the_energy_of_benzeggagh_and_kenane() {
@@ -131,8 +133,9 @@ mod tests {
         assert!((law.mix(0.0, 1.0).0 / ds - 1.0).abs() < 1e-12);
     }
 
-    /// K d_0^2/2 is 0.8 and 845 J/m^2 in the pure modes, below the energies, but 1.066 at 30
-    /// degrees, where 1/(c^2/0.8 + s^2/845) exceeds 1 + 999 s^20 = 1.001.
+    /// The stored energy at onset, K d_0^2/2, is 0.8 and 845 J/m^2 in the pure modes, below the
+    /// fracture energies. At 30 degrees it exceeds its bound: 1/(c^2/0.8 + s^2/845) is 1.066, the
+    /// bound 1 + 999 s^20 = 1.001.
     #[test]
     fn a_mix_that_snaps_is_refused() {
         let law = CamanhoDavila {

@@ -1,5 +1,5 @@
-//! A liquid bridge between two grains: forms in contact, decreases with the gap, breaks at a
-//! distance.
+//! A liquid bridge between two grains. It forms in contact, its force decreases with the gap, and
+//! it breaks at a distance.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, parameters};
 
 parameters! {
@@ -42,7 +42,7 @@ impl CapillaryBridge {
         if r <= 0.0 {
             return 0.0;
         }
-        // Not zero, or gap/lambda is 0/0 for huge grains.
+        // lambda must not be zero, since gap/lambda is 0/0 for huge grains.
         let lambda = (0.9 * std::f64::consts::FRAC_1_SQRT_2 * (self.volume / r).sqrt())
             .max(f64::MIN_POSITIVE);
         let fade = (-site.gap.max(0.0) / lambda).exp();
@@ -94,7 +94,7 @@ mod tests {
         let lambda = 0.9 / 2f64.sqrt() * (1e-18f64 / r).sqrt();
         let (force, bridge) = at(lambda, 1.0);
         assert!((force / full * std::f64::consts::E - 1.0).abs() < 1e-9 && bridge == 1.0);
-        // V^(1/3) = 1 um.
+        // Here V^(1/3) = 1 um.
         assert_eq!(at(1.01e-6, 1.0), (0.0, 0.0));
     }
 }

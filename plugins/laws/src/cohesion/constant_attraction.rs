@@ -1,8 +1,9 @@
-//! A constant attraction within a range of gaps: wet grains, as LMGC90's IQS_WET_DS.
+//! A constant attraction within a range of gaps, for wet grains, like LMGC90's IQS_WET_DS.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, parameters};
 
 parameters! {
-    /// c_n over the area, plus a force, while the gap is at most `range`; no history.
+    /// Attraction c_n over the area, plus a force, while the gap is at most `range`. It has no
+    /// history.
     pub struct ConstantAttraction {
         stress: "Pa" = 0.0, 0.0, 1e30, "attraction over the contact's area";
         force: "N" = 1e-6, 0.0, 1e30, "attraction whatever the area (N/m in 2D)";

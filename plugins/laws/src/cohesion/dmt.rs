@@ -35,7 +35,7 @@ impl CohesionLaw for Dmt {
 mod tests {
     use super::*;
 
-    /// Pull-off 2 pi w R, and the work of separation of the spheres, 2 pi w R z_0.
+    /// The pull-off force is 2 pi w R, and the work of separation of the spheres 2 pi w R z_0.
     #[test]
     fn pull_off_and_work_are_closed_forms() {
         let law = Dmt {

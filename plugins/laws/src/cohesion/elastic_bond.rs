@@ -2,8 +2,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 
 parameters! {
-    /// Acts in tension and in shear; the contact carries compression. There the traction continues
-    /// linearly, from which the host finds its zero; only the tensile part acts.
+    /// Linear bond that acts in tension and in shear; the contact carries compression. There the
+    /// traction continues linearly, from which the host finds its zero; only the tensile part acts.
     pub struct ElasticBond {
         k_n: "Pa/m" = 1e14, 0.0, 1e30, "normal stiffness";
         k_t: "Pa/m" = 1e14, 0.0, 1e30, "tangential stiffness";

@@ -28,7 +28,7 @@ impl CohesionLaw for ElasticFoundation {
 
     fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
         let g = 1.0 - site.damage;
-        // It resists bending; rotation about the normal is free.
+        // The bond resists bending; rotation about the normal is free.
         let [_, b1, b2] = site.rotation;
         let bend = g * self.k_r;
         Traction {
@@ -46,7 +46,8 @@ impl CohesionLaw for ElasticFoundation {
         }
         let [n, t1, t2] = site.opening;
         let [_, b1, b2] = site.rotation;
-        // By factors: a square may overflow where its product with a zero is zero.
+        // The factors are multiplied one by one, since a square may overflow where its product with
+        // a zero is zero.
         let bent = self.k_r * b1 * b1 + self.k_r * b2 * b2;
         let moved = self.k_n * n * n + self.k_t * t1 * t1 + self.k_t * t2 * t2;
         bounded(0.5 * (1.0 - site.damage) * (moved + bent))

@@ -1,5 +1,5 @@
-//! Johnson, Kendall and Roberts: soft spheres that form a neck before they separate. Rigid in
-//! compression here.
+//! Johnson, Kendall and Roberts: soft spheres that form a neck before they separate. Here they are
+//! rigid in compression.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, parameters};
 use std::f64::consts::PI;
 
@@ -15,7 +15,8 @@ parameters! {
     }
 }
 
-/// x at which the neck breaks, the turning point of the approach: d(x^2 - (2/3) x^(1/2))/dx = 0.
+/// Value of x at which the neck breaks, the turning point of the approach: d(x^2 - (2/3)
+/// x^(1/2))/dx = 0.
 fn tear() -> f64 {
     (1.0f64 / 6.0).powf(2.0 / 3.0)
 }
@@ -32,9 +33,10 @@ impl Law for Jkr {
 }
 
 impl Jkr {
-    /// a_0^2/R, the length scale of the approach (m).
+    /// Length scale of the approach a_0^2/R (m).
     fn length(&self, r: f64) -> f64 {
-        // (a_0/R)^3 first: R^2 alone over- and underflows. Not zero, as gaps are divided by it.
+        // (a_0/R)^3 is computed first, since R^2 alone over- and underflows. It must not be zero,
+        // as gaps are divided by it.
         let a = (4.5 * PI * self.w / self.modulus / r).cbrt();
         (a * a * r).clamp(f64::MIN_POSITIVE, f64::MAX)
     }
@@ -49,7 +51,7 @@ impl Jkr {
     fn force(&self, gap: f64, r: f64) -> f64 {
         let pull_off = 1.5 * PI * self.w * r;
         let gap = gap.max(0.0) / self.length(r);
-        // x^2 - (2/3) sqrt(x) = -gap: from the break to d = 0 the left side increases with x.
+        // The left side of x^2 - (2/3) sqrt(x) = -gap increases with x from the break to d = 0.
         let (mut low, mut high) = (tear(), (2.0f64 / 3.0).powf(2.0 / 3.0));
         for _ in 0..60 {
             let x = 0.5 * (low + high);
@@ -85,7 +87,8 @@ impl CohesionLaw for Jkr {
 mod tests {
     use super::*;
 
-    /// F(a) = 4 E a^3/(3 R) - sqrt(8 pi w E a^3), d = a^2/R - sqrt(2 pi w a/E), as in the paper.
+    /// The solution is compared with F(a) = 4 E a^3/(3 R) - sqrt(8 pi w E a^3), d = a^2/R - sqrt(2
+    /// pi w a/E) of the paper.
     #[test]
     fn the_neck_is_the_papers_curve() {
         let law = Jkr::default();

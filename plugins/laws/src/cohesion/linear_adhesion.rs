@@ -2,8 +2,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, parameters};
 
 parameters! {
-    /// f_max in contact, f_max - k_c gap up to f_max/k_c once the grains have touched; they must
-    /// touch again after separation.
+    /// Attraction f_max in contact, and f_max - k_c gap up to the gap f_max/k_c once the grains
+    /// have touched. After separation they must touch again.
     pub struct LinearAdhesion {
         f_max: "N" = 1e-6, 0.0, 1e30, "attraction in contact (N/m in 2D)";
         k_c: "N/m" = 1.0, 1e-30, 1e30, "how fast it fades with the gap (N/m^2 in 2D)";

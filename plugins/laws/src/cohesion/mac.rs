@@ -54,7 +54,8 @@ mod tests {
         law.traction(&at([u, 0.0, 0.0], 1.0 - beta), &[]).traction[0]
     }
 
-    /// Peak sqrt(w C_N) at u_0 = sqrt(w/C_N), area w (less w/200 beyond 10 u_0): C 1e12, w 0.1.
+    /// The peak traction is sqrt(w C_N) at u_0 = sqrt(w/C_N), and the area w (less w/200 beyond 10
+    /// u_0), for C = 1e12 and w = 0.1.
     #[test]
     fn peak_and_area_are_closed_forms() {
         let (law, w) = (MacCohesion::default(), 0.1);

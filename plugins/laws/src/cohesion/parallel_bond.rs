@@ -30,14 +30,14 @@ impl Law for ParallelBond {
         | abi::FLAG_FORMS;
 
     fn fracture_energy(&self, angle: f64) -> Option<f64> {
-        // Stored energy at the break.
+        // Energy stored at the break.
         let (c, s) = (angle.cos().max(0.0), angle.sin().abs());
         let u = (self.sigma_c / (self.k_n * c)).min(self.tau_c / (self.k_t * s));
         Some(0.5 * (self.k_n * c * c + self.k_t * s * s) * u * u)
     }
 }
 
-/// Radius of the bond (m), and I/A and J/A (m^2).
+/// Returns the radius of the bond (m), and I/A and J/A (m^2).
 fn section(site: &Site) -> (f64, f64, f64) {
     let area = site.area.max(0.0);
     if site.dimension == 2 {
@@ -76,7 +76,8 @@ impl CohesionLaw for ParallelBond {
         let [twist, b1, b2] = site.rotation;
         let (_, i, j) = section(site);
         let (bend, turn) = (bounded(self.k_n * i), bounded(self.k_t * j));
-        // By factors: a square may overflow where its product with a zero is zero.
+        // The factors are multiplied one by one, since a square may overflow where its product with
+        // a zero is zero.
         let bending = bend * b1 * b1 + bend * b2 * b2 + turn * twist * twist;
         bounded(0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * t * t + bending))
     }
@@ -99,7 +100,7 @@ impl CohesionLaw for ParallelBond {
 mod tests {
     use super::*;
 
-    /// Beam theory: M = k_n I theta, edge stress M R/I, in 3D and in 2D.
+    /// Beam theory gives M = k_n I theta and the edge stress M R/I, in 3D and in 2D.
     #[test]
     fn bending_is_the_beams() {
         let law = ParallelBond::default();

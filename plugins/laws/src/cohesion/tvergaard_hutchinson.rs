@@ -1,4 +1,5 @@
-//! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear softening. It breaks by itself.
+//! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear softening. It breaks without a
+//! damage law.
 use crate::trapezoid::Trapezoid;
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, parameters, require};
 
@@ -34,7 +35,7 @@ impl Law for TvergaardHutchinson {
             squared < 2.0 * self.k * self.energy,
             "strength^2/(2 k) must be below the energy: the elastic part alone holds more",
         )?;
-        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be lost by round-off
+        // On the plateau 1 - D is strength/(k u). Below about 1e-12 it would be lost by round-off
         // relative to 1.
         require(
             squared >= 1e-12 * self.k * self.energy,

@@ -3,14 +3,14 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 
 parameters! {
-    /// With x = u_n/delta_n, y = |u_t|/delta_t and phi = e strength delta_n, the potential of the
-    /// paper with q = 1, where the work of separation is phi in both modes (r then has no effect):
-    /// phi (1 - (1 + x) exp(-x - y^2)). Its share of phi that was reached is the damage D, which
-    /// never decreases; t = (1 - D) d psi_0/d u with psi_0 = phi (x - ln(1 + x) + y^2), so that
-    /// t_n = (phi/delta_n) x exp(-x - y^2) and t_t = (2 phi/delta_t) y (1 + x) exp(-x - y^2) while
-    /// D grows, the tractions of the paper, and any path to full separation takes phi. In
-    /// compression x is 0: the contact carries that. Where 1 - D falls to `left` the bond is
-    /// broken.
+    /// Let x = u_n/delta_n, y = |u_t|/delta_t and phi = e strength delta_n. The potential of the
+    /// paper with q = 1 is phi (1 - (1 + x) exp(-x - y^2)): the work of separation is phi in both
+    /// modes, and r has no effect. The largest fraction of phi that this potential has reached is
+    /// the damage D, which never decreases. The traction is t = (1 - D) d psi_0/d u with psi_0 =
+    /// phi (x - ln(1 + x) + y^2). While D grows it is therefore that of the paper, t_n =
+    /// (phi/delta_n) x exp(-x - y^2) and t_t = (2 phi/delta_t) y (1 + x) exp(-x - y^2), and any
+    /// path to full separation dissipates phi. In compression x is 0, and the contact carries the
+    /// load. Where 1 - D falls to `left` the bond is broken.
     pub struct XuNeedleman {
         strength: "Pa" = 1e6, 1e-30, 1e30, "normal strength, reached at delta_n";
         delta_n: "m" = 1e-6, 1e-30, 1e30, "normal opening at the strength";
@@ -37,7 +37,7 @@ impl XuNeedleman {
         std::f64::consts::E * self.strength * self.delta_n
     }
 
-    /// Openings over their lengths; finite.
+    /// Openings divided by their lengths, limited to finite values.
     fn shares(&self, site: &Site) -> [f64; 2] {
         [
             bounded(site.normal_opening() / self.delta_n),
@@ -46,7 +46,7 @@ impl XuNeedleman {
     }
 }
 
-/// x - ln(1 + x).
+/// Returns x - ln(1 + x).
 fn above_log(x: f64) -> f64 {
     if x < 1e-3 {
         // The difference of the two has few digits.
@@ -102,7 +102,8 @@ mod tests {
     use super::*;
     use fretwork_law::testing;
 
-    /// Peak s at delta_n, area e s delta_n; in mode II sqrt(2 e) s delta_n/delta_t, the same area.
+    /// In mode I the peak is s at delta_n and the area e s delta_n; in mode II the peak is sqrt(2
+    /// e) s delta_n/delta_t, with an equal area.
     #[test]
     fn peaks_and_areas_are_the_papers() {
         let law = XuNeedleman::default();
@@ -128,8 +129,8 @@ mod tests {
         phi + phi * (-x).exp() * (normal - shear * (-y * y).exp())
     }
 
-    /// Damage and traction after the opening is led to these places, in `steps` steps each, and the
-    /// work done.
+    /// Returns damage and traction after the opening is led through these points, in `steps` steps
+    /// each, and the work done.
     fn led(law: &XuNeedleman, places: &[[f64; 2]], steps: u32) -> (f64, [f64; 2], f64) {
         let at = |[n, t]: [f64; 2], damage: f64| Site {
             opening: [n, 0.6 * t, -0.8 * t],
@@ -192,7 +193,8 @@ mod tests {
         }
     }
 
-    /// Whatever the path, also one that turns back on its way, and which direction it ends in.
+    /// The work does not depend on the path, even if it reverses, nor on the direction in which it
+    /// ends.
     #[test]
     fn any_path_to_separation_takes_phi() {
         let law = XuNeedleman::default();
@@ -220,7 +222,8 @@ mod tests {
         }
     }
 
-    /// Traction is the gradient of (1 - D) psi_0 at fixed damage, and the stiffness its slope.
+    /// Traction is the gradient of (1 - D) psi_0 at fixed damage, and the stiffness the slope of
+    /// the traction.
     #[test]
     fn unloading_gives_back_what_is_stored() {
         let law = XuNeedleman::default();

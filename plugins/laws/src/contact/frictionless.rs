@@ -2,7 +2,7 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, parameters};
 
 parameters! {
-    /// Signorini's condition only.
+    /// Contact that follows Signorini's condition only.
     pub struct Frictionless {
         restitution_n: "" = 0.0, 0.0, 1.0, "normal restitution (Newton)";
     }

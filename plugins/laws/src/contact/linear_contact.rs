@@ -2,7 +2,8 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, Spring, abi, damping_ratio, parameters};
 
 parameters! {
-    /// F = k d over an overlap d; the tangential force grows with k_t and slips at mu F.
+    /// Normal force F = k d for an overlap d; the tangential force grows with k_t and slips at mu
+    /// F.
     pub struct LinearContact {
         stiffness: "N/m" = 1e6, 1e-300, 1e300, "normal stiffness k; in 2D per metre of depth (N/m^2)";
         ratio: "" = 0.8, 0.0, 1e3, "tangential over normal stiffness; 0: no tangential displacement before slip";
@@ -36,8 +37,8 @@ impl ContactLaw for LinearContact {
 mod tests {
     use super::*;
 
-    /// A mass on the spring, in 20,000 steps of the velocity Verlet scheme, parts with the
-    /// restitution asked for when its force is zero.
+    /// A mass on the spring, integrated by 20,000 steps of the velocity Verlet scheme, separates
+    /// with the required restitution when its force is zero.
     #[test]
     fn impacts_rebound_as_asked() {
         for restitution in [0.05, 0.3, 0.6, 0.9, 1.0] {

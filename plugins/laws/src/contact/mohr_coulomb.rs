@@ -1,17 +1,17 @@
 //! Mohr-Coulomb: |t_t| <= c + mu p, with p >= -tension: a permanent plastic strength, not a bond.
 //!
-//! Cohesion and tension act where surfaces touch, at gaps up to `range`; farther apart the contact
-//! is one of Coulomb without them. Contacts are known up to the alert distance, a number of the
-//! method: without a range of its own the strength would depend on it. LMGC90's IQS_WET_DS_CLB has
-//! the same condition on the gap, with the thickness Wthk.
+//! Cohesion and tension act where surfaces touch, at gaps up to `range`. Farther apart the contact
+//! follows Coulomb's law alone. Contacts are detected up to the alert distance, a numerical
+//! parameter, on which the strength would depend without its own range. LMGC90's IQS_WET_DS_CLB has
+//! an equal condition on the gap, with the thickness Wthk.
 //!
-//! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. So that the shear
-//! strength at zero pressure is c, c_t = c - mu tension.
+//! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. The shear strength
+//! at zero pressure is c if c_t = c - mu tension.
 use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 
 parameters! {
-    /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone. The range is that
-    /// of surfaces that touch: roughness, a film.
+    /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone. The range is the
+    /// distance at which surfaces touch: a roughness, or the thickness of a film.
     pub struct MohrCoulomb {
         mu: "" = 0.5, 0.0, 1e6, "friction coefficient, tangent of the friction angle";
         cohesion: "Pa" = 1e5, 0.0, 1e30, "shear strength c without pressure";
@@ -56,8 +56,8 @@ impl ContactLaw for MohrCoulomb {
 mod tests {
     use super::*;
 
-    /// The host's cone is the Mohr-Coulomb line: c at p = 0, c + mu p under pressure, and less in
-    /// tension.
+    /// The host's cone is the Mohr-Coulomb line: its strength is c at p = 0, c + mu p under
+    /// pressure, and less in tension.
     #[test]
     fn is_the_line_of_mohr_and_coulomb() {
         let law = MohrCoulomb {
@@ -74,7 +74,7 @@ mod tests {
         }
     }
 
-    /// Surfaces that touch within the range hold, others slide by friction alone.
+    /// Surfaces within the range hold, others slide by friction alone.
     #[test]
     fn the_strength_ends_with_the_range() {
         let law = MohrCoulomb {

@@ -3,8 +3,8 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 
 parameters! {
     /// u_n+ = -e_n u_n- if the bodies approach faster than v_min. Below it the contact is
-    /// persistent, e = 0: weight alone adds g h per step, and restitution would make the contact
-    /// rattle without end.
+    /// persistent, e = 0: the weight alone adds g h per step, and with restitution the contact
+    /// would rattle without end.
     pub struct NewtonRestitution {
         e_n: "" = 0.8, 0.0, 1.0, "normal restitution";
         e_t: "" = 0.0, 0.0, 1.0, "tangential restitution, in impacts only";
@@ -23,7 +23,7 @@ impl Law for NewtonRestitution {
 impl ContactLaw for NewtonRestitution {
     fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
         // A tangential restitution of resting contacts would reverse their sliding at every step,
-        // so the approach velocity decides on both.
+        // so both restitutions depend on the approach velocity.
         let impact = -site.velocity[0] > self.v_min;
         let only = |e| if impact { e } else { 0.0 };
         Friction {

@@ -38,10 +38,10 @@ mod tests {
         };
         assert_eq!(at(&law, [-7.0, 0.0, 0.0]), 0.5);
         assert_eq!(at(&law, [0.0, 1e6, 0.0]), 0.2);
-        // Half of the decrease at w = ln 2/B.
+        // Half of the decrease is reached at w = ln 2/B.
         let w = core::f64::consts::LN_2 / 2.0;
         assert!((at(&law, [0.0, -0.6 * w, 0.8 * w]) - 0.35).abs() < 1e-15);
-        // -B (1 - A) mu_0 is the slope at rest.
+        // The slope at rest is -B (1 - A) mu_0.
         let slope = (at(&law, [0.0, 1e-6, 0.0]) - 0.5) / 1e-6;
         assert!((slope + 0.6).abs() < 1e-5);
     }

@@ -25,18 +25,18 @@ parameters! {
 }
 
 impl RateAndState {
-    /// The velocity that enters the law (m/s): positive and finite.
+    /// Returns the velocity that enters the law (m/s): positive and finite.
     fn velocity(&self, site: &Site) -> f64 {
         let slip = site.sliding_speed();
         slip.clamp(self.v_min, f64::MAX)
     }
 
-    /// ln(V/V_0); the quotient itself could overflow.
+    /// Returns ln(V/V_0). The quotient itself could overflow.
     fn logarithm(&self, v: f64) -> f64 {
         v.ln() - self.v_0.ln()
     }
 
-    /// psi after a time h at the velocity v.
+    /// Returns psi after a time h at the velocity v.
     fn state_after(&self, psi: f64, v: f64, h: f64) -> f64 {
         let z = v * h.max(0.0) / self.d_c;
         let steady = -self.logarithm(v);
@@ -86,7 +86,7 @@ impl ContactLaw for RateAndState {
 mod tests {
     use super::*;
 
-    fn pressed(v: f64, h: f64) -> Site {
+    fn compressed(v: f64, h: f64) -> Site {
         Site {
             velocity: [0.0, 0.6 * v, -0.8 * v],
             impulse: [1.0, 0.0, 0.0],
@@ -97,7 +97,7 @@ mod tests {
 
     fn after(law: &RateAndState, v: f64, h: f64, psi: f64) -> f64 {
         let mut state = [psi];
-        law.commit(&pressed(v, h), &mut state);
+        law.commit(&compressed(v, h), &mut state);
         state[0]
     }
 
@@ -108,12 +108,13 @@ mod tests {
         })
     }
 
-    /// Ten times the velocity: + a ln 10 at once, (a - b) ln 10 at the end.
+    /// After an increase of the velocity by ten, friction changes by a ln 10 at once and by (a - b)
+    /// ln 10 in the end.
     #[test]
     fn a_velocity_step_is_the_textbook_one() {
         for law in both() {
             let v = 10.0 * law.v_0;
-            let mu = |psi| law.friction(&pressed(v, 1e-3), &[psi]).mu - law.mu_0;
+            let mu = |psi| law.friction(&compressed(v, 1e-3), &[psi]).mu - law.mu_0;
             assert!((mu(0.0) - 0.02303).abs() < 5e-6);
             let mut psi = 0.0;
             for _ in 0..40_000 {
@@ -131,7 +132,7 @@ mod tests {
                 let psi = -ratio.ln();
                 let v = ratio * law.v_0;
                 assert!((after(&law, v, 0.37, psi) - psi).abs() < 1e-13);
-                let mu = law.friction(&pressed(v, 1.0), &[psi]).mu;
+                let mu = law.friction(&compressed(v, 1.0), &[psi]).mu;
                 assert!((mu - (0.6 - 0.005 * ratio.ln())).abs() < 1e-13);
             }
         }
@@ -163,25 +164,25 @@ mod tests {
                 }
                 let psi = (law.v_0 * theta / law.d_c).ln();
                 assert!((after(&law, v, time, start) - psi).abs() < 1e-9);
-                // Exact means that the number of steps does not matter.
+                // The integration is exact if the number of steps does not matter.
                 let half = after(&law, v, 0.5 * time, start);
                 assert!((after(&law, v, 0.5 * time, half) - psi).abs() < 1e-9);
             }
         }
     }
 
-    /// At rest theta grows by the hold time, under load only; that of the slip law does not.
+    /// At rest theta grows by the hold time, under load only; theta of the slip law does not grow.
     #[test]
     fn rest_ages() {
         let [aging, slip] = both();
         let rest = |law| after(law, 0.0, 20.0, 0.0);
-        // theta 10 s + 20 s, less the effect of the 2e-3 D_c of slip at v_min.
+        // theta grows from 10 s by 20 s, less the effect of the 2e-3 D_c of slip at v_min.
         assert!((rest(&aging) - 3f64.ln()).abs() < 3e-3);
         assert!(rest(&slip) < 0.02);
         let mut state = [0.7];
         let open = Site {
             impulse: [0.0; 3],
-            ..pressed(1.0, 1.0)
+            ..compressed(1.0, 1.0)
         };
         aging.commit(&open, &mut state);
         assert_eq!(state, [0.7]);
@@ -195,7 +196,7 @@ mod tests {
                     for psi in [-1e300, -800.0, 0.0, 800.0, 1e300] {
                         let site = Site {
                             velocity: [v; 3],
-                            ..pressed(0.0, h)
+                            ..compressed(0.0, h)
                         };
                         let mut state = [psi];
                         law.commit(&site, &mut state);

@@ -59,8 +59,8 @@ mod tests {
         assert!((at(&law, [0.0, 1e3, 0.0]) - 0.3).abs() < 1e-15);
     }
 
-    /// A block pulled with a force between both coefficients stays at rest if it sticks and keeps
-    /// sliding if it slides; one that decelerates comes to rest without its friction ever
+    /// A block pulled by a force between both friction bounds stays at rest if it sticks and keeps
+    /// sliding if it slides. A decelerating block comes to rest without its friction ever
     /// decreasing again.
     #[test]
     fn does_not_chatter() {
@@ -79,7 +79,7 @@ mod tests {
         };
         assert_eq!(run(0.0, 0.35), (0.0, 0));
         assert_eq!(run(0.1, 0.25), (0.0, 0));
-        // While sliding it gains (0.35 - 0.3) g in a second.
+        // While sliding, its velocity increases by (0.35 - 0.3) g in a second.
         let (v, falls) = run(0.01, 0.35);
         assert!((v - (0.01 + 0.05 * 9.81)).abs() < 1e-9 && falls == 0, "{v}");
     }

@@ -4,8 +4,8 @@ use fretwork_law::{
 };
 
 parameters! {
-    /// Springs as those of linear-contact, friction as that of thermal-friction. Elastic cylinders
-    /// (2D) have the stiffness pi/4 E*.
+    /// The springs are those of linear-contact, the friction is that of thermal-friction. Elastic
+    /// cylinders (2D) have the stiffness pi/4 E*.
     pub struct ThermalContact {
         stiffness: "N/m" = 1e6, 1e-300, 1e300, "normal stiffness k; in 2D per metre of depth (N/m^2)";
         ratio: "" = 0.8, 0.0, 1e3, "tangential over normal stiffness; 0: no tangential displacement before slip";

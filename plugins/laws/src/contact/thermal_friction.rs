@@ -2,7 +2,8 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, parameters, ramp, require};
 
 parameters! {
-    /// mu is cold up to `from` and hot from `to` on, and linear between them. It may fall or rise.
+    /// The coefficient mu is `cold` up to the temperature `from`, `hot` above `to`, and linear
+    /// between them. It may decrease or increase.
     pub struct ThermalFriction {
         cold: "" = 0.4, 0.0, 1e6, "friction coefficient up to the lower temperature";
         hot: "" = 0.16, 0.0, 1e6, "friction coefficient from the upper temperature on";

@@ -51,8 +51,8 @@ impl DamageLaw for CzmFatigue {
         if p <= from || span <= 0.0 {
             return d;
         }
-        // The rise is integrated exactly at this D, since one step may be the whole loading of a
-        // cycle.
+        // The increase is integrated exactly at this D, since one step may be the whole loading of
+        // a cycle.
         let mean = 0.5 * ((p - self.p_fatigue) + (from - self.p_fatigue)) / span;
         (d + self.rate * mean * (p - from)).min(1.0)
     }
@@ -70,8 +70,8 @@ mod tests {
         }
     }
 
-    /// One rise from 0 to P at a small rate, with the fatigue limit F, gives
-    /// D = rate (P - F)^2/(2 (P_max - F)) in any number of steps.
+    /// A monotonic increase from 0 to P at a small rate, with the fatigue limit F, gives D = rate
+    /// (P - F)^2/(2 (P_max - F)) in any number of steps.
     #[test]
     fn a_rise_damages_by_its_integral() {
         let law = CzmFatigue {

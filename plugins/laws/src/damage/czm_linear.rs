@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use fretwork_law::testing::{Bond, opened};
 
-    /// MELODY's secant at its damage d: (p_limit (1 - d) + p_residual d)/u_max(d).
+    /// MELODY's secant stiffness at its damage d is (p_limit (1 - d) + p_residual d)/u_max(d).
     #[test]
     fn the_secant_is_melodys() {
         let law = CzmLinear::default();
@@ -58,7 +58,7 @@ mod tests {
         }
     }
 
-    /// The residual traction is carried up to the limit opening and not at it.
+    /// The bond carries the residual traction up to the limit opening, where it breaks.
     #[test]
     fn it_breaks_at_the_limit_opening() {
         let law = CzmLinear::default();

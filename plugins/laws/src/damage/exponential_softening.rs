@@ -2,9 +2,9 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// traction = strength exp(-(u - u_0)/l) beyond u_0 = strength/K, with l from energy = strength
-    /// u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail that is cut
-    /// off has the energy left (energy - strength u_0/2).
+    /// Beyond u_0 = strength/K the traction is strength exp(-(u - u_0)/l), with l from energy =
+    /// strength u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail
+    /// that is cut off has the energy left (energy - strength u_0/2).
     pub struct ExponentialSoftening {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
@@ -19,7 +19,7 @@ impl Law for ExponentialSoftening {
     const REFERENCE: &'static str = "M. Ortiz, A. Pandolfi, Int. J. Numer. Methods Eng. 44 (1999) 1267-1282 (history by secant unloading); exponential softening as in J. Oliver et al., Eng. Fract. Mech. 69 (2002) 113-136";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // If cut earlier, the missing tail exceeds the tolerance of certification.
+        // If the curve is cut earlier, the missing tail exceeds the tolerance of certification.
         (self.left <= 5e-3).then_some(self.energy)
     }
 }
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use fretwork_law::testing::pull;
 
-    /// The energy less that of the tail which is cut off, at a stiffness `k`.
+    /// Returns the energy without the tail that is cut off, at a stiffness `k`.
     fn energy(law: &ExponentialSoftening, k: f64) -> f64 {
         law.energy - law.left * (law.energy - 0.5 * law.strength.powi(2) / k)
     }
@@ -57,8 +57,8 @@ mod tests {
         }
     }
 
-    /// Over the range of K of real interfaces: at K = 1e10 half of the energy is stored before the
-    /// onset.
+    /// The law is tested over the range of K of real interfaces: at K = 1e10 half of the energy is
+    /// stored before the onset.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = ExponentialSoftening {

@@ -28,7 +28,7 @@ impl DamageLaw for Khoramishad {
         if strain <= self.threshold {
             return site.damage;
         }
-        // An overflow times zero cycles must give zero, not NaN, which would be a break.
+        // An overflow times zero cycles must give zero, not NaN, which would count as a break.
         let finite = |x: f64| x.min(f64::MAX);
         let cycles = finite(self.frequency * site.h.max(0.0));
         let power = finite((strain - self.threshold).powf(self.beta));
@@ -47,7 +47,7 @@ mod tests {
         let law = Khoramishad::default();
         let intact = opened(1e12, 0.08 * law.reference, 1.0);
         let mut bond = Bond::new(&law, 0.0);
-        // 100 cycles at 10 Hz.
+        // These are 100 cycles at 10 Hz.
         for _ in 0..10_000 {
             bond.lead(&intact);
         }
@@ -63,7 +63,8 @@ mod tests {
         assert_eq!(bond.lead(&opened(1e12, 0.0299 * law.reference, 2.0)), 0.2);
     }
 
-    /// The strain's power overflows; no cycles, no frequency or no alpha is still no damage.
+    /// The power of the strain overflows; without cycles, frequency or alpha there is still no
+    /// damage.
     #[test]
     fn no_rate_is_no_damage_at_any_strain() {
         let huge = Intact {

@@ -45,11 +45,12 @@ mod tests {
 
     #[test]
     fn a_soft_bond_snaps_at_the_strength() {
-        // K = 1e10: u_0 = 30 um is beyond u_f = 3.3 um.
+        // At K = 1e10, u_0 = 30 um is beyond u_f = 3.3 um.
         pull(&LinearSoftening::default(), 1e10, 1.0, 40e-6, 1_000_000).took(0.5 * 9e10 / 1e10);
     }
 
-    /// Over the range of K of real interfaces: at K = 1e10 u_0 = 10 um is half of u_f.
+    /// The law is tested over the range of K of real interfaces: at K = 1e10 u_0 = 10 um is half of
+    /// u_f.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = LinearSoftening {

@@ -4,9 +4,9 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 parameters! {
     /// With b = 0 and a cohesion of exponent m = 2 a bond that opens without limit dissipates
     /// exactly w. Its intensity of adhesion decreases as 1/u^2 and never reaches 0 by itself: below
-    /// `beta_broken` the bond counts as broken (0 disables this). The energy stored at that moment,
-    /// at most beta_broken w/2, must be added to the fracture energy by the host, and the bond has
-    /// then dissipated w (1 - beta_broken/2).
+    /// `beta_broken` the bond counts as broken (0 disables this). The host must add the energy
+    /// stored at that moment, at most beta_broken w/2, to the fracture energy; the bond has then
+    /// dissipated w (1 - beta_broken/2).
     pub struct MacDamage {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
         b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
@@ -24,15 +24,15 @@ impl Law for MacDamage {
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction
-        // that depends on m, that at an opening by one that depends on the stiffness.
+        // Viscosity increases the energy with the speed. The cut at beta_broken reduces it by a
+        // fraction that depends on m, the cut at an opening by one that depends on the stiffness.
         let tail = self.beta_broken <= 5e-3 && self.opening_broken >= NEVER;
         (self.b == 0.0 && tail).then_some(self.w)
     }
 }
 
 impl MacDamage {
-    /// D at the end of a step of h seconds, implicit for m >= 1: b (D - D_i)/h = Y(D) - w.
+    /// Returns D at the end of a step of h seconds, implicit for m >= 1: b (D - D_i)/h = Y(D) - w.
     fn damage(&self, d: f64, h: f64, intact: &Intact) -> f64 {
         if d >= 1.0 || intact.release_rate(d) <= self.w {
             return d;
@@ -43,7 +43,7 @@ impl MacDamage {
             return 1.0 - beta;
         }
         if m <= 1.0 {
-            // Y does not decrease as D grows: without viscosity the bond breaks at once.
+            // Y does not decrease as D grows, so without viscosity the bond breaks at once.
             return if self.b > 0.0 {
                 d + h * (intact.release_rate(d) - self.w) / self.b
             } else {
@@ -87,7 +87,7 @@ mod tests {
         bond
     }
 
-    /// The undamaged bond that stores an energy (J/m^2).
+    /// Returns an undamaged bond that stores an energy (J/m^2).
     fn stores(energy: f64, degradation: f64) -> Intact {
         Intact {
             energy,
@@ -111,7 +111,7 @@ mod tests {
         (peak, area)
     }
 
-    /// A law that is never cut, with w of 0.1 J/m^2.
+    /// Returns a law without cuts, with w of 0.1 J/m^2.
     fn uncut(b: f64) -> MacDamage {
         MacDamage {
             w: 0.1,
@@ -128,7 +128,8 @@ mod tests {
         assert!((area / 0.0994998 - 1.0).abs() < 1e-3, "{area}");
     }
 
-    /// Values of the continuum limit for du/dt = 0.045 m/s, opening to 100 um.
+    /// The results approach the values of the continuum limit for du/dt = 0.045 m/s and an opening
+    /// to 100 um.
     #[test]
     fn with_viscosity_it_meets_the_ode() {
         for (b, peak, area) in [
@@ -174,7 +175,7 @@ mod tests {
 
     #[test]
     fn other_exponents_solve_the_implicit_equation() {
-        // Over one step of 1 us from D = 0.2, under psi_0 = 0.3 J/m^2.
+        // This is one step of 1 us from D = 0.2, with psi_0 = 0.3 J/m^2.
         let step = |law: &MacDamage, m: f64| bond(law, 0.2, 1e-6).lead(&stores(0.3, m));
         for (m, b) in [(1.5, 1e-6), (3.0, 1e-6), (3.0, 0.0), (2.5, 1e-7)] {
             let d = step(&uncut(b), m);
@@ -186,7 +187,7 @@ mod tests {
             ..MacDamage::default()
         };
         assert!((step(&law, 2.0) - step(&law, 2.0 + 1e-9)).abs() < 1e-8);
-        // m = 1: D = D_i + h (psi_0 - w)/b.
+        // For m = 1, D = D_i + h (psi_0 - w)/b.
         assert!((step(&law, 1.0) - 0.4).abs() < 1e-12);
     }
 

@@ -30,7 +30,7 @@ impl DamageLaw for MohrCoulombBrittle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn breaks_on_the_envelope() {
@@ -40,7 +40,7 @@ mod tests {
             friction: 0.5,
         };
         let at = |t: [f64; 3], p: f64| {
-            let site = pressed(p);
+            let site = compressed(p);
             let intact = Intact {
                 traction: t,
                 ..Intact::default()

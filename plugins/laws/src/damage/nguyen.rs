@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use fretwork_law::testing::{Bond, opened};
 
-    /// N cycles 0 - u - 0 below the envelope leave (1 - D)^m = exp(-N u/length), whatever the step.
+    /// N cycles 0 - u - 0 below the envelope give (1 - D)^m = exp(-N u/length) for any step.
     #[test]
     fn cycles_lose_stiffness_exponentially() {
         let law = Nguyen::default();

@@ -3,10 +3,10 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, parameters};
 
 parameters! {
     /// dD = (|du|/length) (T/T_max - endurance)+ once the accumulated opening has passed `start`,
-    /// with T the traction that the bond carries and T_max = strength (1 - D). D is never below
-    /// that of the monotonic envelope, linear softening from `strength` with fracture energy
-    /// `energy`; a bond that stores more than the energy at its strength breaks. Monotonic loading
-    /// also accumulates cyclic damage and so needs less energy.
+    /// with T the traction that the bond carries and T_max = strength (1 - D). D is never below the
+    /// damage of the monotonic envelope, which is linear softening from `strength` with fracture
+    /// energy `energy`; a bond that stores more than this energy at its strength breaks. Monotonic
+    /// loading also accumulates cyclic damage and therefore needs less energy.
     pub struct RoeSiegmund {
         strength: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
         energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy of the envelope";
@@ -54,8 +54,8 @@ mod tests {
     use super::*;
     use fretwork_law::testing::{Bond, opened, pull};
 
-    /// For m = 1 the load K u/s, with the strength s, does not depend on D: with the endurance C, a
-    /// cycle 0 - u - 0 gives D = 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
+    /// For m = 1 the relative load K u/s, with the strength s, does not depend on D. With the
+    /// endurance C, a cycle 0 - u - 0 then gives D = 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
     #[test]
     fn a_cycle_damages_by_its_integral() {
         let law = RoeSiegmund::default();

@@ -1,12 +1,12 @@
-//! Bonds whose stiffness and strength fall with temperature, to nothing at the melting point.
+//! Bonds whose stiffness and strength decrease with temperature, to zero at the melting point.
 use fretwork_law::{DamageLaw, Intact, Law, Site, abi, parameters, require};
 
 parameters! {
-    /// With x = (T - T_0)/(T_m - T_0) between 0 and 1: the traction that the bond carries with
-    /// damage D, (1 - D)^n t_0, falls to (1 - x^m) t_0, so D is at least 1 - (1 - x^m)^(1/n); and
-    /// the bond breaks where what it carries leaves the envelope of the strengths times s = 1 -
-    /// x^k, t_n > s tensile_strength or |t_t| > s (cohesion + friction p). Softening stays: a bond
-    /// that cools is not stiffer again, so that no energy comes from heat.
+    /// Let x = (T - T_0)/(T_m - T_0), limited to 0 and 1. The traction of a bond with damage D,
+    /// (1 - D)^n t_0, is limited to (1 - x^m) t_0, so D is at least 1 - (1 - x^m)^(1/n). The bond
+    /// breaks where its traction leaves the envelope of the strengths times s = 1 - x^k: t_n > s
+    /// tensile_strength or |t_t| > s (cohesion + friction p). Softening is permanent: a bond that
+    /// cools does not become stiffer again, so that no energy comes from heat.
     pub struct ThermalSoftening {
         tensile_strength: "Pa" = 1e8, 0.0, 1e30, "normal traction at which a cold bond breaks";
         cohesion: "Pa" = 1e8, 0.0, 1e30, "shear traction at which a cold bond breaks without pressure";
@@ -30,7 +30,7 @@ impl Law for ThermalSoftening {
 }
 
 impl ThermalSoftening {
-    /// Shares of stiffness and strength that are left at a temperature.
+    /// Returns the fractions of stiffness and strength that remain at a temperature.
     fn left(&self, temperature: f64) -> [f64; 2] {
         let range = self.melting - self.cold;
         let x = match range > 0.0 {
@@ -52,7 +52,7 @@ impl DamageLaw for ThermalSoftening {
             false => 1.0,
         };
         let soft = 1.0 - stiffness.powf(1.0 / power);
-        // A damage that is not a number is not looked for here.
+        // The host reports a damage that is not a number, so it is not checked here.
         let damage = soft.max(site.damage).min(1.0);
         let carried = (1.0 - damage).powf(power);
         let [n, t1, t2] = intact.traction.map(|t| carried * t);
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(at(800.0, 4e7, 0.0, 1.0), 0.5);
         // (1 - D)^2 is one half.
         assert!((at(800.0, 4e7, 0.0, 2.0) - (1.0 - 0.5f64.sqrt())).abs() < 1e-15);
-        // Stiffness and strength fall alike: it breaks at the same opening.
+        // Stiffness and strength decrease equally, so the bond breaks at an equal opening.
         assert_eq!(
             (at(800.0, 9.9e7, 0.0, 1.0), at(800.0, 1.01e8, 0.0, 1.0)),
             (0.5, 1.0)

@@ -3,10 +3,10 @@ use crate::trapezoid::Trapezoid;
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// From u_0 = strength/K a plateau to u_p, then linear to u_f; energy = strength (u_f + u_p -
-    /// u_0)/2. `plateau` places u_p between u_0 and the longest plateau that the energy allows,
-    /// u_0/2 + energy/strength (where u_f = u_p). A bond that stores more than the energy at its
-    /// strength breaks.
+    /// From u_0 = strength/K the traction has a plateau to u_p, then decreases linearly to zero at
+    /// u_f; energy = strength (u_f + u_p - u_0)/2. `plateau` places u_p between u_0 and the end of
+    /// the longest plateau that the energy allows, u_0/2 + energy/strength (where u_f = u_p). A
+    /// bond that stores more than the energy at its strength breaks.
     pub struct Trapezoidal {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction of the plateau";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
@@ -52,7 +52,8 @@ mod tests {
         }
     }
 
-    /// Over the range of K of real interfaces: at K = 1e10 u_0 = 10 um is half of u_f.
+    /// The law is tested over the range of K of real interfaces: at K = 1e10 u_0 = 10 um is half of
+    /// u_f.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = Trapezoidal {

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 parameters! {
     /// G = 2 k a with k = 2 k_1 k_2/(k_1 + k_2) and a = (3 F R/(4 E*))^(1/3), R the reduced radius,
-    /// 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2. In 2D, where the spreading resistance of a
-    /// cylinder is not finite, heat is counted from the strip of half-width a = (4 F R/(pi
+    /// 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2. In 2D the spreading resistance of a cylinder is
+    /// not finite. The resistance is therefore counted from the strip of half-width a = (4 F R/(pi
     /// E*))^(1/2) to the distance 2 R on either side, the radius of equal cylinders: G = pi k/(2
-    /// asinh(2 R/a)) per metre of depth. The electrical conductance is the same with 1/rho for k,
-    /// rho = (rho_1 + rho_2)/2.
+    /// asinh(2 R/a)) per metre of depth. The electrical conductance has 1/rho instead of k, rho =
+    /// (rho_1 + rho_2)/2.
     pub struct BatchelorObrien {
         young_1: "Pa" = 2.1e11, 1e-300, 1e300, "Young's modulus of the first material";
         poisson_1: "" = 0.3, -0.99, 0.5, "Poisson's ratio of the first material";
@@ -47,7 +47,7 @@ impl TransportLaw for BatchelorObrien {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     fn site(force: f64, dimension: u32) -> Site {
         Site {
@@ -55,11 +55,12 @@ mod tests {
             conductivity: 50.0,
             resistivity: 2e-7,
             dimension,
-            ..pressed(force)
+            ..compressed(force)
         }
     }
 
-    /// Two spheres of 1 mm and 210 GPa under 1 N: a = (3/4 1 N 0.5 mm/115.4 GPa)^(1/3) = 14.81 um.
+    /// For two spheres of 1 mm and 210 GPa under 1 N, a = (3/4 1 N 0.5 mm/115.4 GPa)^(1/3) = 14.81
+    /// um.
     #[test]
     fn spheres_conduct_through_hertz_circle() {
         let law = BatchelorObrien::default();
@@ -74,7 +75,7 @@ mod tests {
         assert_eq!(law.conductance(&site(0.0, 3), &mut []).thermal, 0.0);
     }
 
-    /// In the plane the strip: pi k/(2 ln(4 R/a)) where it is narrow.
+    /// The conductance of a narrow strip in 2D is pi k/(2 ln(4 R/a)).
     #[test]
     fn cylinders_conduct_through_a_strip() {
         let law = BatchelorObrien::default();

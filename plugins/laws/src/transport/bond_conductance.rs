@@ -1,4 +1,4 @@
-//! An intact bond conducts over its area, a broken one only by its force.
+//! An intact bond conducts over its area, a broken one in proportion to its force.
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters};
 
 parameters! {
@@ -31,7 +31,7 @@ impl TransportLaw for BondConductance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn fades_with_damage() {
@@ -45,7 +45,7 @@ mod tests {
             let site = Site {
                 damage,
                 area: 1e-6,
-                ..pressed(force)
+                ..compressed(force)
             };
             law.conductance(&site, &mut [])
         };

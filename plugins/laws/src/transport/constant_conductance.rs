@@ -1,8 +1,9 @@
-//! A conductance that is the same for all contacts that touch.
+//! A constant conductance for all contacts that touch.
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters};
 
 parameters! {
-    /// The conductances of a closed contact; they fall linearly with the gap, to zero at `reach`.
+    /// The conductances of a closed contact. They decrease linearly with the gap, to zero at
+    /// `reach`.
     pub struct ConstantConductance {
         thermal: "W/K" = 1e-3, 0.0, 1e30, "thermal conductance of a closed contact (W/(m K) in 2D)";
         electric: "S" = 1.0, 0.0, 1e30, "electrical conductance of a closed contact (S/m in 2D)";

@@ -1,13 +1,13 @@
-//! A plastic spot that an oxide film covers; sliding breaks the film, and it grows again.
+//! A plastic spot covered by an oxide film, which sliding breaks and which grows again.
 use crate::GAS;
 use fretwork_law::{Conductance, Law, Site, TransportLaw, Variable, abi, parameters};
 
 parameters! {
-    /// The share c of the spot that the film covers follows dc/dt = (1 - c)/tau - c |ds/dt|/lambda,
-    /// with the slip s; tau follows Arrhenius' law where an activation energy is given, tau
-    /// exp(Q/R_g (1/T - 1/T_0)). The covered part has the resistance of the film in series with
-    /// Holm's constriction, the rest Holm's alone, each over its share of the spot of area F/H.
-    /// Heat goes through the whole spot.
+    /// The fraction c of the spot that the film covers follows dc/dt = (1 - c)/tau - c
+    /// |ds/dt|/lambda, with the slip s. If an activation energy is given, tau follows Arrhenius'
+    /// law, tau exp(Q/R_g (1/T - 1/T_0)). The covered part has the resistance of the film in series
+    /// with Holm's constriction, the rest Holm's constriction alone, each over its fraction of the
+    /// spot of area F/H. Heat passes through the whole spot.
     pub struct OxideFilm {
         hardness: "Pa" = 2.6e9, 1e-300, 1e300, "H, hardness of the softer body";
         film: "ohm m^2" = 1e-9, 0.0, 1e30, "resistance of the film over its area";
@@ -31,7 +31,8 @@ impl Law for OxideFilm {
 }
 
 impl OxideFilm {
-    /// The covered share after a step of `h` (s) with a slip (m), by implicit Euler.
+    /// Returns the covered fraction after a step of `h` (s) with a slip (m), by the implicit Euler
+    /// scheme.
     fn covered(&self, before: f64, h: f64, slip: f64, temperature: f64) -> f64 {
         let slower = match self.activation > 0.0 {
             true => {
@@ -70,7 +71,7 @@ impl TransportLaw for OxideFilm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn slip_breaks_the_film_and_time_restores_it() {
@@ -79,7 +80,7 @@ mod tests {
             let h = time / f64::from(steps);
             (0..steps).fold(0.0, |c, _| law.covered(c, h, 0.0, temperature))
         };
-        // 1 - exp(-t/tau)
+        // The exact solution is 1 - exp(-t/tau).
         assert!((rest(10.0, 10000, 293.15) - (1.0 - (-1.0f64).exp())).abs() < 1e-4);
         assert_eq!(law.covered(1.0, 0.0, 1e-6, 293.15), 0.5);
         let faster = OxideFilm {
@@ -89,8 +90,8 @@ mod tests {
         assert!(faster.covered(0.0, 0.1, 0.0, 400.0) > 10.0 * law.covered(0.0, 0.1, 0.0, 400.0));
     }
 
-    /// 1 N on 1 GPa: metal 2e-7/(2 a) = 5.605 mohm; a film of 1e-9 ohm m^2 over 1e-9 m^2 adds 1
-    /// ohm.
+    /// Under 1 N with H = 1 GPa the metal has 2e-7/(2 a) = 5.605 mohm; a film of 1e-9 ohm m^2 over
+    /// 1e-9 m^2 adds 1 ohm.
     #[test]
     fn film_is_in_series_with_the_constriction() {
         let law = OxideFilm {
@@ -102,7 +103,7 @@ mod tests {
             resistivity: 2e-7,
             conductivity: 50.0,
             temperature: 293.15,
-            ..pressed(1.0)
+            ..compressed(1.0)
         };
         let at = |covered: f64| 1.0 / law.conductance(&site, &mut [covered]).electric;
         assert!((at(0.0) / 5.605e-3 - 1.0).abs() < 1e-3);

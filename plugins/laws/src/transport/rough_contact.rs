@@ -1,11 +1,12 @@
-//! Rough surfaces pressed together: the spots that touch, and the gas in the gap between them.
+//! Rough surfaces pressed together: they conduct through the spots that touch, and through the gas
+//! in the gap.
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters, require};
 
 parameters! {
     /// G/A = 1.25 k (m/sigma) (P/H)^0.95 + k_g/(d + Y + M), with the pressure P over the area A of
-    /// the contact, k the conductivity of the pair, and d the gap, beyond which the second term
-    /// falls linearly to zero at `reach`. The electrical conductance is the first term with 1/rho
-    /// for k.
+    /// the contact, k the conductivity of the pair, and d the gap. Where surfaces do not touch, the
+    /// second term decreases linearly with the gap to zero at `reach`. The electrical conductance
+    /// is the first term with 1/rho instead of k.
     pub struct RoughContact {
         roughness: "m" = 1e-6, 1e-300, 1e30, "sigma, root mean square height of both surfaces together";
         slope: "" = 0.1, 1e-12, 10.0, "m, mean absolute slope of both surfaces together";
@@ -58,10 +59,10 @@ impl TransportLaw for RoughContact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
-    /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K): 1.25 50 1e5 1e-2.85 = 8828 W/(m^2
-    /// K), and the gas 0.026/3.37e-6 = 7715.
+    /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K) the spots have 1.25 50 1e5 1e-2.85 =
+    /// 8828 W/(m^2 K), the gas has 0.026/3.37e-6 = 7715 W/(m^2 K).
     #[test]
     fn spots_and_gas_add() {
         let law = RoughContact::default();
@@ -69,7 +70,7 @@ mod tests {
             area: 1e-6,
             conductivity: 50.0,
             resistivity: 2e-7,
-            ..pressed(2.6e6 * 1e-6)
+            ..compressed(2.6e6 * 1e-6)
         };
         let g = law.conductance(&site, &mut []);
         assert!(

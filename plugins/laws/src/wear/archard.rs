@@ -2,7 +2,7 @@
 use fretwork_law::{Law, Site, WearLaw, parameters};
 
 parameters! {
-    /// Volume proportional to normal force and slip.
+    /// The volume is proportional to normal force and slip.
     pub struct Archard {
         k: "1/Pa" = 1e-14, 0.0, 1.0, "wear coefficient over hardness, K/H";
     }

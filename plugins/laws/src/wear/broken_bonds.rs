@@ -1,6 +1,6 @@
-//! Wear by broken bonds: a bond that breaks releases a volume, once.
+//! Wear by broken bonds: a bond that breaks releases a volume once.
 //!
-//! Slip and force do not enter: detachment follows from the cohesion and its damage.
+//! Slip and force have no effect: detachment follows from the cohesion and its damage.
 use fretwork_law::{Law, Site, Variable, WearLaw, parameters};
 
 parameters! {
@@ -10,7 +10,7 @@ parameters! {
     }
 }
 
-/// Never bonded; bonded; broken and counted.
+/// Values of the variable: never bonded; bonded; broken and counted.
 const NEVER: f64 = 0.0;
 const BONDED: f64 = 1.0;
 const BOOKED: f64 = 2.0;

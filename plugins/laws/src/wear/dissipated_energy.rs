@@ -2,7 +2,7 @@
 use fretwork_law::{Law, Site, WearLaw, parameters};
 
 parameters! {
-    /// Volume proportional to the energy that friction dissipates.
+    /// The volume is proportional to the energy that friction dissipates.
     pub struct DissipatedEnergy {
         alpha: "m^3/J" = 1e-14, 0.0, 1.0, "energy wear coefficient";
     }

@@ -1,11 +1,13 @@
-//! Quinn's oxidational wear: oxide grows on the spots that touch, and comes off when it is thick.
+//! Quinn's oxidational wear: oxide grows on the spots that touch, and detaches at a critical
+//! thickness.
 use crate::GAS;
 use fretwork_law::{Law, Site, WearLaw, abi, parameters};
 
 parameters! {
-    /// V = K F s/H with K = d A exp(-Q/(R_g T))/(f^2 rho^2 xi^2 U), at most 1: the share of
-    /// encounters of a spot of diameter d, each of d/U, in which the oxide reaches the thickness
-    /// xi. U is the sliding speed, T the temperature of the contact, flash temperature included.
+    /// V = K F s/H with K = d A exp(-Q/(R_g T))/(f^2 rho^2 xi^2 U), at most 1: the fraction of
+    /// encounters of a spot of diameter d, each of duration d/U, in which the oxide reaches the
+    /// thickness xi. U is the sliding speed, T the temperature of the contact, including the flash
+    /// temperature.
     pub struct Oxidation {
         arrhenius: "kg^2/(m^4 s)" = 1e6, 0.0, 1e60, "A, Arrhenius' constant of parabolic oxidation: of steel in Lim and Ashby's wear maps";
         activation: "J/mol" = 1.38e5, 0.0, 1e8, "Q, activation energy, as A";
@@ -41,19 +43,19 @@ impl WearLaw for Oxidation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     fn volume(law: &Oxidation, temperature: f64, slip: f64) -> f64 {
         let site = Site {
             temperature,
             slip,
-            ..pressed(26.0)
+            ..compressed(26.0)
         };
         law.volume(&site, &mut [])
     }
 
-    /// Arrhenius' law between two temperatures; below the bound the volume is that of the time, not
-    /// of the slip.
+    /// K follows Arrhenius' law between two temperatures; below its bound the volume depends on the
+    /// time, not on the slip.
     #[test]
     fn follows_arrhenius() {
         let law = Oxidation::default();
@@ -61,7 +63,7 @@ mod tests {
         let expected = (1.38e5 / GAS * (1.0 / 600.0 - 1.0 / 700.0)).exp();
         assert!((ratio / expected - 1.0).abs() < 1e-12);
         assert!((volume(&law, 600.0, 2.0) / volume(&law, 600.0, 1.0) - 1.0).abs() < 1e-12);
-        // All of the real area comes off.
+        // At the bound K = 1 the whole real contact area detaches.
         assert_eq!(volume(&law, 1e5, 1e-9), 26.0 / 2.6e9 * 1e-9);
         assert_eq!(volume(&law, 600.0, 0.0), 0.0);
     }

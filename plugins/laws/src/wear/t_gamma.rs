@@ -1,14 +1,14 @@
 //! Wear of wheel and rail by T gamma: the regimes of the University of Sheffield for R8T on 900A
 //! steel.
 //!
-//! Mass lost per metre rolled and area of contact, against x = T gamma/A, the energy per metre and
-//! area: 5.3 x (mild, x < 10.4 N/mm^2), 55 (severe), in ug/(m mm^2). Sources differ beyond 77.2
-//! N/mm^2 (catastrophic): 55 + 61.9 (x - 77.2), which is continuous and the default; 61.9 x -
-//! 4778.7, which begins at zero; 61.9 x. They have the same slope, so `catastrophic_start` selects
-//! one: 0.055, 0, or 4.7787 kg/m^3.
+//! Mass lost per metre rolled and per area of contact, as a function of x = T gamma/A, the energy
+//! per metre and area: 5.3 x (mild, x < 10.4 N/mm^2), 55 (severe), in ug/(m mm^2). Sources differ
+//! beyond 77.2 N/mm^2 (catastrophic): 55 + 61.9 (x - 77.2), which is continuous and the default;
+//! 61.9 x - 4778.7, which begins at zero; 61.9 x. All have an equal slope, so `catastrophic_start`
+//! selects one: 0.055, 0, or 4.7787 kg/m^3.
 //!
 //! A contact rolls `speed` h in a step, so T gamma is its friction work over that distance. The map
-//! is for wheel on rail: `area` should be that of the patch between the first bodies.
+//! applies to wheel on rail: `area` should be that of the patch between the first bodies.
 use fretwork_law::{Law, Site, WearLaw, parameters, require};
 
 parameters! {
@@ -40,7 +40,8 @@ impl Law for TGamma {
 
 impl WearLaw for TGamma {
     fn volume(&self, site: &Site, _state: &mut [f64]) -> f64 {
-        // All terms are multiplied by A times the distance, which may be zero: x = work/swept.
+        // All terms are multiplied by A times the distance, swept, which may be zero: x =
+        // work/swept.
         let distance = (self.speed * site.h.max(0.0)).min(f64::MAX);
         let swept = (site.area.max(0.0) * distance).min(f64::MAX);
         let work = site.friction_work.max(0.0);
@@ -59,12 +60,12 @@ impl WearLaw for TGamma {
 mod tests {
     use super::*;
 
-    /// Mass (ug) of a patch of 100 mm^2 that rolls 2 mm, at x in N/mm^2.
+    /// Returns the mass (ug) lost by a patch of 100 mm^2 that rolls 2 mm, at x in N/mm^2.
     fn mass(law: &TGamma, x: f64) -> f64 {
         let site = Site {
             area: 1e-4,
             h: 1e-4,
-            // T gamma = 100 x N over 2e-3 m.
+            // T gamma = 100 x N acts over 2e-3 m.
             friction_work: 0.2 * x,
             ..Site::default()
         };
@@ -98,10 +99,10 @@ mod tests {
             catastrophic_start,
             ..TGamma::default()
         };
-        // 61.9 x - 4778.68 at 100: 1411.32; 61.9 x: 6190.
+        // At x = 100, 61.9 x - 4778.68 is 1411.32, and 61.9 x is 6190.
         near(mass(&starting(0.0), 100.0), 282.264);
         near(mass(&starting(4.77868), 100.0), 1238.0);
-        // The default is continuous: at 77.2 + 0.01, 55 + 0.619.
+        // The default is continuous: at x = 77.2 + 0.01 it is 55.619.
         near(mass(&TGamma::default(), 77.21), 11.1238);
     }
 

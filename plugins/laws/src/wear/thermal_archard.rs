@@ -1,10 +1,10 @@
-//! Archard's law with a hardness that falls with the temperature of the contact, flash temperature
-//! included.
+//! Archard's law with a hardness that decreases with the temperature of the contact, including the
+//! flash temperature.
 use fretwork_law::{Law, Site, WearLaw, abi, parameters, require};
 
 parameters! {
-    /// V = K F s/H(T) with H = H_0 (1 - x^m), x = (T - T_0)/(T_m - T_0) between 0 and 1, but not
-    /// below `least` of H_0: from mild wear to that of surfaces that melt.
+    /// V = K F s/H(T) with H = H_0 (1 - x^m) and x = (T - T_0)/(T_m - T_0), limited to 0 and 1. H
+    /// is at least `least` times H_0, so wear increases from mild wear to that of melting surfaces.
     pub struct ThermalArchard {
         k: "" = 1e-5, 0.0, 1e3, "K, wear coefficient";
         hardness: "Pa" = 2.6e9, 1.0, 1e30, "H_0, hardness of the softer body when cold";
@@ -45,7 +45,7 @@ impl WearLaw for ThermalArchard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_law::testing::pressed;
+    use fretwork_law::testing::compressed;
 
     #[test]
     fn wears_more_when_hot() {
@@ -58,7 +58,7 @@ mod tests {
             let site = Site {
                 temperature,
                 slip: 1e-3,
-                ..pressed(20.0)
+                ..compressed(20.0)
             };
             law.volume(&site, &mut [])
         };

@@ -4,7 +4,7 @@ use super::super::super::{Failure, PluginArgs};
 use super::super::{all_used, named, values};
 use super::DriveArgs;
 use crate::laws::bench::Bench;
-use crate::laws::{Interface, Kind, Loaded, Plugin};
+use crate::laws::{Interface, Kind, LoadedLaw, Plugin};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::load;
 use crate::scene::source::nearest;
@@ -55,7 +55,7 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
         )));
     };
     let simulation = loaded.build(&args.plugins.search()?)?.simulation;
-    // The median reduced radius of its contacts (m).
+    // Median reduced radius of the contacts of the interface (m).
     let radius = BondSites::of(simulation.view(), place).map(|b| b.radius);
     let law = simulation.laws()[place].clone();
     let laws: Vec<String> = law
@@ -90,7 +90,7 @@ fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure>
     let mut loaded = Vec::new();
     for plugin in plugins {
         let parameters = values(&plugin, &args.sets, &mut used)?;
-        loaded.push(Loaded::new(plugin, parameters));
+        loaded.push(LoadedLaw::new(plugin, parameters));
     }
     let laws: Vec<&Plugin> = loaded.iter().map(|l| &*l.plugin).collect();
     all_used(&args.sets, &used, &laws)?;

@@ -72,7 +72,7 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     draw(&file.with_file_name(name), damage)
 }
 
-/// Conductance, or friction, against what is raised: pressure or temperature.
+/// Draws conductance, or friction, against the increased quantity: pressure or temperature.
 fn thermal_chart(rows: &[Row], title: &str) -> Option<Chart> {
     let rows = rows.get(1..)?;
     let (first, last) = (rows.first()?, rows.last()?);
@@ -99,7 +99,7 @@ fn thermal_chart(rows: &[Row], title: &str) -> Option<Chart> {
     Some(Chart::new(title.to_owned(), axis, name).with(Series::new("", points(y))))
 }
 
-/// About twenty rows of laws that read temperatures or conduct.
+/// Prints about twenty rows of laws that use temperatures or conduct heat.
 pub(super) fn thermal_text(rows: &[Row]) -> String {
     let mut out = format!(
         "{:>11} {:>12} {:>12} {:>11} {:>9} {:>8} {:>15} {:>12} {:>12}\n",
@@ -135,7 +135,7 @@ pub(super) fn thermal_text(rows: &[Row]) -> String {
     out
 }
 
-/// About twenty rows, and the totals of the path.
+/// Prints about twenty rows, and the totals of the path.
 pub(super) fn text(rows: &[Row]) -> String {
     let mut out = format!(
         "{:>11} {:>12} {:>12} {:>13} {:>13} {:>9} {:>12} {:>12} {:>8} {:>13}\n",

@@ -11,8 +11,8 @@ use std::path::Path;
 /// Opening, or sliding distance, for laws without a length scale (m).
 const USUAL: f64 = 1e-5;
 /// Pressure (Pa) and temperature (K) up to which contacts are pressed and heated by default.
-const MOST_PRESSURE: f64 = 1e9;
-const MOST_TEMPERATURE: f64 = 2000.0;
+const MAX_PRESSURE: f64 = 1e9;
+const MAX_TEMPERATURE: f64 = 2000.0;
 
 /// Default extent of the path from the law's own scale: 1.2 times the opening at break (cyclic: 1.2
 /// times the opening at the peak; force: 1.1 times the strength), or beyond the range of an
@@ -22,8 +22,8 @@ pub(super) fn extent(args: &DriveArgs, mode: &str, bench: &mut Bench) -> Result<
         return Ok(to);
     }
     match mode {
-        "press" => return Ok(MOST_PRESSURE),
-        "heat" => return Ok(MOST_TEMPERATURE),
+        "press" => return Ok(MAX_PRESSURE),
+        "heat" => return Ok(MAX_TEMPERATURE),
         "slide" => return Ok(USUAL),
         _ if args.path.is_some() => return Ok(USUAL),
         _ => {}

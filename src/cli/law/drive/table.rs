@@ -4,7 +4,7 @@ use super::super::super::Failure;
 use super::super::super::output::report;
 use super::DriveArgs;
 use super::path::Point;
-use crate::laws::bench::{Answer, Bench, Motion, ROOM};
+use crate::laws::bench::{Bench, BenchMotion, BenchOutputs, ROOM_TEMPERATURE};
 use serde::Serialize;
 
 /// A row of the table.
@@ -24,10 +24,10 @@ pub(super) struct Row {
     pub friction: f64,
     pub tension_strength: f64,
     pub worn: f64,
-    /// Of the contact (Pa, K).
+    /// Pressure (Pa) and temperature (K) of the contact.
     pub pressure: f64,
     pub temperature: f64,
-    /// Thermal (W/K) and electrical (S).
+    /// Thermal (W/K) and electrical (S) conductance.
     pub conductance: f64,
     pub electric_conductance: f64,
 }
@@ -38,10 +38,10 @@ pub(super) fn along(bench: &mut Bench, points: &[Point], mode: &str) -> Result<V
     let failed = |e: crate::laws::LawError| Failure::Failed(e.to_string());
     if !bench.law().opens() && !matches!(mode, "press" | "heat") {
         // Capillary bridges and necks form in contact, so the path begins in contact.
-        let touch = Motion {
+        let touch = BenchMotion {
             pressure: 1e6,
-            temperatures: [points.first().map_or(ROOM, |p| p.temperature); 2],
-            ..Motion::default()
+            temperatures: [points.first().map_or(ROOM_TEMPERATURE, |p| p.temperature); 2],
+            ..BenchMotion::default()
         };
         let h = points.first().map_or(1.0, |p| p.time);
         let a = bench.step(&mut state, &[touch], h).map_err(failed)?[0];
@@ -50,12 +50,12 @@ pub(super) fn along(bench: &mut Bench, points: &[Point], mode: &str) -> Result<V
     }
     for point in points {
         let Point { time, opening, .. } = point;
-        let motion = Motion {
+        let motion = BenchMotion {
             opening: *opening,
             gap: opening[0],
             pressure: point.pressure,
             temperatures: [point.temperature; 2],
-            ..Motion::default()
+            ..BenchMotion::default()
         };
         let last = rows[rows.len() - 1];
         let h = time - last.time;
@@ -89,18 +89,18 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
         let target = to * f64::from(k) * h;
         let carried = |bench: &mut Bench, u: f64| -> Result<f64, Failure> {
             let mut probe = state.clone();
-            let motion = Motion {
+            let motion = BenchMotion {
                 opening: at(u),
                 gap: at(u)[0],
                 temperatures: [args.temperature; 2],
-                ..Motion::default()
+                ..BenchMotion::default()
             };
             let a = bench
                 .step(&mut probe, &[motion], h)
                 .map_err(|e| Failure::Failed(e.to_string()))?[0];
             Ok(a.traction[0] * angle.cos() + a.traction[1] * angle.sin())
         };
-        // The first opening that carries the target, searched outwards from the previous one.
+        // Search outwards from the previous opening for the first one that carries the target.
         let (mut low, mut high, mut step) = (u, u, 1e-13f64.max(1e-3 * u));
         let mut found = false;
         while high < 1.0 {
@@ -128,11 +128,11 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
             }
         }
         u = high;
-        let motion = Motion {
+        let motion = BenchMotion {
             opening: at(u),
             gap: at(u)[0],
             temperatures: [args.temperature; 2],
-            ..Motion::default()
+            ..BenchMotion::default()
         };
         let answer = bench
             .step(&mut state, &[motion], h)
@@ -160,13 +160,13 @@ impl Row {
             tension_strength: 0.0,
             worn: 0.0,
             pressure: 0.0,
-            temperature: ROOM,
+            temperature: ROOM_TEMPERATURE,
             conductance: 0.0,
             electric_conductance: 0.0,
         }
     }
 
-    fn next(&self, time: f64, opening: &[f64; 3], a: &Answer) -> Self {
+    fn next(&self, time: f64, opening: &[f64; 3], a: &BenchOutputs) -> Self {
         let before = [self.opening_n, self.opening_t1, self.opening_t2];
         let carried = [self.traction_n, self.traction_t1, self.traction_t2];
         let work: f64 = (0..3)

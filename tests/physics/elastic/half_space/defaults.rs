@@ -1,5 +1,5 @@
-//! Hertz's pressure, cell by cell, from cases that leave the solver to its defaults, or set a part
-//! of it.
+//! Hertz's pressure, cell by cell, in cases with default settings of the solver, or with some of
+//! them set.
 
 use super::*;
 use crate::scene;
@@ -8,8 +8,8 @@ use fretwork::solve::local::solver::Method;
 /// E* of two bodies of `contact_steel` (Pa).
 const MODULUS: f64 = 0.5 * 209.92e9 / (1.0 - 0.28 * 0.28);
 
-/// A cylinder of R 40 mm under 200 N/mm, without a ramp, cells of 20 um; with more fields of the
-/// case, its mass (kg/m) and its drives.
+/// A cylinder of R 40 mm under 200 N/mm, without a ramp, with cells of 20 um; the arguments give
+/// further fields of the case, its mass (kg/m) and its drives.
 fn pressed(more: &str, mass: f64, dofs: &str) -> Simulation<Dim2> {
     let cells = "material: \"steel\", x: (from: -6e-4, to: 6e-4, size: 2e-5), depth: 1e-2";
     let text = format!(
@@ -44,8 +44,8 @@ const LINE: (f64, f64, f64) = (2e5, 40e-3, 2e-5);
 const STILL: &str = "y: Force(-2e5)";
 const TO_AND_FRO: &str = "x: Displacement(Sine(amplitude: 20e-6, frequency: 20)), y: Force(-2e5)";
 
-/// The load moves a light holder at metres a second where nothing holds it: against that velocity,
-/// residuals that leave pressures of single cells wrong by half are nothing.
+/// Without contacts the load would move a light body at metres per second. Relative to that
+/// velocity, residuals that change pressures of single cells by half are negligible.
 #[test]
 fn single_cells_have_the_pressure_of_hertz() {
     for (more, mass) in [
@@ -80,8 +80,8 @@ fn cells_have_it_after_cycles_too() {
     }
 }
 
-/// A tolerance that is no tolerance leaves pressures wrong, but no cell without a contact: a point
-/// that is pressed behind the surface is still one that touches.
+/// A very large tolerance leaves pressures wrong, but no cell without a contact: a point that is
+/// pressed behind the surface still touches.
 #[test]
 fn a_loose_tolerance_loses_no_contact() {
     for method in [Method::Newton, Method::Auto] {
@@ -99,7 +99,7 @@ fn a_loose_tolerance_loses_no_contact() {
     }
 }
 
-/// A sphere of R 50 mm under 99.52 N at defaults, 5 cells over a.
+/// A sphere of R 50 mm under 99.52 N with default settings and 5 cells over a.
 #[test]
 fn a_sphere_has_it_at_defaults() {
     let a = (0.75 * 99.52 * 0.05 / MODULUS).cbrt();
@@ -119,7 +119,7 @@ fn a_sphere_has_it_at_defaults() {
     go(&mut s, 10);
     let found = tractions(&s, size * size);
     let p0 = 1.5 * 99.52 / (PI * a * a);
-    // Cells at the edge are cut by it.
+    // Cells at the edge are only partly in contact.
     let inner = found.iter().filter(|t| t.at.xy().norm() < 0.8 * a);
     let differ =
         inner.map(|t| (-t.on.z / p0 - (1.0 - (t.at.xy().norm() / a).powi(2)).sqrt()).abs());

@@ -3,8 +3,8 @@
 use super::*;
 use crate::scene;
 
-/// A block on 20 cells of a half-space (in space on some 10 x 10), pressed by a force, or a disk
-/// whose contact is 4 cells wide.
+/// A block on 20 cells of a half-space (in 3D on some 10 x 10), pressed by a force, or a disk whose
+/// contact is 4 cells wide.
 fn punch<S: Space>(contact: &str, round: bool) -> Simulation<S> {
     let [cells, shape, up, load] = match S::D {
         2 => [
@@ -44,8 +44,8 @@ fn punch<S: Space>(contact: &str, round: bool) -> Simulation<S> {
     scene::text::<S>(&text)
 }
 
-/// A flat side presses on all cells below it, and not on the highest in turn: K. L. Johnson,
-/// section 2.8, p = P/(pi sqrt(a^2 - x^2)), of which the middle half has a third.
+/// A flat side presses on all cells below it, not on the highest in turn: K. L. Johnson, section
+/// 2.8, gives p = P/(pi sqrt(a^2 - x^2)), of which the middle half carries a third.
 #[test]
 fn a_flat_punch_has_a_third_of_its_load_in_the_middle() {
     let mut s = punch::<Dim2>(r#""coulomb", parameters: (contact: {"mu": 0.0})"#, false);
@@ -63,9 +63,9 @@ fn a_flat_punch_has_a_third_of_its_load_in_the_middle() {
     near(1.0 / 3.0, middle / all, 0.03);
 }
 
-/// What rests dissipates nothing: springs with dashpots under a flat side, and under a disk. With
-/// contacts on the highest cells alone these changed from step to step, and damping and time
-/// integration grew without end and cancelled.
+/// Bodies at rest dissipate nothing: springs with dashpots under a flat side, and under a disk.
+/// With contacts on the highest cells alone, contacts changed from step to step, and damping and
+/// time integration grew without bound and cancelled.
 fn rests<S: Space>(round: bool) {
     let law = r#""hertz-mindlin", parameters: (contact: {"mu": 0.3, "restitution": 0.1})"#;
     let mut s = punch::<S>(law, round);

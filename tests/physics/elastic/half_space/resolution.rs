@@ -1,5 +1,5 @@
-//! What a run says of the heat of partial slip by the elements across its strips, against Cattaneo
-//! and Mindlin, and Carter.
+//! Reported error of the heat of partial slip from the number of elements across the slipping
+//! strips, compared with Cattaneo and Mindlin, and Carter.
 
 use super::rolling::rolling;
 use super::*;
@@ -8,13 +8,13 @@ use fretwork_observe::resolution::Resolution;
 const LOAD: f64 = 178.9e3;
 const A: f64 = 1e-3;
 
-/// Heat of a cycle of the force +-Q of a line contact over that of the closed form, and what the
-/// run says of it.
+/// Heat of a cycle of the force +-Q of a line contact relative to the closed form, and the error
+/// that the run reports.
 ///
-/// Relative displacements far away under a force that rises from zero are d(Q) = K int -ln(c/a) dQ
-/// plus a part that is linear in Q, with K = 2/(pi E*) of two bodies and c/a = sqrt(1 - Q/(mu P))
-/// (Johnson, sections 2.4 and 7.2), and by Mindlin and Deresiewicz a loop has d_max - 2 d((Q_max -
-/// Q)/2) on its way back: its area is the heat.
+/// Relative displacements of distant points under a force that rises from zero are d(Q) = K int
+/// -ln(c/a) dQ plus a part linear in Q, with K = 2/(pi E*) for two bodies and c/a = sqrt(1 - Q/(mu
+/// P)) (Johnson, sections 2.4 and 7.2). By Mindlin and Deresiewicz a loop has d_max - 2 d((Q_max -
+/// Q)/2) on its way back; its area is the heat.
 fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
     let size = A / n as f64;
     let half = (1.4 * n as f64).round() * size;
@@ -34,7 +34,7 @@ fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
     ];
     let cylinder = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid([0.5, f64::INFINITY]),
         mass: 10.0,
         touching: Cells::Points,
@@ -51,7 +51,7 @@ fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
     let heat = s.state.energy.friction - before;
     let per_force = 2.0 / (PI * 0.5 * RAIL.plane_strain());
     let limit = mu * LOAD;
-    // int_0^x -ln(1 - y)/2 dy
+    // This is int_0^x -ln(1 - y)/2 dy.
     let displacement = |q: f64| {
         let left = 1.0 - q / limit;
         0.5 * per_force * limit * (left * left.max(1e-300).ln() + q / limit)

@@ -1,11 +1,11 @@
-//! Wheels that roll on half-spaces against Carter and CONTACT.
+//! Wheels that roll on half-spaces compared with Carter and CONTACT.
 
 use super::*;
 
-/// A wheel on a rail, both of steel, that roll with a creepage, of which the first touches over
-/// `cells` and a step rolls by `step` (m). The load is there after four steps.
+/// A wheel and a rail, both of steel, roll with a creepage. The first touches over `cells`, and a
+/// step rolls by `step` (m). The load is constant after four steps.
 pub(super) fn rolling<S: Space>(
-    cells: Grid,
+    cells: CellGrid,
     curvature: [f64; 2],
     load: f64,
     mu: f64,
@@ -37,7 +37,7 @@ pub(super) fn rolling<S: Space>(
     });
     let wheel = HalfSpaceSpec {
         name: "upper",
-        fills: Fills::Above,
+        fills: FilledSide::Above,
         profile: Profile::Paraboloid(curvature),
         mass: 1.0,
         rolling: speed(1.0 + creepage),
@@ -49,8 +49,8 @@ pub(super) fn rolling<S: Space>(
     s
 }
 
-/// Carter (1926): Q/(mu P) = 1 - (1 - s)^2, s = xi R/(mu a); adhesion over a' = a (1 - s) at the
-/// leading edge.
+/// Carter (1926): Q/(mu P) = 1 - (1 - s)^2, s = xi R/(mu a), with adhesion over a' = a (1 - s) at
+/// the leading edge.
 #[test]
 fn carter() {
     let (a, load, mu, radius, creepage) = (1e-3, 178.9e3, 0.3, 0.5, 2.4e-4);
@@ -64,7 +64,7 @@ fn carter() {
         let q = mean(&found, 0, |_| 1.0) / mu;
         let sticking = found.iter().filter(|t| sticks(t, mu));
         let stuck = sticking.clone().count() as f64 * size / (2.0 * a);
-        // The material moves along x: what comes is at the lowest x, and sticks first.
+        // The material moves along x: it enters at the lowest x, where it sticks.
         let last = sticking.map(|t| t.at.x).fold(f64::NEG_INFINITY, f64::max);
         near(-a + 1.2 * a, last + 0.5 * size, 0.26);
         println!("{n}: Q/(mu P) {q} a'/a {stuck}");
@@ -84,9 +84,9 @@ fn carter() {
     }
 }
 
-/// Surfaces that pass over each other by any part of a cell in a step slip everywhere, with mu P,
-/// over the width of Hertz: the strain of their friction carries the ends of one beyond those of
-/// the other, and these touch nothing there.
+/// Surfaces that pass over each other by any part of a cell per step slip everywhere, with mu P,
+/// over the width of Hertz. The strain by friction carries the ends of one surface beyond those of
+/// the other, where they touch nothing.
 #[test]
 fn full_slip_by_parts_of_a_cell() {
     let (a, load, mu, radius) = (1e-3, 178.9e3, 0.3, 0.5);
@@ -114,13 +114,13 @@ fn full_slip_by_parts_of_a_cell() {
 }
 
 /// The creep curve of an elliptic contact, a/b = 0.5 with a along the rolling direction, under
-/// 106.7 kN at mu 0.33, of which CONTACT's example has 0.2588, 0.6482, 0.8816 and 0.9832 (E. A. H.
-/// Vollebregt, "User guide for CONTACT"): here with 4 and 8 cells over each half-axis
+/// 106.7 kN at mu 0.33. The example of CONTACT has 0.2588, 0.6482, 0.8816 and 0.9832 (E. A. H.
+/// Vollebregt, "User guide for CONTACT"); here there are 4 and 8 cells over each half-axis
 /// (`cases/verification/elastic/creep_curve.ron` has more).
 fn creep_curve(creepage: f64, expected: f64) {
     let (load, mu, radius) = (106.7e3, 0.33, 0.625);
-    // Johnson, equations 4.26 to 4.28, with the complete elliptic integrals K and E of k^2 = 1 -
-    // a^2/b^2.
+    // The relations are Johnson's equations 4.26 to 4.28, with the complete elliptic integrals K
+    // and E of k^2 = 1 - a^2/b^2.
     let (first, second) = (2.156_515_647_499_643, 1.211_056_027_568_459);
     let ratio = (4.0 * second - first) / (first - second);
     let modulus = 0.5 * RAIL.plane_strain();

@@ -1,4 +1,5 @@
-//! A grain on a parallel bond, which bends and twists: on stiff ground as on rigid ground.
+//! A grain on a parallel bond, which resists bending and twist: stiff ground gives the results of
+//! rigid ground.
 
 use super::*;
 use fretwork::geometry::space::Dim3;
@@ -6,10 +7,10 @@ use fretwork::geometry::space::Dim3;
 /// Stiffness of the bonds (Pa/m).
 const K: f64 = 1e9;
 
-/// What pulls along the ground (m/s^2).
+/// Acceleration along the ground (m/s^2).
 const PULL: f64 = 1e-2;
 
-/// A grain bonded to what is below it.
+/// A grain bonded to the body below it.
 fn bonded<S: Space>(step: f64, theta: f64, twist: f64, place: &[f64]) -> Rolling {
     let mut at = place.to_vec();
     at[S::D - 1] = R;
@@ -48,10 +49,10 @@ pub fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
     }
 }
 
-/// The rotation of a grain at rest whose weight pulls along the ground, with steps far longer than
-/// its period (rad): about -z in the plane, about y in space.
+/// Rotation of a grain at rest whose weight pulls along the ground, with steps far longer than its
+/// period (rad): about -z in 2D, about y in 3D.
 fn bent<S: Space>(ground: Ground, young: f64) -> (f64, f64) {
-    // Away from the sides of facets: a contact with the next one has no bond.
+    // The grain is away from the sides of facets: a contact with the next facet has no bond.
     let mut s = ground.under::<S>(
         &bonded::<S>(1.0, 1.0, 0.0, &[1e-3, 2e-3, 0.0][..S::D]),
         young,
@@ -81,7 +82,7 @@ fn bends<S: Space>(grounds: &[Ground]) {
             println!("{}D {ground:?}, {young:e} Pa: off by {off:e}", S::D);
             off
         });
-        // Softer ground gives way more, by what falls with its modulus.
+        // Softer ground rotates further, by an angle that decreases with its modulus.
         assert!(off[1] > 0.0 && off[1] < 1e-4, "{off:?}");
         near(100.0 * off[1], off[0], 0.02);
     }
@@ -97,7 +98,7 @@ fn a_bond_bends_a_grain_as_on_rigid_ground() {
     bends::<Dim3>(&[Ground::Block(Strain::Small, 4, Touching::Surface("top"))]);
 }
 
-/// A sphere that swings about the normal, with w^2 = k_t J/I, by the theta scheme: as on rigid
+/// A sphere oscillates about the normal, with w^2 = k_t J/I, by the theta scheme, as on rigid
 /// ground.
 #[test]
 fn a_bond_twists_a_sphere_as_on_rigid_ground() {
@@ -137,7 +138,7 @@ fn a_bond_twists_a_sphere_as_on_rigid_ground() {
     }
 }
 
-/// Bonded over a vertex, pulled onto the next facet: the bond goes on there.
+/// A grain bonded over a vertex is pulled onto the next facet, where the bond continues.
 #[test]
 fn a_bond_goes_on_at_the_next_facet() {
     for pull in [PULL, -PULL] {

@@ -1,8 +1,8 @@
-//! What elements give way under a couple. A continuum turns without bound under a couple at a
-//! point, by M/(E L^2) in the plane and M/(E L^3) in space where it is spread over a length L (K.
-//! L. Johnson, "Contact Mechanics" (1985), section 2.2 and 3.2: displacements of a point force fall
-//! with log r and 1/r, those of a couple are their derivative, and the rotation the second). So
-//! what a facet turns by a moment is a matter of its size.
+//! Compliance of elements under a couple. A continuum rotates without bound under a couple at a
+//! point, by M/(E L^2) in 2D and M/(E L^3) in 3D if the couple is spread over a length L (K. L.
+//! Johnson, "Contact Mechanics" (1985), sections 2.2 and 3.2: displacements of a point force vary
+//! with log r and 1/r, those of a couple with their derivative, and the rotation with the second
+//! derivative). The rotation of a facet by a moment therefore depends on its size.
 
 use super::*;
 use fretwork::bodies::SystemStep;
@@ -10,8 +10,8 @@ use fretwork::geometry::space::Dim3;
 
 const YOUNG: f64 = 1e9;
 
-/// Rotation by a moment of one, of a facet in the middle of the upper side of a held block of `n`
-/// elements along its length, about an axis, in a step that is static (rad/(N m); rad/N in 2D).
+/// Rotation by a unit moment of a facet in the middle of the upper side of a held block of `n`
+/// elements along its length, about an axis, in a static step (rad/(N m); rad/N in 2D).
 fn gives_way<S: Space>(n: usize, axis: usize) -> f64 {
     let mut s = Ground::Block(Strain::Small, n, Touching::Surface("top")).under::<S>(
         &Rolling {
@@ -30,12 +30,13 @@ fn gives_way<S: Space>(n: usize, axis: usize) -> f64 {
     });
     let contactor = &system.contactors()[0];
     let middle = system.contactor_motion(contactor).position;
-    // Inside a facet: at an edge the two at it turn.
+    // The point is inside a facet: at an edge the two adjacent facets rotate.
     let mut place = S::Vector::from_slice(&[2e-4, 1e-4, 0.0][..S::D]);
     place[S::D - 1] = 0.0;
     let (node, length) = system.turning_node(contactor, &(place - middle)).unwrap();
     let block = system.compliance(&[node])[0];
-    // Velocities over impulses, by lengths times spins and moments over lengths.
+    // The ratio is that of velocities to impulses, with spins times lengths and moments over
+    // lengths.
     go(&mut s, 1);
     h * h * fretwork::geometry::space::MatrixLike::entry(&block, axis, axis) / (length * length)
 }
@@ -54,8 +55,8 @@ fn a_facet_turns_the_more_the_smaller_it_is() {
     }
 }
 
-/// How much slower or faster a disk is slowed down on soft ground, and how much further a bond
-/// bends, by the size of the elements.
+/// Change of the deceleration of a disk on soft ground, and of the bending of a bond, with the size
+/// of the elements.
 #[test]
 fn what_the_size_of_elements_does_to_the_shipped_laws() {
     let (length, speed, young) = (0.05 * R, 0.02, 1e7);

@@ -1,11 +1,11 @@
-//! A block that nothing holds and a grain that is bonded to it: angular momentum is kept.
+//! A free block and a grain that is bonded to it: angular momentum is conserved.
 
 use super::bonds::section;
 use super::*;
 use fretwork::geometry::space::{Dim3, about_axes};
 
-/// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a
-/// (D + 1)-th of each element at its corners.
+/// Angular momentum about the origin (kg m^2/s). The block has lumped masses, a (D + 1)-th of each
+/// element at its corners.
 fn angular<S: Space>(s: &Simulation<S>) -> S::Spin {
     let system = s.state.systems.get(0).unwrap();
     let mesh = system.deformed_mesh().unwrap();
@@ -25,7 +25,7 @@ fn angular<S: Space>(s: &Simulation<S>) -> S::Spin {
     sum + orbit + bodies.spin[b] * inertia
 }
 
-/// A free block of rubber that spins, under a grain on its upper side.
+/// A free spinning block of rubber, under a grain on its upper side.
 fn on_a_free_block<S: Space>(case: &Rolling, strain: Strain) -> Simulation<S> {
     let mut s = case.build::<S>(false);
     let mut lines = vec![even(-0.02, 0.02, 4); S::D - 1];
@@ -37,14 +37,14 @@ fn on_a_free_block<S: Space>(case: &Rolling, strain: Strain) -> Simulation<S> {
     s
 }
 
-/// A grain that spins, in a place on the block where it moves with it.
+/// A spinning grain, at a place on the block with which it moves.
 fn spinning<S: Space>(gap: f64) -> String {
     let mut at = vec![0.003; S::D];
     at[S::D - 1] = R + gap;
     grain(&at, &vec![0.0; S::D], &vec![-10.0; S::Spin::N])
 }
 
-/// Held by a bond that bends without shear, which would act over its opening.
+/// Held by a bond with bending but without shear, whose force would act over its opening.
 fn bonded<S: Space>(step: f64) -> Rolling {
     Rolling {
         step,
@@ -61,7 +61,7 @@ fn bonded<S: Space>(step: f64) -> Rolling {
 }
 
 /// Forces of contacts act in the middle of a step by the velocities at its start, those of strain
-/// by both: what angular momentum is off falls with the square of the step.
+/// by both velocities: the error of the angular momentum decreases with the square of the step.
 fn keeps<S: Space>(strain: Strain) {
     let time = 5e-3;
     let off = [1e-4, 5e-5, 2.5e-5].map(|step| {
@@ -90,9 +90,9 @@ fn a_bond_keeps_angular_momentum() {
     }
 }
 
-/// What a bond that bends hands over from the grain to the block, which is stiff against it: the
-/// oscillator of k_n I between two moments of inertia, which starts at rest with the relative spin
-/// w, has J w (1 - cos omega t) of it by then.
+/// Transfer of angular momentum from the grain to the block by a bending bond, relative to which
+/// the block is stiff: the oscillator of k_n I between two moments of inertia J, which starts at
+/// rest with the relative spin w, has transferred J w (1 - cos omega t).
 fn hands_over<S: Space>() {
     let (step, time, k_n, between) = (5e-5, 5e-3, 1e5, 14.0);
     let case = bonded::<S>(step);
@@ -107,7 +107,7 @@ fn hands_over<S: Space>() {
     let turned = grain * (spin(&s) - S::Spin::from_slice(&vec![-10.0; S::Spin::N])).norm();
     let [_, _, bending, _] = section(&s);
     let omega = (k_n * bending / inertia).sqrt();
-    // About both axes along the surface in space, none about the normal.
+    // The rotation is about both axes along the surface in 3D, not about the normal.
     let axes = (S::D as f64 - 1.0).sqrt();
     let expected = axes * inertia * between * (1.0 - (omega * time).cos());
     println!(

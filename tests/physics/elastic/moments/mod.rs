@@ -1,5 +1,5 @@
-//! Laws that resist rotation on first bodies that deform: what touches turns as its facet there,
-//! and a half-space does not turn.
+//! Laws that resist rotation on deformable first bodies: a contactor rotates as its facet does, and
+//! a half-space does not rotate.
 
 mod bonds;
 mod compliance;
@@ -7,13 +7,15 @@ mod free;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{
+    CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
+};
 
 const G: f64 = 9.81;
 /// Radius of the disks and spheres, of 1000 kg/m^3 (m).
 const R: f64 = 0.01;
 
-/// A case with grains of radius R at places and with velocities and spins, and a plane far below.
+/// A case with grains of radius R with positions, velocities and spins, and a plane far below.
 struct Rolling {
     step: f64,
     theta: f64,
@@ -46,7 +48,7 @@ impl Default for Rolling {
 }
 
 impl Rolling {
-    /// Above the ground, which is added to it; a plane of its own otherwise.
+    /// Builds the case above the ground, which is added to it, or above a plane of its own.
     fn build<S: Space>(&self, rigid: bool) -> Simulation<S> {
         let level = if rigid { 0.0 } else { -1.0 };
         let (normal, at) = match S::D {
@@ -87,12 +89,12 @@ fn grain(at: &[f64], velocity: &[f64], spin: &[f64]) -> String {
     format!("(at: {at:?}, radius: {R:?}, velocity: {velocity:?}, spin: {spin:?})")
 }
 
-/// Of moduli (Pa), 1000 kg/m^3.
+/// Material of this modulus (Pa) and 1000 kg/m^3.
 fn soft(young: f64) -> Elasticity {
     Elasticity { young, ..RUBBER }
 }
 
-/// What lies below the height zero, from -0.02 to 0.02 m along each side.
+/// Ground below the height zero, from -0.02 to 0.02 m along each side.
 #[derive(Clone, Copy, Debug)]
 enum Ground {
     /// A plane that does not deform.
@@ -100,14 +102,14 @@ enum Ground {
     /// A block with this number of cells along its length, held below, which touches by its surface
     /// or by its points.
     Block(Strain, usize, Touching<'static>),
-    /// A half-space of this number of cells, which touches so.
+    /// A half-space of this number of cells, which touches by its surface or by its points.
     HalfSpace(usize, Cells),
 }
 
 const BLOCK: Ground = Ground::Block(Strain::Small, 16, Touching::Surface("top"));
 
 impl Ground {
-    /// A case on it, of a modulus (Pa).
+    /// Builds a case on this ground, of a modulus (Pa).
     fn under<S: Space>(self, case: &Rolling, young: f64) -> Simulation<S> {
         let mut s = case.build::<S>(matches!(self, Self::Rigid));
         let fixed = vec![Dof::Fixed; S::D];
@@ -128,9 +130,9 @@ impl Ground {
                 let system = HalfSpace::<S>::new(HalfSpaceSpec {
                     name: "ground",
                     material: soft(young),
-                    fills: Fills::Below,
+                    fills: FilledSide::Below,
                     position: [0.0; 3],
-                    grid: Grid {
+                    grid: CellGrid {
                         from: [-0.02; 2],
                         size: [size; 2],
                         cells: [n, if S::D == 2 { 1 } else { n }],

@@ -1,5 +1,5 @@
-//! Rolling and spinning friction of a disk and a sphere on stiff ground that deforms: as on rigid
-//! ground.
+//! Rolling and spinning friction of a disk and a sphere on stiff deformable ground give the results
+//! of rigid ground.
 //!
 //! With the friction length l, a disk (b = 1/2) or a sphere (b = 2/5) of radius R that rolls is
 //! slowed down by
@@ -14,12 +14,12 @@
 
 use super::*;
 use fretwork::geometry::space::Dim3;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::State;
 
 const LENGTH: f64 = 0.05 * R;
 
-/// Rigid enough that the ground gives way by less than 1e-7 R.
+/// Modulus (Pa) with which the ground deforms by less than 1e-7 R.
 const STIFF: f64 = 1e10;
 
 const GROUNDS: [Ground; 5] = [
@@ -37,7 +37,7 @@ fn rolls<S: Space>(ground: Ground, share: f64) {
     at[S::D - 1] = R;
     let speed = 0.02;
     v[0] = speed;
-    // About -z in the plane, about +y in space.
+    // The spin is about -z in 2D, about +y in 3D.
     match S::D {
         2 => w[0] = -speed / R,
         _ => w[1] = speed / R,
@@ -61,7 +61,7 @@ fn rolls<S: Space>(ground: Ground, share: f64) {
         found
     );
     near(expected, found, 2e-3);
-    // Rolls, does not slide.
+    // The grain rolls and does not slide.
     let turned = match S::D {
         2 => -spin(&s)[0],
         _ => spin(&s)[1],
@@ -90,7 +90,7 @@ fn a_sphere_slows_down_as_on_rigid_ground() {
     }
 }
 
-/// A slope of a tenth less and a tenth more than that at which a disk rolls.
+/// The slope is a tenth less and a tenth more than that at which a disk rolls.
 #[test]
 fn a_disk_rolls_where_the_slope_exceeds_the_friction_length() {
     for ground in [BLOCK, GROUNDS[3], GROUNDS[4]] {
@@ -115,7 +115,7 @@ fn a_disk_rolls_where_the_slope_exceeds_the_friction_length() {
     }
 }
 
-/// A sphere that spins about the normal without sliding friction.
+/// A sphere spins about the normal without sliding friction.
 #[test]
 fn spinning_friction_takes_angular_momentum() {
     for ground in [
@@ -129,7 +129,7 @@ fn spinning_friction_takes_angular_momentum() {
             &Rolling {
                 mu: 0.0,
                 of_contact: lengths(0.0, LENGTH),
-                // Above a point of the mesh.
+                // The sphere is above a point of the mesh.
                 grains: grain(&[0.0, 0.0, R], &[0.0; 3], &[0.0, 0.0, start]),
                 ..Rolling::default()
             },
@@ -154,7 +154,7 @@ fn spinning_friction_takes_angular_momentum() {
     }
 }
 
-/// Bits do not depend on the number of threads, nor on a restart from a state saved on the way.
+/// Results are bit-identical for any number of threads, and after a restart from a saved state.
 #[test]
 fn rolling_gives_the_same_bits() {
     let start = || {

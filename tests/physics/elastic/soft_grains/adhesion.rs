@@ -1,13 +1,12 @@
-//! Attraction over a range of gaps: what it does is that of the law, whatever the distance at which
-//! contacts are looked for.
+//! Attraction over a range of gaps: its work is that of the law, for any alert distance.
 
 use super::*;
 
-/// Alert distances: of the method, no number of a law.
+/// Alert distances, a numerical setting.
 const ALERTS: [f64; 3] = [2e-4, 4e-4, 8e-4];
 
-/// A square that is pulled off a floor, of one material or the other, gives the work of the tension
-/// over the range: tension times side times range, where it has the speed.
+/// A square that is pulled off a floor needs the work of the tension over the range: tension times
+/// side times range. The square or the floor is deformable.
 #[test]
 fn pulling_off_takes_the_tension_over_the_range() {
     let (tension, side, range) = (1e4, 0.02, 1e-4);

@@ -3,7 +3,7 @@
 use super::*;
 use fretwork::scene::bond_sites::BondSites;
 
-/// Bonds of a side of a length stand for that length.
+/// The areas of the bonds of a side add up to its length.
 fn glued<S: Space>(what: &str, bodies: &str, grains: &str) -> f64 {
     let mut s = Soft {
         interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5,",
@@ -34,7 +34,7 @@ fn bonds_stand_for_the_side() {
     let floor = wall("floor", &[0.0, 1.0], &[0.0, 0.02], "");
     let equal = square("soft", [0.0, 0.01], side, 0.0, "");
     let wide = |m: &str| square(m, [0.0, 0.005], 0.03, 0.0, "");
-    // Vertices of both grains stand for the side.
+    // Vertices of both grains share the side.
     near(
         side,
         glued::<Dim2>("soft on an equal one", "", &(equal + &upper("soft"))),
@@ -51,7 +51,8 @@ fn bonds_stand_for_the_side() {
     for area in found {
         near(side, area, 1e-5);
     }
-    // Those of the wider one that are under the other: to an element, of half of the area.
+    // Of the wider grain, the vertices under the other count, to within an element of half of the
+    // area.
     near(
         side,
         glued::<Dim2>("soft on a wider one", "", &(wide("soft") + &upper("soft"))),
@@ -69,8 +70,8 @@ fn bonds_stand_for_the_side() {
     }
 }
 
-/// A square on a plane: the largest area of a bond over the mass of the square, along the normal;
-/// rigid and soft alike.
+/// A square on a plane: the largest area of a bond over the mass of the square, along the normal,
+/// for rigid and soft squares.
 #[test]
 fn check_estimates_bonds_of_grains_that_deform() {
     let mut s = Soft {

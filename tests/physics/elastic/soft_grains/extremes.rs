@@ -1,9 +1,9 @@
-//! Moduli, Poisson's ratios, steps and element counts at their ends.
+//! Extreme moduli, Poisson's ratios, steps and numbers of elements.
 
 use super::*;
 
-/// A disk that falls on a floor: its momentum is the impulse of the floor less that of its weight,
-/// and the ledger closes.
+/// A disk falls on a floor: its momentum is the impulse of the floor less that of its weight, and
+/// the ledger closes.
 fn lands(case: &Soft, nu: f64) {
     let mut s = case.build_with::<Dim2>(nu);
     let h = s.options.scheme.h;
@@ -36,7 +36,7 @@ fn case(young: f64, step: f64, elements: usize) -> Soft {
         tolerance: 1e-10,
         gravity: down(2),
         bodies: wall("floor", &[0.0, 1.0], &[0.0, 0.0], ""),
-        // It reaches the floor in the first steps, whatever their length.
+        // The disk reaches the floor in the first steps, whatever their length.
         grains: disks("soft", &[ball_at(&[0.0, R + 1e-9], &[0.0, -0.01])]),
         ..Soft::default()
     }
@@ -54,7 +54,7 @@ fn disks_at_the_ends_of_their_numbers_land() {
         lands(&case(1e7, step, 4), NU);
     }
     for elements in [1, 2, 8] {
-        // A disk of few elements has no vertex at its lowest place and falls farther.
+        // A disk of few elements has no vertex at its lowest point, and falls farther.
         lands(&case(1e7, 1e-3, elements), NU);
     }
 }

@@ -1,4 +1,4 @@
-//! Grains too fast for the step.
+//! Grains that are too fast for the step.
 
 use super::*;
 
@@ -6,7 +6,8 @@ fn reports(of: &StepSizeDiagnostics) -> bool {
     of.late + of.passed + of.unwatched_steps + of.held_back > 0
 }
 
-/// What is shot at a thin wall or at another grain meets it, or the run says that it did not see.
+/// A grain thrown at a thin wall or at another grain meets it, or the run reports that it may not
+/// have.
 #[test]
 fn fast_grains_do_not_pass_silently() {
     let plate = "(name: \"plate\", material: \"rigid\", shapes: [Polygon(points: [(0.0, -0.1), (0.002, -0.1), (0.002, 0.1), (0.0, 0.1)])]),";

@@ -1,4 +1,5 @@
-//! What the answer must not depend on: how contacts are found, and whether the state was saved.
+//! Independence of the results: they must not depend on how contacts are found, or on whether the
+//! state was saved.
 
 use super::*;
 
@@ -61,7 +62,7 @@ fn the_answer_does_not_depend_on_how_contacts_are_found() {
         ..case.clone()
     };
     compare("twice the alert distance", run(&case2), 1e-9);
-    // Attraction has a range of its own.
+    // Attraction has its own range.
     let sticky = |alert: f64| {
         let case = Soft {
             contact: (

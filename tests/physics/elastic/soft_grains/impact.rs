@@ -1,4 +1,4 @@
-//! Two disks that meet.
+//! Impact of two disks.
 
 use super::*;
 
@@ -19,8 +19,8 @@ fn collision(offset: f64, mu: f64, young: f64, step: f64) -> Soft {
     }
 }
 
-/// Momentum is kept, and so is angular momentum but for the couple of tangential impulses over the
-/// gaps; energy never grows.
+/// Momentum is conserved, and so is angular momentum except for the couple of tangential impulses
+/// over the gaps; energy never grows.
 #[test]
 fn two_disks_collide() {
     for mu in [0.0, 0.5] {
@@ -54,16 +54,16 @@ fn two_disks_collide() {
         );
         assert!(met && place_of(&s, 0).x < place_of(&s, 1).x);
         assert!(off < 1e-12, "{off:e}");
-        // Tangential impulses act across the gap that a step closes, with a couple.
+        // Tangential impulses act across the gap that a step closes, and exert a couple.
         assert!(moment < if mu == 0.0 { 1e-10 } else { 2e-5 }, "{moment:e}");
-        // Single steps gain a little; the ledger has it.
+        // Single steps gain a little energy, which the ledger contains.
         assert!(most < 5e-5 && energy(&s) < start, "{most:e}");
         closes(&s, 1e-12);
     }
 }
 
-/// Without damping a central impact of disks that are slow against their waves keeps nearly all
-/// energy: the velocities are exchanged.
+/// Without damping a central impact of disks that are slow compared with their waves conserves
+/// nearly all energy: the velocities are exchanged.
 #[test]
 fn a_central_impact_is_nearly_elastic() {
     for young in [1e6, 1e8] {

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A block on a slope of the angle phi sticks for tan phi < mu and slides with g (sin phi - mu cos
-/// phi) above (Coulomb).
+/// A block on a slope of the angle phi sticks for tan phi < mu, and otherwise slides with g (sin
+/// phi - mu cos phi) (Coulomb).
 #[test]
 fn a_block_on_an_incline() {
     for young in [1e6, 1e8, 1e10, 1e12] {

@@ -1,7 +1,8 @@
-//! Grains that deform: a disk between plates, impact, spin, piles, and contacts with all other
+//! Deformable grains: a disk between plates, impact, spin, piles, and contacts with all other
 //! shapes.
 //!
-//! The scenes are cases as a user writes them. `soft` deforms, `rigid` and `stone` do not.
+//! The scenes are cases as a user writes them. Grains of `soft` deform, those of `rigid` and
+//! `stone` do not.
 
 mod adhesion;
 mod bonds;
@@ -20,7 +21,7 @@ mod spin;
 use super::*;
 use fretwork::contact::StepSizeDiagnostics;
 use fretwork::geometry::space::Space;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::step::State;
@@ -39,7 +40,7 @@ const G: f64 = 9.81;
 struct Soft {
     step: f64,
     theta: f64,
-    /// In all axes (m/s^2).
+    /// Gravity along all axes (m/s^2).
     gravity: Vec<f64>,
     young: f64,
     elements: usize,
@@ -122,7 +123,7 @@ impl Soft {
         self.build_with(NU)
     }
 
-    /// Builds it with materials of this Poisson's ratio.
+    /// Builds the scene with materials of this Poisson's ratio.
     fn build_with<S: Space>(&self, nu: f64) -> Simulation<S> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);
@@ -164,7 +165,7 @@ fn ball_at(at: &[f64], velocity: &[f64]) -> String {
     format!("(at: {at:?}, radius: {R:?}, velocity: {velocity:?})")
 }
 
-/// A square with this side (m) about a place.
+/// A square with this side (m) about a point.
 fn square(material: &str, at: [f64; 2], side: f64, angle: f64, more: &str) -> String {
     let h = 0.5 * side;
     format!(
@@ -233,8 +234,7 @@ fn velocity_of<S: Space>(s: &Simulation<S>, system: usize) -> S::Vector {
     S::Vector::from_slice(&s.state.systems.get(system).unwrap().velocity()[..S::D])
 }
 
-/// The force of the contacts of a body in the last step along an axis, on the others (N; N/m in
-/// 2D).
+/// Force of the contacts of a body in the last step along an axis on the others (N; N/m in 2D).
 fn force_on_others<S: Space>(s: &Simulation<S>, body: usize, axis: usize) -> f64 {
     let contacts = s.state.network.contacts.iter();
     let sum: f64 = contacts

@@ -1,4 +1,4 @@
-//! Laws that resist rotation: the frame of a grain takes up the moments of its contacts.
+//! Laws that resist rotation: moments of contacts act on the frame of a grain.
 
 use super::*;
 use fretwork::solve::local::solver::Method;
@@ -11,9 +11,9 @@ fn advance<S: Space>(s: &mut Simulation<S>, steps: usize) {
     }
 }
 
-/// A square on a slope tips about its lower corner, against a rolling friction length l, where
-/// (a/2)(sin phi - cos phi) > l cos phi; then with the angular acceleration of the difference over
-/// its moment of inertia about the corner, 2 M a^2/3.
+/// A square on a slope tips about its lower corner, against a rolling friction length l, if
+/// (a/2)(sin phi - cos phi) > l cos phi. Its angular acceleration is the difference of the moments
+/// over its moment of inertia about the corner, 2 M a^2/3.
 #[test]
 fn rolling_friction_holds_a_block_until_it_tips() {
     let (side, length, time) = (0.02, 0.002, 0.02);
@@ -38,7 +38,7 @@ fn rolling_friction_holds_a_block_until_it_tips() {
                 ..Soft::default()
             };
             let mut s = case.build::<Dim2>();
-            // Sweeps do not always follow a bound that is another unknown.
+            // Sweeps do not always converge with a bound that depends on another unknown.
             s.options.solver.method = Method::Apgd;
             advance(&mut s, (time / 1e-4) as usize);
             let found = -s.state.systems.get(0).unwrap().velocity()[2] / time;
@@ -49,7 +49,8 @@ fn rolling_friction_holds_a_block_until_it_tips() {
                 0.0
             };
             println!("E {young:e}, tan {tan}: {found} of {expected} rad/s^2");
-            // Weight turns with the block by up to a tenth of its arm over the time.
+            // The direction of the weight relative to the block changes by up to a tenth of its arm
+            // over the time.
             assert!(
                 (found - expected).abs() < 0.1 * expected + 0.05,
                 "{young:e} {tan}: {found} {expected}"
@@ -59,9 +60,9 @@ fn rolling_friction_holds_a_block_until_it_tips() {
     }
 }
 
-/// A cube that spins on a plane without friction but for a spinning friction length l loses the
-/// angular momentum l int P dt, where the force P of the plane is the weight and what lifts the
-/// cube; then it stays.
+/// A cube that spins on a plane without friction, except for a spinning friction length l, loses
+/// the angular momentum l int P dt, where the force P of the plane is the weight plus the force
+/// that lifts the cube; then it stops.
 fn spinning_cube(method: Method) -> Simulation<Dim3> {
     let mut s = Soft {
         step: 2e-4,
@@ -109,7 +110,7 @@ fn spinning_friction_takes_angular_momentum() {
     closes(&s, 1e-9);
 }
 
-/// A block glued to a wall by its side, under its weight, at rest.
+/// A block bonded to a wall by its side, under its weight, at rest.
 fn cantilever(method: Method, tolerance: f64, steps: usize) -> Simulation<Dim2> {
     let mut s = Soft {
         step: 1e-3,
@@ -132,7 +133,7 @@ fn cantilever(method: Method, tolerance: f64, steps: usize) -> Simulation<Dim2> 
     s
 }
 
-/// Bonds in tension alone let the block turn about its lower edge by theta: moments of normal
+/// Bonds in tension alone let the block rotate about its lower edge by theta: moments of normal
 /// forces k_n A_k theta y_k and of bending k_n (A_k^3/12) theta carry M g a/2.
 #[test]
 fn bending_of_bonds_carries_a_cantilever() {
@@ -159,7 +160,7 @@ fn bending_of_bonds_carries_a_cantilever() {
     closes(&s, 1e-9);
 }
 
-/// Sweeps, gradients and methods with matrices give the same answer where moments act on grains.
+/// Sweeps, gradients and methods with matrices give equal results where moments act on grains.
 #[test]
 fn methods_agree_on_moments() {
     let angle = |method| {
@@ -199,8 +200,8 @@ fn methods_agree_on_moments() {
     }
 }
 
-/// A spinning cube on a block of finite elements that deforms too, in small and in large strain:
-/// normals are upright but for what falls with the modulus.
+/// A spinning cube on a deformable block of finite elements, in small and in large strain: normals
+/// deviate from the vertical by an angle that decreases with the modulus.
 #[test]
 fn spinning_friction_acts_between_two_that_deform() {
     for (strain, young) in [

@@ -1,14 +1,14 @@
-//! Grains that deform on everything else that touches.
+//! Deformable grains on all other kinds of contactors.
 
 use super::*;
 
-/// Something on something soft, at rest: the force between is the weight of what is above.
+/// A body at rest on a soft one: the force between them is the weight above.
 fn carries(what: &str, case: &Soft, above: usize, at_least: f64) {
     let mut s = case.build::<Dim2>();
     for _ in 0..800 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
-    // Systems come after rigid bodies; the one above is a body.
+    // Systems come after rigid bodies; the upper one is a rigid body.
     let bodies = &s.state.bodies;
     let mut order: Vec<usize> = (0..bodies.len())
         .filter(|b| bodies.mass[*b] > 0.0 && bodies.driven.iter().all(|d| d.body as usize != *b))
@@ -91,7 +91,7 @@ fn soft_grains_carry_all_other_shapes() {
         0,
         0.049,
     );
-    // A corner between two others points into the middle of an edge, and the middle of an edge onto
+    // A corner between two others touches the middle of an edge, and the middle of an edge touches
     // a corner.
     let guides = wall("left", &[1.0, 0.0], &[-0.02, 0.0], "")
         + &wall("right", &[-1.0, 0.0], &[0.02, 0.0], "");

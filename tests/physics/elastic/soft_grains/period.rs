@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Two grains that meet at a place, moved by half of a period or not: the same forces and
+/// Two grains that meet at a place, or half of a period away from it, have equal forces and
 /// velocities.
 #[test]
 fn grains_meet_across_the_period() {

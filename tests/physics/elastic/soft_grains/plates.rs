@@ -23,10 +23,10 @@ fn pressed_disk(elements: usize, force: f64) -> Simulation<Dim2> {
     s
 }
 
-/// Approach of the plates 2 P/(pi E*) (2 ln(4 R/a) - 1) with a^2 = 4 P R/(pi E*), E* = E/(1 - nu^2)
-/// (K. L. Johnson, Contact Mechanics, 1985, equations 5.56 and 4.43), and at the centre of the disk
-/// sigma_x = 2 P/(pi D), sigma_y = -6 P/(pi D) (S. P. Timoshenko and J. N. Goodier, Theory of
-/// Elasticity, article 41).
+/// The approach of the plates is 2 P/(pi E*) (2 ln(4 R/a) - 1) with a^2 = 4 P R/(pi E*), E* =
+/// E/(1 - nu^2) (K. L. Johnson, Contact Mechanics, 1985, equations 5.56 and 4.43), and the stress
+/// at the centre of the disk sigma_x = 2 P/(pi D), sigma_y = -6 P/(pi D) (S. P. Timoshenko and J.
+/// N. Goodier, Theory of Elasticity, article 41).
 #[test]
 fn a_disk_between_plates() {
     let modulus = 1e6 / (1.0 - NU * NU);
@@ -60,7 +60,7 @@ fn a_disk_between_plates() {
         off.push([approach - 1.0, x - 2.0, y + 6.0].map(f64::abs));
         closes(&s, 1e-9);
     }
-    // With 12 elements 0.992, 1.91 and -5.87.
+    // With 12 elements the values are 0.992, 1.91 and -5.87.
     assert!(
         off[2][0] < 0.02 && off[2][1] < 0.2 && off[2][2] < 0.25,
         "{off:?}"

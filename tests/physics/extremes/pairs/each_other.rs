@@ -4,8 +4,8 @@ use super::in_space::SOLID;
 use super::in_the_plane::FLAT;
 use super::*;
 
-/// Throws each grain at the middle of each other one, half of the time across a period: what it is
-/// thrown at is hit, or the run says that it may not have been.
+/// Throws each grain at the middle of each other one, half of the time across a period: the target
+/// is hit, or the run reports that it may not have been.
 fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
     let mut rng = Pcg64::seed_from_u64(20);
     let mut silent = Vec::new();
@@ -17,7 +17,7 @@ fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
                 let from = throw.from + 1.1 * R;
                 let period = 2.5 * (from + 4.0 * throw.step).max(0.2);
                 let across = k % 2 == 0;
-                // The target is beside the border of the period, over which it is hit.
+                // The target is near the border of the period, over which it is hit.
                 let x = if across { 0.5 * period - 0.5 * R } else { 0.0 };
                 let start = if across { x + from - period } else { x + from };
                 let v = place::<S>(-throw.step / STEP, 0.0, 0.0);
@@ -85,7 +85,7 @@ fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
     );
     // At most a quarter of the throws is reported, which is also the bound for walls.
     assert!(4 * reported < total, "{reported} of {total} reported");
-    // Both turn, by more than a radian in most throws.
+    // Both grains rotate, by more than a radian in most throws.
     assert!(
         10 * reported_seen < 3 * total,
         "{reported_seen} of {total} reported, although seen"

@@ -1,4 +1,4 @@
-//! Grains and walls in space.
+//! Grains and walls in 3D.
 
 use super::*;
 
@@ -41,7 +41,7 @@ pub(super) const SOLID: [(&str, Grain); 6] = [
     }),
 ];
 
-/// A folder of the files of one test: tests of one process run side by side.
+/// A folder for the files of one test, since tests of one process run in parallel.
 fn new_folder(test: &str) -> std::path::PathBuf {
     let name = format!("fretwork-pairs-{}-{test}", std::process::id());
     let folder = std::env::temp_dir().join(name);
@@ -91,7 +91,7 @@ fn solid_walls(folder: &std::path::Path) -> Vec<Wall> {
         20,
         0.9 * R,
     );
-    // Top, bottom and sides of a plate that is thinner than the grains.
+    // The mesh has top, bottom and sides of a plate that is thinner than the grains.
     let depth = -0.4 * R;
     let mut plate = flat.clone();
     plate.extend(
@@ -161,7 +161,7 @@ fn grains_stay_in_front_of_every_wall_in_space() {
     let _ = std::fs::remove_dir_all(folder);
 }
 
-/// Walls in space that deform or wear; [`flat_soft_walls`] has those in the plane.
+/// Walls in 3D that deform or wear; [`flat_soft_walls`] has those in 2D.
 pub(super) fn solid_soft_walls() -> Vec<Wall> {
     let mut rng = Pcg64::seed_from_u64(10);
     let heights: Vec<String> = (0..41 * 41)

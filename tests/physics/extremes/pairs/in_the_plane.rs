@@ -1,4 +1,4 @@
-//! Grains and walls in the plane.
+//! Grains and walls in 2D.
 
 use super::*;
 
@@ -78,8 +78,8 @@ fn grains_stay_in_front_of_every_wall_in_the_plane() {
     throw_all::<Dim2>(&FLAT, None, &flat_walls(), &SPEEDS, 6);
 }
 
-/// Walls that deform and wear. What deforms is not hit in its middle, whose motion is taken for
-/// that of the whole.
+/// Walls that deform and wear. Deformable walls are not hit in their middle, whose motion
+/// represents that of the whole.
 pub(super) fn flat_soft_walls() -> Vec<Wall> {
     let mut rng = Pcg64::seed_from_u64(9);
     let rough: Vec<String> = (-40..=40)
@@ -138,6 +138,6 @@ fn grains_stay_in_front_of_what_deforms_and_wears_in_the_plane() {
 
 #[test]
 fn grains_that_deform_stay_in_front_of_every_wall_in_the_plane() {
-    // A blade is so thin that what a grain deforms counts as passing it.
+    // A blade is so thin that the deformation of a grain counts as passing it.
     throw_all::<Dim2>(&FLAT[..3], Some(1e9), &flat_walls()[..5], &SOFT_SPEEDS, 3);
 }

@@ -1,6 +1,6 @@
-//! Every pair of shapes at displacements of 0.3 to 100 radii in a step, from the side, turning,
-//! with either of them moving: a grain stays in front of what it meets, or the run says that it may
-//! not have. The same of what deforms and what wears, up to ten radii a step.
+//! Every pair of shapes at displacements of 0.3 to 100 radii per step, from the side, rotating,
+//! with either of them moving: a grain stays in front of what it meets, or the run reports that it
+//! may not have. Shapes that deform or wear are tested up to ten radii per step.
 
 use super::bench::{Sketch, place, up, volume};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
@@ -21,23 +21,23 @@ const R: f64 = 0.01;
 const STEP: f64 = 1e-3;
 /// Displacements in a step, in radii.
 const SPEEDS: [f64; 9] = [0.3, 0.7, 1.1, 1.5, 2.3, 5.0, 10.7, 31.0, 100.0];
-/// Displacements in a step, in radii, where something deforms or wears.
+/// Displacements in a step, in radii, for shapes that deform or wear.
 const SOFT_SPEEDS: [f64; 5] = [0.1, 0.4, 1.4, 3.0, 10.0];
-/// Steps after the one of the meeting.
+/// Number of steps after the one of the impact.
 const AFTER: usize = 3;
-/// How far a centre may be behind the nearest vertex of a surface that is not flat (radii).
+/// Largest distance of a centre behind the nearest vertex of a surface that is not flat (radii).
 const BEHIND: f64 = 0.2;
-/// One of how many throws may be reported although all of it is seen: what is hit at a corner turns
-/// by about its displacement over its radius, and its corners move on arcs of which a step knows
-/// the tangents.
+/// One in this many throws may be reported although the whole impact is tracked: a body hit at a
+/// corner rotates by about its displacement over its radius, and its corners move on arcs, of which
+/// a step knows the tangents.
 const SEEN_TOLD: usize = 8;
-/// Share of the energy that a throw may gain by the error of the solver.
+/// Relative energy gain of a throw that the error of the solver may cause.
 const GAIN: f64 = 1e-6;
 
-/// A grain from its place, its motion, and an angle by which it is turned.
+/// Describes a grain from its position, its motion, and an angle of rotation.
 type Grain = fn(at: &str, motion: &str, turned: f64) -> String;
 
-/// What a wall is made of.
+/// Material of a wall.
 #[derive(Clone, Copy, PartialEq)]
 enum Made {
     /// A first body of shapes.
@@ -45,8 +45,8 @@ enum Made {
     /// A first body of shapes whose surface recedes by up to this depth (m) before and during the
     /// hit.
     Worn(f64),
-    /// A first body of shapes that wears by the law of the interface: in a hit by about this share
-    /// of the grain.
+    /// A first body of shapes that wears by the law of the interface, in an impact by about this
+    /// fraction of the grain.
     Wearing(f64),
     /// A body of finite elements, held at its bottom, of this Young's modulus (Pa).
     Elements(f64),
@@ -54,16 +54,17 @@ enum Made {
     HalfSpace(f64),
 }
 
-/// What a grain is thrown at: a body that is solid below the height zero.
+/// Target of a grain: a body that is solid below the height zero.
 struct Wall {
     name: &'static str,
     made: Made,
-    /// Its shapes, or its fields if it deforms.
+    /// Shapes of the wall, or its fields if it deforms.
     shapes: String,
     /// Origin of its frame: along x, out of plane and upwards (m).
     origin: [f64; 3],
-    /// It ends at this distance along x from the place that is hit (m): what is beyond has left it
-    /// sideways. Where heights are measured from vertices, at this distance from the nearest one.
+    /// Distance along x from the point of impact at which the wall ends (m): a grain beyond has
+    /// left it sideways. Where heights are measured from vertices, the distance from the nearest
+    /// one.
     half: f64,
 }
 
@@ -93,7 +94,8 @@ impl Wall {
         self
     }
 
-    /// Lets the surface of a worn wall recede by this share of its depth, uneven by a tenth of it.
+    /// Lets the surface of a worn wall recede by this fraction of its depth, uneven by a tenth of
+    /// it.
     fn recede<S: Space>(&self, s: &mut Simulation<S>, share: f64) {
         let Made::Worn(depth) = self.made else { return };
         for surface in &mut s.shapes.surfaces {
@@ -105,9 +107,9 @@ impl Wall {
         }
     }
 
-    /// Height of the centre of a grain above the wall (m); infinite beside it. Of a wall that is
-    /// not flat, or does not stay so, it is that above the nearest vertex and what a centre may be
-    /// behind that.
+    /// Height of the centre of a grain above the wall (m); infinite beside it. For a wall that is
+    /// not flat, or does not remain so, it is the height above the nearest vertex plus the
+    /// permitted distance behind it.
     fn height<S: Space>(&self, s: &Simulation<S>, grain: usize) -> f64 {
         let last = S::D - 1;
         let bodies = &s.state.bodies;
@@ -122,7 +124,7 @@ impl Wall {
                 apart[last] + self.origin[2]
             };
         }
-        // What touches by points has no surface.
+        // A body that touches by points has no surface.
         let mut vertices: Vec<S::Vector> = Vec::new();
         for surface in &s.shapes.surfaces {
             let origin = bodies.position[surface.body as usize];
@@ -146,7 +148,7 @@ impl Wall {
     }
 }
 
-/// How a throw ends: held, or reported, of one that is all seen or not.
+/// Result of a throw: held, or reported, for an impact that is fully tracked or not.
 enum End {
     Held,
     Reported,
@@ -154,7 +156,7 @@ enum End {
 }
 
 /// A throw: displacement in a step (m), its direction from the vertical (rad), distance from the
-/// place that is hit (m), angle of the grain and its rate (rad, rad/s), and whether the wall moves
+/// target point (m), angle of the grain and its rate (rad, rad/s), and whether the wall moves
 /// instead.
 struct Throw {
     step: f64,
@@ -180,15 +182,14 @@ impl Throw {
         }
     }
 
-    /// Whether grains of this reach are still apart at the first detection, this share of a step
-    /// after the start, `distance` being that of their centres along the throw, and `reach` what
-    /// they need of it (m): then all of the meeting is seen.
+    /// Whether grains of this reach are still apart at the first detection, at this fraction of a
+    /// step after the start. `distance` is that of their centres along the throw, and `reach` the
+    /// distance that they need (m). The impact is then fully tracked.
     fn is_seen(&self, distance: f64, reach: f64, first: f64) -> bool {
         distance - first * self.step > reach
     }
 
-    /// The scene of a grain that is thrown at a wall, of this Young's modulus (Pa) where it
-    /// deforms.
+    /// Scene of a grain that is thrown at a wall, with this Young's modulus (Pa) if it deforms.
     fn sketch<S: Space>(&self, grain: Grain, soft: Option<f64>, wall: &Wall) -> Sketch {
         let way = [self.tilt.sin(), -self.tilt.cos()];
         let at = place::<S>(-self.from * way[0], 0.003, -self.from * way[1]);
@@ -245,15 +246,15 @@ impl Throw {
             }
         }
         if soft.is_some() {
-            // Modes of a sphere of two elements take a second.
+            // The modes of a sphere of two elements take a second.
             let elements = if S::D == 2 { 2 } else { 1 };
             sketch.more += &format!("elastic_grains: [(material: \"m0\", elements: {elements})],");
         }
         sketch
     }
 
-    /// Throws the grain, and returns whether it is held, or the end that the run is silent about.
-    /// Balls that are seen are held.
+    /// Throws the grain, and returns whether it is held, or the result that the run did not report.
+    /// Balls that are tracked must be held.
     fn run<S: Space>(
         &self,
         name: &str,
@@ -292,10 +293,10 @@ impl Throw {
             most = most.max(s.state.energy.kinetic + s.state.energy.elastic);
         }
         if s.state.network.step_size.warning().is_some() {
-            // All walls are flat at this scale, and below zero. An impact turns others than balls,
-            // and another corner may turn into the wall in the same step.
+            // All walls are flat at this scale, and below zero. An impact rotates shapes other than
+            // balls, and another corner may turn into the wall in the same step.
             let seen = self.is_seen(self.from, R / self.tilt.cos(), first);
-            // One that deforms has corners too.
+            // A deformable ball has corners too.
             let ball = soft.is_none() && ["disk", "sphere"].contains(&name);
             match seen && ball {
                 true => Err(format!("{}; reported, although it is seen", what())),
@@ -312,8 +313,8 @@ impl Throw {
     }
 }
 
-/// Throws each grain at each wall, `times` times at each speed. What meets before the first
-/// detection may be reported, and what turns a corner into the wall; all others are held.
+/// Throws each grain at each wall, `times` times at each speed. Impacts before the first detection,
+/// and those that turn a corner into the wall, may be reported; all others must be held.
 fn throw_all<S: Space>(
     grains: &[(&str, Grain)],
     soft: Option<f64>,
@@ -352,8 +353,8 @@ fn throw_all<S: Space>(
         silent.len(),
         silent.join("\n")
     );
-    // Places to start from are spread over two steps: a quarter of them at most is nearer than half
-    // of a step.
+    // Start positions are spread over two steps: at most a quarter of them is nearer than half of a
+    // step.
     assert!(4 * reported < total, "{reported} of {total} reported");
     assert!(
         SEEN_TOLD * seen < total,
@@ -366,9 +367,8 @@ fn bumps(rng: &mut Pcg64) -> f64 {
     rng.random_range(-0.2..0.0) * R
 }
 
-/// Nothing but points would be in the way of a grain that is thinner than the gaps between them,
-/// however it is made: in the plane 5 mm, in space 9.2 mm between four of them, and 10.6 mm by the
-/// largest area of a point.
+/// A grain that is thinner than the gaps between points would only meet points: in 2D 5 mm, in 3D
+/// 9.2 mm between four of them, and 10.6 mm by the largest area of a point.
 #[test]
 fn grains_that_fit_between_points_are_refused() {
     let throw = Throw {

@@ -3,7 +3,7 @@
 use super::expansion::{ALPHA, RISE, height};
 use super::{Table, effusivity, heat, plane, solid, until};
 use fretwork::geometry::space::Dim2;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 
@@ -70,8 +70,8 @@ fn grain_on_elements(table: &mut Table) {
     table.closes(case, "heat closes", ledger.relative_residual(), 1e-10);
 }
 
-/// Two blocks whose meshes do not match: through their contacts flows what the law says, between
-/// the temperatures of the two.
+/// Two blocks whose meshes do not match: the heat flow through their contacts is that of the law,
+/// for the temperatures of both blocks.
 fn two_meshes(table: &mut Table) {
     let case = "elastic/patch";
     let sets = [
@@ -97,14 +97,14 @@ fn two_meshes(table: &mut Table) {
     assert!(seen.all(|t| (300.0..=400.0).contains(&t)));
 }
 
-/// A block of finite elements lifts a load, by each measure of strain; the answer is the same where
-/// heat makes one step for several.
+/// A block of finite elements lifts a load, with each measure of strain; the result is equal if one
+/// thermal step spans several of the mechanics.
 fn elements(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     let runs: [(&[&str], f64); 4] = [
         (&[], 1e-6),
         (&["heat.every=10"], 1e-6),
-        // Of second order in the strain, 1.6e-3.
+        // The error is of second order in the strain, 1.6e-3.
         (&["elastic.block.strain=Corotational"], 3e-3),
         (&["elastic.block.strain=NeoHookean"], 3e-3),
     ];
@@ -130,7 +130,7 @@ fn elements(table: &mut Table) {
         table.compare(case, &named("heat closes"), 0.0, closes, 1e-10);
     }
 
-    // Continued from bytes it has the same bits.
+    // A run continued from saved bytes is bit-identical.
     for strain in ["Small", "NeoHookean"] {
         let set = format!("elastic.block.strain={strain}");
         let [mut s, mut again] = [0, 1].map(|_| plane(case, &[&set]));
@@ -144,8 +144,8 @@ fn elements(table: &mut Table) {
     }
 }
 
-/// Heated elements between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy
-/// comes from the heat.
+/// Heated elements between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and the
+/// elastic energy comes from the heat.
 fn held_elements(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     for (strain, tolerance) in [
@@ -172,7 +172,7 @@ fn held_elements(table: &mut Table) {
         let name = format!("{strain}: force on the plate above (N/m)");
         table.compare(case, &name, stress * WIDTH, top.force, tolerance);
         let energy = s.energies();
-        // sigma_y and sigma_z of the strains -alpha dT, both held.
+        // These are sigma_y and sigma_z of the strains -alpha dT, both constrained.
         let zz = NU * stress - YOUNG * ALPHA * RISE;
         let stored = -0.5 * (stress + zz) * ALPHA * RISE * WIDTH * 2e-3;
         let name = format!("{strain}: energy stored (J/m)");
@@ -187,7 +187,8 @@ fn held_elements(table: &mut Table) {
     }
 }
 
-/// A block that is warmer above than below, held at its left side in x alone, bends without stress.
+/// A block that is warmer above than below, and is held at its left side only in x, bends without
+/// stress.
 fn bent(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     let sets = [
@@ -202,7 +203,7 @@ fn bent(table: &mut Table) {
     until(&mut s, 0.2, |_| ());
     let mesh = s.state.systems.get(0).and_then(|b| b.deformed_mesh());
     let mesh = mesh.expect("a mesh");
-    // The mean over the height, which the change of the height along it leaves out.
+    // The mean over the height is used, without the change of the height along the block.
     let rise = |x: f64| {
         let all = mesh.points.iter().zip(&mesh.displacement);
         let there = all.filter(|(p, _)| (p.x - x).abs() < 1e-9);
@@ -212,7 +213,7 @@ fn bent(table: &mut Table) {
     let bend = 0.5 * (1.0 + NU) * ALPHA * (RISE / 1e-3) * 1e-6;
     let name = "warm above: bent down by (1 + nu) alpha (dT/dy) L^2/2 (m)";
     table.compare(case, name, bend, rise(0.0) - rise(1e-3), 2e-2);
-    // In the plane; elements of one strain are off by that of their size.
+    // In-plane stresses of elements of constant strain have an error of the size of the elements.
     let [xx, yy, xy] = [0, 1, 5].map(|k| {
         let sizes = mesh.stress.iter().map(|s| s[k].abs());
         sizes.fold(0.0, f64::max) / (YOUNG * ALPHA * RISE)
@@ -220,8 +221,8 @@ fn bent(table: &mut Table) {
     assert!(xx < 0.05 && yy < 0.05 && xy < 0.05, "{xx} {yy} {xy}");
 }
 
-/// A free block in space, with damping and theta 1/2: it grows evenly without stress by each
-/// measure of strain, and the same where steps are repeated.
+/// A free block in 3D, with damping and theta 1/2, grows evenly without stress with each measure of
+/// strain, also if steps are repeated.
 fn in_space(table: &mut Table) {
     let case = "thermal/mesh_expansion_3d";
     for strain in ["Small", "Corotational", "NeoHookean"] {
@@ -229,7 +230,7 @@ fn in_space(table: &mut Table) {
         let [mut s, mut again] = [0, 1].map(|_| solid(case, &[&set]));
         while s.state.time < 0.05 {
             s.step().expect("a step");
-            // What a failed trial changes is put back.
+            // The state is restored after a failed trial.
             let tried = again.attempt(|s| s.step().map_or(Err(()), |_| Err::<(), ()>(())));
             assert_eq!(tried.expect("steps that repeat"), Err(()));
             again.step().expect("a step");

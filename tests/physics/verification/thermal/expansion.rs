@@ -2,7 +2,7 @@
 
 use super::{Table, heat, plane, solid, until};
 use fretwork::geometry::space::Dim2;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 
@@ -30,7 +30,8 @@ fn lifted(table: &mut Table) {
     let case = "thermal/expanding_column";
     let mut s = plane(case, &[]);
     until(&mut s, 4.0, |_| ());
-    // What is not yet warm, by the temperature of the grains before the last step.
+    // The part that is not yet warm follows from the temperature of the grains before the last
+    // step.
     let rise = height(&s, "load") - HEIGHT;
     table.compare(
         case,
@@ -74,7 +75,7 @@ fn lifted(table: &mut Table) {
         1e-10,
     );
 
-    // Continued from bytes it has the same bits.
+    // A run continued from saved bytes is bit-identical.
     let mut s = plane(case, &[]);
     until(&mut s, 0.2, |_| ());
     let bytes = encode(&s.state).expect("bytes");
@@ -91,8 +92,8 @@ fn lifted(table: &mut Table) {
     );
 }
 
-/// Where heat makes one step for several of the mechanics, the growth is spread over these, and for
-/// another step the rise is the same.
+/// If one thermal step spans several steps of the mechanics, the growth is spread over them, and
+/// for another step the rise is equal.
 fn several_steps(table: &mut Table) {
     let case = "thermal/expanding_column";
     for sets in [&["heat.every=10"][..], &["time.step=4e-3"]] {
@@ -106,8 +107,8 @@ fn several_steps(table: &mut Table) {
         let rise = last - HEIGHT;
         let quantity = format!("{}: rise (m)", sets[0]);
         table.compare(case, &quantity, ALPHA * RISE * HEIGHT, rise, 5e-5);
-        // The rate at the start is alpha dT L/(0.1766 s), that of one step at a time ten times as
-        // much.
+        // The rate at the start is alpha dT L/(0.1766 s); in a single step it is ten times as
+        // large.
         let rate = ALPHA * RISE * HEIGHT / (7850.0 * 450.0 * 1e-3 / 2e4);
         assert!(fastest < 1.1 * rate, "{}: {fastest} of {rate}", sets[0]);
         let closes = s.energies().relative_residual();
@@ -115,9 +116,9 @@ fn several_steps(table: &mut Table) {
     }
 }
 
-/// The rise does not depend on where contacts begin to be seen, and on the tolerance by no more
-/// than the error of velocities that it allows, which is relative to the velocity that the load
-/// would reach in a step without contacts.
+/// The rise does not depend on the distance at which contacts are detected. It depends on the
+/// tolerance by no more than the permitted error of velocities, which is relative to the velocity
+/// that the load would reach in a step without contacts.
 fn settings(table: &mut Table) {
     let case = "thermal/expanding_column";
     let free_velocity = 1e3 * 1e-3 / 0.1;
@@ -135,8 +136,8 @@ fn settings(table: &mut Table) {
     }
 }
 
-/// In space a cube, and a cluster of eight balls that is as high, lift the load as the column of
-/// disks does.
+/// In 3D a cube, and a cluster of eight balls of equal height, lift the load as the column of disks
+/// does.
 fn solids(table: &mut Table) {
     let case = "thermal/expanding_column";
     let balls: Vec<String> = (0..8)
@@ -184,7 +185,7 @@ fn solids(table: &mut Table) {
 fn held(table: &mut Table) {
     let case = "thermal/held_column";
     let mut s = plane(case, &[]);
-    // Before it stands still, where velocities are rounding.
+    // This is before it comes to rest, where velocities are round-off.
     until(&mut s, 0.8, |_| ());
     let rise = s.temperature(1).expect("a temperature") - 300.0;
     assert!(rise > 98.0, "{rise}");
@@ -194,7 +195,7 @@ fn held(table: &mut Table) {
         table.compare(case, name, force, contact.normal_force, 1e-4);
     }
     let energy = s.energies();
-    // Of four springs.
+    // The stored energy is that of four springs.
     let stored = 4.0 * 0.5 * force * force / 1e6;
     table.compare(
         case,
@@ -223,14 +224,14 @@ fn bonded(table: &mut Table) {
         let apart = (b - a).norm() - 2e-3;
         let name = format!("{coupling}: centres apart by alpha dT d (m)");
         table.compare(case, &name, ALPHA * RISE * 2e-3, apart, 1e-4);
-        // The bond has 1e11 Pa/m on 2 mm: as stretched by the expansion it would store 5.8e-4 J/m.
+        // The bond has 1e11 Pa/m over 2 mm: stretched by the expansion it would store 5.8e-4 J/m.
         let name = format!("{coupling}: energy of the bond (J/m)");
         table.compare(case, &name, 0.0, most, 1e-9);
     }
 }
 
-/// A square on springs between a floor and a load, which friction holds: its corners move outwards
-/// by alpha dT a, against the tangential stiffness of the contacts, 0.8 of the normal one.
+/// A square on springs is held by friction between a floor and a load. Its corners move outwards by
+/// alpha dT a against the tangential stiffness of the contacts, 0.8 of the normal one.
 fn polygon(table: &mut Table) {
     let case = "thermal/expanding_column";
     let sets = [
@@ -272,8 +273,8 @@ fn polygon(table: &mut Table) {
     );
 }
 
-/// First bodies of balls expand about their position, so that what lies on them rises: one disk,
-/// and two of one body that hold a grain between them, on which nothing slides.
+/// First bodies of balls expand about their position, so that bodies on them rise: one disk, and
+/// two disks of one body with a grain between them, on which nothing slides.
 fn first_body(table: &mut Table) {
     let case = "thermal/expanding_column";
     let pin = |balls: &str| {
@@ -291,7 +292,7 @@ fn first_body(table: &mut Table) {
             "heat.bodies={{\"pin\": (store: Lumped(), convection: (coefficient: 1e4, area: {area}, ambient: 400.0)), \"load\": (store: Insulated)}}"
         )
     };
-    // Heights above the centre of the pin.
+    // These are heights above the centre of the pin.
     let between = 3f64.sqrt() * 1e-3;
     let scenes = [
         ("([0.0, 0.0], 1e-3)", 2e-3),
@@ -319,7 +320,7 @@ fn first_body(table: &mut Table) {
         table.compare(case, &name, 1e3 * rise, energy.expansion, 1e-5);
         let closes = energy.relative_residual();
         table.closes(case, "a first body: energy closes", closes, 1e-10);
-        // What sticks does not slide.
+        // Sticking contacts do not slide.
         assert!(energy.friction < 1e-4 * energy.expansion, "{energy:?}");
         let ledger = super::heat(&s).ledger;
         let closes = ledger.relative_residual();

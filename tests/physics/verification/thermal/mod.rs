@@ -1,4 +1,4 @@
-//! Heat and current: `cases/verification/thermal/`.
+//! Heat and current: the cases of `cases/verification/thermal/`.
 
 mod elements;
 mod expansion;
@@ -7,7 +7,7 @@ mod sources;
 use super::{Table, plane, solid, until};
 use fretwork::geometry::space::{Dim3, Space};
 use fretwork::heat::HeatState;
-use fretwork::record::code::{decode, encode};
+use fretwork::record::encoding::{decode, encode};
 use fretwork::step::Simulation;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
@@ -43,7 +43,7 @@ fn temperature<S: Space>(s: &Simulation<S>, body: &str) -> f64 {
     s.temperature(body).expect("a temperature")
 }
 
-/// Nodes of a body.
+/// Surface nodes of a body.
 fn surface<S: Space>(s: &Simulation<S>, body: &str) -> Vec<f64> {
     let body = s.body_named(body).expect("a body of this name");
     let nodes = s.heat().expect("heat").nodes[body].range();
@@ -83,7 +83,7 @@ fn sliding(table: &mut Table) {
     );
 }
 
-/// Shares of all dissipated energies, with bonds, current, convection and an imposed flow.
+/// The sum of all dissipated energies is heat, with bonds, current, convection and an imposed flow.
 fn account(table: &mut Table) {
     let case = "thermal/energy";
     for (theta, every) in [("1.0", "1"), ("0.5", "1"), ("1.0", "7")] {
@@ -111,7 +111,7 @@ fn account(table: &mut Table) {
     continued(case, 0.05, 0.07);
 }
 
-/// A case that is continued from the bytes of its state at a time (s) has the same bits at another.
+/// A case continued from the bytes of its state at a time (s) is bit-identical at a later time.
 fn continued(case: &str, at: f64, end: f64) {
     let mut s = plane(case, &[]);
     until(&mut s, at, |_| ());
@@ -131,7 +131,7 @@ fn half_space(table: &mut Table) {
         let sets = [
             &format!("time.step={step}")[..],
             &format!("heat.theta={theta}"),
-            // the same grid at all steps
+            // The grid is equal for all steps.
             "heat.bodies.rail.store.spacing=1e-6",
             "heat.bodies.rail.store.growth=1.05",
         ];
@@ -148,7 +148,7 @@ fn half_space(table: &mut Table) {
         temperature(&s, "rail") - 300.0,
         1e-2,
     );
-    // The error of the grid is what is left at the smallest steps.
+    // The error of the grid remains at the smallest steps.
     let order = |theta: &str| {
         let [a, b, c] = ["4e-4", "2e-4", "1e-4"].map(|step| rise(step, theta));
         ((a - b) / (b - c)).abs().log2()
@@ -170,8 +170,8 @@ fn half_space(table: &mut Table) {
     );
 }
 
-/// A warm grain on a cold floor, through their contact: T = T_0 + dT exp(-G t/C), of first order in
-/// the step for theta = 1 and of second for 1/2.
+/// A warm grain on a cold floor cools through their contact: T = T_0 + dT exp(-G t/C), of first
+/// order in the step for theta = 1 and of second order for 1/2.
 fn order_in_step(table: &mut Table) {
     let case = "thermal/expanding_column";
     let sets = [
@@ -210,7 +210,7 @@ fn two_half_spaces(table: &mut Table) {
         let name = format!("surface of the {body} (K)");
         table.compare(case, &name, meet, temperature(&s, body), 1e-5);
     }
-    // Over the difference of the temperatures, in the middle of the run too.
+    // The flow is divided by the difference of the temperatures, also in the middle of the run.
     let mut s = plane(case, &[]);
     until(&mut s, 3e-3, |_| ());
     let off = (temperature(&s, "floor") - meet) / 100.0;
@@ -233,7 +233,7 @@ fn cubic(table: &mut Table) {
     let modulus: f64 = 210e9 / (2.0 * (1.0 - 0.09));
     let a = (0.75 * 10.0 * 0.5e-3 / modulus).cbrt();
     let d = 2e-3;
-    // Between two layers in the middle.
+    // The gradient is taken between two layers in the middle.
     let of = |s: &Simulation<Dim3>, z: f64| {
         let near = |b: &usize| (s.positions()[*b].z - z).abs() < 1e-4;
         let layer: Vec<f64> = (0..36)
@@ -267,7 +267,7 @@ fn series_and_parallel(table: &mut Table) {
     let mut s = solid(case, &sets);
     until(&mut s, 4e-2, |_| ());
     let circuit = &heat(&s).circuit;
-    // 9 columns of 5 contacts of 3 S.
+    // There are 9 columns of 5 contacts of 3 S.
     table.compare(
         case,
         "5 in series, 9 in parallel (ohm)",
@@ -313,7 +313,7 @@ fn network(table: &mut Table) {
     let laplacian = matrix.clone();
     let mut right = DVector::<f64>::zeros(n);
     for k in 0..n {
-        // What no path reaches floats.
+        // A node that no path reaches has no defined potential.
         if k == upper || k == lower || laplacian[(k, k)] == 0.0 {
             matrix.row_mut(k).fill(0.0);
             matrix[(k, k)] = 1.0;
@@ -381,7 +381,7 @@ fn wheel_and_rail(table: &mut Table) {
 
 fn run_away(table: &mut Table) {
     let case = "thermal/runaway";
-    // mu = mu_0 + s (T - 300 K), s = 1e-3 and -1e-4 /K; P V = 1 kW, C = 10 J/K.
+    // The closed form has mu = mu_0 + s (T - 300 K), s = 1e-3 and -1e-4 /K; P V = 1 kW, C = 10 J/K.
     let stable = |sets: &[&str]| {
         let mut s = plane(case, sets);
         until(&mut s, 60.0, |_| ());
@@ -411,7 +411,7 @@ fn run_away(table: &mut Table) {
     ];
     let mut s = plane(case, &sets);
     until(&mut s, 40.0, |_| ());
-    // dT/dt = 10 + 0.05 T
+    // The differential equation is dT/dt = 10 + 0.05 T.
     let grown = 200.0 * (2.0f64.exp() - 1.0);
     table.compare(
         case,

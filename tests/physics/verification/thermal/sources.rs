@@ -1,4 +1,4 @@
-//! What is put in where: partition, flash temperatures, start and end of the heat, extremes.
+//! Heat sources: partition, flash temperatures, start and end of the heat, extremes.
 
 use super::super::{Table, plane, solid, until};
 use super::{effusivity, heat, temperature};
@@ -11,8 +11,8 @@ pub fn all(table: &mut Table) {
     start(table);
 }
 
-/// Conductances over 18 decades, steps far beyond the thermal time and far below it, absolute zero,
-/// grains that touch nothing.
+/// Conductances over 18 decades, steps far above and far below the thermal time, absolute zero, and
+/// grains without contacts.
 fn extremes(table: &mut Table) {
     let case = "thermal/cubic";
     for conductance in ["1e-9", "1e-3", "1e3", "1e9"] {
@@ -25,7 +25,7 @@ fn extremes(table: &mut Table) {
             let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
             let mut s = solid(case, &sets);
             until(&mut s, 5e-3, |s| {
-                // What friction and damping put in is below a microkelvin.
+                // The heat of friction and damping is below a microkelvin.
                 let all = heat(s).nodes.iter().map(|n| n.temperature);
                 assert!(
                     all.clone()
@@ -71,7 +71,7 @@ fn extremes(table: &mut Table) {
         temperature(&s, "block"),
         0.0,
     );
-    // Heat that nothing feels changes no bit of the mechanics.
+    // Heat without effect on laws changes no bit of the mechanics.
     let (mut with, mut without) = (
         plane("thermal/energy", &[]),
         plane("thermal/energy", &["heat=None"]),
@@ -85,7 +85,7 @@ fn extremes(table: &mut Table) {
     );
 }
 
-/// Steel that slides on a poor conductor, where contacts conduct nothing.
+/// Steel slides on a poor conductor, and contacts do not conduct.
 const RUBBED: [&str; 5] = [
     "interfaces.0.contact=\"coulomb\"",
     "interfaces.0.parameters.contact={\"mu\": 0.5}",
@@ -94,8 +94,8 @@ const RUBBED: [&str; 5] = [
     "heat.initial=300.0",
 ];
 
-/// The heat of friction goes to the sides in proportion to their effusivities, or in halves, and
-/// all of it where one is insulated.
+/// The heat of friction is split in proportion to the effusivities, or in halves, and goes to one
+/// side if the other is insulated.
 fn partition(table: &mut Table) {
     let case = "thermal/two_half_spaces";
     let (steel, oxide) = (effusivity(), (4.0f64 * 650.0 * 5000.0).sqrt());
@@ -140,9 +140,9 @@ fn partition(table: &mut Table) {
     table.compare(case, "a quarter of it", 0.25, share[0] + share[1], 1e-9);
 }
 
-/// Jaeger's band under each contact: its width is the force over the hardness, it moves at half of
-/// the speed over each body, and the rises in either alone are in parallel; with the clock all of
-/// it is as much slower.
+/// Each contact has Jaeger's band: its width is the force over the hardness, it moves at half of
+/// the speed over each body, and the rises in the two bodies add up in parallel. With the clock it
+/// is slower by the factor of the clock.
 fn flash(table: &mut Table) {
     let case = "thermal/two_half_spaces";
     let (steel, oxide) = (effusivity(), (4.0f64 * 650.0 * 5000.0).sqrt());
@@ -190,7 +190,7 @@ fn flash(table: &mut Table) {
     }
 }
 
-/// Nothing is put in and nothing flows before the heat starts.
+/// Before the heat starts nothing is supplied and nothing flows.
 fn start(table: &mut Table) {
     let case = "thermal/two_half_spaces";
     let mut s = plane(case, &[&RUBBED[..], &["heat.start=5e-4"]].concat());
@@ -206,7 +206,7 @@ fn start(table: &mut Table) {
         heat(&s).ledger.dissipated,
         1e-12,
     );
-    // What cools a body ends with the body.
+    // Convection of a body ends with the body.
     let case = "thermal/runaway";
     let mut s = plane(case, &["bodies.block.vanishes=1.0"]);
     until(&mut s, 1.0, |_| ());

@@ -2,7 +2,7 @@
 
 use super::verdict::{Cause, Expected, Row, Verdict};
 use fretwork::geometry::space::{Space, VectorLike};
-use fretwork::record::Missed;
+use fretwork::record::UnconvergedSteps;
 use fretwork::step::Simulation;
 
 /// Statistics and warnings of a run.
@@ -11,7 +11,7 @@ pub struct Ran {
     /// Number of steps.
     pub steps: u64,
     /// Steps that did not converge.
-    pub missed: Missed,
+    pub missed: UnconvergedSteps,
     /// Message with which the run stopped.
     pub stopped: Option<String>,
     /// Largest number of iterations in a step.

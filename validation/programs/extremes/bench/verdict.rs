@@ -115,7 +115,7 @@ pub type Runs = &'static [(u8, fn() -> Vec<Row>)];
 
 /// Rows of one kind.
 pub struct Group {
-    /// Its name.
+    /// Name of the group.
     pub name: &'static str,
     /// Criterion.
     pub criterion: &'static str,

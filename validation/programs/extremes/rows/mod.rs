@@ -37,6 +37,6 @@ pub const ALL: &[Group] = &[
     packed::TOLERANCE,
 ];
 
-/// What the tests run in place of groups that are not quick.
+/// Groups that the tests run instead of those that are not quick.
 #[allow(dead_code, reason = "the table has the whole groups")]
 pub const IN_THEIR_PLACE: &[Group] = &[time::FEW_LONG_STEPS];

@@ -67,10 +67,10 @@ fn speeds<S: Space>() -> Vec<Row> {
     [
         (1.0, NEAR, HELD),
         (1e2, NEAR, HELD),
-        // Detected at the start of the step.
+        // The pair is detected at the start of the step.
         (1e2, 0.2, HELD),
         (1e3, NEAR, HELD),
-        // Beyond the post within the half step before the first detection.
+        // The ball is beyond the post within the half step before the first detection.
         (1e4, NEAR, reported(&[Passed])),
         (1e5, NEAR, reported(&[Passed])),
     ]

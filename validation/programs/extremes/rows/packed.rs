@@ -58,7 +58,7 @@ fn friction<S: Space>() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(value, HELD, &e),
         };
-        // In 3D down a slope between the axes.
+        // In 3D the slope goes down between the axes.
         let mut slope = S::Vector::zero();
         slope[0] = if S::D == 2 { 1.0 } else { 0.8 };
         if S::D == 3 {

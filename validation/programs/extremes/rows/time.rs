@@ -199,7 +199,7 @@ fn many() -> Vec<Row> {
     let high = 3f64.sqrt() * r;
     let at = |x: f64, up: f64| ball(&place::<Dim2>(x, 0.0, up), r);
     let sketch = Sketch {
-        // Stable from 2 - sqrt 3 = 0.268 on.
+        // The pile is stable for mu above 2 - sqrt 3 = 0.268.
         mu: 0.3,
         bodies: floor::<Dim2>(),
         grains: grains("m0", &[at(0.0, r), at(2.0 * r, r), at(r, r + high)]),

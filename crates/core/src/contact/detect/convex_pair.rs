@@ -2,13 +2,13 @@
 //! per pair.
 
 use super::narrow::{Narrow, Scratch};
-use super::renewal::{Hit, Renewed};
+use super::update::{ContactUpdate, DetectedContact};
 use super::{CollisionScene, SLACK, held};
 use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::passing::{
     PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
 };
-use crate::geometry::convex::seam::{AdjacentPiece, DEEPEST, ball_is_over_seam, leave_seam};
+use crate::geometry::convex::seam::{AdjacentPiece, MAX_SEAM_DEPTH, ball_is_over_seam, leave_seam};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -28,30 +28,30 @@ struct ShapePair<S: Space> {
 }
 
 impl<S: Space> Narrow<'_, S> {
-    /// Renews the contacts of a pair with at least one convex piece.
+    /// Updates the contacts of a pair with at least one convex piece.
     pub(super) fn convex_pair(
         &self,
         name: (u32, u32),
         scratch: &mut Scratch<S>,
-        renewed: &mut Renewed<S>,
+        update: &mut ContactUpdate<S>,
     ) {
-        let held = renewed.old().iter().any(|c| held(self.network, Some(c)));
+        let held = update.old().iter().any(|c| held(self.network, Some(c)));
         scratch.points.clear();
         let pair = if !held && self.far(name) {
             None
         } else {
             let tolerances = ContactTolerances {
-                reach: self.reach(renewed.old()),
+                reach: self.reach(update.old()),
                 slack: SLACK * self.network.alert,
                 held,
             };
             self.contact_points(name, &tolerances, scratch)
         };
         match pair {
-            Some(pair) if !(scratch.points.is_empty() && renewed.old().is_empty()) => {
-                self.create_contacts(&pair, scratch, renewed);
+            Some(pair) if !(scratch.points.is_empty() && update.old().is_empty()) => {
+                self.create_contacts(&pair, scratch, update);
             }
-            _ => renewed.drop_others(|_| false),
+            _ => update.drop_others(|_| false),
         }
     }
 
@@ -97,7 +97,7 @@ impl<S: Space> Narrow<'_, S> {
             return false;
         };
         let apart = shapes.periodic.shortest(x - y);
-        // More than the distance at which a corner still counts as lying on a face.
+        // The limit exceeds the distance at which a corner still counts as lying on a face.
         let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
         apart.dot(&apart) > limit * limit
     }
@@ -208,14 +208,12 @@ impl<S: Space> Narrow<'_, S> {
             out.push(point);
         }
         let own = S::unrotate(&state.rotation[ball.body as usize], &point.normal);
-        let [i, j] = bodies.map(|b| state.position[b as usize]);
         Some(ShapePair {
             name,
             bodies,
             law: laws.get(ball.material, piece.material)?,
             radius: ball.radius_towards(&own, &state.length),
-            // For the candidate, the antagonist's centre may be a periodic image.
-            origins: [centres[0] - apart - i, centres[1] - j],
+            origins: self.origins(bodies, centres, &apart),
         })
     }
 
@@ -226,11 +224,7 @@ impl<S: Space> Narrow<'_, S> {
         tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<S::Vector>>,
     ) -> Option<ShapePair<S>> {
-        let CollisionScene {
-            shapes,
-            bodies: state,
-            laws,
-        } = *self.placed.scene;
+        let CollisionScene { shapes, laws, .. } = *self.placed.scene;
         let [one, other] = indices.map(|k| &shapes.pieces[k]);
         let (bodies, centres) = (
             [one.body, other.body],
@@ -246,7 +240,7 @@ impl<S: Space> Narrow<'_, S> {
         if !(out.is_empty() || tolerances.held) {
             let motion = self.motion(bodies, centres);
             keep_apart(&pair, &motion, out);
-            let deepest = DEEPEST * one.size.min(other.size);
+            let deepest = MAX_SEAM_DEPTH * one.size.min(other.size);
             leave_seam(
                 &pair,
                 &motion,
@@ -255,15 +249,25 @@ impl<S: Space> Narrow<'_, S> {
                 out,
             );
         }
-        let [i, j] = bodies.map(|b| state.position[b as usize]);
         Some(ShapePair {
             name,
             bodies,
             law: laws.get(one.material, other.material)?,
             radius: one.size * other.size / (one.size + other.size),
-            // For the candidate, the antagonist's centre may be a periodic image.
-            origins: [centres[0] - pair.apart - i, centres[1] - j],
+            origins: self.origins(bodies, centres, &pair.apart),
         })
+    }
+
+    /// Returns [`ShapePair::origins`] of two closed shapes with these centres (m), of which the
+    /// candidate's is at `apart` (m) from that of the antagonist or of its nearest periodic image.
+    fn origins(
+        &self,
+        bodies: [u32; 2],
+        centres: [S::Vector; 2],
+        apart: &S::Vector,
+    ) -> [S::Vector; 2] {
+        let [i, j] = bodies.map(|b| self.placed.scene.bodies.position[b as usize]);
+        [centres[0] - *apart - i, centres[1] - j]
     }
 
     /// Creates contacts from the contact points within the alert distance, with the memory of old
@@ -272,7 +276,7 @@ impl<S: Space> Narrow<'_, S> {
         &self,
         pair: &ShapePair<S>,
         scratch: &mut Scratch<S>,
-        renewed: &mut Renewed<S>,
+        update: &mut ContactUpdate<S>,
     ) {
         let (network, origins) = (self.network, pair.origins);
         let Scratch {
@@ -283,7 +287,7 @@ impl<S: Space> Narrow<'_, S> {
             continued,
             ..
         } = scratch;
-        let old = renewed.old();
+        let old = update.old();
         match_old_contacts(old, points, &origins[0], matched, distances);
         selected.clear();
         let pairs = points.iter().copied().zip(matched.iter().copied());
@@ -306,7 +310,7 @@ impl<S: Space> Narrow<'_, S> {
         continued.clear();
         continued.resize(old.len(), false);
         for (m, before) in selected.iter() {
-            let hit = Hit {
+            let found = DetectedContact {
                 key: Key::new(pair.name.0, pair.name.1, m.feature),
                 bodies: pair.bodies,
                 law: pair.law,
@@ -322,12 +326,12 @@ impl<S: Space> Narrow<'_, S> {
             match before {
                 Some(k) => {
                     continued[*k] = true;
-                    renewed.renew(self, *k, &hit);
+                    update.continue_old(self, *k, &found);
                 }
-                None => renewed.add(self, &hit, pair.radius),
+                None => update.add(self, &found, pair.radius),
             }
         }
-        renewed.drop_others(|k| continued[k]);
+        update.drop_others(|k| continued[k]);
     }
 }
 

@@ -13,7 +13,7 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Greatest height of an edge that the solution may have caused, and greatest distance of the piece
-/// below, over the size of the smaller of the two that meet.
+/// below, as fractions of the size of the smaller piece.
 const LOW: f64 = 5e-3;
 const NEAR: f64 = 0.05;
 /// Number of overlaps that may add up to the height of an edge, as in a stack.
@@ -33,9 +33,9 @@ pub struct Impact<S: Space> {
     pub mass: f64,
 }
 
-/// Records bodies that meet such edges in this step, of length `h` from `time` (s). `impact`
-/// returns the impact at a contact, given its index in the network; `None` for compliant ones.
-/// Velocities below the error of a solution at this `tolerance` count as zero.
+/// Records bodies that meet low edges in this step, of length `h` from `time` (s). `impact` returns
+/// the impact at a contact, given its index in the network; `None` for compliant ones. Velocities
+/// below the error of a solution at this `tolerance` count as zero.
 pub fn record_edges<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,

@@ -16,7 +16,7 @@ const PASSED_SPRING: f64 = 1.0;
 /// penetration that can be detected.
 const DETECTABLE: f64 = 0.5;
 
-/// SearchStage of the step at which pairs are examined.
+/// Stage of the step at which pairs are examined.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum SearchStage {
     /// Before the solve, with the free velocities.

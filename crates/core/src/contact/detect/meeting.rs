@@ -25,9 +25,9 @@ pub(super) struct MeetingSearch<'a, S: Space> {
 pub(super) struct Meeting<S: Space> {
     pub names: (u32, u32),
     pub bodies: [u32; 2],
-    /// Fraction of the step after which it meets; `None` if it cannot be followed.
+    /// Fraction of the step after which the pair meets; `None` if the pair cannot be followed.
     pub at: Option<f64>,
-    /// Largest relative displacement of two of its points in the step (m).
+    /// Largest relative displacement of two points of the pair in the step (m).
     pub travel: f64,
     /// Contacts at that time; empty for a pair that is only reported.
     pub contacts: Vec<Contact<S>>,

@@ -11,9 +11,9 @@ mod neighbours;
 mod order;
 mod partners;
 mod prediction;
-mod renewal;
-mod sorted;
+mod sorted_centres;
 mod sweep;
+mod update;
 
 pub use edges::{Impact, record_edges};
 pub use extents::{Extents, fast_motion};
@@ -28,7 +28,7 @@ use crate::geometry::shape::{Ball, Carried, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{any, fill, worth_dividing};
 use neighbours::{NeighbourSearch, joined};
-use renewal::{PlacedScene, renew_contacts};
+use update::{PlacedScene, update_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on
 /// the face.
@@ -72,7 +72,7 @@ impl LawTable {
 pub struct CollisionScene<'a, S: Space> {
     /// Collision shapes.
     pub shapes: &'a Shapes<S>,
-    /// The bodies that carry them.
+    /// Bodies of the shapes.
     pub bodies: &'a Bodies<S>,
     /// Laws of pairs of materials; pairs without one do not touch.
     pub laws: &'a LawTable,
@@ -99,8 +99,9 @@ impl<'a, S: Space> CollisionScene<'a, S> {
         velocities.zip(self.bodies.spin.iter().copied()).collect()
     }
 
-    /// Returns whether a surface rotates, with these velocities or spins of bodies, such that more
-    /// than its frame moves; the vertices of a surface that deforms are watched one by one.
+    /// Returns whether a surface rotates, with these velocities and spins of the bodies, so that
+    /// its points move relative to its origin. Surfaces that deform do not count: their vertices
+    /// are tracked one by one.
     fn sweeps(&self, surface: &Carried<S>, spin: &S::Spin) -> bool {
         let own = S::unrotate_spin(&self.bodies.rotation[surface.body as usize], spin);
         !surface.shape.deforms() && !surface.shape.is_unchanged_by(&own)
@@ -121,8 +122,8 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 /// Finds the contacts of this step at the current positions and carries their memory over.
 ///
 /// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `time` is
-/// that at the start of the step and `h` that since the last detection (s). Pairs are divided among
-/// several threads if `parallel`; the results are the same.
+/// the time at the start of the step and `h` the time since the last detection (s). Pairs are
+/// divided among several threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
@@ -146,7 +147,7 @@ pub fn detect<S: Space>(
         time,
         h,
     };
-    renew_contacts(network, &placed, parallel);
+    update_contacts(network, &placed, parallel);
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
@@ -260,7 +261,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     if bond.intact() {
         // The contact of an intact bond ends only beyond the end of a surface.
         let (torn, damage) = (bond.energy, bond.damage);
-        bond.life.fracture += torn;
+        bond.energies.fracture += torn;
         network.torn_energy += torn;
         network.memory[law].broken += 1;
         network.broken_pairs.insert(contact.key.pair());

@@ -1,7 +1,7 @@
 //! Narrow phase: gaps and normals of candidate pairs, and transfer of contact memory.
 
 use super::partners::Partners;
-use super::renewal::{Hit, PlacedScene, Renewed};
+use super::update::{ContactUpdate, DetectedContact, PlacedScene};
 use super::{CollisionScene, held};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
@@ -19,7 +19,7 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) frames: &'a [(S::Vector, S::Rotation)],
     /// Data of the balls.
     pub(super) ball_data: &'a [BallData<S>],
-    /// All pairs, and the pieces in them by their partners.
+    /// All candidate pairs, and the pieces that each ball or piece may touch.
     pub(super) pairs: &'a [(u32, u32)],
     pub(super) partners: &'a Partners,
 }
@@ -30,7 +30,7 @@ pub(super) struct Scratch<S: Space> {
     pub(super) points: Vec<ContactPoint<S::Vector>>,
     /// The old contact that each point continues.
     pub(super) matched: Vec<Option<usize>>,
-    /// Distance of a point from an old contact (m), and their places.
+    /// Distances between points and old contacts (m), with the indices of both.
     pub(super) distances: Vec<(f64, usize, usize)>,
     /// Points that become contacts, and the old contacts that they continue.
     pub(super) selected: Vec<(ContactPoint<S::Vector>, Option<usize>)>,
@@ -55,31 +55,31 @@ impl<S: Space> Default for Scratch<S> {
 }
 
 impl<S: Space> Narrow<'_, S> {
-    /// Renews the contacts of pairs, in order; `contacts` are the old ones from the first pair to
+    /// Updates the contacts of pairs, in order; `contacts` are the old ones from the first pair to
     /// the last.
-    pub(super) fn renew<'c>(
+    pub(super) fn update<'c>(
         &self,
         pairs: &[(u32, u32)],
         contacts: &'c mut [Contact<S>],
-    ) -> Renewed<'c, S> {
-        let mut renewed = Renewed::new(contacts);
+    ) -> ContactUpdate<'c, S> {
+        let mut update = ContactUpdate::new(contacts);
         let mut scratch = Scratch::default();
         for &(a, b) in pairs {
             if (a | b) & Key::PIECE != 0 {
-                renewed.begin_pair((a, b));
-                self.convex_pair((a, b), &mut scratch, &mut renewed);
+                update.begin_pair((a, b));
+                self.convex_pair((a, b), &mut scratch, &mut update);
             } else if b & Key::SURFACE == 0 {
-                self.ball_pair(a, b, &mut renewed);
+                self.ball_pair(a, b, &mut update);
             } else {
-                renewed.begin_pair((a, b));
-                self.ball_on_surface(a, b, &mut scratch, &mut renewed);
+                update.begin_pair((a, b));
+                self.ball_on_surface(a, b, &mut scratch, &mut update);
             }
         }
-        renewed.end();
-        renewed
+        update.end();
+        update
     }
 
-    fn ball_pair(&self, a: u32, b: u32, renewed: &mut Renewed<S>) {
+    fn ball_pair(&self, a: u32, b: u32, update: &mut ContactUpdate<S>) {
         let (p, q) = (&self.ball_data[a as usize], &self.ball_data[b as usize]);
         let CollisionScene {
             shapes,
@@ -87,7 +87,7 @@ impl<S: Space> Narrow<'_, S> {
             laws,
         } = *self.placed.scene;
         let d = shapes.periodic.shortest(p.centre - q.centre);
-        let old = renewed.old_of_balls((a, b));
+        let old = update.old_of_balls((a, b));
         let sum = p.radius + q.radius;
         if sum == 0.0 {
             // Points of surfaces do not touch each other.
@@ -97,8 +97,8 @@ impl<S: Space> Narrow<'_, S> {
         let limit = sum + self.network.alert;
         if squared >= limit * limit {
             match old {
-                Some(k) if !held(self.network, Some(renewed.contact(k))) => {
-                    return renewed.drop_old(k);
+                Some(k) if !held(self.network, Some(update.contact(k))) => {
+                    return update.drop_old(k);
                 }
                 None => return,
                 _ => {}
@@ -143,7 +143,7 @@ impl<S: Space> Narrow<'_, S> {
             let carrier = bodies.carrier(ball.body as usize);
             ball.radius == 0.0 && carrier.is_some_and(|c| c.grain)
         };
-        let hit = Hit {
+        let found = DetectedContact {
             key: Key::new(a, b, 0),
             bodies: [p.body, q.body],
             law,
@@ -157,12 +157,18 @@ impl<S: Space> Narrow<'_, S> {
             },
         };
         match old {
-            Some(k) => renewed.renew_in_place(self, k, &hit),
-            None => renewed.add(self, &hit, size),
+            Some(k) => update.continue_in_place(self, k, &found),
+            None => update.add(self, &found, size),
         }
     }
 
-    fn ball_on_surface(&self, a: u32, b: u32, scratch: &mut Scratch<S>, renewed: &mut Renewed<S>) {
+    fn ball_on_surface(
+        &self,
+        a: u32,
+        b: u32,
+        scratch: &mut Scratch<S>,
+        update: &mut ContactUpdate<S>,
+    ) {
         let network = self.network;
         let CollisionScene {
             shapes,
@@ -177,9 +183,9 @@ impl<S: Space> Narrow<'_, S> {
             apart = shapes.periodic.shortest(apart);
         }
         let local = S::unrotate(&rotation, &apart);
-        let mut margin = self.reach(renewed.old());
+        let mut margin = self.reach(update.old());
         if ball.radius == 0.0 && !surface.shape.is_closed() {
-            margin = margin.max(self.reach_from_behind(renewed.old()));
+            margin = margin.max(self.reach_from_behind(update.old()));
         }
         let closest_points = &mut scratch.closest_points;
         closest_points.clear();
@@ -222,11 +228,11 @@ impl<S: Space> Narrow<'_, S> {
         };
         let continued = &mut scratch.continued;
         continued.clear();
-        continued.resize(renewed.old().len(), false);
+        continued.resize(update.old().len(), false);
         let (i, j) = (ball.body as usize, surface.body as usize);
         let grain = |b: usize| bodies.carrier(b).is_some_and(|c| c.grain);
         let twice = ball.radius == 0.0 && grain(i) && grain(j);
-        // Between two grains both have contact points, each with half of the area.
+        // Two grains both have contact points on each other, each with half of the area.
         let share = if twice {
             f64::powf(0.5, 1.0 / (S::D - 1) as f64)
         } else {
@@ -235,7 +241,7 @@ impl<S: Space> Narrow<'_, S> {
         let size = ball.size(&bodies.length);
         // A bond whose facet is no longer touched continues at the nearest one, even if that had a
         // contact without a bond.
-        let old = renewed.old();
+        let old = update.old();
         let mut successor = None;
         let mut lost_bond = None;
         if let Some(feature) = nearest_feature {
@@ -248,7 +254,7 @@ impl<S: Space> Narrow<'_, S> {
         }
         for closest in closest_points.iter() {
             // The old contact with the same feature, or else one whose feature is no longer found.
-            let old = renewed.old();
+            let old = update.old();
             let matched = match lost_bond {
                 Some(k) if successor == Some(closest.feature) => Some(k),
                 _ => {
@@ -275,7 +281,7 @@ impl<S: Space> Narrow<'_, S> {
             let still = bodies.immovable(j) && bodies.spin[j] == S::Spin::zero();
             let centred = ball.offset == S::Vector::zero() && bodies.length[i] == ball.radius;
             let arm = self.placed.centres[a as usize] - normal * ball.radius - bodies.position[i];
-            let hit = Hit {
+            let found = DetectedContact {
                 key: Key::new(a, b, u64::from(closest.feature)),
                 bodies: [ball.body, surface.body],
                 law,
@@ -289,11 +295,11 @@ impl<S: Space> Narrow<'_, S> {
                 },
             };
             match matched {
-                Some(k) => renewed.renew(self, k, &hit),
-                None => renewed.add(self, &hit, size),
+                Some(k) => update.continue_old(self, k, &found),
+                None => update.add(self, &found, size),
             }
         }
-        renewed.drop_others(|k| continued[k]);
+        update.drop_others(|k| continued[k]);
     }
 
     /// Returns the search distance (m) for a point that the errors of the solution have pressed
@@ -341,8 +347,8 @@ pub(super) struct BallData<S: Space> {
     radius: f64,
     body: u32,
     material: u16,
-    /// Whether it is a whole body with isotropic response, or belongs to a body at rest: contacts
-    /// of two such balls are central.
+    /// Whether the ball is a whole body with isotropic response, or belongs to a body at rest:
+    /// contacts of two such balls are central.
     simple: bool,
 }
 

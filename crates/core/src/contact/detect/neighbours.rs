@@ -1,6 +1,6 @@
 //! Broad phase: pairs of shapes within the range of the neighbour list.
 
-use super::sorted::Sorted;
+use super::sorted_centres::SortedCentres;
 use super::{CollisionScene, frame};
 use crate::contact::network::{Key, Network};
 use crate::geometry::grid::{self, Balls};
@@ -15,7 +15,7 @@ const COST: f64 = 20.0;
 /// The neighbour list is built for this multiple of the spin of rotating surfaces.
 const TURNING: f64 = 1.5;
 
-/// Additional range around a body (m): that of its motion if it is fast, otherwise zero.
+/// Additional range around a body (m): its displacement in a step if it is fast, otherwise zero.
 fn widening(widened: &[f64], body: u32) -> f64 {
     widened.get(body as usize).copied().unwrap_or(0.0)
 }
@@ -55,7 +55,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             centres,
             radii,
             reach: network.alert + network.skin,
-            still: scene.bodies.still(),
+            still: scene.bodies.fixed_bodies(),
             parallel,
         }
     }
@@ -117,7 +117,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         let (surfaces, periodic) = (&self.scene.shapes.surfaces, &self.scene.shapes.periodic);
         let all: Vec<u32> = (0..self.radii.len() as u32).collect();
         let any_closed = surfaces.iter().any(|s| s.shape.is_closed());
-        let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, periodic));
+        let sorted = any_closed.then(|| SortedCentres::new::<S>(self.centres, periodic));
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
         let divide = threads::worth_dividing(self.parallel, surfaces.len() * all.len(), COST);
         let size_of_task = threads::chunk_size(CHUNK);

@@ -16,15 +16,15 @@ pub(super) struct PredictedMeeting {
     pub bodies: [u32; 2],
     /// Fraction of the step after which they meet.
     pub at: f64,
-    /// Largest relative displacement of two of their points in the step (m).
+    /// Largest relative displacement of two points of the pair in the step (m).
     pub travel: f64,
-    /// Range of its contacts among those found.
+    /// Range of the pair's contacts in the list of contacts found.
     pub contacts: Range<usize>,
 }
 
-/// Marks the contacts of meetings that follow an impact of one of their bodies, and of those that
-/// would require a body to pass through another one that was stopped on its way. Meetings closer
-/// together than `fast` (m) count as simultaneous.
+/// Marks the contacts of meetings that follow an impact of one of their bodies, and of meetings
+/// that would require a body to pass through another one that was stopped on its way. Meetings
+/// closer together than `fast` (m) count as simultaneous.
 pub(super) fn mark_later<S: Space>(
     found: &mut [Contact<S>],
     meetings: &[PredictedMeeting],

@@ -19,15 +19,15 @@ use crate::threads;
 const HEADROOM: f64 = 1.5;
 /// Pairs per task.
 const CHUNK: usize = 256;
-/// Time of a pair (ns).
+/// Approximate time to examine a pair (ns).
 const COST: f64 = 20.0;
-/// Time of a comparison of a body's displacement (ns).
+/// Approximate time to compare the displacement of a body (ns).
 const COMPARE: f64 = 2.0;
-/// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a
-/// constant.
+/// Limits on the pairs of a widened neighbour list: a multiple of the pairs of the plain list, plus
+/// a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
-/// StepMotion of a step: velocities (m/s, rad/s) of all bodies, its start and length (s).
+/// Motion in a step: velocities (m/s, rad/s) of all bodies, start and length of the step (s).
 pub struct StepMotion<'a, S: Space> {
     /// Velocities and spins of the bodies.
     pub velocities: &'a [(S::Vector, S::Spin)],
@@ -40,7 +40,7 @@ pub struct StepMotion<'a, S: Space> {
 }
 
 /// Returns whether no two bodies can move fast relative to each other in the step, so that no
-/// contact has to be predicted. Cheap. `velocity` gives velocity and spin of a body.
+/// contact has to be predicted. The test is cheap. `velocity` gives velocity and spin of a body.
 pub fn is_calm<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,

@@ -11,7 +11,7 @@ use super::CollisionScene;
 use super::extents::Extents;
 use crate::contact::network::{Contact, ContactGeometry, Key, ShapeIndex};
 use crate::geometry::convex::{
-    ContactPoint, ContactTolerances, ConvexCollider, Core, CorePair, DEEP,
+    ContactPoint, ContactTolerances, ConvexCollider, Core, CorePair, MAX_CORNER_DEPTH,
 };
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
@@ -26,7 +26,8 @@ pub(super) struct PairSweep<'a, S: Space> {
     pub alert: f64,
 }
 
-/// Collision shape of a body; of a ball also its size, of a piece half its smallest thickness (m).
+/// Collision shape of a body; for a ball also its size, for a piece half its smallest thickness
+/// (m).
 #[derive(Clone, Copy)]
 enum Shape<'a, S: Space> {
     Ball(&'a Ball<S>, f64),
@@ -155,7 +156,7 @@ const STRIDE: f64 = 0.25;
 const DETECTABLE: f64 = 0.5;
 /// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
-/// Smallest such increment, as a fraction of the detectable penetration.
+/// Smallest evaluated increment, as a fraction of the detectable penetration.
 const LEAST: f64 = 0.01;
 /// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
@@ -251,7 +252,7 @@ impl<'a, S: Space> PairSweep<'a, S> {
     fn detectable(&self, shape: &Shape<S>, surface: &Carried<S>, half_thickness: f64) -> f64 {
         match shape {
             Shape::Ball(ball, _) => 2.0 * ball.radius + self.reach(surface, half_thickness),
-            Shape::ConvexCollider(piece, _) => DEEP * piece.bound + piece.rounding,
+            Shape::ConvexCollider(piece, _) => MAX_CORNER_DEPTH * piece.bound + piece.rounding,
             Shape::Surface(_) => f64::INFINITY,
         }
     }
@@ -432,8 +433,8 @@ impl<'a, S: Space> PairSweep<'a, S> {
         }
     }
 
-    /// Adds the contacts of a pair that meets after the fraction `s` of the step, as constraints of
-    /// the step: at its end the bodies must lie on their sides of the common tangent planes.
+    /// Adds the contacts of a pair that meets after the fraction `s` of the step as constraints: at
+    /// the end of the step each body must lie on its side of the common tangent plane.
     pub fn contacts(&self, pair: &SweptPair<S>, s: f64, law: u16, out: &mut Vec<Contact<S>>) {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();

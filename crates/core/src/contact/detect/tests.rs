@@ -40,7 +40,7 @@ fn predict(s: &mut Simulation<Dim2>, velocities: &[Vector2<f64>]) {
     add_predicted(&mut s.state.network, &scene, &motion);
 }
 
-/// A pair whose bond broke is known as such in each new contact: when it has separated and meets
+/// A pair whose bond broke is marked as such in each new contact: when it has separated and meets
 /// again, and in a contact that is predicted.
 #[test]
 fn a_broken_pair_is_remembered_when_it_meets_again() {
@@ -60,7 +60,7 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     }
     let broken: Vec<bool> = s.state.network.contacts.iter().map(|c| c.broken).collect();
     assert_eq!(broken, [false, true]);
-    // Beyond the alert distance, and fast.
+    // The disk is beyond the alert distance, and fast.
     s.state.bodies.position[2].x = 2.1;
     s.state.bodies.position[1].x = 1.0 + 1e-6;
     find(&mut s);
@@ -78,13 +78,13 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     assert_eq!(predicted.len(), 1);
     assert_eq!(predicted[0].bodies, [1, 2]);
     assert!(predicted[0].broken);
-    // The reduced radius of two disks of 0.5 m, which any contact of them has.
+    // The reduced radius of two disks of 0.5 m.
     assert_eq!(predicted[0].radius, 0.25);
 }
 
 /// A point of a body of 1 m moves fast towards a chain, which is detected from behind only within
-/// the alert distance of 1 mm: its motion is followed in parts of that distance, however large its
-/// body is, and it meets the chain where it reaches it.
+/// the alert distance of 1 mm. The motion of the point is followed in increments of that distance,
+/// whatever the size of its body, and the point meets the chain where it reaches it.
 #[test]
 fn a_point_is_followed_in_parts_of_the_alert_distance() {
     for (height, depth) in [(0.02, 0.5), (0.3, 0.01), (0.7, 2.0)] {
@@ -120,7 +120,7 @@ fn disk_between_flanks() -> Simulation<Dim2> {
     touching(s)
 }
 
-/// A disk lies on both flanks of a groove of a right angle, on each of them on a face.
+/// A disk in a right-angled groove touches both flanks, each on its face.
 #[test]
 fn a_disk_in_a_groove_touches_two_faces() {
     let mut s = disk_between_flanks();
@@ -132,7 +132,7 @@ fn a_disk_in_a_groove_touches_two_faces() {
         assert!((contact.normal - Vector2::new(side * half, half)).norm() < 1e-15);
         assert!(contact.gap.abs() < 1e-15 && !contact.vertex_contact);
         assert_eq!((contact.radius, contact.bodies), (0.5, [0, 1]));
-        // From either centre to the same point of the flank.
+        // The arms go from either centre to one point of the flank.
         let place = Vector2::new(-side * 0.5 * half, 0.5 * half);
         let from_disk = place - s.state.bodies.position[0];
         assert!((contact.arms[0] - from_disk).norm() < 1e-15);
@@ -140,8 +140,8 @@ fn a_disk_in_a_groove_touches_two_faces() {
     }
 }
 
-/// A bond holds its contact however far its bodies move apart in a step, whichever of the two
-/// moves; without a bond the contact ends at the alert distance.
+/// A bond holds its contact however far its bodies move apart in a step, whichever body moves;
+/// without a bond the contact ends at the alert distance.
 #[test]
 fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
     for bonded in [true, false] {
@@ -173,8 +173,8 @@ fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
     }
 }
 
-/// Two disks, then two squares on bodies whose centres are beside theirs, in a row along x:
-/// neighbours touch, each square at its own place.
+/// Two disks, then two squares on bodies whose centres are not those of the squares, in a row along
+/// x: neighbours touch, each square at its own place.
 #[test]
 fn disks_and_squares_touch_where_they_stand() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);

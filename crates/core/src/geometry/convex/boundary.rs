@@ -17,7 +17,7 @@ pub struct Boundary<V> {
 
 impl Boundary<[f64; 3]> {
     /// Returns the lines of the core in a dimension with a rounding (m), for figures: one around it
-    /// in 2D, one around each face in 3D. None of corners and faces that are no valid core.
+    /// in 2D, one around each face in 3D. Empty if corners and faces do not form a valid core.
     pub fn outline(&self, dimension: usize, rounding: f64) -> Vec<Vec<[f64; 3]>> {
         match dimension {
             2 => self.outline_in::<Dim2>(rounding),
@@ -38,7 +38,7 @@ impl Boundary<[f64; 3]> {
 }
 
 impl Polygon {
-    /// Returns its corners.
+    /// Returns the corners of the core.
     pub(super) fn as_boundary(&self) -> Boundary<Vector2<f64>> {
         Boundary {
             corners: self.points().to_vec(),
@@ -49,7 +49,7 @@ impl Polygon {
     /// Builds a polygon or segment from its corners.
     ///
     /// # Errors
-    /// Why the corners are invalid.
+    /// Returns why the corners are invalid.
     pub(super) fn of_boundary(boundary: Boundary<Vector2<f64>>) -> Result<Self, String> {
         if let [from, to] = boundary.corners[..] {
             let apart = (to - from).norm();
@@ -68,7 +68,7 @@ impl Polygon {
 const OUT: f64 = 1e-6;
 
 impl Polyhedron {
-    /// Returns its corners and faces.
+    /// Returns corners and faces of the core.
     pub(super) fn as_boundary(&self) -> Boundary<Vector3<f64>> {
         Boundary {
             corners: self.points().to_vec(),
@@ -79,7 +79,7 @@ impl Polyhedron {
     /// Builds a polyhedron or segment from its corners and faces.
     ///
     /// # Errors
-    /// Why they are invalid.
+    /// Returns why corners and faces are invalid.
     pub(super) fn of_boundary(boundary: Boundary<Vector3<f64>>) -> Result<Self, String> {
         let Boundary { corners, faces } = boundary;
         if corners.iter().flatten().any(|x| !x.is_finite()) {

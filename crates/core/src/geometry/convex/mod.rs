@@ -51,7 +51,7 @@ pub struct ConvexCollider<S: Space> {
 /// Depth up to which a corner behind a skin, a profile or facets is still pushed out, relative to
 /// the size of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another
 /// part of the surface.
-pub const DEEP: f64 = 0.25;
+pub const MAX_CORNER_DEPTH: f64 = 0.25;
 
 /// Least cosine of the angle between a side and a surface that deforms for the side to touch its
 /// vertices; a steeper side touches by its corners.
@@ -150,7 +150,7 @@ pub struct CorePair<'a, S: Space> {
 }
 
 impl<S: Space> CorePair<'_, S> {
-    /// Sum of the rounding radii (m).
+    /// Returns the sum of the rounding radii (m).
     pub fn thickness(&self) -> f64 {
         self.roundings[0] + self.roundings[1]
     }
@@ -222,8 +222,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns the name of a feature of a pair of cores after candidate and antagonist are swapped.
     fn feature_from_other_side(feature: u64) -> u64;
 
-    /// Signed distance of a point from the core (m, negative inside) and the unit normal at the
-    /// nearest point of it.
+    /// Returns the signed distance of a point from the core (m, negative inside) and the unit
+    /// normal at the nearest point.
     fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
 
     /// Returns half of the smallest width along its face normals (m); zero for a segment.
@@ -250,6 +250,6 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Builds a core from corners and faces.
     ///
     /// # Errors
-    /// Why they are invalid.
+    /// Returns why the boundary is invalid.
     fn bounded_by(boundary: Boundary<S::Vector>) -> Result<Self, String>;
 }

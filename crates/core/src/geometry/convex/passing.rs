@@ -11,14 +11,15 @@ use super::{ContactPoint, ContactTolerances, Core, CorePair};
 use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Room that a plane must leave more than the nearest points do, as a fraction of the slack: half
-/// of a closing that is shallower.
+/// Additional room that a plane must leave compared with the nearest points, as a fraction of the
+/// slack; half of the closing distance if that is smaller.
 pub(super) const ALIKE: f64 = 1e-3;
 
-/// Depth of a closing that is one of rounding, as a fraction of the slack.
+/// Closing distance that is rounding, as a fraction of the slack.
 const ROUNDING: f64 = 1e-9;
 
-/// Share of a distance by which a place may be in front of a plane to count as behind it.
+/// Fraction of a distance by which a position may be in front of a plane and still count as behind
+/// it.
 const BEHIND: f64 = 1e-9;
 
 /// Relative motion of a pair in a step, to first order.
@@ -40,21 +41,21 @@ impl<S: Space> PairMotion<S> {
         }
     }
 
-    /// Displacement of a point of the candidate relative to one of the antagonist, each from its
-    /// centre (m).
+    /// Returns the displacement of a point of the candidate relative to one of the antagonist, each
+    /// given from its centre (m).
     fn of(&self, on_candidate: &S::Vector, on_antagonist: &S::Vector) -> S::Vector {
         let [turn, other] = &self.turns;
         self.shift + S::spin_velocity(turn, on_candidate) - S::spin_velocity(other, on_antagonist)
     }
 
-    /// Gap that is left at a point at the end of the step (m), and by how much it changes.
+    /// Returns the gap at a point at the end of the step (m), and its change.
     pub(super) fn left(&self, point: &ContactPoint<S::Vector>, apart: &S::Vector) -> [f64; 2] {
         let moved = self.of(&(point.on_candidate - *apart), &point.on_antagonist);
         let change = point.normal.dot(&moved);
         [point.gap + change, change]
     }
 
-    /// Gap that is left at a point at the end of the step (m), if it closes in the step.
+    /// Returns the gap at a point at the end of the step (m), if it closes in the step.
     fn closing(
         &self,
         point: &ContactPoint<S::Vector>,
@@ -67,7 +68,7 @@ impl<S: Space> PairMotion<S> {
     }
 }
 
-/// Gap that a plane must leave at the end of the step to take the place of points that leave
+/// Returns the gap that a plane must leave at the end of the step to replace points that leave
 /// `least` (m).
 fn room(least: f64, slack: f64) -> f64 {
     (least + ALIKE * slack).min(0.5 * least)
@@ -76,9 +77,9 @@ fn room(least: f64, slack: f64) -> f64 {
 /// A face of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PairFace {
-    /// Whether it is one of the candidate.
+    /// Whether the face belongs to the candidate.
     pub of_candidate: bool,
-    /// Index.
+    /// Index of the face.
     pub face: usize,
 }
 
@@ -93,15 +94,15 @@ pub(super) struct MovingPair<'a, S: Space> {
     motion: &'a PairMotion<S>,
 }
 
-/// A direction from the antagonist to the candidate, and where the two are along it.
+/// A direction from the antagonist to the candidate, with the positions of both along it.
 struct Plane<V> {
     normal: V,
-    /// Gap along it (m).
+    /// Gap along the direction (m).
     gap: f64,
-    /// Face of which it is the normal.
+    /// Face that has this normal.
     face: Option<PairFace>,
-    /// The point of the candidate that is lowest along it, from the antagonist's centre, without
-    /// its rounding (m).
+    /// Point of the candidate that is lowest along the direction, from the antagonist's centre,
+    /// without rounding radius (m).
     lowest: V,
 }
 
@@ -119,8 +120,8 @@ impl<'a, S: Space> MovingPair<'a, S> {
         self.roundings[0] + self.roundings[1]
     }
 
-    /// Gap along a direction now (m), and the point of the candidate that is lowest along it;
-    /// `None` where it is less than `least`.
+    /// Returns the current gap along a direction (m), and the point of the candidate that is lowest
+    /// along it; `None` where the gap is less than `least`.
     pub(super) fn gap(&self, normal: &S::Vector, least: f64) -> Option<(f64, S::Vector)> {
         let [a, b] = self.corners;
         let top = b.iter().map(|q| normal.dot(q));
@@ -139,7 +140,8 @@ impl<'a, S: Space> MovingPair<'a, S> {
         Some((gap, lowest))
     }
 
-    /// Lowest coordinate of the candidate and highest of the antagonist along a direction now (m).
+    /// Returns the lowest coordinate of the candidate and the highest of the antagonist along a
+    /// direction (m).
     pub(super) fn ends(&self, normal: &S::Vector) -> [f64; 2] {
         let ([a, b], roundings) = (self.corners, self.roundings);
         let low = a.iter().map(|p| normal.dot(&(*p + self.apart)));
@@ -150,7 +152,7 @@ impl<'a, S: Space> MovingPair<'a, S> {
         ]
     }
 
-    /// The gap that is left along a direction at the end of the step (m).
+    /// Returns the gap along a direction at the end of the step (m).
     pub(super) fn left(&self, normal: &S::Vector) -> f64 {
         let ([a, b], [turn, other]) = (self.corners, &self.motion.turns);
         let shift = self.apart + self.motion.shift;

@@ -22,8 +22,8 @@ const ROUNDING: f64 = 1e-12;
 pub struct Polygon {
     points: Vec<V>,
     normals: Vec<V>,
-    /// Least distance of a side from the origin (m), slightly less for rounding; none if that is
-    /// outside. Rotation keeps it.
+    /// Smallest distance of a side from the origin (m), slightly reduced for rounding; `None` if
+    /// the origin is outside. A rotation keeps it.
     inner: f64,
     /// Distance of the farthest corner from the origin (m), up to rounding.
     far: f64,
@@ -175,7 +175,8 @@ impl Polygon {
         self.points.len() == 2 || self.normals[self.facing(normal)].dot(normal) < -FACING
     }
 
-    /// Returns the two ends of a side (m).
+    /// The point is outside, beyond the ends of that side: the nearest of all sides and corners
+    /// counts.
     pub fn side(&self, k: usize) -> (V, V) {
         let next = if k + 1 == self.points.len() { 0 } else { k + 1 };
         (self.points[k], self.points[next])
@@ -248,7 +249,7 @@ impl Polygon {
             }
         }
         if best.0.is_infinite() {
-            // On a corner: the normal between those of its two sides.
+            // The point is on a corner: the normal is between those of its two sides.
             return (0.0, self.normals[deepest], Some(deepest));
         }
         best

@@ -20,7 +20,7 @@ pub fn points_on_line(pair: &CorePair<Dim2>, face: PairFace, out: &mut Vec<Conta
         (b, a, 1.0)
     };
     let normal = own.normals()[face.face];
-    // Places relative to the centre of the side's polygon.
+    // Positions are relative to the centre of the side's polygon.
     let along = |p: &V| (p + apart * sign - own.points()[face.face]).dot(&normal);
     let heights = other.points().iter().map(along).enumerate();
     let Some((corner, height)) = heights.min_by(|x, y| x.1.total_cmp(&y.1)) else {

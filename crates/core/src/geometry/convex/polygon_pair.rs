@@ -245,7 +245,7 @@ struct OverlapEnd {
     share: f64,
 }
 
-/// One end or two.
+/// One or two ends of an overlap.
 enum OverlapEnds {
     One(OverlapEnd),
     Two([OverlapEnd; 2]),
@@ -288,7 +288,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         of_lead: false,
         share: 0.0,
     };
-    // Where the opposite side is above a corner of the reference side.
+    // Returns the point of the opposite side above a corner of the reference side.
     let over = |t: f64, corner: usize| {
         let s = ((t - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
         let at = low.1 + (high.1 - low.1) * s;
@@ -370,7 +370,7 @@ mod tests {
         out
     }
 
-    /// Random convex polygon with corners on an ellipse.
+    /// Returns a random convex polygon with corners on an ellipse.
     fn random(rng: &mut Pcg64) -> Polygon {
         loop {
             let n = rng.random_range(3..9);
@@ -389,7 +389,7 @@ mod tests {
         }
     }
 
-    /// Distance of two disjoint polygons over every pair of sides.
+    /// Returns the distance of two disjoint polygons from every pair of sides.
     fn brute(a: &Polygon, b: &Polygon, apart: V) -> f64 {
         let mut best = f64::INFINITY;
         let mut one = |p: V, (from, to): (V, V)| {

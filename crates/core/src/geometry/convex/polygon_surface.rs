@@ -2,7 +2,7 @@
 //! surface's faces and corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
-use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
+use super::{ContactPoint, ContactTolerances, MAX_CORNER_DEPTH, STEEPEST};
 use crate::geometry::shape::{ClosestPoint, Surface};
 use crate::geometry::space::Dim2;
 use nalgebra::Vector2;
@@ -27,7 +27,7 @@ pub fn contact_points(
 ) {
     let first = out.len();
     let reach = tolerances.reach + rounding;
-    let deep = reach.max(DEEP * (polygon.farthest() + rounding));
+    let deep = reach.max(MAX_CORNER_DEPTH * (polygon.farthest() + rounding));
     let n = polygon.points().len();
     let mut closest_points: Vec<ClosestPoint<V>> = Vec::new();
     for (k, point) in polygon.points().iter().enumerate() {

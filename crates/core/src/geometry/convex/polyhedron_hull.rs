@@ -27,7 +27,7 @@ pub enum PolyhedronError {
     /// Fewer than four points.
     #[error("a polyhedron needs at least four points, got {0}")]
     TooFew(usize),
-    /// More edges than names of contact points can distinguish.
+    /// The polyhedron has more edges than names of contact points can distinguish.
     #[error("a polyhedron has at most {MAX_EDGES} edges, got {0}; take fewer points")]
     TooMany(usize),
     /// A coordinate is not finite.

@@ -17,9 +17,9 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// Two axes count as equally good within this fraction of the slack,
+/// Fraction of the slack within which two axes count as equally good.
 const ALIKE: f64 = 1e-3;
-/// plus, for rounding, this fraction of the distance of the centres.
+/// Fraction of the distance of the centres that is added to the slack for rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// Finds the contact points of two polyhedra, in the order of their features.
@@ -97,7 +97,7 @@ enum Closest {
 }
 
 impl CorePair<'_, Dim3> {
-    /// Takes a face of one of the two as the reference face.
+    /// Uses a face of one of the two as the reference face.
     fn lead(&self, PairFace { of_candidate, face }: PairFace) -> Lead<'_> {
         let ([a, b], apart) = (self.cores, self.apart);
         let (own, other, apart) = if of_candidate {
@@ -162,7 +162,7 @@ impl CorePair<'_, Dim3> {
         if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
             let near = nearest(a, b, &self.apart);
             let distance = near.difference.norm();
-            // Beside the face by at most the slack.
+            // `beside`: the nearest point is beside the face by at most the slack.
             let beside = best > 0.0
                 && distance * distance - best * best <= tolerances.slack * tolerances.slack
                 && !points.is_empty();
@@ -284,7 +284,7 @@ fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, 
         let mut lowest = f64::INFINITY;
         for p in to.points() {
             lowest = lowest.min(p.dot(n));
-            // Not better than another face: the remaining corners can only lower it.
+            // This face is not better than another: the remaining corners can only lower its value.
             if first + lowest <= best.0 {
                 break;
             }
@@ -304,7 +304,7 @@ fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, 
 struct Crossing {
     /// Signed distance along the axis (m).
     depth: f64,
-    /// From `b` to `a`.
+    /// Unit normal from `b` to `a`.
     normal: V,
     /// Nearest points of the two lines (m).
     points: [V; 2],
@@ -388,9 +388,9 @@ fn nearest_on_lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
 /// Nearest points of the edges of two polyhedra.
 struct NearestEdgePoints {
     edges: [usize; 2],
-    /// On `a` and on `b` (m).
+    /// Nearest points on `a` and on `b` (m).
     points: [V; 2],
-    /// From `b` to `a` (m).
+    /// Difference of the points, from `b` to `a` (m).
     difference: V,
 }
 

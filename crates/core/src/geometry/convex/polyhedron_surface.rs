@@ -7,7 +7,7 @@
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::is_between_normals;
-use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
+use super::{ContactPoint, ContactTolerances, MAX_CORNER_DEPTH, STEEPEST};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{ClosestPoint, Surface};
 use crate::geometry::space::Dim3;
@@ -38,7 +38,7 @@ pub fn contact_points(
         at,
         rounding,
         reach: tolerances.reach + rounding,
-        deep: DEEP * size,
+        deep: MAX_CORNER_DEPTH * size,
         same: SAME * size,
     };
     placed.corners(surface, !facets.is_empty(), out);

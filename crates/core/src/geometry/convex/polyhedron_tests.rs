@@ -77,7 +77,7 @@ fn random(rng: &mut Pcg64) -> Polyhedron {
         .turned(&turn)
 }
 
-/// Distance by the GJK algorithm of the library.
+/// Returns the distance by the GJK algorithm of the library parry.
 fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let of = |p: &Polyhedron| {
         let points: Vec<Vector> = p
@@ -93,7 +93,8 @@ fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
         .distance
 }
 
-/// Smallest depth over all face normals and all products of edges (separating axes), negative.
+/// Returns the smallest depth over all face normals and all products of edges (separating axes),
+/// negative.
 fn depth(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let edges = |p: &Polyhedron| -> Vec<V> {
         (0..p.topology().edges.len())
@@ -196,8 +197,8 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
         assert!((p.normal - V::z()).norm() < 1e-15 && (p.gap - 0.05).abs() < 1e-14);
         assert!((PI * p.share * p.share - 1.0).abs() < 1e-13);
     }
-    // Of equal width: no corner is outside the other face by more than the slack; names do not
-    // depend on the noise.
+    // The bodies have equal width: no corner is outside the other face by more than the slack, and
+    // names do not depend on the noise.
     let names = |points: &[ContactPoint<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
     let known = names(&met(&top, &top, V::new(0.0, 0.0, 2.0), [0.0; 2], &FINE));
     for shift in [0.0, 1e-12, -1e-9, 5e-7] {
@@ -264,7 +265,7 @@ fn capsules_side_by_side_crossed_and_on_a_box() {
     let points = met(&across, &lying, V::new(0.2, 0.4, 0.25), [0.1, 0.1], &FINE);
     assert!(points.len() == 1 && (points[0].gap - 0.05).abs() < 1e-15);
     assert!((points[0].normal - V::z()).norm() < 1e-14);
-    // In one plane, end to end and far from the intersection of the lines.
+    // The edges are in one plane, end to end and far from the intersection of their lines.
     let points = met(&across, &lying, V::new(1.1, 1.12, 0.0), [0.1, 0.05], &FINE);
     assert_eq!(points.len(), 1);
     assert!((points[0].gap + 0.15 - 0.1f64.hypot(0.12)).abs() < 1e-14);
@@ -276,14 +277,14 @@ fn capsules_side_by_side_crossed_and_on_a_box() {
             .iter()
             .all(|m| (m.gap - 0.05).abs() < 1e-14 && m.normal == V::z())
     );
-    // Standing on it: the lower end.
+    // The capsule stands on the block: its lower end touches.
     let standing = lying.turned(&UnitQuaternion::from_scaled_axis(V::y() * FRAC_PI_2));
     let points = met(&standing, &block, V::new(0.2, 0.1, 1.62), [0.1, 0.0], &FINE);
     assert!(
         points.len() == 1 && (points[0].gap - 0.02).abs() < 1e-14,
         "{points:?}"
     );
-    // Through it.
+    // The capsule passes through the block.
     let points = met(&standing, &block, V::new(0.2, 0.49, 0.0), [0.1, 0.0], &FINE);
     let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
     assert!((least + 0.11).abs() < 1e-14, "{points:?}");
@@ -410,8 +411,8 @@ fn a_box_over_a_ridge_touches_along_it() {
 fn a_ball_shaped_corner_in_a_valley_touches_both_sides() {
     let valley = floor(1.0);
     let block = Polyhedron::cuboid([1.0, 1.0, 1.0]);
-    // Its lower right edge is near both sides of the bend: 0.05 above the floor, and equally far
-    // from the slope.
+    // The lower right edge of the block is near both sides of the bend: 0.05 above the floor, and
+    // equally far from the slope.
     let right = 0.5 + 0.05 * (2f64.sqrt() - 1.0);
     let points = on(&block, &valley, V::new(-right, 0.2, 0.55), 0.0);
     let flat = points

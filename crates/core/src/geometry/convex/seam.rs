@@ -14,7 +14,7 @@ use crate::geometry::space::{Space, VectorLike};
 
 /// Greatest depth below a face at which a pair still lies on it, relative to the size of the
 /// smaller piece: the ordinary overlap of springs.
-pub const DEEPEST: f64 = 0.05;
+pub const MAX_SEAM_DEPTH: f64 = 0.05;
 
 /// Cosine of the angle from which a face differs from that of a contact.
 const OTHER: f64 = 0.99;
@@ -47,7 +47,7 @@ impl<S: Space> AdjacentPiece<'_, S> {
         self.core.outward(&(*place - self.at)).0 - self.rounding
     }
 
-    /// The side of a contact point that it may cover (m).
+    /// Returns the position of a contact point on the side that the piece may cover (m).
     fn place(&self, point: &ContactPoint<S::Vector>) -> S::Vector {
         if self.of_candidate {
             point.on_candidate
@@ -60,7 +60,8 @@ impl<S: Space> AdjacentPiece<'_, S> {
         self.distance(&self.place(point)) <= slack
     }
 
-    /// Whether a direction from the antagonist to the candidate leads from a point into the piece.
+    /// Returns whether a direction from the antagonist to the candidate leads from a point into the
+    /// piece.
     fn blocks(&self, point: &ContactPoint<S::Vector>, normal: &S::Vector, slack: f64) -> bool {
         let outward = if self.of_candidate { -1.0 } else { 1.0 };
         let ahead = self.place(point) + *normal * (outward * OPEN * slack);
@@ -134,13 +135,13 @@ pub fn leave_seam<'a, S: Space + 'a>(
     }
 }
 
-/// An edge at which two pieces meet: one of the two lies on a third piece, whose face continues
-/// that of the other one.
+/// An edge at which two pieces meet: one of them lies on a third piece, whose face continues that
+/// of the other.
 #[derive(Clone, Copy, Debug)]
 pub struct SeamEdge<S: Space> {
-    /// Side of a key of the piece that the body lies on.
+    /// Side of a key of the piece on which the body lies.
     pub below: u32,
-    /// Whether it is adjacent to the candidate; the antagonist then lies on it.
+    /// Whether that piece is adjacent to the candidate; the antagonist then lies on it.
     pub of_candidate: bool,
     /// Normal of the faces, from the antagonist to the candidate.
     pub normal: S::Vector,

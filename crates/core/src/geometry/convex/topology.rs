@@ -18,7 +18,7 @@ pub struct Topology {
 /// An edge: two corners and the faces on both sides; a segment has no faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// From and to.
+    /// Corners at the start and the end of the edge.
     pub corners: [u32; 2],
     /// The face oriented along the edge, and the one oriented against it.
     pub faces: Option<[u32; 2]>,

@@ -2,15 +2,15 @@
 
 use super::*;
 
-/// The weights of a point of a chain on another one; both go along the same line, the points
-/// against it.
+/// Returns the weights of a point of a chain on another chain; both follow the same line, the first
+/// in the opposite direction.
 fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)>> {
     star_on_chain(points, k, vertices)?
         .faced()
         .map(|f| f.weights)
 }
 
-/// The facets at that point, with the overlapping facets of the other surface.
+/// Returns the facets at that point, with the overlapping facets of the other surface.
 fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     let at = |j: usize| [points[j] - points[k], 0.0];
     let before = k.checked_sub(1).map(|b| ([at(k), at(b), [0.0; 2]], 0));
@@ -23,7 +23,7 @@ fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     Some(star)
 }
 
-/// Points of equal worn depth, each for its length of the surface, give equal depths at all
+/// Points of equal worn depth, each acting on its length of the surface, give equal depths at all
 /// vertices of meshes of any sizes.
 #[test]
 fn an_even_depth_stays_even() {
@@ -52,8 +52,8 @@ fn an_even_depth_stays_even() {
     }
 }
 
-/// A point beside a surface faces what its facets face of it, up to half of one, and a linear
-/// function is met at the point.
+/// A point beside a surface faces the part that its facets face, down to half of a facet, and a
+/// linear function is reproduced at the point.
 #[test]
 fn a_point_beyond_the_end_faces_what_its_facets_face() {
     let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
@@ -84,7 +84,7 @@ fn two_layers_have_no_mean_place() {
     assert_eq!(star.faced(), None);
 }
 
-/// A facet that is turned away is left out: a corner of which one side goes up.
+/// A facet that is turned away is left out, at a corner with one side that goes up.
 #[test]
 fn a_facet_that_is_turned_away_faces_nothing() {
     let own = [
@@ -104,9 +104,9 @@ fn a_facet_that_is_turned_away_faces_nothing() {
     assert!(mean.abs() < 1e-14, "{weights:?}");
 }
 
-/// Triangles over a square whose lines have these places, by their corners, all anticlockwise;
-/// diagonals alternate.
-fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
+/// Returns triangles over a square whose grid lines have these positions, by their corners, all
+/// anticlockwise; diagonals alternate.
+fn grid(lines: &[f64]) -> (Vec<TangentialPoint>, Vec<[u32; 3]>) {
     let n = lines.len() as u32;
     let at = lines.iter().flat_map(|y| lines.iter().map(|x| [*x, *y]));
     let mut triangles = Vec::new();
@@ -128,13 +128,13 @@ fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
     (at.collect(), triangles)
 }
 
-/// The weights of a point of one grid on another, and its tributary area.
+/// Returns the weights of a point of one grid on another, and its tributary area.
 fn on_grid(
-    (points, own): &(Vec<Along>, Vec<[u32; 3]>),
+    (points, own): &(Vec<TangentialPoint>, Vec<[u32; 3]>),
     k: usize,
-    (vertices, triangles): &(Vec<Along>, Vec<[u32; 3]>),
+    (vertices, triangles): &(Vec<TangentialPoint>, Vec<[u32; 3]>),
 ) -> (Option<Vec<(u32, f64)>>, f64) {
-    let from = |p: Along| [p[0] - points[k][0], p[1] - points[k][1]];
+    let from = |p: TangentialPoint| [p[0] - points[k][0], p[1] - points[k][1]];
     let about = own.iter().filter_map(|t| {
         let place = t.iter().position(|p| *p == k as u32)?;
         let mut corners = t.map(|p| from(points[p as usize]));
@@ -152,8 +152,8 @@ fn on_grid(
     (star.faced().map(|f| f.weights), area)
 }
 
-/// A uniform pressure p on the points, p times the tributary length of each, is a uniform
-/// pressure on the vertices; and the mean place of linear coordinates is that of the point.
+/// A uniform pressure p on the points, p times the tributary length of each, gives a uniform
+/// pressure on the vertices; and the mean position, in linear coordinates, is that of the point.
 #[test]
 fn a_uniform_pressure_stays_uniform() {
     let points = [0.0, 0.3, 0.5, 0.9, 1.3, 1.6];
@@ -175,7 +175,7 @@ fn a_uniform_pressure_stays_uniform() {
     }
 }
 
-/// A uniform pressure between two planes of triangles, which cross in any way, stays uniform.
+/// A uniform pressure between two triangulated planes with any crossing of triangles stays uniform.
 #[test]
 fn a_uniform_pressure_stays_uniform_in_space() {
     let few = grid(&[0.0, 0.3, 0.5, 0.9, 1.6]);
@@ -217,8 +217,8 @@ fn points_of_matching_meshes_face_one_vertex() {
     }
 }
 
-/// Where the other surface ends below facets of a point, linear functions are still met at the
-/// point, and weights stay small.
+/// Where the other surface ends below the facets of a point, linear functions are still reproduced
+/// at the point, and weights stay small.
 #[test]
 fn the_end_of_a_surface_below_the_facets_of_a_point() {
     let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();

@@ -39,8 +39,8 @@ fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
     }
 }
 
-/// The ends of a surface that deforms are where its loads end and not its solid: a point that its
-/// strain carries beyond them by less than half a segment is above the line of the last segment, or
+/// A deformable surface ends where its loads end, not where its solid ends: a point that strain
+/// moves beyond its end by less than half a segment is above the line of the last segment, or
 /// behind it. The corner of a profile has a side.
 #[test]
 fn a_surface_goes_on_beyond_its_ends() {

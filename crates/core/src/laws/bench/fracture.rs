@@ -1,7 +1,7 @@
-//! Fracture energy of a bond under any law: what the law declares, or the work of a slow pull to
-//! failure.
+//! Fracture energy of a bond under any law: the value that the law declares, or the work of a slow
+//! pull to failure.
 
-use super::{Answer, Bench, Motion};
+use super::{Bench, BenchMotion, BenchOutputs};
 use crate::laws::{Interface, LawError};
 use fretwork_abi::FLAG_BREAKS;
 
@@ -11,20 +11,20 @@ const FIRST: f64 = 1e-13;
 const LAST: f64 = 1.0;
 /// Speed of a slow pull (m/s).
 const SLOW: f64 = 1e-6;
-/// Ratio of the speeds, and relative difference of the energies, at which a law is taken to depend
-/// on the speed.
+/// Ratio of the speeds at which a bond is pulled, and relative difference of the energies above
+/// which the law counts as dependent on speed.
 const FASTER: f64 = 1e6;
 const SAME: f64 = 1e-3;
-/// Share of the peak traction below which a bond that does not break counts as broken; the tail of
-/// MAC has then released all but a thousandth.
+/// Share of the peak traction below which a bond that does not break counts as broken. At this
+/// share the tail of the law MAC has released all but a thousandth of its energy.
 const LITTLE: f64 = 1e-5;
 /// Steps of a pull up to just beyond its peak.
 const STEPS: usize = 2000;
 
 impl Interface {
-    /// Fracture energy (J/m^2) that the laws of the interface declare for an opening at an angle
-    /// (rad) from the normal: the damage law's, or without one the cohesion law's. `None` where
-    /// none is declared, and where both laws damage the bond.
+    /// Returns the fracture energy (J/m^2) that the laws declare for an opening at an angle (rad)
+    /// from the normal: the value of the damage law, or of the cohesion law if there is no damage
+    /// law. `None` where no value is declared, and where both laws damage the bond.
     pub fn declared_fracture_energy(&self, angle: f64) -> Option<f64> {
         let cohesion = self.cohesion()?;
         let law = match self.damage() {
@@ -35,17 +35,17 @@ impl Interface {
         law.plugin.fracture_energy(&law.parameters, angle)
     }
 
-    /// Whether laws that act on bonds have internal variables, so that the energy to break one
-    /// depends on its history.
+    /// Returns whether laws that act on bonds have internal variables, so that the energy to break
+    /// a bond depends on its history.
     pub fn bonds_remember(&self) -> bool {
         self.variables_of_bonds().next().is_some()
     }
 }
 
 impl Bench {
-    /// Work (J/m^2) of opening a new bond slowly, at an angle (rad) from the normal, until it
-    /// breaks: all of it is released by damage, or by damping, which is negligible at this speed.
-    /// `None` where the bond does not break within 1 m.
+    /// Returns the work (J/m^2) of opening a new bond slowly, at an angle (rad) from the normal,
+    /// until it breaks. All of it is released by damage, or by damping, which is negligible at this
+    /// speed. `None` where the bond does not break within 1 m.
     ///
     /// # Errors
     /// The law's error.
@@ -53,8 +53,8 @@ impl Bench {
         self.work_to_break(&Direction::at(angle), SLOW, 0.0)
     }
 
-    /// Breaks a bond that opens and turns in proportion: to an opening normal and across (m), with
-    /// a twist and a bending (rad).
+    /// Breaks a bond whose normal and tangential opening (m), twist and bending (rad) grow in
+    /// proportion.
     ///
     /// # Errors
     /// The law's error.
@@ -66,8 +66,8 @@ impl Bench {
         self.work_to_break(&Direction { opening, rotation }, SLOW, 0.0)
     }
 
-    /// Whether the energy to break a new bond depends on neither speed nor pressure, by pulls in
-    /// both modes.
+    /// Returns whether the energy to break a new bond depends on neither speed nor pressure, as
+    /// tried by pulls in both modes.
     ///
     /// # Errors
     /// The law's error.
@@ -88,7 +88,7 @@ impl Bench {
         Ok(true)
     }
 
-    /// Largest traction of a slow pull (Pa).
+    /// Returns the largest traction of a slow pull (Pa).
     fn peak(&mut self, to: &Direction) -> Result<f64, LawError> {
         let pull = self.pull(coarse(), to, SLOW, 0.0)?;
         Ok(pull.peak)
@@ -127,12 +127,12 @@ impl Bench {
         for u in openings {
             let ([n, t], [twist, bend]) = (to.opening, to.rotation);
             let opening = [u * n, u * t, 0.0];
-            let motion = Motion {
+            let motion = BenchMotion {
                 opening,
                 rotation: [u * twist, u * bend, 0.0],
                 gap: opening[0],
                 pressure,
-                ..Motion::default()
+                ..BenchMotion::default()
             };
             let answer = self.step(&mut state, &[motion], (u - before) / speed)?[0];
             let traction = to.along(&answer);
@@ -150,8 +150,8 @@ impl Bench {
     }
 }
 
-/// The direction of a pull: opening normal and across, twist and bending, per unit of the way. The
-/// way is the opening where that is of length one.
+/// Direction of a pull: normal and tangential opening, twist and bending, per unit of the path
+/// length. For an opening of unit length the path length is the opening.
 #[derive(Clone, Copy, Debug)]
 struct Direction {
     opening: [f64; 2],
@@ -159,7 +159,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// Without rotation, at an angle (rad) from the normal.
+    /// Returns an opening without rotation, at an angle (rad) from the normal.
     fn at(angle: f64) -> Self {
         Self {
             opening: [angle.cos(), angle.sin()],
@@ -167,9 +167,9 @@ impl Direction {
         }
     }
 
-    /// Traction along the opening, with the moment along the rotation: work per unit of the way
-    /// (J/m^2).
-    fn along(&self, answer: &Answer) -> f64 {
+    /// Returns the traction along the opening plus the moment along the rotation: work per unit of
+    /// the path length (J/m^2).
+    fn along(&self, answer: &BenchOutputs) -> f64 {
         let ([n, t], [twist, bend]) = (self.opening, self.rotation);
         answer.traction[0] * n
             + answer.traction[1] * t
@@ -183,14 +183,14 @@ impl Direction {
 struct BondPull {
     /// Work (J/m^2).
     work: f64,
-    /// Largest traction (Pa), and its opening (m).
+    /// Largest traction (Pa), and the opening at which it occurs (m).
     peak: f64,
     peak_at: f64,
     /// Opening at which the bond broke (m).
     broken: Option<f64>,
 }
 
-/// Openings over all scales.
+/// Returns openings over all scales.
 fn coarse() -> impl Iterator<Item = f64> {
     let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
     (0..=steps).map(|k| FIRST * 1.05f64.powi(k))

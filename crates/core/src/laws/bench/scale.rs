@@ -1,7 +1,7 @@
 //! Characteristic scales of a bond under any law: stiffness, strength, and the openings at peak
 //! traction and at failure, found by driving new bonds on the bench from 0.1 pm to 1 m.
 
-use super::{Bench, Motion};
+use super::{Bench, BenchMotion};
 use crate::laws::LawError;
 
 /// First opening of a search (m).
@@ -18,8 +18,8 @@ const LITTLE: f64 = 0.01;
 pub struct Mode {
     /// Slope of the traction at the origin (Pa/m).
     pub stiffness: f64,
-    /// Largest traction (Pa) and its opening (m); `None` where traction rises to the end of the
-    /// search.
+    /// Largest traction (Pa) and the opening at which it occurs (m); `None` where traction rises to
+    /// the end of the search.
     pub peak: Option<(f64, f64)>,
     /// Opening (m) at which damage reaches 1, or beyond which the traction stays below a hundredth
     /// of the peak; `None` where neither happens.
@@ -38,16 +38,16 @@ pub struct BondScale {
 /// Direction of opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OpeningDirection {
-    /// Along the normal.
+    /// Motion along the normal.
     Normal,
-    /// Along a tangent.
+    /// Motion along a tangent.
     Shear,
 }
 
 impl OpeningDirection {
-    fn motion(self, opening: f64) -> Motion {
+    fn motion(self, opening: f64) -> BenchMotion {
         let k = usize::from(self == Self::Shear);
-        let mut motion = Motion::default();
+        let mut motion = BenchMotion::default();
         motion.opening[k] = opening;
         motion.gap = motion.opening[0];
         motion
@@ -100,7 +100,8 @@ impl Mode {
             points.chain(finely).chain(tail),
             true,
         )?;
-        // Two small openings: the damping traction is the same in both at equal speed, and cancels.
+        // Two small openings at the same speed have the same damping traction, which cancels in the
+        // difference.
         let small = [5e-4, 1e-3].map(|x| x * about);
         let start = path(bench, direction, speed, small.into_iter(), false)?;
         let stiffness = match start[..] {
@@ -159,9 +160,9 @@ fn broken(points: &[PathPoint]) -> Option<f64> {
 /// The law's error.
 pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, LawError> {
     let mut state = [bench.fresh()];
-    let touch = Motion {
+    let touch = BenchMotion {
         pressure: 1e6,
-        ..Motion::default()
+        ..BenchMotion::default()
     };
     let mut most = bench.step(&mut state, &[touch], 1.0)?[0].strength[0];
     let mut gap = FIRST;
@@ -181,7 +182,8 @@ pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, La
 mod tests {
     use super::*;
 
-    /// A path ends in failure with full damage, or with less than a hundredth of what it carried.
+    /// A path ends in failure at full damage, or where the traction is less than a hundredth of its
+    /// peak.
     #[test]
     fn a_path_is_broken_where_it_ends_in_failure() {
         let carries = (1.0, 100.0, 0.0);
@@ -193,7 +195,7 @@ mod tests {
             assert_eq!(broken(&[(0.0, 0.0, 0.0), carries, last]), end);
             assert_eq!(peak(&[(0.0, 0.0, 0.0), carries, last]), Some(carries));
         }
-        // What never carried cannot fail.
+        // A bond that never carried a traction cannot fail.
         assert_eq!(broken(&[(1.0, 0.0, 1.0)]), None);
         assert_eq!(broken(&[]), None);
     }

@@ -1,12 +1,12 @@
 //! The spring of a compliant contact under any law: its force at an overlap, and the overlap under
 //! a force.
 
-use super::{Bench, Motion};
+use super::{Bench, BenchMotion};
 use crate::laws::{Call, LawError};
 
-/// Smallest and largest overlap of a search, over the reduced radius.
+/// Smallest and largest overlap of a search, as fractions of the reduced radius.
 const RANGE: [f64; 2] = [1e-15, 1e3];
-/// Bisections of the logarithm of the overlap: a relative error of 1e-9.
+/// Number of bisections of the logarithm of the overlap: a relative error of 1e-9.
 const BISECTIONS: u32 = 40;
 
 /// The spring at an overlap (N, N/m; per metre of depth in 2D).
@@ -14,9 +14,9 @@ const BISECTIONS: u32 = 40;
 pub struct SpringAnswer {
     /// Normal force.
     pub force: f64,
-    /// Its slope.
+    /// Slope of the normal force.
     pub stiffness: f64,
-    /// Slope of the tangential force without any; 0 for a rigid tangential contact.
+    /// Slope of the tangential force at zero force; 0 for a rigid tangential contact.
     pub tangential: f64,
 }
 
@@ -30,9 +30,9 @@ impl Bench {
             return Ok(None);
         }
         let state = self.fresh();
-        let motion = Motion {
+        let motion = BenchMotion {
             gap: -overlap,
-            ..Motion::default()
+            ..BenchMotion::default()
         };
         let info = crate::laws::StepInfo {
             dimension: self.dimension,

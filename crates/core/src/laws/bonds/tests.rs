@@ -1,4 +1,4 @@
-//! The energies of a bond over a step whose motion and impulses are given.
+//! Energies of a bond over a step whose motion and impulses are given.
 
 use super::*;
 use crate::geometry::space::Dim2;
@@ -16,10 +16,9 @@ const INFO: StepInfo = StepInfo {
     correction: 0.0,
 };
 
-/// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 over
-/// a step at half of the final forces, k A x/2, while the contact presses, slides and rolls with
-/// friction: what the bond stores is k A x^2/2 of each, and the work of friction is none of its
-/// own.
+/// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 in a
+/// step at half of the final forces, k A x/2, while the contact presses, slides and rolls with
+/// friction. The bond stores k A x^2/2 of each motion, and none of the work of friction.
 #[test]
 fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     let (k, area) = (2.0, 1.5);
@@ -33,7 +32,7 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     network.contacts.push(Contact { slot, ..contact });
 
     let h = INFO.h;
-    // Impulses of the bond, against its openings, and those of the contact beside them.
+    // Impulses of the bond, against its openings, and the impulses of the contact.
     let elastic = x.map(|x| -h * k * area * 0.5 * x);
     let (pressed, friction, rolling) = (0.25, -0.5, -0.75);
     let normal = Vector2::new(0.0, 1.0);
@@ -82,20 +81,20 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     let bond = &network.memory[0].bonds[0];
     assert_eq!((bond.opening_n, bond.opening_t.x), (x[0], x[1]));
     assert_eq!(network.memory[0].rotations[0].x, x[2]);
-    assert_eq!(bond.life.work, stored);
+    assert_eq!(bond.energies.work, stored);
     assert_eq!(bond.energy, stored.iter().sum::<f64>());
-    assert_eq!((bond.life.viscous, bond.life.fracture), (0.0, 0.0));
+    assert_eq!((bond.energies.viscous, bond.energies.fracture), (0.0, 0.0));
     // Friction acts against the motion: -p u.
     let rubbed = -friction * x[1] / h - rolling * spin;
-    assert_eq!(bond.life.friction, rubbed);
+    assert_eq!(bond.energies.friction, rubbed);
     assert_eq!(totals.friction, rubbed);
     assert_eq!(network.contacts[0].friction_work, rubbed);
     assert_eq!(network.dissipation.as_ref().unwrap()[0].friction, rubbed);
     assert_eq!(network.contacts[0].moment.x, elastic[2] + rolling);
 }
 
-/// A step that stands for a number of cycles adds that number times the damage of one, up to all of
-/// it.
+/// A step that represents a number of cycles adds that number times the damage of one cycle, at
+/// most up to full damage.
 #[test]
 fn damage_of_a_step_counts_for_all_its_cycles() {
     for (cycles, damage, broken) in [(1.0, 0.25, 0), (2.0, 0.375, 0), (10.0, 1.0, 1)] {
@@ -105,7 +104,7 @@ fn damage_of_a_step_counts_for_all_its_cycles() {
         let slot = network.memory[0].allocate(true, 0.0, 1.0, &[]);
         let contact = contact([0, 1]);
         network.contacts.push(Contact { slot, ..contact });
-        // From 1/8 to 1/4 in a cycle.
+        // Damage grows from 1/8 to 1/4 in a cycle.
         let memory = &mut network.memory[0];
         memory.rotates = false;
         (memory.bonds[0].damage, memory.bonds[0].step_damage) = (0.125, 0.125);
@@ -134,7 +133,7 @@ fn damage_grows_to_one_at_most() {
     assert_eq!(damage, [0.5, 0.5, 0.5, 1.0]);
 }
 
-/// (1 - D)^m at D = 0.75, also where the power is a root.
+/// (1 - D)^m at D = 0.75, also for an exponent m = 1/2.
 #[test]
 fn what_damage_leaves_is_a_power() {
     for (m, left) in [(1.0, 0.25), (2.0, 0.0625), (3.0, 0.015625), (0.5, 0.5)] {

@@ -1,4 +1,4 @@
-//! What laws remember at the end of a step.
+//! Internal variables of laws at the end of a step.
 
 use super::*;
 use crate::contact::{ContactHeat, ContactTemperature, MaterialPair};
@@ -60,9 +60,9 @@ fn commit(law: &Interface, network: &mut Network<Dim2>) {
     evaluator.commit(laws, history, network, &step).unwrap();
 }
 
-/// Where heat is computed a law of transport that counts the time counts each step, also those in
-/// which no heat flows; without heat it is not called. What it conducts is asked for where heat
-/// flows.
+/// A transport law with an internal variable that counts steps is called in each step where heat is
+/// computed, also in steps in which no heat flows, and not at all without heat. Its conductance is
+/// used where heat flows.
 #[test]
 fn a_law_of_transport_remembers_steps_without_a_flow_of_heat() {
     let law = interface([growing()]);

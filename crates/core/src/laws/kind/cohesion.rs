@@ -1,5 +1,5 @@
-//! Cohesion laws: traction against opening. Those with an opening make bonds, whose part of a step
-//! is in `laws::bonds`; the others attract at every contact.
+//! Cohesion laws: traction against opening. Laws with an opening make bonds, which
+//! `laws::bonds` updates in a step; the others attract at every contact.
 
 use super::{
     CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_record, fits_always, templates,

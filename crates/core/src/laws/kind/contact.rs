@@ -1,5 +1,5 @@
-//! Contact laws: friction, restitution, rolling. The host takes their answers into the local form
-//! of each contact, see `laws::prepare`.
+//! Contact laws: friction, restitution, rolling. Their outputs enter the local form of each
+//! contact, see `laws::prepare`.
 
 use super::{
     CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_record, fits_always, templates,

@@ -1,4 +1,4 @@
-//! Damage laws: how a bond weakens. They see what the undamaged bond would carry and store, see
+//! Damage laws: how a bond weakens. They receive traction and energy of the undamaged bond, see
 //! `laws::bonds`.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_record, templates};
@@ -20,7 +20,7 @@ pub static SPEC: KindSpec = KindSpec {
     fits,
     commit: crate::commit_hook!(commit_record),
     certificate: CertificateSpec {
-        // Energies of both shapes: (1 - D) and (1 - D)^2.
+        // The partners have the two forms of the stored energy, with (1 - D) and (1 - D)^2.
         partners: &[
             &[(Kind::COHESION, "elastic-bond")],
             &[(Kind::COHESION, "mac")],
@@ -53,5 +53,5 @@ fn fits(law: &Interface) -> Result<(), LawError> {
         ),
         Some(_) => return Ok(()),
     };
-    Err(LawError::Pairing { reason })
+    Err(LawError::Incompatible { reason })
 }

@@ -1,11 +1,11 @@
-//! Kinds of interface laws: a registry with one entry a kind.
+//! Kinds of interface laws: a registry with one entry per kind.
 //!
-//! An interface is a list of slots, at most one law of each kind. All that depends on the kind
-//! stands in its [`KindSpec`]: the word that cases, file names and the command line use, the code
-//! of the plugin table, the functions a law must have, at which contacts it acts, what it writes,
-//! what it needs of the other slots, what the host does with it at the end of a step, how it is
-//! certified, and the text that `fretwork law new` begins with. A further kind is one such entry,
-//! here or in another crate by [`Kind::register`].
+//! An interface is a list of slots, with at most one law of each kind. Everything that depends on
+//! the kind is in its [`KindSpec`]: the keyword that cases, file names and the command line use,
+//! the code in the plugin table, the functions that a law must implement, the contacts on which it
+//! acts, its outputs, its requirements on the other slots, what the host does with it at the end of
+//! a step, how it is certified, and the templates of `fretwork law new`. A further kind is one such
+//! entry, here or in another crate by [`Kind::register`].
 
 pub mod cohesion;
 pub mod contact;
@@ -30,54 +30,55 @@ use std::sync::{PoisonError, RwLock};
 #[derive(Clone, Copy)]
 pub struct Kind(&'static KindSpec);
 
-/// What is known of a kind.
+/// Properties of a kind.
 pub struct KindSpec {
     /// The word used in cases, file names and on the command line: a-z.
     pub word: &'static str,
-    /// Code in the plugin table; also the place in the order of evaluation.
+    /// Code in the plugin table, which also gives the order of evaluation.
     pub code: i32,
-    /// What laws of this kind are for, in one line.
+    /// Purpose of laws of this kind, in one line.
     pub doc: &'static str,
-    /// Functions that a law of this kind must have.
+    /// Functions that a law of this kind must implement.
     pub functions: &'static [Call],
-    /// At which contacts laws of this kind act.
+    /// Contacts on which laws of this kind act.
     pub domain: Domain,
     /// The columns that a call writes.
     pub outputs: for<'a> fn(&'a mut Outputs, Call) -> Vec<Output<'a>>,
-    /// What it needs of the other slots of its interface.
+    /// Check of the other slots of the interface.
     pub fits: fn(&Interface) -> Result<(), LawError>,
-    /// What the host does at the end of a step with the answers of a law of this kind that acts on
-    /// contacts, not on bonds. Laws without a `prepare` are given slip and friction work beside the
-    /// state of the contacts; the others are called only if they have internal variables.
+    /// Function that uses the outputs of a law of this kind at the end of a step, for laws that act
+    /// on contacts, not on bonds. Laws without a `prepare` receive slip and friction work in
+    /// addition to the state of the contacts; the others are called only if they have internal
+    /// variables.
     pub commit: CommitHook,
-    /// How laws of this kind are certified.
+    /// Certification of laws of this kind.
     pub certificate: CertificateSpec,
-    /// What `fretwork law new` begins with, if it knows the kind.
+    /// Templates of `fretwork law new`; `None` if it does not offer the kind.
     pub templates: Option<Templates>,
 }
 
-/// At which contacts laws of a kind act.
+/// Contacts on which laws of a kind act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
-    /// All, also those made ahead of the step that closes them because the bodies are fast.
+    /// All contacts, including those predicted before they close because the bodies are fast.
     All,
     /// Contacts within the alert distance or held by a bond.
     Near,
     /// Intact bonds.
     Bonds,
-    /// Intact bonds where the law has an opening (`FLAG_OPENING`), else as [`Domain::Near`].
+    /// Intact bonds if the law has an opening (`FLAG_OPENING`), otherwise as [`Domain::Near`].
     ByOpening,
 }
 
-/// What the host does with the answers of a law at the end of a step.
+/// Function that uses the outputs of a law at the end of a step.
 pub type CommitFn<S> = for<'a, 'b> fn(&'a mut SlotCommit<'b, S>) -> Result<(), LawError>;
 
-/// A [`CommitFn`] for each dimension; made by [`commit_hook!`](crate::commit_hook).
+/// A [`CommitFn`] for each dimension; [`commit_hook!`](crate::commit_hook) creates it.
 #[derive(Clone, Copy)]
 pub struct CommitHook {
-    /// In two dimensions.
+    /// Function in two dimensions.
     pub dim2: CommitFn<Dim2>,
-    /// In three.
+    /// Function in three dimensions.
     pub dim3: CommitFn<Dim3>,
 }
 
@@ -90,7 +91,7 @@ impl CommitHook {
     }
 }
 
-/// A [`CommitHook`] of a function that is generic over the space.
+/// Creates a [`CommitHook`] from a function that is generic over the space.
 #[macro_export]
 macro_rules! commit_hook {
     ($function:path) => {
@@ -101,59 +102,58 @@ macro_rules! commit_hook {
     };
 }
 
-/// How a law is certified.
+/// Certification of the laws of a kind.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateSpec {
-    /// Laws that stand beside it, by kind and name; the certificate is made with each of these
-    /// sets. Where a set has no contact law, and the law under test is none, a frictionless one is
-    /// added.
+    /// Partner laws, by kind and name; a certificate is made with each of these sets. A set without
+    /// a contact law gets a frictionless one, unless the tested law is a contact law.
     pub partners: &'static [&'static [(Kind, &'static str)]],
-    /// What is checked.
+    /// Checks of the certificate.
     pub checks: CheckSet,
 }
 
-/// Checks of a certificate, beside those of the plugin interface that all laws pass.
+/// Checks of a certificate, in addition to those of the plugin interface that all laws must pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckSet {
     /// Signs and objectivity of laws of contacts.
     Contact,
-    /// Work, damage and convergence of bonds, where the laws make bonds; else as
+    /// Work, damage and convergence of bonds, where the laws make bonds; otherwise as
     /// [`CheckSet::Contact`].
     Bond,
     /// The checks of [`CheckSet::Contact`], and that the volume removed does not depend on the
     /// number of steps.
     Removal,
-    /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap,
-    /// damage and temperature.
+    /// Conductances are not negative, symmetric in the bodies, and continuous in force, gap, damage
+    /// and temperature.
     Transport,
 }
 
-/// What `fretwork law new` writes, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and
-/// `@VERSION@` are filled in.
+/// Templates of `fretwork law new`, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and
+/// `@VERSION@` are replaced.
 #[derive(Clone, Copy, Debug)]
 pub struct Templates {
     /// Rust, with the crate `fretwork-law`.
     pub rust: &'static str,
-    /// C, but for the parts that all laws share: see [`Self::whole_c`].
+    /// C, without the parts that all laws share, see [`Self::whole_c`].
     pub c: &'static str,
-    /// Fortran, as `c`.
+    /// Fortran, without the parts that all laws share, see [`Self::whole_fortran`].
     pub fortran: &'static str,
 }
 
 impl Templates {
-    /// The template in C, with the shared parts that it names.
+    /// Returns the template in C, with the shared parts that it names.
     pub fn whole_c(&self) -> String {
         framed(self.c, include_str!("templates/frame.c"))
     }
 
-    /// The template in Fortran, with the shared parts that it names.
+    /// Returns the template in Fortran, with the shared parts that it names.
     pub fn whole_fortran(&self) -> String {
         framed(self.fortran, include_str!("templates/frame.f90"))
     }
 }
 
-/// A template in which lines `@PART@` are replaced by the parts of a frame, each of which begins
-/// with a line `@@ PART`.
+/// Returns a template in which lines `@PART@` are replaced by the parts of a frame, each of which
+/// begins with a line `@@ PART`.
 fn framed(template: &str, frame: &str) -> String {
     let parts = frame.split("@@ ").filter_map(|part| part.split_once('\n'));
     parts.fold(template.to_owned(), |text, (name, part)| {
@@ -161,7 +161,7 @@ fn framed(template: &str, frame: &str) -> String {
     })
 }
 
-/// The templates of a kind that has a set of files in this folder.
+/// Includes the template files of a kind from this folder.
 macro_rules! templates {
     ($word:literal) => {
         Some($crate::laws::kind::Templates {
@@ -173,24 +173,24 @@ macro_rules! templates {
 }
 use templates;
 
-/// For laws that need nothing of the other slots.
+/// Accepts any slots, for laws without requirements on the others.
 ///
 /// # Errors
-/// Never.
+/// It never fails.
 pub fn fits_always(_: &Interface) -> Result<(), LawError> {
     Ok(())
 }
 
-/// For laws that write nothing but their internal variables.
+/// Returns no columns, for laws that write only their internal variables.
 pub fn no_outputs(_: &mut Outputs, _: Call) -> Vec<Output<'_>> {
     Vec::new()
 }
 
-/// For laws of which the host needs nothing but their new internal variables, which are stored:
-/// those whose answers it takes at the start of a step, and those that only watch contacts.
+/// Does nothing, for laws of which the host only stores the new internal variables: laws whose
+/// outputs are used at the start of a step, and laws that only observe contacts.
 ///
 /// # Errors
-/// Never.
+/// It never fails.
 pub fn commit_record<S: Space>(_: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
     Ok(())
 }
@@ -205,7 +205,7 @@ impl Kind {
     pub const COHESION: Self = Self(&cohesion::SPEC);
     /// Growth of damage.
     pub const DAMAGE: Self = Self(&damage::SPEC);
-    /// What is removed.
+    /// Removal of material.
     pub const WEAR: Self = Self(&wear::SPEC);
 
     /// Thermal and electrical conductance.
@@ -220,12 +220,12 @@ impl Kind {
         Self::TRANSPORT,
     ];
 
-    /// Adds a kind, for the life of the program: from here on its word is one of the case's slots,
-    /// and plugins may have its code. A kind that is registered already is returned as it is.
+    /// Adds a kind for the lifetime of the program: afterwards its keyword is a slot of cases, and
+    /// plugins may have its code. Registering a kind again has no effect.
     ///
     /// # Errors
-    /// A word of other letters than a-z, a word that another kind has, a code below those of other
-    /// kinds or that another has, or a domain of bonds.
+    /// The keyword has other letters than a-z, or belongs to another kind; the code is below those
+    /// of the built-in kinds, or belongs to another kind; or the domain is that of bonds.
     pub fn register(spec: &'static KindSpec) -> Result<Self, LawError> {
         let refuse = |reason: String| Err(LawError::Kind { reason });
         if spec.word.is_empty() || !spec.word.chars().all(|c| c.is_ascii_lowercase()) {
@@ -265,7 +265,7 @@ impl Kind {
         Ok(kind)
     }
 
-    /// All kinds, in the order of evaluation.
+    /// Returns all kinds, in the order of evaluation.
     pub fn all() -> Vec<Self> {
         let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
         let mut all: Vec<Self> = Self::BUILT_IN
@@ -296,7 +296,7 @@ impl Kind {
         self.0.code
     }
 
-    /// What is known of it.
+    /// Returns the properties of the kind.
     pub fn spec(self) -> &'static KindSpec {
         self.0
     }

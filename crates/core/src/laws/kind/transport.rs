@@ -1,4 +1,4 @@
-//! Transport laws: what heat and electric current pass through a contact.
+//! Transport laws: conductances of a contact for heat and electric current.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
 use crate::geometry::space::Space;

@@ -2,7 +2,7 @@
 //! bonds.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
-use crate::contact::Loss;
+use crate::contact::ContactWear;
 use crate::contact::network::Key;
 use crate::geometry::space::Space;
 use crate::laws::error::LawError;
@@ -37,7 +37,7 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
 }
 
 fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
+    // The volume that comes from a broken bond counts once, also in a cycle that represents many.
     let network = &mut *slot.network;
     let breaks = network
         .bond_breaks
@@ -59,7 +59,7 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
             }
             if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
                 let contact = *at as u32;
-                losses.push(Loss { contact, volume });
+                losses.push(ContactWear { contact, volume });
             }
         } else {
             slot.totals.worn_third += volume;

@@ -1,13 +1,13 @@
-//! Debris of bonds that break in a given way, between disks that do not move.
+//! Debris of bonds that break in a given way, between disks at rest.
 
 use super::*;
-use crate::contact::events::{Break, Life};
+use crate::contact::events::{BondEnergies, Break};
 use crate::contact::memory::Memory;
 use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::space::Dim2;
 use nalgebra::{Vector2, Vector3};
 
-/// A first body, of index 0, and two grains beside it.
+/// Creates a first body with index 0, and two grains next to it.
 fn scene() -> Simulation<Dim2> {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5), ([2.0, 0.0], 0.5)]);
     s.drive(0, Default::default());
@@ -19,7 +19,7 @@ fn key([candidate, antagonist]: [u32; 2]) -> Key {
     Key::new(candidate, antagonist, 0)
 }
 
-/// Bonds these bodies.
+/// Forms a bond between these bodies.
 fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
     let geometry = ContactGeometry {
         gap: 0.0,
@@ -33,8 +33,8 @@ fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
     network.contacts.push(Contact { slot, ..contact });
 }
 
-fn spec() -> Spec {
-    Spec {
+fn spec() -> CircuitParameters {
+    CircuitParameters {
         bases: vec![0],
         interfaces: vec![0],
         zones: Vec::new(),
@@ -42,14 +42,14 @@ fn spec() -> Spec {
     }
 }
 
-/// A zone of x from 0.5 to 1.5 m.
-fn zone(fate: EjectedFate) -> Zone {
+/// Returns a zone of x from 0.5 to 1.5 m.
+fn zone(outcome: EjectionOutcome) -> Zone {
     Zone {
         name: "drain".into(),
         low: [0.5, f64::NEG_INFINITY, 0.0],
         high: [1.5, f64::INFINITY, 0.0],
         carrier: None,
-        fate,
+        outcome,
     }
 }
 
@@ -57,8 +57,8 @@ fn circuit(s: &Simulation<Dim2>) -> GrainCircuit {
     GrainCircuit::new(spec(), s)
 }
 
-/// Shows the account a step in which bonds formed and broke, the broken ones with work of opening,
-/// work of sliding and fracture energy (J/m).
+/// Records a step in which bonds formed and broke; broken ones have work of opening, work of
+/// sliding and fracture energy (J/m).
 fn step(
     circuit: &mut GrainCircuit,
     s: &mut Simulation<Dim2>,
@@ -80,10 +80,10 @@ fn step(
             torn: 0.0,
             damaged: true,
             damage_before: 0.0,
-            life: Life {
+            energies: BondEnergies {
                 work: [*open, *slide, 100.0],
                 fracture: *fracture,
-                ..Life::default()
+                ..BondEnergies::default()
             },
         });
     network.bond_breaks = broken.collect();
@@ -91,8 +91,8 @@ fn step(
     circuit.update(s);
 }
 
-/// Of the bonds to other bodies: the share of sliding in their work, their energy and number. Work
-/// that a bond gave back does not count, nor does one of two bonds inside the debris.
+/// Debris has the share of sliding in the work on its bonds to other bodies, their energy and
+/// number. Work that a bond returned does not count, nor does one of two bonds inside the debris.
 #[test]
 fn debris_has_the_work_of_the_bonds_that_held_it() {
     let mut s = scene();
@@ -111,12 +111,12 @@ fn debris_has_the_work_of_the_bonds_that_held_it() {
     assert_eq!((debris.base, debris.bonds), (0, 2));
     assert_eq!(debris.grains, [1, 2]);
     assert_eq!((debris.mode_mix, debris.energy), (0.25, 0.75));
-    // Between two equal disks.
+    // The centre of mass is between two equal disks.
     assert!((Vector3::from(debris.place) - Vector3::new(1.5, 0.0, 0.0)).norm() < 1e-15);
     assert_eq!(debris.mass, s.state.bodies.mass[1] + s.state.bodies.mass[2]);
 }
 
-/// Pure opening is mode I, pure sliding mode II; without work there is no mixture.
+/// Pure opening is mode I, pure sliding mode II; without work there is no mode mixture.
 #[test]
 fn debris_of_one_mode() {
     for (work, mix) in [([2.0, 0.0], 0.0), ([0.0, 2.0], 1.0), ([0.0, 0.0], 0.0)] {
@@ -125,16 +125,16 @@ fn debris_of_one_mode() {
         let mut circuit = circuit(&s);
         step(&mut circuit, &mut s, &[], &[([0, 1], work, 1.0)]);
         assert_eq!(circuit.debris[0].mode_mix, mix, "{work:?}");
-        let life = Life {
+        let energies = BondEnergies {
             work: [work[0], work[1], 5.0],
-            ..Life::default()
+            ..BondEnergies::default()
         };
-        assert_eq!(life.mode_mix(), mix);
+        assert_eq!(energies.mode_mix(), mix);
     }
 }
 
-/// A grain that was bonded again and breaks away again costs the new bond only, and stays bonded
-/// between: what was counted is not counted again.
+/// A grain that is bonded again and then detaches again counts the new bond only; the earlier bonds
+/// are not counted again.
 #[test]
 fn bonds_of_earlier_debris_do_not_count_again() {
     let mut s = scene();
@@ -152,18 +152,19 @@ fn bonds_of_earlier_debris_do_not_count_again() {
         assert_eq!(circuit.place(1), Some(GrainPlace::Tied(0)));
         assert_eq!(circuit.tied_to(0), 1);
     }
-    // Source and reattachment, three times each.
+    // The grain moved from source to reattachment three times each.
     let flows = circuit.ledger.flows;
     assert_eq!((flows.source.grains, flows.attached.grains), (3, 3));
 }
 
-/// A bond that broke while its grain was held by another counts only for the debris that it held.
+/// A bond that broke while its grain was held by another bond counts only for the debris that it
+/// held.
 #[test]
 fn a_grain_that_is_tied_anew_forgets_what_broke_before() {
     let mut s = scene();
     bond(&mut s, [1, 2]);
     let mut circuit = circuit(&s);
-    // Two loose grains part; one is tied later, and breaks away.
+    // Two loose grains separate; one is tied later, and detaches.
     step(&mut circuit, &mut s, &[], &[([1, 2], [1.0, 1.0], 3.0)]);
     assert!(circuit.debris.is_empty());
     step(&mut circuit, &mut s, &[[0, 1]], &[]);
@@ -175,8 +176,8 @@ fn a_grain_that_is_tied_anew_forgets_what_broke_before() {
     );
 }
 
-/// Bonds of interfaces that are not the circuit's, and of first bodies that are not its bases, tie
-/// nothing.
+/// Bonds of interfaces that do not belong to the circuit, and of first bodies that are not its
+/// bases, tie no grains.
 #[test]
 fn other_bonds_do_not_tie() {
     let mut s = scene();
@@ -197,13 +198,13 @@ fn other_bonds_do_not_tie() {
     assert_eq!(circuit.place(1), Some(GrainPlace::Contact));
 }
 
-/// A zone of x from 0.5 to 1.5 m, which holds the first grain at first: after a time there the
-/// grain is lost, not before; one that left and came back begins anew.
+/// A zone of x from 0.5 to 1.5 m contains the first grain at the start: the grain is lost after a
+/// time in the zone, not before; a grain that left and came back starts again.
 #[test]
 fn a_grain_is_lost_after_its_time_in_the_zone() {
     let mut s = scene();
-    let spec = Spec {
-        zones: vec![zone(EjectedFate::LostAfter(2.0))],
+    let spec = CircuitParameters {
+        zones: vec![zone(EjectionOutcome::LostAfter(2.0))],
         scaling: 4.0,
         ..spec()
     };
@@ -233,8 +234,8 @@ fn a_grain_is_lost_after_its_time_in_the_zone() {
     assert_eq!(flows.wear.mass, mass);
 }
 
-/// An account begins at its time, where a bond has to tie a grain, is brought up to date every so
-/// many steps and at the end, and goes on from its bytes.
+/// A circuit starts at its time, at which a bond must tie a grain, is updated at an interval of
+/// steps and at the end, and continues from its saved bytes.
 #[test]
 fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     let intervals = Intervals {
@@ -260,7 +261,7 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
         pass(&mut account, &mut s, k).unwrap();
         due.push(account.is_up_to_date(s.state.steps));
     }
-    // Begun in the first of these; then at 3, 4, 6, 8 and 9.
+    // The circuit starts at the first of these steps; it is then updated at 3, 4, 6, 8 and 9.
     assert_eq!(due[1..], [true, true, false, true, false, true, true]);
     assert_eq!(account.circuit().unwrap().tied_to(0), 1);
     let bytes = Process::<Dim2>::save(&account).unwrap();
@@ -280,12 +281,12 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     assert!(Process::<Dim2>::restore(&mut new(), &bytes[..1]).is_err());
 }
 
-/// A zone from 0.5 to 1.5 m, in the frame of its carrier, holds what is in it or a period away;
-/// along a period without borders it holds all.
+/// A zone from 0.5 to 1.5 m, in the frame of its carrier, contains positions in it or a period
+/// away; along a period without bounds it contains all.
 #[test]
 fn a_zone_holds_images_and_follows_its_carrier() {
     let mut s = scene();
-    let mut zone = zone(EjectedFate::Stays);
+    let mut zone = zone(EjectionOutcome::Stays);
     let open = Periodic { period: [None; 3] };
     let periodic = Periodic {
         period: [Some(4.0), None, None],

@@ -1,10 +1,10 @@
-//! The heat of a step: put in by dissipation, current and the surroundings, it flows through
-//! contacts and bodies.
+//! Heat in a step: supplied by dissipation, current and the surroundings, it flows through contacts
+//! and bodies.
 
 use super::has_begun;
 use crate::contact::{ContactHeat, HeatSide};
 use crate::geometry::space::Space;
-use crate::heat::{CircuitState, DiffusionError, Heat, HeatState, Imposed};
+use crate::heat::{CircuitState, DiffusionError, Heat, HeatState, ImposedHeatFlow};
 use crate::step::Simulation;
 use crate::threads::{fill, worth_dividing};
 use fretwork_math::diffusion::{Edge, Graph, steady, step_with_columns};
@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 /// Approximate time to compute the heat dissipated at a contact (ns).
 const SOURCE_TIME: f64 = 3.0;
 
-/// Puts in the heat of the solved step, and has it flow.
+/// Adds the heat of the solved step, and computes its flow.
 pub(super) fn conduct<S: Space>(heat: &Heat, s: &mut Simulation<S>) -> Result<(), DiffusionError> {
     let (Some(mut state), Some(mut thermal)) =
         (s.state.heat.take(), s.state.network.thermal.take())
@@ -78,7 +78,7 @@ fn heat_of_step<S: Space>(
             }
         }
     }
-    for Imposed { body, node, flow } in &heat.imposed {
+    for ImposedHeatFlow { body, node, flow } in &heat.imposed {
         let removed = |body: u32| s.state.bodies.removed.get(body as usize);
         if body.and_then(removed).is_some_and(|removed| *removed) {
             continue;
@@ -123,8 +123,8 @@ fn conduct_pending(
         }
         for (a, one) in thermal.terms(sides[0]) {
             for (b, other) in thermal.terms(sides[1]) {
-                // Each pair by itself, so that no conductance is negative; rounding may make a
-                // shape function so.
+                // Each pair is limited separately, so that no conductance is negative; rounding may
+                // make a shape function negative.
                 let weight = (one * other).max(0.0);
                 graph.edges.push(Edge {
                     nodes: [a as u32, b as u32],
@@ -188,7 +188,7 @@ fn flow_of_current<S: Space>(
     let mut fixed = vec![None; graph.nodes];
     fixed[circuit.from as usize] = Some(1.0);
     fixed[circuit.to as usize] = Some(0.0);
-    // The potentials are linear in the voltage: those of 1 V give the conductance.
+    // The potentials are linear in the voltage: those for 1 V give the conductance.
     let unit = steady(&graph, &fixed, &vec![0.0; graph.nodes])?;
     let conductance = unit.given[circuit.from as usize].max(0.0);
     let voltage = circuit.voltage(conductance);

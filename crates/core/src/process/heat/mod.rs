@@ -2,7 +2,7 @@
 //! end.
 //!
 //! Temperatures and the account of heat are in [`crate::step::State::heat`], so that a checkpoint
-//! holds them.
+//! contains them.
 
 mod flow;
 mod temperatures;
@@ -14,7 +14,7 @@ use crate::step::fields::{heat_of_contacts, heat_of_grains};
 use crate::step::{Simulation, StepError};
 use std::sync::Arc;
 
-/// Heat and current, as a case gives them.
+/// Heat and current, as given by a case.
 #[derive(Debug)]
 pub struct HeatFlow(Arc<Heat>);
 

@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// Approximate time to compute the temperatures of a contact (ns).
 const TEMPERATURE_TIME: f64 = 20.0;
 
-/// Where the heat of a contact enters one of its bodies, and the temperature there (K), without
-/// meaning where it is insulated.
+/// Node at which the heat of a contact enters one of its bodies, and the temperature there (K);
+/// undefined where it is insulated.
 #[derive(Clone, Copy, Default)]
 struct HeatEntry {
     side: HeatSide,
@@ -26,7 +26,7 @@ impl HeatEntry {
     }
 }
 
-/// The nodes at which the heat of a contact enters a body that is a mesh of which the nodes begin
+/// Returns the nodes at which the heat of a contact enters a body that is a mesh whose nodes begin
 /// at `first`.
 fn mesh_side<S: Space>(
     s: &Simulation<S>,
@@ -37,8 +37,8 @@ fn mesh_side<S: Space>(
     let Some(carrier) = s.state.bodies.carrier(contact.bodies[side] as usize) else {
         return HeatSide::Insulated;
     };
-    // The nearest place of the facet, whose shape functions are not negative; weights of a mean
-    // place may be.
+    // The nearest position on the facet is used, whose shape functions are not negative; weights of
+    // a mean position may be.
     let systems = &s.state.systems;
     let nodes = systems.contact_nodes(carrier, &contact.arms[side]);
     let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
@@ -53,7 +53,7 @@ fn mesh_side<S: Space>(
     }
 }
 
-/// Gives the laws the temperatures of the contacts, as at the start of the step.
+/// Passes the temperatures of the contacts at the start of the step to the laws.
 pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) {
     let mut thermal = s.state.network.thermal.take().unwrap_or_default();
     let Some(state) = &s.state.heat else {
@@ -72,7 +72,7 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
         side: HeatSide::Node(node),
         temperature: temperature(node as usize),
     };
-    // Ends of bodies of one temperature, contiguous; none of those of several nodes.
+    // Entries of bodies with one temperature are contiguous; bodies with several nodes have none.
     let ends: Vec<Option<HeatEntry>> = heat
         .nodes
         .iter()
@@ -101,7 +101,7 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
             (true, false) => [second.temperature; 2],
             (true, true) => [heat.initial; 2],
         };
-        // Two half-spaces of these temperatures meet at this one.
+        // Two half-spaces of these temperatures in contact have this surface temperature.
         let mut mean = b + heat.pairs[pair].share * (a - b);
         if flash {
             mean += flash_rise(s, heat, contact, s.options.scheme.h);
@@ -122,7 +122,7 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
     fill(divide, &mut seen, contacts.len(), |k| {
         let contact = &contacts[k];
         if meshes && contact.bodies.iter().any(|b| of_mesh(*b).is_some()) {
-            // Found below.
+            // The temperature is computed below.
             return ContactTemperature::default();
         }
         temperatures_of(contact, end(contact, 0), end(contact, 1))
@@ -149,9 +149,9 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
     s.state.network.thermal = Some(thermal);
 }
 
-/// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the
-/// start of this one, both of thermal time; 0 where it does not slide, or a bond holds it, whose
-/// force is not friction.
+/// Returns the flash temperature of a contact (K), from its force in the last step and its sliding
+/// speed at the start of this one, both in thermal time; 0 where it does not slide, or a bond holds
+/// it, whose force is not friction.
 fn flash_rise<S: Space>(s: &Simulation<S>, heat: &Heat, contact: &Contact<S>, h: f64) -> f64 {
     let bonded = s.state.network.bond(contact).is_some_and(Bond::intact);
     if !contact.slides || bonded {

@@ -1,4 +1,4 @@
-//! Jumps over cycles of which the wear and the work are given.
+//! Jumps over cycles whose wear and work are given.
 
 use super::*;
 use crate::bodies::{Dof, TimeFunction};
@@ -8,17 +8,17 @@ use crate::process::cycle::SlidingPart;
 use crate::wear::Scar;
 use nalgebra::Vector2;
 
-/// Steps of a cycle, and their length (s).
+/// Number of steps of a cycle, and their length (s).
 const STEPS: u32 = 4;
 const H: f64 = 0.25;
 
-/// A surface with a scar, and a driven body that rubs along x.
+/// A surface with a scar, and a driven body that slides along x.
 struct Test {
     s: Simulation<Dim2>,
     jumps: Jumps,
 }
 
-/// Jumps after `after` cycles with `control` control cycles.
+/// Returns jumps after `after` cycles with `control` control cycles.
 fn spec(after: u32, control: u32) -> JumpSpec {
     JumpSpec {
         after,
@@ -54,8 +54,8 @@ impl Test {
         Self { s, jumps }
     }
 
-    /// Computes a cycle in which the number of each cycle that it stands for wears so much (m^2) in
-    /// a form of its own and takes so much work (J/m); returns how many it stood for.
+    /// Computes a cycle in which each represented cycle wears this amount (m^2) with this
+    /// distribution and takes this work (J/m); returns the number of cycles that it represented.
     fn cycle(&mut self, wears: impl Fn(u32) -> f64, work: f64) -> u32 {
         let (s, jumps) = (&mut self.s, &mut self.jumps);
         let stands = s.state.network.cycle_multiplier as u32;
@@ -68,7 +68,8 @@ impl Test {
                     .wear_vertices([(vertex, 1.0)], part)
                     .unwrap();
             }
-            // The force that the drive gives against that of contacts, over a way of H at 1 m/s.
+            // The drive acts with this force against that of the contacts, over a displacement of H
+            // at 1 m/s.
             let place = s.state.received.len() - 1;
             s.state.received[place].0.x = -work / f64::from(STEPS);
             s.state.steps += 1;
@@ -81,8 +82,8 @@ impl Test {
 }
 
 /// Wear that grows by the same amount from cycle to cycle is summed exactly by a parabola, and by
-/// the straight line of the first jump, if the mean of control cycles stands for their middle:
-/// jumps have no error, and as many control cycles as are asked for follow each.
+/// the straight line of the first jump, if the mean of control cycles represents their middle:
+/// jumps then have no error, and the requested number of control cycles follows each.
 #[test]
 fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
     for control in 1..=4 {
@@ -99,8 +100,8 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
             assert!(jump.error < 1e-12, "{control} control cycles: {jump:?}");
         }
         assert!(summary.error_estimate.unwrap() < 1e-11);
-        // Of the first one the length is that of the cycles before it; later ones are twice as long
-        // up to the limit.
+        // The length of the first jump is that of the cycles before it; later ones are twice as
+        // long up to the limit.
         let jumps: Vec<u32> = summary.jumps.iter().map(|j| j.cycles).collect();
         assert_eq!(jumps[..4], [5, 10, 20, 40]);
         assert!(stood[..5].iter().all(|n| *n == 1));
@@ -108,14 +109,14 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
         let between: Vec<usize> = between.map(<[u32]>::len).collect();
         let (_, whole) = between.split_last().unwrap();
         assert!(whole.iter().all(|n| *n == control as usize), "{stood:?}");
-        // Cycles before the first jump, and before the second.
+        // These are the numbers of cycles before the first jump, and before the second.
         let first = &summary.jumps[..2];
         assert_eq!((first[0].after, first[1].after), (5, 10 + control));
     }
 }
 
-/// After three cycles a fourth stands for three: half of it is 1.5 cycles, of which one is jumped
-/// over. At its end all six are done, of which two were.
+/// After three cycles a fourth represents three: at half of it 1.5 cycles are done, of which one
+/// was skipped. At its end all six are done, of which two were skipped.
 #[test]
 fn cycles_are_counted_within_one_that_stands_for_several() {
     let mut test = Test::new(spec(3, 2));
@@ -134,8 +135,8 @@ fn cycles_are_counted_within_one_that_stands_for_several() {
     assert_eq!(at(&test, 4.25), (6.25, 2.0));
 }
 
-/// The work of the cycles after a jump is compared with that of the one before it: 3 J/m, then
-/// twice 4 and 5, twice again.
+/// The work of the cycles after a jump is compared with that of the cycle before it: 3 J/m, then
+/// twice 4 and 5.
 #[test]
 fn the_change_of_work_is_that_of_the_mean_control_cycle() {
     let mut test = Test::new(spec(3, 2));
@@ -151,8 +152,8 @@ fn the_change_of_work_is_that_of_the_mean_control_cycle() {
     }
 }
 
-/// A jump of n cycles of constant wear w in which the laws wore a share too much is off by that
-/// share of n w, and so is the whole run at least.
+/// A jump of n cycles of constant wear w in which the laws wore a share too much has an error of
+/// that share of n w, and so does the whole run at least.
 #[test]
 fn what_a_jump_wears_too_much_is_its_error() {
     let mut test = Test::new(spec(2, 1));
@@ -160,13 +161,13 @@ fn what_a_jump_wears_too_much_is_its_error() {
         test.cycle(|_| 1.0, 1.0);
     }
     assert_eq!(test.cycle(|_| 1.25, 1.0), 2);
-    // Until it is checked.
+    // The jump is not checked yet.
     assert_eq!(test.jumps.outcome(&test.s).unchecked_cycles, 2);
     test.cycle(|_| 1.0, 1.0);
     let summary = test.jumps.outcome(&test.s);
     assert_eq!(summary.jumps.len(), 1);
     assert!((summary.jumps[0].error - 0.25 / 1.25).abs() < 1e-12);
-    // Of 2 + 2.5 + 1 in all.
+    // The total is 2 + 2.5 + 1.
     let estimate = summary.error_estimate.unwrap();
     assert!((estimate - SAFETY * 0.5 / 5.5).abs() < 1e-12, "{estimate}");
     assert_eq!(
@@ -175,7 +176,8 @@ fn what_a_jump_wears_too_much_is_its_error() {
     );
 }
 
-/// The run ends with the cycles that are asked for; the last jumps take a third of what remains.
+/// The run ends at the requested number of cycles; the last jumps take a third of the remaining
+/// cycles.
 #[test]
 fn jumps_become_shorter_towards_the_end() {
     let mut test = Test::new(JumpSpec {

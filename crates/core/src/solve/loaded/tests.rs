@@ -1,4 +1,4 @@
-//! Large systems against the whole product with their compliance.
+//! Loaded points of large systems, compared with the full product with the compliance.
 
 use crate::geometry::space::Dim3;
 use crate::solve::NodalSystem;
@@ -25,9 +25,9 @@ fn system() -> NodalSystem<Dim3> {
     NodalSystem::new(nodes, (0..NODES).map(free).collect(), &rows)
 }
 
-/// Impulses on points of a large system, of which new ones are loaded between two tests and after
-/// one: the velocities of loaded points are at all times those of the whole product, and those of
-/// all points once they are asked for.
+/// Impulses act on points of a large system; new points are loaded between two tests and after a
+/// test. The velocities of loaded points always equal those of the full product, and so do those of
+/// all points once they are computed.
 fn compare(terms: &[Vec<(u32, f64)>], by_nodes: bool) {
     let mut system = system();
     let points: Vec<u32> = terms.iter().map(|terms| system.add_point(terms)).collect();
@@ -89,7 +89,7 @@ fn loaded_nodes_move_as_with_the_whole_compliance() {
     );
 }
 
-/// A point on one to nine nodes, which other points share, with weights of both signs.
+/// A point on one to nine nodes shared with other points, with weights of both signs.
 fn sum_of_nodes(k: usize, stride: usize) -> Vec<(u32, f64)> {
     let count = 1 + k % 9;
     let term = |j: usize| {
@@ -99,22 +99,22 @@ fn sum_of_nodes(k: usize, stride: usize) -> Vec<(u32, f64)> {
     (0..count).map(term).collect()
 }
 
-/// Fewer points than nodes: the points are followed.
+/// With fewer points than nodes the points are updated.
 #[test]
 fn loaded_points_move_as_with_the_whole_compliance() {
     let points: Vec<_> = (0..40).map(|k| sum_of_nodes(k, 2)).collect();
     compare(&points, false);
 }
 
-/// More points than nodes: the nodes are followed, so that memory does not grow with the square of
-/// the points.
+/// With more points than nodes the nodes are updated, so that memory does not grow with the square
+/// of the number of points.
 #[test]
 fn nodes_of_many_points_move_as_with_the_whole_compliance() {
     let points: Vec<_> = (0..400).map(|k| sum_of_nodes(k, 1)).collect();
     compare(&points, true);
 }
 
-/// Points that are vertices of a facet, given with all vertices of it, are single nodes.
+/// Points that are vertices of a facet, given by all its vertices, are single nodes.
 #[test]
 fn a_point_with_one_weight_is_its_node() {
     let mut system = system();

@@ -11,8 +11,8 @@ use pulp::{Arch, Simd, WithSimd};
 pub struct Anderson {
     /// Maximum number of stored iterations, after which the memory is restarted.
     pub memory: usize,
-    /// Iterations without a reduction of the smallest error by a fifth after which to end; none to
-    /// go on to the end of the budget.
+    /// Number of iterations without a reduction of the smallest error by a fifth after which to
+    /// end; `None` to continue to the end of the budget.
     pub patience: Option<usize>,
 }
 
@@ -30,7 +30,7 @@ const fn soon<const D: usize>() -> i32 {
 /// Iterations over which the convergence rate is measured.
 const WINDOW: usize = 4;
 
-/// Share of an error below which a later one counts as progress.
+/// Ratio of two errors below which the later one counts as progress.
 const PROGRESS: f64 = 0.8;
 
 /// Recovery from stagnation: where the error does not fall for long, extrapolation cycles between
@@ -115,7 +115,7 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut near = false;
         let mut rest = Rest::default();
         let mut done = 0;
-        // The smallest error that was progress, and when it was found.
+        // Smallest error that counted as progress, and the iteration in which it was found.
         let mut progress = (f64::INFINITY, 0);
         while !budget.ends(state) {
             loop {
@@ -138,7 +138,7 @@ impl<const D: usize> Solver<D> for Anderson {
                     }
                     sweep.forward(&mut state.p, 1.0);
                 }
-                // Squared, like the changes.
+                // The rate is squared, as the changes are.
                 let rate = sweep.change / changes[done % WINDOW];
                 changes[done % WINDOW] = sweep.change;
                 let end = tests.expected(&sweep, state) * rate.powi(soon::<D>());
@@ -172,7 +172,7 @@ mod tests {
     use crate::solve::local::block::BlockMatrix;
     use crate::solve::local::form::coulomb;
 
-    /// u_1 + u_2 = -2 whatever the impulses are: the error has a lower bound.
+    /// For u_1 + u_2 = -2, whatever the impulses are, the error has a lower bound.
     #[test]
     fn it_ends_where_the_error_does_not_fall() {
         let entries = [(0, 0, 1.0), (0, 2, -1.0), (2, 0, -1.0), (2, 2, 1.0)];
@@ -195,7 +195,7 @@ mod tests {
             anderson.solve(&form, &mut state, &mut budget);
             let errors = budget.history.unwrap_or_default();
             let least = errors.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
-            // It returns the best that it found.
+            // The result is the best iterate found.
             assert!(
                 least > 1e-3 && state.error <= least,
                 "{} {least}",

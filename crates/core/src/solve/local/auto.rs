@@ -2,8 +2,8 @@
 //!
 //! Gauss-Seidel with Anderson acceleration comes first and solves most problems. When it has cost
 //! about as much as some factorisations, or its error has not fallen for the cost of a few, Newton
-//! continues from its result; then long runs of Gauss-Seidel alternate with Newton, and after the
-//! first of them the interior point tries from its own start. The order and the lengths follow from
+//! continues from its result. Then long runs of Gauss-Seidel alternate with Newton, and after the
+//! first run the interior point tries from its own start. The order and the lengths follow from
 //! problem sizes and errors alone, so that a problem takes the same path on any machine.
 
 use super::anderson::Anderson;
@@ -94,8 +94,8 @@ impl<const D: usize> Solver<D> for Auto {
         }
         best.keep(state);
         if f64::from(left) > per {
-            // The error stalled, but Newton did not help: the rest of the sweeps, if they cost more
-            // than a step of Newton, and Newton from there.
+            // The error stalled and Newton did not help: the remaining sweeps follow, if they cost
+            // more than a step of Newton, then Newton from their result.
             let rest = Anderson::default();
             if self.run("anderson", &rest, form, state, budget, left) {
                 return;
@@ -139,8 +139,8 @@ impl<const D: usize> Solver<D> for Auto {
                 return;
             }
             best.keep(state);
-            // From its own start, which rarely helps where Newton failed, and costs more than a
-            // round.
+            // The interior point uses its own start; it rarely helps where Newton failed, and costs
+            // more than a round.
             if round == 0 && Interior::serves(form.laws).is_ok() {
                 if self.run("interior", &Interior, form, state, budget, INTERIOR) {
                     return;

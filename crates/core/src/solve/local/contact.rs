@@ -63,7 +63,7 @@ impl<const D: usize> Local<D> {
         }
     }
 
-    /// W_cc^-1, zero if it is singular: what holds a contact that sticks.
+    /// Returns W_cc^-1, which gives the impulse of a contact that sticks; zero if W_cc is singular.
     pub fn held(&self) -> Block<D> {
         self.inverse
     }
@@ -83,7 +83,8 @@ impl<const D: usize> Local<D> {
     #[inline(always)]
     fn solve_plane(&self, f: &[f64; D]) -> [f64; D] {
         let stick = times(&self.inverse, f);
-        // Slip: p_t = -s mu p_n, where s is the sign of u_t, which is that of the missing impulse.
+        // Slip: p_t = -s mu p_n, where s is the sign of u_t, which equals the sign of the missing
+        // impulse.
         let [forth, back] = self.slides.map(|x| -f[0] * x);
         let negative = stick[1].is_sign_negative();
         let n = select_unpredictable(negative, back, forth);
@@ -250,8 +251,8 @@ mod tests {
         pulls::<3>();
     }
 
-    /// A contact that sticks by its cohesion alone, of a block whose directions have other
-    /// compliances: iterations go on until u = 0.
+    /// A contact sticks by its cohesion alone, on a block whose directions have different
+    /// compliances: iterations continue until u = 0.
     #[test]
     fn rare_laws_are_iterated_to_the_end() {
         let w = [[1.0, 0.0], [0.0, 0.5]];

@@ -19,7 +19,7 @@ impl Csr {
     /// Builds a matrix from (row, column, value) in any order; duplicate entries are added.
     ///
     /// # Panics
-    /// Where an index is outside the matrix.
+    /// Panics if an index is outside the matrix.
     pub fn from_triplets(rows: usize, columns: usize, triplets: &[(u32, u32, f64)]) -> Self {
         let mut starts = vec![0usize; rows + 1];
         for (r, c, _) in triplets {

@@ -39,10 +39,10 @@ impl std::fmt::Debug for Factors {
 }
 
 struct Component {
-    /// Its rows in K, increasing.
+    /// Rows of the factor in K, increasing.
     rows: Vec<usize>,
     /// Scaling by powers of two: rows and columns are scaled to about one before the LU, so that a
-    /// tiny pivot indicates a singular matrix and not a choice of units.
+    /// tiny pivot indicates a singular matrix, not small units.
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
     lu: Lu,
@@ -60,7 +60,7 @@ impl Factors {
     /// The matrix is numerically singular.
     ///
     /// # Panics
-    /// Where it is not square.
+    /// Panics if the matrix is not square.
     pub fn new(k: &Csr) -> Result<Self, Singular> {
         assert_eq!(k.rows, k.columns, "a square matrix");
         let mut local = vec![0; k.rows];
@@ -163,8 +163,8 @@ impl Component {
                 SparseColMat::try_new_from_triplets(size, size, &triplets).map_err(|_| singular)?;
             let lu = a.sp_lu().map_err(|_| singular)?;
             // faer reports only structural singularity. Numerical singularity shows as a huge
-            // solution or a large residual. The fixed right-hand side has no reason to lie in the
-            // range of a singular matrix.
+            // solution or a large residual. The fixed right-hand side is not in the range of a
+            // singular matrix, except by coincidence.
             let b: Vec<f64> = (0..size)
                 .map(|i| ((i as u64 * 2_654_435_761) % 1009) as f64 / 1009.0 - 0.4)
                 .collect();

@@ -20,12 +20,12 @@ pub trait Delassus<const D: usize> {
     fn diagonal(&self, c: usize) -> &Block<D>;
     /// Computes u = W p + q.
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
-    /// W as a matrix, formed where needed; `None` for an operator that gives products alone.
-    /// Methods that need a matrix say so ([`crate::solve::Operator`]) and leave a problem without
-    /// one as it is.
+    /// Returns W as a matrix, assembled where needed; `None` for an operator that provides products
+    /// only. Methods that need a matrix declare it ([`crate::solve::Operator`]), and leave a
+    /// problem without a matrix unchanged.
     fn matrix(&self) -> Option<&BlockMatrix<D>>;
-    /// The factors of N W N + S; `None` where it is singular to rounding, or where W cannot be had
-    /// as a matrix.
+    /// Returns the factors of N W N + S; `None` where it is singular to rounding, or where W is not
+    /// available as a matrix.
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
         factored::factor(self.matrix()?, shift)
     }
@@ -103,8 +103,8 @@ impl<'a, const D: usize> Form<'a, D> {
         self.w.velocity(p, self.q, u);
     }
 
-    /// Returns the parameter rho of the natural map: 1 in the norm `Field`, else 1 /
-    /// lambda_max(W_cc), with an upper bound of lambda_max.
+    /// Returns the parameter rho of the natural map: 1 in the norm `Field`, otherwise 1 /
+    /// lambda_max(W_cc), where an upper bound replaces lambda_max.
     pub fn rho(&self, c: usize) -> f64 {
         match self.norm {
             Norm::Field => 1.0,

@@ -7,17 +7,17 @@ use super::{Csr, LocalProblem};
 /// between u and r. Units are the file's own: velocities or displacements, impulses or forces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GlobalProblem {
-    /// Components of a contact: 2 or 3.
+    /// Number of components of a contact: 2 or 3.
     pub dimension: usize,
     /// Mass or iteration matrix, n x n; need not be symmetric.
     pub m: Csr,
-    /// From contact impulses to the degrees of freedom, n x m.
+    /// Map from contact impulses to the degrees of freedom, n x m.
     pub h: Csr,
-    /// Free impulses, n.
+    /// Free impulses, of length n.
     pub f: Vec<f64>,
-    /// Constant term of the relative velocities, m.
+    /// Constant term of the relative velocities, of length m.
     pub w: Vec<f64>,
-    /// Friction coefficients, m / dimension.
+    /// Friction coefficients, of length m / dimension.
     pub mu: Vec<f64>,
     /// Equality constraints.
     pub equalities: Option<Equalities>,
@@ -26,20 +26,20 @@ pub struct GlobalProblem {
 /// Equality constraints of a global problem, G^T v + b = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Equalities {
-    /// n x p.
+    /// Matrix G, n x p.
     pub g: Csr,
-    /// p.
+    /// Vector b, of length p.
     pub b: Vec<f64>,
 }
 
 /// Multipliers of a local problem: u = W r + V l + q, V^T r + R l + s = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Multipliers {
-    /// m x p.
+    /// Matrix V, m x p.
     pub v: Csr,
-    /// p x p.
+    /// Matrix R, p x p.
     pub r: Csr,
-    /// p.
+    /// Vector s, of length p.
     pub s: Vec<f64>,
 }
 

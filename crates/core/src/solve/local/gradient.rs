@@ -48,7 +48,7 @@ enum Set {
     Pushes(f64),
     /// n <= 0, t free.
     Pulls,
-    /// Anything.
+    /// All impulses.
     All,
     /// |n| <= a, |t| <= b.
     Box(f64, f64),
@@ -150,8 +150,8 @@ fn growth(at: f64, old: f64, new: f64) -> Option<f64> {
     (old > 0.0 && at >= old * SLIDES).then(|| new / old)
 }
 
-/// Projects a prediction onto the sets it was made for (`fixed`), then sets `p` to the admissible
-/// point for its own bounds: contacts that slip in the first slip in the second.
+/// Projects a prediction onto the sets for which it was computed (`fixed`), then sets `p` to the
+/// admissible point for its own bounds: contacts that slip in the first set slip in the second.
 fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p: &mut [[f64; D]]) {
     fixed.copy_from_slice(p);
     for c in 0..p.len() {
@@ -209,8 +209,7 @@ fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
     if lambda > 0.0 { 0.9 / lambda } else { 1.0 }
 }
 
-/// A descent: the direction and the step of the current iteration, and what is kept from the last
-/// one.
+/// State of the descent: direction and step of the current iteration, and data of the previous one.
 struct Descent<'a, const D: usize> {
     form: &'a Form<'a, D>,
     kind: GradientKind,
@@ -229,7 +228,7 @@ struct Descent<'a, const D: usize> {
     kept_u: Vec<[f64; D]>,
     /// The new point at the old bounds.
     fixed: Vec<[f64; D]>,
-    /// Length of a step that does not raise the energy, computed when it is needed first.
+    /// Length of a step that does not increase the energy, computed at first use.
     safe: Option<f64>,
     /// Whether there is no last direction.
     restarts: bool,
@@ -297,8 +296,8 @@ impl<'a, const D: usize> Descent<'a, D> {
         self.restarts = true;
     }
 
-    /// Moves to the minimum along the direction, projected; returns by how much that raised the
-    /// energy.
+    /// Moves to the minimum along the direction, projected; returns the increase of the energy by
+    /// the projection.
     fn step(&mut self, state: &mut Iteration<D>, alpha: f64, energy: f64) -> f64 {
         for (p, d) in state.p.iter_mut().zip(&self.direction) {
             for k in 0..D {
@@ -312,7 +311,7 @@ impl<'a, const D: usize> Descent<'a, D> {
         self.energy(state) - energy - moved
     }
 
-    /// Replaces the step by one of the safe length along the gradient.
+    /// Replaces the step by a step of safe length along the gradient.
     fn step_safely(&mut self, state: &mut Iteration<D>) {
         let (form, metric) = (self.form, &self.metric);
         let step = *self.safe.get_or_insert_with(|| safe_step(form, metric));

@@ -25,14 +25,14 @@ const STALLED: u32 = 15;
 
 /// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to
 /// rounding, long before the others, and then the step length vanishes or the scaling breaks down.
-struct Inwards {
+struct Recentring {
     /// Magnitudes of r and of v.
     magnitudes: [f64; 2],
-    /// Remaining number of such moves.
+    /// Remaining number of moves away from the boundaries.
     left: u32,
 }
 
-impl Inwards {
+impl Recentring {
     /// Moves the iterate by the missing distance; returns whether it did.
     fn step<const D: usize>(
         &mut self,
@@ -72,8 +72,8 @@ struct Slope {
 
 impl Slope {
     /// With bonds the full slope fails repeatedly: in the fretting case two steps of three are
-    /// shorter than 1e-2 with all-or-nothing, and the error stays at 2e-4, where the gradual
-    /// variant reaches 7e-5 in 70 steps.
+    /// shorter than 1e-2 if the fraction is only 0 or 1, and the error stays at 2e-4, while the
+    /// gradual variant reaches 7e-5 in 70 steps.
     fn new(gradual: bool) -> Self {
         Self {
             share: 1.0,
@@ -101,10 +101,10 @@ impl Slope {
 /// velocity.
 #[derive(Clone, Copy, Debug)]
 struct ConeBlock {
-    /// Components in the cone: all for a contact with friction, one without friction or for a
-    /// tension-only bond.
+    /// Number of components in the cone: all components for a contact with friction, one without
+    /// friction or for a tension-only bond.
     cone: usize,
-    /// Components with a row in the system.
+    /// Number of components with a row in the system.
     size: usize,
     /// Factor from the cone's axis to the normal: 1/mu, 1 without friction, -1 for a tension-only
     /// bond.
@@ -138,7 +138,7 @@ impl Interior {
     /// Checks that the method supports the law of every block.
     ///
     /// # Errors
-    /// A sentence that names the first unsupported law.
+    /// Returns a sentence that names the first unsupported law.
     pub fn serves(laws: &[Law]) -> Result<(), String> {
         let known = |law: &Law| matches!(law, Law::Coulomb(_) | Law::Free | Law::Pull);
         let other = laws.iter().position(|law| !known(law));
@@ -155,11 +155,11 @@ impl Interior {
 /// The cones of the blocks of a problem.
 struct Cones {
     parts: Vec<ConeBlock>,
-    /// Components of each block with a row in the system.
+    /// Number of components of each block with a row in the system.
     sizes: Vec<usize>,
     /// Factor from the axis of each cone to the normal.
     over: Vec<f64>,
-    /// Blocks with a cone.
+    /// Indices of the blocks with a cone.
     blocks: Vec<usize>,
 }
 
@@ -435,7 +435,7 @@ impl<const D: usize> Solver<D> for Interior {
         let mut u = vec![[0.0; D]; form.len()];
         let mut slope = Slope::new(cones.any_bond());
         let mut stalled = 0;
-        let mut inwards = Inwards {
+        let mut inwards = Recentring {
             magnitudes,
             left: 10,
         };
@@ -481,8 +481,8 @@ impl<const D: usize> Solver<D> for Interior {
 mod tests {
     use super::*;
 
-    /// With bonds the share of the slope shrinks to 0.3 after a short step, and about doubles after
-    /// a long one; without them it is all or nothing.
+    /// With bonds the fraction of the slope decreases to 0.3 after a short step, and about doubles
+    /// after a long one; without bonds it is 0 or 1.
     #[test]
     fn the_slope_follows_the_length_of_steps() {
         let shares = |gradual| {

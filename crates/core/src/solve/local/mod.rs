@@ -86,7 +86,7 @@ impl LocalProblem {
 mod tests {
     use super::*;
 
-    /// Two contacts in 2D, and what is wrong with each change of them.
+    /// Two contacts in 2D, and the error for each change of them.
     #[test]
     fn problems_are_checked() {
         let sound = || LocalProblem {

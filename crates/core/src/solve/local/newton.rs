@@ -326,7 +326,7 @@ impl Newton {
     /// Checks that every law has derivatives independent of other blocks.
     ///
     /// # Errors
-    /// A sentence that names the first law whose bound depends on another block's impulse.
+    /// Returns a sentence that names the first law whose bound depends on another block's impulse.
     pub fn serves(laws: &[Law]) -> Result<(), String> {
         let bounded = laws
             .iter()

@@ -11,12 +11,12 @@ use pulp::{Arch, Simd, WithSimd};
 /// Order in which contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
-    /// From first to last.
+    /// The first to the last contact.
     #[default]
     Forward,
     /// Forwards, then backwards.
     Symmetric,
-    /// In a random order from a seed, the same in every iteration.
+    /// A random order from a seed, the same in every iteration.
     Shuffled(u64),
 }
 
@@ -55,7 +55,7 @@ pub struct LocalSweep<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> LocalSweep<'a, D> {
-    /// Forms the inverses of the diagonal; `None` where W cannot be had as a matrix.
+    /// Computes the inverses of the diagonal; `None` where W is not available as a matrix.
     pub fn new(form: &Form<'a, D>) -> Option<Self> {
         let w = form.w.matrix()?;
         Some(Self {

@@ -47,7 +47,7 @@ pub enum ReduceError {
     Overflow,
 }
 
-/// About 3 GB for W while it is assembled.
+/// Largest number of entries of W: about 3 GB while it is assembled.
 const MAX_ENTRIES: usize = 100_000_000;
 
 /// Computes B^T K^-1 B if it fits in memory.
@@ -61,7 +61,7 @@ fn sandwich(factors: &Factors, b: &Csr) -> Result<Csr, ReduceError> {
 /// The local form of a global problem, and the recovery of its unknowns.
 #[derive(Debug)]
 pub struct Reduction {
-    /// The local form; its p is the r of the global problem.
+    /// The local form; its p corresponds to the r of the global problem.
     pub local: LocalProblem,
     factors: Factors,
 }
@@ -70,7 +70,7 @@ impl Reduction {
     /// Eliminates v, and l where there are constraints.
     ///
     /// # Errors
-    /// M, or the saddle-point matrix, is singular.
+    /// The matrix M, or the saddle-point matrix, is singular.
     pub fn new(problem: &GlobalProblem) -> Result<Self, ReduceError> {
         let n = problem.m.rows;
         let (factors, rows) = match &problem.equalities {
@@ -135,7 +135,7 @@ impl Reduction {
 /// The local form of a local problem with multipliers, and the recovery of the multipliers.
 #[derive(Debug)]
 pub struct Elimination {
-    /// The local form; its p is the r of the problem.
+    /// The local form; its p corresponds to the r of the problem.
     pub local: LocalProblem,
     factors: Factors,
 }
@@ -144,7 +144,7 @@ impl Elimination {
     /// Eliminates l.
     ///
     /// # Errors
-    /// R is singular.
+    /// The matrix R is singular.
     pub fn new(problem: &LocalProblem, multipliers: &Multipliers) -> Result<Self, ReduceError> {
         let factors = Factors::new(&multipliers.r).map_err(ReduceError::Multipliers)?;
         let mut entries = triplets(&problem.w);

@@ -1,4 +1,4 @@
-//! Comparison with dense formulas on random problems.
+//! Comparison of reductions with dense formulas on random problems.
 
 use super::*;
 use crate::solve::local::global::Equalities;

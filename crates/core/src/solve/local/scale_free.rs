@@ -42,8 +42,8 @@ pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
 
 fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
     let w = BlockMatrix::<D>::from_csr(&problem.w);
-    // In units of the largest free velocity, rounded to a power of two, so that no bit changes and
-    // no square overflows.
+    // Velocities are divided by the largest free velocity, rounded to a power of two, so that no
+    // bit changes and no square overflows.
     let unit = magnitude(problem.q.iter());
     let scaled = |x: &[f64]| -> Vec<[f64; D]> {
         let blocks = x.as_chunks::<D>().0.iter();

@@ -111,7 +111,7 @@ impl Method {
     /// Checks that the method supports blocks of these laws.
     ///
     /// # Errors
-    /// A sentence that names the unsupported law.
+    /// Returns a sentence that names the unsupported law.
     pub fn serves(self, laws: &[Law]) -> Result<(), String> {
         match self {
             Self::Newton => Newton::serves(laws),
@@ -165,7 +165,7 @@ pub struct Outcome {
     pub p: Vec<f64>,
     /// Velocities W p + q of that iterate.
     pub u: Vec<f64>,
-    /// Its [`field_error`].
+    /// Error of the iterate, see [`field_error`].
     pub error: f64,
     /// The larger of two additional errors, not contained in `error`, that must be within the
     /// tolerance too: violation of Signorini's law hidden by friction, and unbounded impulses. See
@@ -409,8 +409,8 @@ mod tests {
         assert!(error.starts_with("there is no solver `gauss`; there are "));
     }
 
-    /// Two coupled contacts, solved to a tenth by the first measure and to 1e-10 by the second: it
-    /// goes on until both are met, and says so.
+    /// Two coupled contacts with a tolerance of 0.1 in the first measure and of 1e-10 in the
+    /// second: the solve continues until both are met, and reports it.
     #[test]
     fn both_tolerances_are_met() {
         let (a, b) = (1.0, 0.3);

@@ -57,7 +57,7 @@ impl<const D: usize> Iteration<D> {
 /// The best iterate so far.
 #[derive(Clone, Debug)]
 pub struct Best<const D: usize> {
-    /// Its error.
+    /// Error of the iterate.
     pub error: f64,
     p: Vec<[f64; D]>,
 }

@@ -11,7 +11,7 @@ use crate::geometry::space::{MatrixLike, Space};
 use crate::lanes::{Batch, BatchMut, Lane, LaneMatrix, LaneVector, Mask, part, part_mut, record};
 use crate::solve::form::{ContactForm, Elastic};
 
-/// Goes `relaxation` times as far as to the impulse `p`; gives the change.
+/// Moves towards the impulse `p` by the factor `relaxation`; returns the change.
 #[inline(always)]
 fn go_to<S: Space, L: Lane>(
     state: &mut RowState<S, L>,
@@ -32,7 +32,7 @@ pub(in crate::solve) struct Unbonded<S: Space> {
 }
 
 impl<S: Space> Unbonded<S> {
-    /// From W_cc in world axes.
+    /// Creates the law from W_cc in world axes.
     fn of(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
         let w = in_frame::<S>(&contact.normal, block);
         Self {
@@ -80,8 +80,8 @@ impl<S: Space> RowKind<S> for Unbonded<S> {
     }
 }
 
-/// The unilateral part beside a bond p_el = -(a + B u): by elimination of u, its free velocity is m
-/// f - k, with m = (1 + W B)^-1 and k = m W a, and its block m W.
+/// The unilateral part in parallel with a bond p_el = -(a + B u): by elimination of u, its free
+/// velocity is m f - k, with m = (1 + W B)^-1 and k = m W a, and its block is m W.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct UnilateralPart<S: Space, L: Lane = f64> {
@@ -119,8 +119,8 @@ impl<S: Space> UnilateralPart<S> {
         }
     }
 
-    /// The unilateral impulses for free velocities of both, and the velocities with both, of the
-    /// contacts in `active`.
+    /// Returns the unilateral impulses for free velocities that include the bond, and the resulting
+    /// velocities, of the contacts in `active`.
     #[inline(always)]
     fn solve<L: Lane>(
         mut stored: BatchMut<Self, L>,
@@ -142,17 +142,18 @@ impl<S: Space> UnilateralPart<S> {
 #[repr(C)]
 struct ElasticPart<S: Space, L: Lane = f64> {
     w: S::M<L>,
-    /// At u = 0 (N s).
+    /// Impulse at u = 0 (N s).
     a: S::V<L>,
-    /// What it adds to that by velocity (kg).
+    /// Additional impulse per velocity (kg).
     b: [L; 2],
-    /// Above it the bond's normal part does not act: 0 for a tension-only bond, otherwise infinity.
+    /// Threshold above which the bond's normal part is inactive: 0 for a tension-only bond,
+    /// otherwise infinity.
     limit: L,
 }
 record!(ElasticPart);
 
 impl<S: Space, L: Lane> ElasticPart<S, L> {
-    /// Its impulse, pulling or not.
+    /// Returns the impulse of the bond, in tension or compression.
     #[inline(always)]
     fn pull(&self, u: &S::V<L>) -> S::V<L> {
         <S::V<L>>::from_fn(|k| -(self.a[k] + self.b[usize::from(k > 0)] * u[k]))
@@ -165,13 +166,13 @@ impl<S: Space, L: Lane> ElasticPart<S, L> {
 pub(in crate::solve) struct Bonded<S: Space> {
     limits: LawLimits<S>,
     pulled: UnilateralPart<S>,
-    /// Where the bond's normal part does not act.
+    /// Part without the bond's normal component.
     slack: UnilateralPart<S>,
     bond: ElasticPart<S>,
 }
 
 impl<S: Space> Bonded<S> {
-    /// From W_cc in world axes.
+    /// Creates the law from W_cc in world axes.
     pub fn of(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
         let w = in_frame::<S>(&contact.normal, block);
         let e = contact.elastic.unwrap_or_else(Elastic::none);
@@ -200,7 +201,7 @@ impl<S: Space> Bonded<S> {
         }
     }
 
-    /// Whether a bond acts on it, which is a second block of unknowns in W.
+    /// Returns whether a bond acts on the contact, which is a second block of unknowns in W.
     pub fn is_bonded(&self) -> bool {
         let ElasticPart { a, b, .. } = &self.bond;
         b[0] > 0.0 || b[1] > 0.0 || (0..S::D).any(|k| a[k] != 0.0)
@@ -279,8 +280,8 @@ mod tests {
 
     type Made<S, C> = fn(&ContactForm<S>, &<S as Space>::Matrix) -> C;
 
-    /// Restitution lets an open contact close freely: nothing acts on it, along whatever axis its
-    /// normal is.
+    /// An open contact with restitution closes freely: no impulse acts on it, for any direction of
+    /// its normal.
     fn open_contact_is_free<S: Space, C: RowLaw<S>>(of: Made<S, C>) {
         for axis in 0..S::D {
             let (mut normal, mut u) = (S::Vector::zero(), S::Vector::zero());
@@ -319,9 +320,9 @@ mod tests {
         open_contact_is_free::<Dim3, _>(Bonded::of);
     }
 
-    /// The impulse of one update solves the law of the natural map, with and without a bond,
-    /// tension, cohesion, compliance and shifts: in the plane at once, in space with cohesion after
-    /// some.
+    /// The impulse of one update satisfies the natural map, with and without bond, tension,
+    /// cohesion, compliance and shifts: at once in the plane, after several updates in space with
+    /// cohesion.
     fn solves<S: Space, C: RowLaw<S>>(of: Made<S, C>, bonded: bool) {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
         let mut worst = 0.0f64;

@@ -13,16 +13,17 @@ use crate::solve::local::contact::Local;
 use crate::solve::slide::slide;
 
 impl<S: Space> LawLimits<S> {
-    /// Takes a form whose block, with an acting bond and the compliance, is `compliant` in the
-    /// frame of the contact.
+    /// Creates the cone from a form whose block, with an acting bond and the compliance, is
+    /// `compliant` in the frame of the contact.
     pub(super) fn on_block(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
-        let (w_n, w_t) = (compliant.entry(0, 0), quickest::<S>(compliant));
+        let (w_n, w_t) = (compliant.entry(0, 0), largest_tangential::<S>(compliant));
         let rho = if w_n > 0.0 {
             least(inverse(w_n), inverse_along(w_t, w_n))
         } else {
             inverse(w_t)
         };
-        // A contact that yields by its compliance alone is right after one visit.
+        // A contact between immovable bodies that moves by its compliance alone is exact after one
+        // visit.
         let held = [w_n, w_t] == contact.compliance;
         Self {
             mu: contact.friction,
@@ -39,7 +40,7 @@ impl<S: Space> LawLimits<S> {
 }
 
 /// The largest response across the normal.
-fn quickest<S: Space>(w: &S::Matrix) -> f64 {
+fn largest_tangential<S: Space>(w: &S::Matrix) -> f64 {
     largest_across(matrix_lanes_of::<f64, S::M<f64>>(w))
 }
 
@@ -54,8 +55,8 @@ fn largest_across<L: Lane, M: LaneMatrix<L>>(w: M) -> L {
     half * (a + c) + (quarter * (a - c) * (a - c) + cross * cross).sqrt()
 }
 
-/// Response along the normal, as a share of that across, up to which it is rounding: bodies that
-/// turn about a place on the normal are held along it.
+/// Ratio of the response along the normal to that across it, up to which it is rounding: bodies
+/// that rotate about a point on the normal are held along it.
 pub(in crate::solve) const HELD: f64 = 1e-14;
 
 /// The components of a matrix, given in world axes, in the frame of a contact.
@@ -63,13 +64,13 @@ pub(super) fn in_frame<S: Space>(n: &S::Vector, w: &S::Matrix) -> S::Matrix {
     let [t1, t2] = S::tangents(n);
     let axes = [*n, t1, t2];
     let w = S::Matrix::from_entries(|i, j| axes[i].dot(&w.apply(&axes[j])));
-    if w.entry(0, 0) > HELD * quickest::<S>(&w) {
+    if w.entry(0, 0) > HELD * largest_tangential::<S>(&w) {
         return w;
     }
     S::Matrix::from_entries(|i, j| if i == 0 || j == 0 { 0.0 } else { w.entry(i, j) })
 }
 
-/// The frame of contacts: vectors are given by their components along n, t1 and t2.
+/// Frame of the contacts: vectors have components along n, t1 and t2.
 #[derive(Clone, Copy)]
 pub(super) struct Axes<S: Space, L: Lane>([S::V<L>; 2]);
 
@@ -95,7 +96,7 @@ impl<S: Space, L: Lane> Axes<S, L> {
     }
 }
 
-/// The block W' of a contact and what solving its law needs.
+/// The block W' of a contact and the data for solving its law.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Cone<S: Space, L: Lane = f64> {
@@ -103,16 +104,16 @@ pub(super) struct Cone<S: Space, L: Lane = f64> {
     pub w: S::M<L>,
     /// (W' + C)^-1; zero where nothing moves along n.
     inverse: S::M<L>,
-    /// Added to a free velocity: the shift less (W' + C) n tension.
+    /// Term added to a free velocity: the shift less (W' + C) n tension.
     offset: S::V<L>,
-    /// In the plane: impulse for a velocity of -1 in slip towards -t1 and t1, and across an open
-    /// contact. In space the first is the last multiplier of slip.
+    /// In the plane: impulse for a velocity of -1 in slip towards -t1 and t1, and for an open
+    /// contact. In space the first entry is the last multiplier of slip.
     answers: [L; 3],
 }
 record!(Cone);
 
 impl<S: Space> Cone<S> {
-    /// From W' in the frame of the contact.
+    /// Creates the cone from W' in the frame of the contact.
     pub fn new(w: S::Matrix, contact: &ContactForm<S>) -> Self {
         let compliant = compliant::<S>(&w, contact.compliance);
         let (w_nn, w_nt) = (compliant.entry(0, 0), compliant.entry(0, 1));
@@ -145,7 +146,7 @@ impl<S: Space> Cone<S> {
         }
     }
 
-    /// The cone of a law that never acts.
+    /// Returns the cone of a law that never acts.
     pub fn none() -> Self {
         Self {
             w: <S::M<f64>>::zero(),
@@ -155,9 +156,9 @@ impl<S: Space> Cone<S> {
         }
     }
 
-    /// The impulses of the unilateral part that answer free velocities `f`, both in the frame, for
-    /// the contacts in `active`; `start` is a guess. The block was read from `stored`, which
-    /// remembers how the contacts slide.
+    /// Returns the impulses of the unilateral part for free velocities `f`, both in the frame, of
+    /// the contacts in `active`; `start` is the initial guess. The block was read from `stored`,
+    /// where the multipliers of slip are kept.
     #[inline(always)]
     pub fn solve<L: Lane>(
         block: &Cone<S, L>,
@@ -183,7 +184,7 @@ impl<S: Space> Cone<S> {
     }
 }
 
-/// The inverse of a block, zero if it is singular.
+/// Returns the inverse of a block, zero if it is singular.
 fn held<S: Space, const D: usize>(w: &S::Matrix, friction: f64) -> S::M<f64> {
     let block = std::array::from_fn(|i| std::array::from_fn(|j| w.entry(i, j)));
     let held = Local::<D>::new(&block, friction).held();
@@ -191,9 +192,9 @@ fn held<S: Space, const D: usize>(w: &S::Matrix, friction: f64) -> S::M<f64> {
 }
 
 impl<S: Space, L: Lane> Cone<S, L> {
-    /// All branches are computed and one is selected, because branch prediction would fail: stick,
-    /// slip with p_t = -s (mu P + c), where s is the sign of the slip that sticking would have to
-    /// prevent, and an open contact, which holds |p_t| <= c.
+    /// Solves the law in the plane. All branches are computed and one is selected, because branch
+    /// prediction would fail: stick; slip with p_t = -s (mu P + c), where s is the sign of the slip
+    /// that sticking would have to prevent; and an open contact, which holds |p_t| <= c.
     #[inline(always)]
     fn solve_plane(&self, f: &S::V<L>, limits: &LawLimits<S, L>) -> S::V<L> {
         let (mu, c, w_nt) = (limits.mu, limits.cohesion, self.w.entry(0, 1));
@@ -214,7 +215,8 @@ impl<S: Space, L: Lane> Cone<S, L> {
         <S::V<L>>::from_fn(|k| p[k.min(1)])
     }
 
-    /// Without cohesion. Each branch is computed where it is that of some contact.
+    /// Solves the law in space without cohesion. Each branch is computed only if a contact needs
+    /// it.
     #[inline(always)]
     fn solve_space(
         &self,
@@ -250,12 +252,12 @@ impl<S: Space, L: Lane> Cone<S, L> {
         p
     }
 
-    /// The normal and the tangential part in turns, in space with cohesion. Two rounds: the sweeps
-    /// that follow do the rest, since each begins where the last one ended.
+    /// Solves the normal and the tangential part alternately, in space with cohesion. Two rounds
+    /// are enough, since each sweep continues from the result of the last one.
     #[inline(always)]
     fn alternate(&self, f: &S::V<L>, limits: &LawLimits<S, L>, start: &S::V<L>) -> S::V<L> {
         const ALTERNATIONS: usize = 2;
-        /// Change, relative to an impulse, below which it is found.
+        /// Change of an impulse, relative to its value, below which it is exact.
         const EXACT: f64 = 1e-14;
         let w = self.compliant(limits.compliance);
         let (zero, one, w_nn) = (L::all(0.0), L::all(1.0), w.entry(0, 0));
@@ -289,7 +291,7 @@ impl<S: Space, L: Lane> Cone<S, L> {
         p
     }
 
-    /// W' + C.
+    /// Returns W' + C.
     #[inline(always)]
     fn compliant(&self, [c_n, c_t]: [L; 2]) -> S::M<L> {
         <S::M<L>>::from_fn(|i, j| {
@@ -303,7 +305,7 @@ impl<S: Space, L: Lane> Cone<S, L> {
     }
 }
 
-/// W' + C.
+/// Returns W' + C.
 pub(super) fn compliant<S: Space>(w: &S::Matrix, [c_n, c_t]: [f64; 2]) -> S::Matrix {
     let mut c = S::Vector::zero();
     for k in 0..S::D {

@@ -12,11 +12,10 @@ use crate::geometry::space::{Space, least};
 use crate::lanes::{Batch, BatchMut, Lane, LaneVector, part, record};
 use crate::solve::form::{ContactForm, Elastic};
 
-/// What an update needs. In a direction with w = W_cc, f = u - w p and p_el = -(a + b u): by
-/// elimination of u, s = q - f iw while the contact is closed (or sticks), and
-/// p_el = -(k + c (w s + f)). With the compliance C of the unilateral part, which keeps
-/// u + shift + C s at zero: iw = 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw,
-/// k = a/(1 + w b), c = b/(1 + w b).
+/// Data of an update. In a direction with w = W_cc, f = u - w p and p_el = -(a + b u): by
+/// elimination of u, s = q - f iw while the contact is closed (or sticks), and p_el = -(k + c (w
+/// s + f)). With the compliance C of the unilateral part, which keeps u + shift + C s at zero: iw =
+/// 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw, k = a/(1 + w b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 struct Response<S: Space, L: Lane = f64> {
@@ -38,22 +37,22 @@ struct Response<S: Space, L: Lane = f64> {
 }
 record!(Response);
 
-/// What the convergence test needs beside it: the bond's impulse at u = 0 and what it adds by
-/// velocity, and other fields of [`LawLimits`].
+/// Data of the convergence test in addition to [`LawLimits`]: the bond's impulse at u = 0, and its
+/// increase with velocity.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 struct TestTerms<S: Space, L: Lane = f64> {
     a: Parts<S, L>,
     b: [L; 2],
     cohesion: L,
-    /// Step length of the natural map: 1/(W' + C), the smaller of both directions.
+    /// Step length of the natural map: the smaller value of 1/(W' + C) in the two directions.
     rho: L,
     shift: Parts<S, L>,
     compliance: [L; 2],
 }
 record!(TestTerms);
 
-/// The law of a contact of two balls with all that can act on it.
+/// Law of a contact of two balls with all effects that can act on it.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Full<S: Space> {
@@ -131,14 +130,14 @@ impl<S: Space> RowKind<S> for Full<S> {
 }
 
 impl<S: Space> Full<S> {
-    /// With W along and across the normal.
+    /// Creates the law from W along and across the normal.
     fn of(contact: &ContactForm<S>, w_n: f64, w_t: f64) -> Self {
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
         let [cn, ct] = contact.compliance;
         let shift_n = shift_along(contact, w_n);
-        // Where both bodies are held in a direction its compliance alone answers; any answer leaves
-        // an open contact open.
+        // Where both bodies are held in a direction, the compliance alone responds; for an open
+        // contact any value will do.
         let along = if w_n > 0.0 { w_n } else { cn };
         let iwn = if along > 0.0 { 1.0 / along } else { 1.0 };
         let iwt = if w_t == 0.0 && ct > 0.0 {
@@ -146,8 +145,8 @@ impl<S: Space> Full<S> {
         } else {
             answer_to_slip(w_t, along, contact.cohesion)
         };
-        // What a compliance leaves of 1/w, where the bond multiplies w by 1/d; 1 for a rigid
-        // contact.
+        // Ratio by which a compliance reduces 1/w, where the bond multiplies w by 1/d; 1 for a
+        // rigid contact.
         let share = |w: f64, c: f64, d: f64| {
             if c > 0.0 && w > 0.0 {
                 w / (w + c * d)
@@ -163,11 +162,11 @@ impl<S: Space> Full<S> {
             (true, _) => least(iwn * share_n + e.b_n * share_n, rho_t),
             (false, true) if cn > 0.0 => least(iwn, rho_t),
             (false, true) => rho_t,
-            // The impulse does not depend on any motion: it is right after one visit, and is not
+            // The impulse does not depend on any motion: it is exact after one visit, and is not
             // tested.
             (false, false) => 0.0,
         };
-        // A bond and what is beside it share a direction where something moves.
+        // A bond and the other effects share a direction in which something moves.
         let shared = |w: f64| if w > 0.0 { 1.0 } else { 0.0 };
         let q_t = (e.a_t * shared(w_t) - contact.shift_t * (dt * iwt)) * share_t;
         Self {

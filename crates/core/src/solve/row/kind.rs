@@ -1,4 +1,4 @@
-//! One contact between two rigid bodies in the solver: a law and a motion, over lanes.
+//! A contact between two rigid bodies in the solver: a law and a motion, over lanes.
 
 use super::law::RowLaw;
 use super::motion::RowMotion;
@@ -10,25 +10,26 @@ use crate::lanes::{Batch, BatchMut, Lane, part, part_mut};
 use crate::solve::error::Residual;
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 
-/// A kind of contacts between two rigid bodies: a law that is solved in closed form, and how the
-/// bodies move.
+/// A kind of contacts between two rigid bodies: a law with a closed-form solution, and the motion
+/// of the bodies.
 pub(in crate::solve) trait RowKind<S: Space>: RowLaw<S> {
     type Motion: RowMotion<S>;
-    /// Whether in space eight contacts at a time are quicker than four, because registers suffice.
+    /// Whether, in space, processing eight contacts at a time is faster than four, because the
+    /// registers suffice.
     const EIGHT: bool = false;
     /// Whether bonds may act on its contacts.
     const BONDS: bool;
 
     /// Whether a contact can be of this kind.
     fn serves(contact: &ContactForm<S>) -> bool;
-    /// The law and the motion of a contact. The bodies are looked up.
+    /// Creates law and motion of a contact, with the data of its bodies.
     fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Self::Motion);
     /// Whether a contact may have a tangential impulse.
     fn grips(&self) -> bool {
         true
     }
-    /// Where none of the contacts has friction, and their bodies do not turn: solves them for the
-    /// difference of the velocities of the centres; gives the change of the impulses in world axes.
+    /// Solves contacts without friction between bodies that do not rotate, for the difference of
+    /// the velocities of the centres; returns the change of the impulses in world axes.
     #[inline(always)]
     fn without_friction<L: Lane>(
         _law: Batch<Self, L>,
@@ -40,7 +41,7 @@ pub(in crate::solve) trait RowKind<S: Space>: RowLaw<S> {
     }
 }
 
-/// A contact in the solver. What an update reads stands together.
+/// A contact in the solver. The data of an update are adjacent.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Row<S: Space, K: RowKind<S>> {
@@ -62,7 +63,7 @@ impl<S: Space, K: RowKind<S>> Row<S, K> {
         row
     }
 
-    /// A contact that contributes nothing, and one of its bodies.
+    /// Returns a contact that contributes nothing, and one of its bodies.
     pub(super) fn between_immovable_bodies() -> (Self, SolverBody<S>) {
         let body = SolverBody {
             v: S::Vector::zero(),
@@ -88,7 +89,7 @@ impl<S: Space, K: RowKind<S>> Row<S, K> {
         self.state.p
     }
 
-    /// Sets them; the caller updates the velocities.
+    /// Sets the impulse; the caller updates the velocities.
     #[inline(always)]
     pub fn set_local_impulse(&mut self, parts: Parts<S>) {
         self.state.p = parts;
@@ -102,13 +103,13 @@ impl<S: Space, K: RowKind<S>> Row<S, K> {
         }
     }
 
-    /// rho of the natural map; 0 for a contact that moves nothing, whose impulse follows from given
-    /// velocities.
+    /// Returns rho of the natural map; 0 for a contact that moves nothing, whose impulse follows
+    /// from given velocities.
     pub fn rho(&self) -> f64 {
         K::limits(Batch::one(&self.law)).rho
     }
 
-    /// Sets the impulse to what these velocities ask for, which it does not change.
+    /// Sets the impulse to the solution for these velocities, which it does not change.
     pub fn solve_at(&mut self, a: &SolverBody<S>, b: &SolverBody<S>) {
         let (mut a, mut b) = (Moving::of(a), Moving::of(b));
         Self::update(BatchMut::one(self), &mut a, &mut b, 1.0);

@@ -18,8 +18,8 @@ pub(in crate::solve) struct LawLimits<S: Space, L: Lane = f64> {
     pub tension: L,
     /// Shear cohesion (N s).
     pub cohesion: L,
-    /// rho of the natural map: the smaller of 1/W' along n and across; 0 where nothing moves, and
-    /// the impulse follows from velocities that are given.
+    /// Step length rho of the natural map: the smaller of 1/W' along n and across; 0 where nothing
+    /// moves, and the impulse follows from given velocities.
     pub rho: L,
     /// Shifts of the velocity (m/s).
     pub shift: Parts<S, L>,
@@ -32,8 +32,8 @@ record!(LawLimits);
 pub(in crate::solve) trait RowLaw<S: Space>:
     Clone + Debug + Send + Sync + 'static
 {
-    /// Solves contacts at a relative velocity `u`, takes their impulses in `state` `relaxation`
-    /// times as far; gives the changes.
+    /// Solves contacts at a relative velocity `u`, and changes their impulses in `state` by
+    /// `relaxation` times the increment; returns the changes.
     fn solve<L: Lane>(
         law: BatchMut<Self, L>,
         state: &mut RowState<S, L>,
@@ -60,7 +60,8 @@ pub(in crate::solve) trait RowLaw<S: Space>:
         natural_map(&Self::limits(law), unilateral, u)
     }
 
-    /// The work on the compliance of the unilateral part, c |p|^2 (J), at a relative velocity.
+    /// Returns the work on the compliance of the unilateral part, c |p|^2 (J), at a relative
+    /// velocity.
     fn work_on_compliance(&self, state: &RowState<S>, u: &Parts<S>) -> f64 {
         let law = Batch::one(self);
         let p = state.p - Self::bond(law, &state.n, u);
@@ -68,8 +69,8 @@ pub(in crate::solve) trait RowLaw<S: Space>:
         c_n * p.n * p.n + c_t * p.t.dot(&p.t)
     }
 
-    /// The solution at a relative velocity: the bond's part follows from it, the unilateral part is
-    /// the rest.
+    /// Returns the solution at a relative velocity: the bond's part follows from the velocity, the
+    /// unilateral part is the remainder.
     fn solution(&self, state: &RowState<S>, u: &Parts<S>) -> ContactSolution<S> {
         let unilateral = state.p - Self::bond(Batch::one(self), &state.n, u);
         ContactSolution {
@@ -80,7 +81,7 @@ pub(in crate::solve) trait RowLaw<S: Space>:
     }
 }
 
-/// The natural map of the De Saxce form in velocities, for unilateral impulses and relative
+/// Returns the natural map of the De Saxce form in velocities, for unilateral impulses and relative
 /// velocities; zero where rho is 0.
 #[inline(always)]
 fn natural_map<S: Space, L: Lane>(

@@ -1,7 +1,7 @@
 //! Contacts in rows, over which the solver iterates, and the exact solution of one contact.
 //!
 //! A row has a state (normal and impulse), a law and the motion of its two bodies; a [`RowKind`] is
-//! the pair of the last two. Each is written once, over lanes: the same source is compiled for one
+//! a pair of law and motion. Each is written once, over lanes: the same source is compiled for one
 //! contact and for several at a time. A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and
 //! an isotropic W_tt, so that its law is solved in closed form, part by part; with lever arms it
 //! has a full block of W.

@@ -43,7 +43,7 @@ pub struct MomentSolution<S: Space> {
     pub contact: u32,
     /// Total moment on the candidate (N m s).
     pub moment: S::Spin,
-    /// Part of it due to friction.
+    /// Part of the moment due to friction.
     pub friction: S::Spin,
 }
 
@@ -54,10 +54,10 @@ pub(in crate::solve) struct MomentRow<S: Space> {
     pub place: RowPlace,
     pub bodies: [u32; 2],
     n: S::Vector,
-    /// Inverse lengths of the bodies (1/m); 0 of the body of a dynamical system.
+    /// Inverse lengths of the bodies (1/m); 0 for the body of a dynamical system.
     over: [f64; 2],
-    /// Nodes of systems that turn: their velocity times the weight (1/m) is a spin, and the moment
-    /// times the weight the impulse on them.
+    /// Nodes of systems that represent rotation: their velocity times the weight (1/m) is a spin,
+    /// and the moment times the weight is the impulse on them.
     terms: Vec<Term>,
     /// Inverse inertias times the lengths (1/(kg m)).
     inverse_spins: [S::Tensor; 2],
@@ -77,7 +77,7 @@ impl<S: Space> MomentRow<S> {
         mobilities: [&Mobility<S>; 2],
         lengths: [f64; 2],
     ) -> Self {
-        let w = mobilities[0].quickest() + mobilities[1].quickest();
+        let w = mobilities[0].largest_inverse_inertia() + mobilities[1].largest_inverse_inertia();
         Self {
             form: *form,
             place,
@@ -93,8 +93,8 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    /// Returns the row with systems on these sides, by the nodes that turn with them: their bodies
-    /// have no spin of their own.
+    /// Returns the row with systems on these sides, by the nodes that represent rotation: their
+    /// bodies have no spin of their own.
     pub fn with_systems(mut self, nodes: [Option<Term>; 2], systems: &[NodalSystem<S>]) -> Self {
         for (side, term) in nodes.into_iter().enumerate() {
             let Some(term) = term else { continue };
@@ -118,12 +118,12 @@ impl<S: Space> MomentRow<S> {
         self.iw > 0.0
     }
 
-    /// The nodes that it acts on.
+    /// Returns the nodes on which the moment acts.
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
-    /// Adds its moment to the impulses on the nodes of the systems, by system.
+    /// Adds the moment to the impulses on the nodes of the systems, by system.
     pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
         for term in &self.terms {
             impulses[term.system as usize][term.node as usize] +=
@@ -161,14 +161,14 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    /// Adds what a moment does to the spins of rigid bodies.
+    /// Adds the effect of a moment to the spins of rigid bodies.
     fn turn(&self, moment: &S::Spin, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         a.s += self.inverse_spins[0].apply(moment);
         b.s -= self.inverse_spins[1].apply(moment);
     }
 
-    /// Solves for the current spins under the normal impulse `pn`. Where nothing can turn the spin
-    /// is given: friction is at its bound against it.
+    /// Solves for the current spins under the normal impulse `pn`. Where nothing can rotate the
+    /// spin is given, and friction against it is at its bound.
     pub fn update(
         &mut self,
         pn: f64,
@@ -222,8 +222,8 @@ impl<S: Space> MomentRow<S> {
         self.moment = *moment;
     }
 
-    /// Adds what the stored moment does to the velocities; those of nodes are right once their
-    /// systems are settled.
+    /// Adds the effect of the stored moment to the velocities; velocities of nodes are valid once
+    /// their systems are settled.
     pub fn load(
         &self,
         a: &mut SolverBody<S>,
@@ -289,12 +289,12 @@ impl<S: Space> MomentRow<S> {
     }
 }
 
-/// The sign of a spin, 0 without one.
+/// Returns the sign of a spin, 0 for zero spin.
 fn sign(spin: f64) -> f64 {
     if spin == 0.0 { 0.0 } else { spin.signum() }
 }
 
-/// The moment of magnitude `bound` against a given spin; zero where nothing turns.
+/// Returns the moment of magnitude `bound` against a given spin; zero where nothing rotates.
 fn against<T: VectorLike>(spin: &T, bound: f64) -> T {
     let size = spin.norm();
     if size > 0.0 {
@@ -304,7 +304,7 @@ fn against<T: VectorLike>(spin: &T, bound: f64) -> T {
     }
 }
 
-/// A moment as the impulse on a node that turns with a system, see
+/// Returns a moment as the impulse on a node that represents rotation, see
 /// [`crate::bodies::DynamicalSystem::turning_node`].
 pub(in crate::solve) fn turning<S: Space>(spin: &S::Spin) -> S::Vector {
     let mut out = S::Vector::zero();
@@ -322,8 +322,8 @@ mod tests {
     use nalgebra::{Matrix1, Vector1, Vector2};
 
     /// Without rolling friction and bond a moment of 2 N m s is a residual: with W of 1/4 + 1/16 it
-    /// turns by w = 5/8 rad/s, over the shorter length of 1/2 m a velocity. The bodies turn at 3
-    /// rad/s against each other.
+    /// causes a spin of w = 5/8 rad/s, which is a velocity over the shorter length of 1/2 m. The
+    /// bodies rotate at 3 rad/s relative to each other.
     #[test]
     fn residuals_of_moments_are_velocities_at_the_shorter_length() {
         let mut problem = Problem::<Dim2>::default();

@@ -7,7 +7,7 @@ use crate::lanes::{Lane, LaneMatrix, LaneVector, Record, record};
 use crate::solve::form::{ContactForm, Mobility};
 use std::fmt::Debug;
 
-/// How the two bodies of a contact move at it, over lanes.
+/// Motion of the two bodies of a contact at the contact, over lanes.
 pub(in crate::solve) trait RowMotion<S: Space>:
     Record + Debug + Send + Sync + 'static
 {
@@ -32,7 +32,7 @@ pub(in crate::solve) trait RowMotion<S: Space>:
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solve) struct BallSurfaces;
 
-// SAFETY: no numbers.
+// SAFETY: the struct has no data.
 unsafe impl Record for BallSurfaces {
     type With<L: Lane> = Self;
 }
@@ -61,13 +61,13 @@ impl<S: Space> RowMotion<S> for BallSurfaces {
     }
 }
 
-/// The contact acts on the line through the centres of two balls, at these distances over their
-/// lengths.
+/// The contact acts on the line through the centres of two balls, at these distances divided by
+/// their lengths.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub(in crate::solve) struct BallLevers<L = f64>(pub [L; 2]);
 
-// SAFETY: an array of numbers.
+// SAFETY: the struct is an array of numbers.
 unsafe impl Record for BallLevers {
     type With<L: Lane> = BallLevers<L>;
 }
@@ -114,7 +114,7 @@ pub(in crate::solve) struct Levers<S: Space, L: Lane = f64> {
 record!(Levers);
 
 impl<S: Space> Levers<S> {
-    /// The levers of a contact of two bodies with these lengths, and W_cc in world axes.
+    /// Returns the levers of a contact of two bodies with these lengths, and W_cc in world axes.
     pub fn new(contact: &ContactForm<S>, bodies: [(&Mobility<S>, f64); 2]) -> (Self, S::Matrix) {
         let mut block = S::Matrix::diagonal(&S::Vector::zero());
         for ((mobility, _), arm) in bodies.iter().zip(&contact.arms) {

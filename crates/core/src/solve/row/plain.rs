@@ -21,7 +21,7 @@ pub(in crate::solve) struct Plain<L = f64> {
     mu: L,
 }
 
-// SAFETY: numbers alone.
+// SAFETY: the struct has numbers only.
 unsafe impl Record for Plain {
     type With<L: Lane> = Plain<L>;
 }
@@ -59,7 +59,7 @@ impl<S: Space> RowLaw<S> for Plain {
 }
 
 impl<L: Lane> Plain<L> {
-    /// The normal impulse that answers a normal velocity.
+    /// Returns the normal impulse for a normal velocity.
     #[inline(always)]
     fn normal(&self, pn: L, un: L, relaxation: L) -> L {
         let pn = pn - (un + self.shift) * (self.iwn * relaxation);
@@ -87,7 +87,7 @@ impl<S: Space> RowKind<S> for Plain {
         let [w_n, w_t] = bodies.of_balls(contact, [1.0; 2]);
         let law = Self {
             shift: shift_along(contact, w_n),
-            // Any answer opens a contact of bodies that are held along the normal.
+            // Any value opens a contact of bodies that are held along the normal.
             iwn: [w_n, w_t]
                 .into_iter()
                 .find(|w| *w > 0.0)

@@ -1,4 +1,4 @@
-//! What rows of contacts are made of: the masses and lengths of rigid bodies.
+//! Masses and lengths of rigid bodies, from which rows of contacts are made.
 
 use super::motion::Levers;
 use super::solver_bodies::SolverBody;
@@ -13,12 +13,12 @@ pub(in crate::solve) struct RigidBodies<'a, S: Space> {
 }
 
 impl<S: Space> RigidBodies<'_, S> {
-    /// The bodies of a contact. They are looked up, also in a release build: sweeps then take it
-    /// for granted that rows name two different bodies of the problem, see
+    /// Returns the bodies of a contact. The indices are checked, also in a release build: sweeps
+    /// rely on rows that name two different bodies of the problem, see
     /// [`SolverBodies`](super::SolverBodies).
     ///
     /// # Panics
-    /// Where the bodies are the same, or one is not there.
+    /// The bodies are the same, or one does not exist.
     fn of(&self, contact: &ContactForm<S>) -> [&SolverBody<S>; 2] {
         assert_ne!(
             contact.bodies[0], contact.bodies[1],
@@ -27,7 +27,8 @@ impl<S: Space> RigidBodies<'_, S> {
         contact.bodies.map(|b| &self.solver_bodies[b as usize])
     }
 
-    /// W along and across the normal of a contact of two balls (1/kg), at a reach of their lengths.
+    /// Returns W along and across the normal of a contact of two balls (1/kg), with levers relative
+    /// to their lengths.
     #[inline]
     pub fn of_balls(&self, contact: &ContactForm<S>, [i, j]: [f64; 2]) -> [f64; 2] {
         let [a, b] = self.of(contact);
@@ -35,7 +36,7 @@ impl<S: Space> RigidBodies<'_, S> {
         [w_n, w_n + a.is * (i * i) + b.is * (j * j)]
     }
 
-    /// Levers of a central contact over the lengths of its bodies.
+    /// Returns the levers of a central contact divided by the lengths of its bodies.
     pub fn reach(&self, contact: &ContactForm<S>) -> [f64; 2] {
         if !contact.apart {
             return [1.0; 2];
@@ -43,7 +44,7 @@ impl<S: Space> RigidBodies<'_, S> {
         [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
             let body = contact.bodies[side] as usize;
             let lever = sign * contact.normal.dot(&contact.arms[side]) / self.lengths[body];
-            // A surface that stays in place has no length that a spin would scale.
+            // A surface that stays in place has no length by which a spin would be scaled.
             if lever.is_finite() { lever } else { 1.0 }
         })
     }

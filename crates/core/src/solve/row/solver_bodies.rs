@@ -18,7 +18,7 @@ pub struct SolverBody<S: Space> {
 
 /// Velocities accessed by several threads, each at its own bodies.
 ///
-/// Indices are not checked here, in the innermost loop, but where rows are made:
+/// Indices are not checked here, in the innermost loop, but when rows are created:
 /// [`RigidBodies`](super::RigidBodies) looks up both bodies of each contact, which must differ, and
 /// a problem never loses a body. Rows of moments are checked where they are used ([`Self::alone`]).
 pub(in crate::solve) struct SolverBodies<S: Space> {
@@ -51,7 +51,7 @@ impl<S: Space> SolverBodies<S> {
     pub fn alone(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
         assert!(bodies[0] != bodies[1] && bodies.iter().all(|b| (*b as usize) < self.len));
         let [a, b] = bodies.map(|k| self.at(k));
-        // SAFETY: two different bodies, and no other thread is active.
+        // SAFETY: the two bodies differ, and no other thread is active.
         unsafe { f(&mut *a, &mut *b) }
     }
 

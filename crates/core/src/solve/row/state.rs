@@ -1,4 +1,4 @@
-//! What changes in a sweep: the impulses of contacts and the velocities of bodies.
+//! Data that change in a sweep: the impulses of contacts and the velocities of bodies.
 
 use super::solver_bodies::SolverBody;
 use crate::geometry::lane_space::{lanes_of, vector_of};
@@ -85,7 +85,7 @@ pub(in crate::solve) fn store<S: Space>(p: Parts<S>, out: &mut Vec<f64>) {
     out.extend((0..<S::T<f64>>::N).map(|k| p.t[k]));
 }
 
-/// Takes them from the front of `from`.
+/// Reads the components of an impulse from the front of `from`.
 pub(in crate::solve) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
     let (parts, rest) = from.split_at(1 + <S::T<f64>>::N);
     *from = rest;
@@ -105,7 +105,7 @@ pub(in crate::solve) struct RowState<S: Space, L: Lane = f64> {
 record!(RowState);
 
 impl<S: Space> RowState<S> {
-    /// With an impulse in world axes.
+    /// Creates the state from an impulse in world axes.
     pub fn new(normal: &S::Vector, impulse: &S::Vector) -> Self {
         let mut state = Self {
             n: lanes_of(normal),
@@ -137,15 +137,15 @@ pub(in crate::solve) struct Moving<S: Space, L: Lane = f64> {
 }
 record!(Moving);
 
-/// Its first numbers: in the plane four, which are written at once.
+/// First numbers of a body record: in the plane four, which are written at once.
 #[derive(Clone, Copy)]
 #[repr(C)]
-struct Front<S: Space, L: Lane> {
+struct LeadingNumbers<S: Space, L: Lane> {
     v: S::V<L>,
     s: S::T<L>,
     im: L,
 }
-record!(Front);
+record!(LeadingNumbers);
 
 impl<S: Space> Moving<S> {
     pub fn of(body: &SolverBody<S>) -> Self {
@@ -165,19 +165,19 @@ impl<S: Space, L: Lane> Moving<S, L> {
         unsafe { from.part(|body| body.cast::<Moving<S>>()) }.read()
     }
 
-    /// Writes back the velocities of bodies that move: records of immovable ones may be shared.
+    /// Writes the velocities of movable bodies back: records of immovable ones may be shared.
     #[inline(always)]
     pub fn store(&self, to: &mut BatchMut<SolverBody<S>, L>) {
         let zero = L::all(0.0);
         let moves = self.im.above(zero) | self.is.above(zero);
         if S::D == 2 {
-            let front = Front {
+            let front = LeadingNumbers {
                 v: self.v,
                 s: self.s,
                 im: self.im,
             };
             // SAFETY: as for `load`.
-            let mut to = unsafe { to.part_mut(|body| body.cast::<Front<S, f64>>()) };
+            let mut to = unsafe { to.part_mut(|body| body.cast::<LeadingNumbers<S, f64>>()) };
             to.write_where(moves, &front);
         } else {
             // SAFETY: as for `load`.

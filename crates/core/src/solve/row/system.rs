@@ -1,5 +1,5 @@
-//! A contact of which a side is a dynamical system: solved as a block, its impulse changes the
-//! velocities of all nodes of the system that are touched.
+//! A contact with a dynamical system on at least one side: it is solved as a block, and its impulse
+//! changes the velocities of all touched nodes of the system.
 
 use super::block::Bonded;
 use super::law::{LawLimits, RowLaw};
@@ -16,7 +16,7 @@ use crate::solve::nodal::NodalSystem;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solve) struct Term {
     pub system: u32,
-    /// Its place in the list of the system.
+    /// Index of the node in the list of the system.
     pub node: u32,
     pub weight: f64,
 }
@@ -25,7 +25,7 @@ pub(in crate::solve) struct Term {
 #[derive(Clone, Debug)]
 struct RigidSide<S: Space> {
     body: u32,
-    /// Arm over the length of the body.
+    /// Arm divided by the length of the body.
     arm: S::Vector,
     inverse_mass: S::Vector,
     /// Inverse inertia times the length squared (1/kg).
@@ -36,10 +36,10 @@ struct RigidSide<S: Space> {
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct SystemRow<S: Space> {
     rigid: [Option<RigidSide<S>>; 2],
-    /// By side of a system its index, the point of it, and 1 for the candidate's and -1 for the
-    /// antagonist's.
+    /// For each side with a system: index of the system, index of its point, and 1 for the
+    /// candidate or -1 for the antagonist.
     points: [Option<(u32, u32, f64)>; 2],
-    /// What the contact acts on, by nodes.
+    /// Nodes on which the contact acts.
     terms: Vec<Term>,
     /// W_cc in world axes (1/kg).
     block: S::Matrix,
@@ -48,13 +48,13 @@ pub(in crate::solve) struct SystemRow<S: Space> {
 }
 
 /// Body, arm (m), mobility and length (m) of a rigid side.
-type Rigid<'a, S> = (u32, <S as Space>::Vector, &'a Mobility<S>, f64);
+type RigidData<'a, S> = (u32, <S as Space>::Vector, &'a Mobility<S>, f64);
 
 impl<S: Space> SystemRow<S> {
     pub fn new(
         contact: &ContactForm<S>,
         block: S::Matrix,
-        rigid: [Option<Rigid<S>>; 2],
+        rigid: [Option<RigidData<S>>; 2],
         points: [Option<(u32, u32, f64)>; 2],
         terms: Vec<Term>,
     ) -> Self {
@@ -83,7 +83,7 @@ impl<S: Space> SystemRow<S> {
         signed.filter_map(|(side, sign)| Some((side.as_ref()?, sign)))
     }
 
-    /// Its relative velocity (m/s).
+    /// Returns the relative velocity of the contact (m/s).
     pub fn relative(
         &self,
         solver_bodies: &[SolverBody<S>],
@@ -100,7 +100,7 @@ impl<S: Space> SystemRow<S> {
         u
     }
 
-    /// Its relative velocity along and across its normal (m/s).
+    /// Returns the relative velocity along and across the normal (m/s).
     fn parts(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Parts<S> {
         let u = self.relative(solver_bodies, systems);
         Parts::of(&self.state.n, &lanes_of(&u))
@@ -110,8 +110,8 @@ impl<S: Space> SystemRow<S> {
         Bonded::limits(Batch::one(&self.law))
     }
 
-    /// Adds what an impulse does to the velocities of bodies, and gives `on_point` the system, the
-    /// point and the impulse on it.
+    /// Adds the effect of an impulse to the velocities of bodies, and passes system, point and
+    /// impulse to `on_point`.
     fn push(
         &self,
         p: &S::Vector,
@@ -132,8 +132,8 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
-    /// Solves the contact for the current velocities, goes `relaxation` times as far, and updates
-    /// them.
+    /// Solves the contact for the current velocities, applies `relaxation` times the change, and
+    /// updates the velocities.
     pub fn update(
         &mut self,
         solver_bodies: &mut [SolverBody<S>],
@@ -149,8 +149,8 @@ impl<S: Space> SystemRow<S> {
         });
     }
 
-    /// Adds what the stored impulse does to the velocities; those of nodes are right once their
-    /// systems are settled.
+    /// Adds the effect of the stored impulse to the velocities; velocities of nodes are valid once
+    /// their systems are settled.
     pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
         let impulse = self.state.impulse();
         self.push(&impulse, solver_bodies, |system, point, p| {
@@ -158,7 +158,7 @@ impl<S: Space> SystemRow<S> {
         });
     }
 
-    /// Adds its impulse to those on the nodes of the systems, by system.
+    /// Adds the impulse to the impulses on the nodes of the systems, by system.
     pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
         for term in &self.terms {
             impulses[term.system as usize][term.node as usize] +=
@@ -166,22 +166,23 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
-    /// rho of the natural map, see [`LawLimits::rho`].
+    /// Returns rho of the natural map, see [`LawLimits::rho`].
     pub fn rho(&self) -> f64 {
         self.limits().rho
     }
 
-    /// The nodes that it acts on.
+    /// Returns the nodes on which the contact acts.
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
-    /// The systems that it acts on.
+    /// Returns the systems on which the contact acts.
     pub fn systems(&self) -> impl Iterator<Item = u32> {
         self.points.iter().flatten().map(|(system, _, _)| *system)
     }
 
-    /// Its rigid bodies, with the least inverse mass along an axis of each (1/kg).
+    /// Returns the rigid bodies of the contact, with the smallest inverse mass of each along an
+    /// axis (1/kg).
     pub fn rigid_masses(&self) -> impl Iterator<Item = (u32, f64)> {
         self.rigid_sides().map(|(side, _)| {
             let along = (0..S::D).map(|k| side.inverse_mass[k]);
@@ -189,8 +190,8 @@ impl<S: Space> SystemRow<S> {
         })
     }
 
-    /// The compliance of its law and of its sides, of which `sides` is known (1/kg); not above that
-    /// of the natural map.
+    /// Returns the compliance of the law plus that of the sides, which is given as `sides` (1/kg);
+    /// at most that of the natural map.
     pub fn compliance_beside(&self, sides: f64) -> f64 {
         let limits = self.limits();
         if limits.rho <= 0.0 {
@@ -204,12 +205,12 @@ impl<S: Space> SystemRow<S> {
         std::array::from_fn(|side| self.rigid[side].is_some())
     }
 
-    /// W_cc in world axes (1/kg).
+    /// Returns W_cc in world axes (1/kg).
     pub fn block(&self) -> &S::Matrix {
         &self.block
     }
 
-    /// Whether a bond may act on it.
+    /// Returns whether a bond may act on the contact.
     pub fn is_bonded(&self) -> bool {
         self.law.is_bonded()
     }
@@ -219,7 +220,7 @@ impl<S: Space> SystemRow<S> {
         self.state.p
     }
 
-    /// Sets them; the caller updates the velocities.
+    /// Sets the impulse; the caller updates the velocities.
     pub fn set_impulse(&mut self, parts: Parts<S>) {
         self.state.p = parts;
     }
@@ -257,7 +258,7 @@ impl<S: Space> SystemRow<S> {
         self.law.solution(&self.state, &u)
     }
 
-    /// Scales of the error from the free velocities, which are the current ones.
+    /// Returns the scales of the error from the free velocities, which must be the current ones.
     pub fn scale(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Scale {
         let u = self.relative(solver_bodies, systems);
         let speed = u.dot(&u);

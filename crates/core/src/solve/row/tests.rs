@@ -1,10 +1,10 @@
-//! Several contacts at a time, with all vector instructions of this machine, give the bits of one
-//! after the other.
+//! Processing several contacts at a time, with any vector instructions of this machine, gives the
+//! same bits as one by one.
 
 use super::visit::{Free, Load, MeasureErrors, Update, Visit, visit_one_by_one, visit_with};
 use super::{Bonded, Full, Plain, RigidBodies, Row, RowKind, SolverBodies, SolverBody, Unbonded};
 use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
-use crate::lanes::Instructions;
+use crate::lanes::InstructionSet;
 use crate::solve::form::{ContactForm, Elastic, Mobility};
 
 /// Returns a pseudo-random number between -1 and 1.
@@ -12,8 +12,8 @@ fn wave(k: usize, of: u32) -> f64 {
     (1.7 * k as f64 + 0.9 * f64::from(of * of % 101)).sin()
 }
 
-/// Bodies with velocities and masses of any order; every fourteenth is fixed, some pairs are, and
-/// some can only turn.
+/// Bodies with velocities and masses of any order of magnitude; every fourteenth is fixed, some
+/// pairs are fixed, and some bodies can only rotate.
 fn solver_bodies<S: Space>(count: u32) -> Vec<SolverBody<S>> {
     let body = |at: u32| {
         let fixed = at % 14 == 1 || at / 2 % 23 == 5;
@@ -52,7 +52,7 @@ fn smooth<S: Space>(pair: u32) -> ContactForm<S> {
     }
 }
 
-/// A contact of every pair of bodies, some of which stick, some slip and some open.
+/// A contact for every pair of bodies; some stick, some slip and some are open.
 fn contact<S: Space>(pair: u32) -> ContactForm<S> {
     let mut normal = S::Vector::zero();
     for k in 0..S::D {
@@ -115,7 +115,7 @@ fn aside<S: Space>(form: ContactForm<S>, pair: u32) -> ContactForm<S> {
         } else {
             form.shift_n
         },
-        // In space some are solved part by part, because of it.
+        // In space some contacts are solved part by part because of the cohesion.
         cohesion: if pair.is_multiple_of(3) {
             form.cohesion
         } else {
@@ -130,8 +130,7 @@ fn aside<S: Space>(form: ContactForm<S>, pair: u32) -> ContactForm<S> {
     }
 }
 
-/// Mobilities of bodies, of which some move along one axis alone, and some pairs do not move at
-/// all.
+/// Mobilities of bodies; some move along one axis only, and some pairs do not move at all.
 fn masses<S: Space>(bodies: &[SolverBody<S>]) -> Vec<Mobility<S>> {
     let of = |(b, body): (usize, &SolverBody<S>)| {
         let still = b / 2 % 17 == 3;
@@ -177,7 +176,7 @@ impl<S: Space, K: RowKind<S>> Contacts<S, K> {
     }
 
     /// Visits several contacts at a time, or one by one.
-    fn visit<V: Visit>(&mut self, with: Option<Instructions>, groups: &[u32], what: &mut V) {
+    fn visit<V: Visit>(&mut self, with: Option<InstructionSet>, groups: &[u32], what: &mut V) {
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         let rows = (&mut self.rows[..], &self.pairs[..]);
         match with {
@@ -190,7 +189,7 @@ impl<S: Space, K: RowKind<S>> Contacts<S, K> {
     }
 }
 
-/// The contacts of this kind that `form` gives are solved alike.
+/// All ways to process the contacts of this kind that `form` gives have the same result.
 fn same<S: Space, K: RowKind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
     let solver_bodies = solver_bodies::<S>(290);
     let bodies = RigidBodies {
@@ -207,7 +206,7 @@ fn same<S: Space, K: RowKind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
     // Groups of all remainders, up to the end of the prefetch distance.
     let groups = [0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
     let all = [0, 145];
-    for with in Instructions::of_this_machine() {
+    for with in InstructionSet::of_this_machine() {
         let (mut one, mut several) = (start.clone(), start.clone());
         for relaxation in [1.0, 1.45, 1.0] {
             one.visit(None, &groups, &mut Update(relaxation));
@@ -247,7 +246,7 @@ fn of_dimension<S: Space>() {
         elastic: None,
         ..aside(bonded(pair), pair)
     });
-    // Without strength, compliance and tangential restitution.
+    // Contacts without strength, compliance and tangential restitution.
     same::<S, Unbonded<S>>(|pair| aside(contact(pair), pair));
     same::<S, Bonded<S>>(|pair| aside(bonded(pair), pair));
 }

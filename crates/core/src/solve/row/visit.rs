@@ -5,7 +5,7 @@ use super::kind::{Row, RowKind};
 use super::solver_bodies::{SolverBodies, SolverBody};
 use super::state::Moving;
 use crate::geometry::space::Space;
-use crate::lanes::{BatchMut, Instructions, Lane, LaneVector, SUMS, Wide, prefetch};
+use crate::lanes::{BatchMut, InstructionSet, Lane, LaneVector, SUMS, Wide, prefetch};
 use crate::solve::error::{ROUNDINGS, Scale, Sums};
 
 /// An operation on rows.
@@ -13,8 +13,8 @@ pub trait Visit {
     /// Whether to process two vector registers of contacts at a time in 3D, to hide latency.
     const TWO_REGISTERS: bool;
 
-    /// Processes rows with the bodies of either side, from the `at`-th on. The bodies that move
-    /// differ, or are only read.
+    /// Processes rows with the bodies of either side, from row `at` on. The movable bodies differ,
+    /// or are only read.
     fn visit<S: Space, K: RowKind<S>, L: Lane>(
         &mut self,
         rows: BatchMut<Row<S, K>, L>,
@@ -24,8 +24,8 @@ pub trait Visit {
     );
 }
 
-/// Visits a block of rows, given with the bodies of each, the starts of its groups and the end of
-/// the last; contacts of a group share no movable body.
+/// Visits a block of rows, given with the bodies of each row and the starts of its groups followed
+/// by the end of the last; contacts of a group share no movable body.
 pub fn visit<S: Space, K: RowKind<S>>(
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
@@ -34,9 +34,9 @@ pub fn visit<S: Space, K: RowKind<S>>(
 ) {
     // Groups of a single contact would leave three of four lanes idle.
     let wide =
-        (rows.len() >= 2 * groups.len()).then(|| Instructions::of_this_machine().next_back());
+        (rows.len() >= 2 * groups.len()).then(|| InstructionSet::of_this_machine().next_back());
     match wide.flatten() {
-        // SAFETY: the machine has them.
+        // SAFETY: the machine has these instructions.
         Some(with) => unsafe { visit_with(with, (rows, pairs), groups, solver_bodies, what) },
         None => visit_one_by_one((rows, pairs), solver_bodies, what),
     }
@@ -62,7 +62,7 @@ pub(super) fn visit_one_by_one<S: Space, K: RowKind<S>>(
 /// # Safety
 /// The machine has the instructions.
 pub(super) unsafe fn visit_with<S: Space, K: RowKind<S>>(
-    with: Instructions,
+    with: InstructionSet,
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,
@@ -76,7 +76,7 @@ pub(super) unsafe fn visit_with<S: Space, K: RowKind<S>>(
         solver_bodies,
         what,
     };
-    // SAFETY: guaranteed by the caller.
+    // SAFETY: the caller guarantees it.
     unsafe { with.run(visit) }
 }
 
@@ -93,7 +93,7 @@ impl<S: Space, K: RowKind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
     #[inline(always)]
     fn run<L4: Lane, L8: Lane>(mut self) {
         let (row, body) = Row::between_immovable_bodies();
-        let mut idle = Idle { row, body };
+        let mut idle = IdleLanes { row, body };
         let eight = V::TWO_REGISTERS && S::D == 3 && K::EIGHT;
         for group in self.groups.windows(2) {
             let [mut at, end] = [group[0], group[1]].map(|k| (k - self.groups[0]) as usize);
@@ -110,7 +110,7 @@ impl<S: Space, K: RowKind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
 }
 
 /// Fills the lanes without a contact.
-struct Idle<S: Space, K: RowKind<S>> {
+struct IdleLanes<S: Space, K: RowKind<S>> {
     row: Row<S, K>,
     body: SolverBody<S>,
 }
@@ -119,13 +119,13 @@ struct Idle<S: Space, K: RowKind<S>> {
 const AHEAD: usize = 16;
 
 impl<S: Space, K: RowKind<S>, V: Visit> ByGroups<'_, S, K, V> {
-    /// Visits the rows from the `at`-th on, up to at most `end`, the end of the group.
+    /// Visits the rows from `at` on, up to at most `end`, the end of the group.
     #[inline(always)]
-    fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut Idle<S, K>) {
+    fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut IdleLanes<S, K>) {
         let (rows, pairs, count) = (self.rows, self.pairs.as_ptr(), self.pairs.len());
-        // SAFETY: there are as many rows as pairs, of bodies of `solver_bodies`; in a group these
-        // differ where they move. Idle rows and bodies may be shared, and what is read there does
-        // not matter.
+        // SAFETY: there are as many rows as pairs, and they name bodies of `solver_bodies`; in a
+        // group movable bodies differ. Idle rows and bodies may be shared, and what is read there
+        // does not matter.
         let (rows, a, b) = unsafe {
             let body = |k: usize, side: usize| self.solver_bodies.at((*pairs.add(k))[side]);
             if at + AHEAD + L::WIDTH <= count {
@@ -252,15 +252,15 @@ impl Visit for MeasureErrors {
     }
 }
 
-/// Squared rounding of the relative velocity of a contact, by the squared velocities of its sides
-/// and its friction.
+/// Returns the squared rounding of the relative velocity of a contact, from the squared velocities
+/// of its sides and its friction.
 #[inline(always)]
 pub fn noise<L: Lane>(own: L, friction: L) -> L {
     let mu = friction.least(L::all(MAX_FRICTION));
     own * (L::all(1.0) + mu * mu) * L::all(ROUNDINGS)
 }
 
-/// Sums the scales of the error from the free velocities, which are the current ones.
+/// Sums the scales of the error from the free velocities, which must be the current ones.
 #[derive(Default)]
 pub struct Free {
     free: [f64; SUMS],
@@ -310,7 +310,7 @@ impl Visit for Free {
 mod tests {
     use super::*;
 
-    /// Sums of all lanes; the worst contact is counted from the first one.
+    /// Sums of all lanes are merged; the index of the worst contact counts from the first lane.
     #[test]
     fn sums_of_lanes_are_merged() {
         let measure = MeasureErrors {

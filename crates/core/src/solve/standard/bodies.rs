@@ -1,7 +1,7 @@
 //! W of a step, applied matrix-free from its bodies and dynamical systems, and assembled only when
 //! a method needs the matrix.
 //!
-//! A side that is a dynamical system acts on nodes: its body, which stands for a contactor, has no
+//! A side that is a dynamical system acts on nodes: its body, which represents a contactor, has no
 //! inertia and no velocity here.
 
 use super::pattern::Pattern;
@@ -55,11 +55,12 @@ impl<S: Space> Axis<S> {
 pub struct Unknown<'a, S: Space, const D: usize> {
     /// Bodies on which the components act, with opposite signs.
     pub bodies: [u32; 2],
-    /// Nodes of dynamical systems on which they act, with their signs; empty between rigid bodies.
+    /// Nodes of dynamical systems on which the components act, with their signs; empty between
+    /// rigid bodies.
     pub nodes: &'a [Term],
     /// One axis per component.
     pub axes: [Axis<S>; D],
-    /// Whether it is a moment, which acts on nodes that turn.
+    /// Whether the block is a moment, which acts on nodes that represent rotation.
     pub turns: bool,
 }
 
@@ -80,9 +81,9 @@ pub type LinearAngular<S> = (<S as Space>::Vector, <S as Space>::Spin);
 /// Impulses on all bodies and on the nodes of all systems, or their velocities.
 #[derive(Clone, Debug)]
 pub struct Motions<S: Space> {
-    /// By body.
+    /// Impulse or velocity by body.
     pub bodies: Vec<LinearAngular<S>>,
-    /// By system, in the order of its nodes.
+    /// Impulses or velocities by system, in the order of its nodes.
     pub nodes: Vec<Vec<S::Vector>>,
 }
 
@@ -102,13 +103,13 @@ impl<S: Space> Motions<S> {
 
 /// W of a step, computed from its bodies and systems.
 pub struct BodyOperator<'a, S: Space, const D: usize> {
-    /// Response to impulses, by body.
+    /// Responses of the bodies to impulses.
     pub masses: &'a [Mobility<S>],
-    /// The dynamical systems, as far as contacts see them.
+    /// Nodes of the dynamical systems on which contacts act.
     pub systems: &'a [NodalSystem<S>],
     /// The blocks.
     pub unknowns: Vec<Unknown<'a, S, D>>,
-    /// W_cc of every block; to be set once all unknowns are present.
+    /// W_cc of every block; set once all unknowns are present.
     pub diagonal: Vec<Block<D>>,
     scratch: RefCell<Motions<S>>,
     matrix: OnceCell<BlockMatrix<D>>,
@@ -145,8 +146,8 @@ impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
         self.masses[body as usize].apply(&p, &m)
     }
 
-    /// Adds the velocities that the impulses of a block give to its bodies, and its impulses on
-    /// nodes to those there.
+    /// Adds the velocities due to the impulses of a block to its bodies, and its impulses on nodes
+    /// to those of the systems.
     pub fn push(&self, c: usize, p: &[f64; D], motions: &mut Motions<S>) {
         let unknown = &self.unknowns[c];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
@@ -171,7 +172,7 @@ impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
         }
     }
 
-    /// Replaces impulses on the nodes of all systems by the velocities that they give.
+    /// Replaces impulses on the nodes of all systems by the resulting velocities.
     pub fn respond(&self, nodes: &mut [Vec<S::Vector>]) {
         for (system, nodes) in self.systems.iter().zip(nodes) {
             *nodes = system.response(nodes);
@@ -235,7 +236,7 @@ impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
         out
     }
 
-    /// W as a matrix, assembled at the first call.
+    /// Returns W as a matrix, assembled at the first call.
     pub fn assembled(&self) -> &BlockMatrix<D> {
         self.matrix.get_or_init(|| {
             let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
@@ -303,8 +304,8 @@ impl<S: Space, const D: usize> Delassus<D> for BodyOperator<'_, S, D> {
     }
 
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
-        // With more motions than impulses the body form gains nothing and adds rounding errors; of
-        // systems it knows no masses.
+        // With more motions than impulses the form in body motions has no advantage and adds
+        // rounding errors; it does not know the masses of systems.
         if self.systems.is_empty() && self.pattern().rows() < D * self.len() {
             self.factor(shift)
         } else {

@@ -1,9 +1,9 @@
 //! The problem of a step for the solvers of [`super::local`]: blocks of unknowns, each with its
 //! law, and W applied matrix-free from bodies.
 //!
-//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as
-//! u + (p_el + a)/B = 0, is a law without friction whose compliance 1/B is added to the diagonal
-//! of W. Rolling friction and the moments of a bond are treated likewise. Tension c_n and terms that do
+//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as u +
+//! (p_el + a)/B = 0, is a frictionless law whose compliance 1/B is added to the diagonal of W.
+//! Rolling friction and the moments of a bond are treated likewise. Tension c_n and terms that do
 //! not depend on velocities are part of the free velocities.
 
 mod bodies;
@@ -45,7 +45,7 @@ pub struct Standard<'a, S: Space, const D: usize> {
     laws: Vec<Law>,
     q: Vec<[f64; D]>,
     places: Vec<Places>,
-    /// Blocks of friction and bond of each moment.
+    /// Blocks of friction and bond for each moment.
     moments: Vec<Places>,
     /// Whether a contact carries nothing along its normal at any velocity, see [`open`].
     open: Vec<bool>,
@@ -164,8 +164,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         }
         self.open[k] = open(problem, form, row);
         if self.open[k] {
-            // It carries no normal impulse at any velocity: w p = 0, without coupling to the
-            // bodies.
+            // The contact carries no normal impulse at any velocity: w p = 0, without coupling to
+            // the bodies.
             let mobility = |b: &u32| {
                 form.normal
                     .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
@@ -254,7 +254,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         places
     }
 
-    /// The free velocities of bodies and nodes, the latter with what the constant impulses give.
+    /// Returns the free velocities of bodies and nodes; those of nodes include the effect of the
+    /// constant impulses.
     fn free_motions(&self, problem: &Problem<S>, forms: &[ContactForm<S>]) -> Motions<S> {
         let mut bodies = problem.free.clone();
         let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
@@ -414,7 +415,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         (impulses, turned)
     }
 
-    /// W and the free velocities.
+    /// Returns W and the free velocities.
     #[cfg(test)]
     pub(super) fn operator(&self) -> (&dyn Delassus<D>, &[[f64; D]]) {
         (&self.w, &self.q)
@@ -439,8 +440,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
 }
 
 /// Returns whether a contact carries nothing along its normal: it has a gap and may close freely,
-/// and its impact follows when it closes; or it is rigid, and both bodies are held along the
-/// normal.
+/// with its impact in a later step; or it is rigid, and both bodies are held along the normal.
 fn open<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, row: Option<&SystemRow<S>>) -> bool {
     let n = &form.normal;
     let free = |body: &u32| {

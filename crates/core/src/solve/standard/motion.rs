@@ -71,7 +71,7 @@ struct MotionFactors<'a, S: Space, const D: usize> {
     s: Vec<Block<D>>,
     r: Vec<Block<D>>,
     sizes: Vec<usize>,
-    /// 1/N.
+    /// Factors 1/N.
     over: Vec<f64>,
     lu: Factor,
 }

@@ -1,4 +1,4 @@
-//! Which bodies are coupled by contacts.
+//! Coupling of bodies by contacts.
 
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;

@@ -1,11 +1,11 @@
-//! Masses as nodes of systems against rigid bodies, and sweeps against products of W.
+//! Masses as nodes of systems compared with rigid bodies, and sweeps compared with products of W.
 
 use super::*;
 use crate::bodies::Nodes;
 use crate::geometry::space::Dim2;
 use crate::solve::chosen;
 use crate::solve::error::Norm;
-use crate::solve::nlgs::{self, Options};
+use crate::solve::nlgs::{self, SolverOptions};
 use crate::solve::standard::Standard;
 use nalgebra::{Matrix1, Matrix2, Vector1, Vector2};
 
@@ -66,7 +66,7 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
         },
     };
     let mut forms = Vec::new();
-    // In the order in which the iteration takes them: contacts that share no body first.
+    // The contacts are in the order of the iteration: contacts that share no body come first.
     for (k, below) in [(0, 3), (2, 1), (1, 0)] {
         let form = form([k as u32, below as u32], Vector2::new(0.0, 1.0));
         if rigid {
@@ -79,17 +79,17 @@ fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
     (problem, forms)
 }
 
-/// The scale of the solver's error is the same for a mass that is a body and one that is a node.
+/// The scale of the solver's error is the same for a mass as a body and as a node.
 #[test]
 fn errors_of_nodes_and_bodies_are_measured_alike() {
     for norm in [Norm::Balance, Norm::Velocity] {
         for sweeps in 1..6 {
-            let options = Options {
+            let options = SolverOptions {
                 norm,
                 tolerance: 0.0,
                 max_iterations: sweeps,
                 test_every: 1,
-                ..Options::default()
+                ..SolverOptions::default()
             };
             let error = |rigid: bool| nlgs::solve(&mut stack(rigid).0, &options).error;
             let (body, node) = (error(true), error(false));
@@ -106,7 +106,7 @@ fn errors_of_nodes_and_bodies_are_measured_alike() {
 fn motions_of_nodes_count_as_those_of_bodies() {
     let [of_bodies, of_nodes] = [true, false].map(|rigid| {
         let (mut problem, forms) = stack(rigid);
-        nlgs::solve(&mut problem, &Options::default());
+        nlgs::solve(&mut problem, &SolverOptions::default());
         chosen::hyperstaticity(&problem, &forms)
     });
     assert!(of_bodies > 0.0);
@@ -114,8 +114,8 @@ fn motions_of_nodes_count_as_those_of_bodies() {
 }
 
 /// A rigid disk and a fixed plane touch two systems of full compliance, which also touch each
-/// other, at weighted sums of nodes: relative velocities are the same from W as a matrix, from
-/// products without the matrix, and updated contact by contact.
+/// other, at weighted sums of nodes. Relative velocities are the same from W as a matrix, from
+/// products without the matrix, and from updates contact by contact.
 #[test]
 fn matrix_products_and_sweeps_agree() {
     let mut problem = Problem::<Dim2>::default();
@@ -123,7 +123,7 @@ fn matrix_products_and_sweeps_agree() {
     let disk = (Vector2::new(0.5, 0.5), Matrix1::new(30.0));
     problem.push_body(free(0), Vector1::new(1.5), disk.0, disk.1, length);
     for _ in 0..3 {
-        // The plane and the bodies that stand for the systems, which move with them.
+        // The plane and the bodies that represent the systems, which move with them.
         let (still, turned) = (Vector2::zeros(), Matrix1::zeros());
         problem.push_body(
             Vector2::new(9.0, 9.0),

@@ -49,7 +49,7 @@ impl GravityDrive {
         g
     }
 
-    /// Returns the same drive shifted to `by` seconds later.
+    /// Returns the same drive with a delay of `by` seconds.
     pub fn delayed(&self, by: f64) -> Self {
         match self {
             Self::Turned { angle, about } => Self::Turned {

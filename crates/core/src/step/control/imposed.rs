@@ -64,7 +64,7 @@ pub(in crate::step) fn begin_motion<S: Space>(s: &mut Simulation<S>) {
     watch_first_move(s, &motion);
 }
 
-/// Counts the step, advances the time and puts imposed degrees of freedom on their paths.
+/// Counts the step, advances the time and sets imposed degrees of freedom to their paths.
 pub(in crate::step) fn end_motion<S: Space>(s: &mut Simulation<S>) {
     let (from, h) = (s.state.time, s.options.scheme.h);
     // Kahan summation: the time after n steps equals n h to rounding, so that functions of time do

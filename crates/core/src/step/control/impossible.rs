@@ -1,5 +1,5 @@
-//! Imposed motions that nothing can obey: bodies driven into each other, or into others that have
-//! nowhere to go.
+//! Imposed motions that no solution can follow: bodies driven into each other, or into bodies that
+//! have nowhere to go.
 
 use crate::bodies::Bodies;
 use crate::contact::Contact;
@@ -7,39 +7,41 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::step::{DrivenOverlap, Impossible, Simulation, StepReport};
 use serde::{Deserialize, Serialize};
 
-/// Residual velocities over those of the contacts from which impulses do not do what they should: a
-/// thousand layers share the motion of a lid.
+/// Ratio of residual velocities to those of the contacts from which impulses do not have their
+/// effect: a thousand layers share the motion of a lid.
 const NOT_OBEYED: f64 = 0.03;
-/// Iterations below which a step that ended at their limit says nothing of its motions.
-const LEAST_ITERATIONS: u32 = 100;
-/// Share of the work of the drives that goes into the residuals, at least, and how much of it is
-/// not accounted for by these and by slip, at most, where they squeeze what does not yield.
+/// Number of iterations below which a step that reached its limit does not show whether its motions
+/// are possible.
+const MIN_ITERATIONS: u32 = 100;
+/// Smallest share of the work of the drives that goes into the residuals, and largest share that
+/// neither the residuals nor slip account for, where drives squeeze what does not yield.
 const WASTED: f64 = 0.2;
 const UNEXPLAINED: f64 = 0.3;
-/// Share of the work of all drives from which a body is named, and of the largest impulse on a body
-/// from which a contact passes on what presses on it.
+/// Share of the work of all drives from which a body is named, and share of the largest impulse on
+/// a body from which a contact transmits the squeezing.
 const NAMED: f64 = 0.05;
 /// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be
-/// rounding of their places, and share of what they travel by which they may close by rounding.
+/// rounding of their positions, and share of their displacement by which they may approach by
+/// rounding.
 const ROUNDING: f64 = 1e-9;
 const GRAZING: f64 = 1e-6;
 
 /// Impossible motions over a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImpossibleMotions {
-    /// Steps in which imposed motions squeezed others without bound.
+    /// Number of steps in which imposed motions squeezed bodies without bound.
     pub squeezed_steps: u64,
-    /// End of the first of them (s).
+    /// End of the first such step (s).
     pub squeezed_at: f64,
-    /// The bodies that did so, in the first of these steps.
+    /// Names of the squeezing bodies in the first of these steps.
     pub squeezing: Vec<String>,
-    /// Steps in which bodies whose motions are both imposed moved into each other.
+    /// Number of steps in which two bodies with imposed motion moved into each other.
     pub overlapping_steps: u64,
-    /// End of the first of them (s).
+    /// End of the first such step (s).
     pub overlapping_at: f64,
     /// The bodies with the largest overlap.
     pub overlapping: Vec<String>,
-    /// Largest overlap of them (m).
+    /// Largest overlap of such bodies (m).
     pub overlap: f64,
 }
 
@@ -74,7 +76,7 @@ impl ImpossibleMotions {
         }
     }
 
-    /// What to tell the user; `None` if all motions were possible.
+    /// Returns the warning for the user; `None` if all motions were possible.
     pub fn warning(&self) -> Option<String> {
         let squeezed = (self.squeezed_steps > 0).then(|| {
             format!(
@@ -101,13 +103,13 @@ impl ImpossibleMotions {
     }
 }
 
-/// Work that a driven body does on others by its imposed motion in a step (J).
+/// Work that a driven body does on other bodies by its imposed motion in a step (J).
 struct Push {
     body: u32,
     work: f64,
 }
 
-/// Looks whether the imposed motions of the step could be obeyed, given the impulses and moments on
+/// Checks whether the imposed motions of the step were possible, given the impulses and moments on
 /// the driven bodies.
 pub(in crate::step) fn watch_imposed<S: Space>(
     s: &Simulation<S>,
@@ -127,7 +129,7 @@ pub(in crate::step) fn watch_imposed<S: Space>(
     }
 }
 
-/// The bodies that squeeze others without bound.
+/// Returns the bodies that squeeze others without bound.
 fn squeezing<S: Space>(
     s: &Simulation<S>,
     received: &[(S::Vector, S::Spin)],
@@ -142,7 +144,7 @@ fn squeezing<S: Space>(
     if !solver.unbounded {
         let wasted = solver.parts.residual_energy;
         let left = (work - wasted - solver.parts.slip_energy).abs();
-        let tried = solver.iterations >= LEAST_ITERATIONS
+        let tried = solver.iterations >= MIN_ITERATIONS
             || solver.iterations < s.options.solver.max_iterations;
         if !(tried && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
             return Vec::new();
@@ -155,8 +157,9 @@ fn squeezing<S: Space>(
     first.chain(then).map(|p| p.body).collect()
 }
 
-/// Which bodies some press on through chains of contacts. Far from where a motion is imposed
-/// impulses may be small when the iterations end, so links are compared with those before them.
+/// Returns the bodies on which some bodies press through chains of contacts. Far from an imposed
+/// motion impulses may be small when the iterations end, so each link is compared with the one
+/// before.
 fn pressed_by<S: Space>(s: &Simulation<S>, those: impl Iterator<Item = usize>) -> Vec<bool> {
     let (bodies, contacts) = (&s.state.bodies, &s.state.network.contacts);
     let mut largest = vec![0.0f64; bodies.len()];
@@ -187,7 +190,7 @@ fn pressed_by<S: Space>(s: &Simulation<S>, those: impl Iterator<Item = usize>) -
     pressed
 }
 
-/// What driven bodies do to others.
+/// Returns the work of driven bodies on others.
 fn pushes<S: Space>(s: &Simulation<S>, received: &[(S::Vector, S::Spin)]) -> Vec<Push> {
     let bodies = &s.state.bodies;
     let of = |(driven, (impulse, moment)): (&crate::bodies::Driven, &(S::Vector, S::Spin))| {
@@ -207,8 +210,8 @@ fn pushes<S: Space>(s: &Simulation<S>, received: &[(S::Vector, S::Spin)]) -> Vec
     bodies.driven.iter().zip(received).map(of).collect()
 }
 
-/// The deepest overlap that grows of two bodies whose motions are imposed and whose contacts are
-/// rigid. (Springs and bonds between such bodies carry.)
+/// Returns the deepest growing overlap of two bodies with imposed motions and rigid contacts.
+/// (Springs and bonds between such bodies transmit forces.)
 fn driven_overlap<S: Space>(s: &Simulation<S>) -> Option<DrivenOverlap> {
     let bodies = &s.state.bodies;
     let at_rest =
@@ -232,7 +235,8 @@ fn driven_overlap<S: Space>(s: &Simulation<S>) -> Option<DrivenOverlap> {
     deep.reduce(|a, b| if b.depth > a.depth { b } else { a })
 }
 
-/// Depth at the end of the step of a rigid contact that closes, where it is no rounding (m).
+/// Returns the depth at the end of the step of a rigid contact that closes, where it exceeds
+/// rounding (m).
 fn depth_of_driven<S: Space>(
     s: &Simulation<S>,
     k: usize,
@@ -254,7 +258,7 @@ fn depth_of_driven<S: Space>(
         (bodies.velocity[b[side]] + turning).norm()
     };
     let travelled = scheme.h * (speed(0) + speed(1));
-    // Steps are chords of curved paths.
+    // A step follows the chord of a curved path.
     let overlaps = depth > ROUNDING * size + travelled * travelled / size;
     (-closing * scheme.h > GRAZING * travelled && overlaps).then_some(depth)
 }
@@ -266,8 +270,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::{Vector1, Vector2};
 
-    /// A body that is driven along x and turned, and free along y: only the imposed motions do work
-    /// on others, against what they receive.
+    /// For a body driven along x and in rotation, and free along y, only the imposed motions do
+    /// work, against the forces that the body receives.
     #[test]
     fn imposed_motions_push() {
         let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5)]);

@@ -1,10 +1,10 @@
-//! A step begins by applying the schedule: first the current phase, then removals, then gravity,
-//! loaded areas and drives; and ends the phase.
+//! A step begins by applying the schedule: the current phase, then removals, gravity, loaded areas
+//! and drives; it ends by ending the phase if due.
 
 use super::phases;
 use super::schedule::set_parameter;
 use crate::bodies::Dof;
-use crate::bodies::pressure::{Pushed, Servo};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::{Scheme, Simulation};
 
@@ -17,10 +17,10 @@ pub(in crate::step) fn set_holder_drives<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Replaces the servos of what a phase drives anew by those of its drive.
-fn replace_servos<S: Space>(s: &mut Simulation<S>, pushed: &Pushed, drive: &Dof) {
-    let servos = Servo::of(&s.state.bodies, &s.shapes, pushed, drive);
-    s.state.control.servos.retain(|s| s.pushed() != pushed);
+/// Replaces the servos of the degrees of freedom that a phase drives by those of its drives.
+fn replace_servos<S: Space>(s: &mut Simulation<S>, target: &ServoTarget, drive: &Dof) {
+    let servos = Servo::of(&s.state.bodies, &s.shapes, target, drive);
+    s.state.control.servos.retain(|s| s.target() != target);
     // The servos were validated when the scene was built.
     s.state.control.servos.extend(servos.unwrap_or_default());
 }
@@ -41,7 +41,7 @@ pub(in crate::step) fn end_phase<S: Space>(s: &mut Simulation<S>) {
     let Some(until) = s.phases[phase].until.clone() else {
         return;
     };
-    let now = phases::Moment {
+    let now = phases::StepTime {
         time: s.state.time,
         step: s.state.steps,
         h: s.options.event_step(),
@@ -63,14 +63,14 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
         .open(&phase.name, s.state.time, s.state.steps);
     let (changes, time) = (phase.changes, s.state.time);
     for (place, dof, drive) in changes.drives {
-        replace_servos(s, &Pushed::Body(place, dof), &drive);
+        replace_servos(s, &ServoTarget::Body(place, dof), &drive);
         let middle = time + 0.5 * s.options.event_step();
         s.state
             .bodies
             .set_drive(place, dof, drive.delayed(time), middle);
     }
     for (held, drive) in changes.holders {
-        replace_servos(s, &Pushed::Holder(held.clone()), &drive);
+        replace_servos(s, &ServoTarget::Holder(held.clone()), &drive);
         let set = &mut s.state.control.holder_drives;
         set.insert(held, drive.delayed(time));
     }
@@ -95,7 +95,7 @@ fn begin_phase<S: Space>(s: &mut Simulation<S>) {
     s.state.network.forget_neighbours();
 }
 
-/// Removes a driven body for good.
+/// Removes a driven body permanently.
 fn take_away<S: Space>(s: &mut Simulation<S>, place: usize) {
     s.state.bodies.remove(place);
     let body = s.state.bodies.driven[place].body as usize;
@@ -106,10 +106,10 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
     let time = s.state.time;
     let Scheme { h, theta } = s.options.scheme;
     let soon = time + 0.5 * s.options.event_step();
-    let (due, later) = std::mem::take(&mut s.state.control.gates)
+    let (due, later) = std::mem::take(&mut s.state.control.removals)
         .into_iter()
-        .partition(|gate: &(usize, f64)| soon > gate.1);
-    s.state.control.gates = later;
+        .partition(|removal: &(usize, f64)| soon > removal.1);
+    s.state.control.removals = later;
     let due: Vec<(usize, f64)> = due;
     for (place, _) in &due {
         take_away(s, *place);
@@ -122,13 +122,13 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
     s.state.bodies.engage_stages(soon);
 }
 
-/// What a condition of rest looks at: the grains, first bodies and dynamical systems of which
-/// nothing is imposed.
+/// Returns the motion that a condition of rest evaluates: that of grains, and of first bodies and
+/// dynamical systems without imposed motion.
 fn motion_of_free<S: Space>(s: &Simulation<S>) -> phases::UndrivenMotion {
     let bodies = &s.state.bodies;
     let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
     let moving = || (0..bodies.len()).filter(free);
-    // Work of gravity on a grain over its own diameter.
+    // The scale is the work of gravity on a grain over its diameter.
     let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
     let (systems, size) = s.state.systems.motion_of_free();
     phases::UndrivenMotion {

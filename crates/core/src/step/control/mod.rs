@@ -13,6 +13,6 @@ pub(super) use imposed::{begin_motion, end_motion, set_in_motion};
 pub use impossible::ImpossibleMotions;
 pub(super) use impossible::watch_imposed;
 pub(super) use loads::{end_phase, set_holder_drives};
-pub use phases::{Begun, Changes, Phase, Until};
+pub use phases::{Changes, Phase, StartedPhase, Until};
 pub use schedule::Control;
 pub use step_bounds::StepBounds;

@@ -1,4 +1,4 @@
-//! Phases: the changes at the start of each, and the condition that ends it.
+//! Phases: the changes at the start of each phase, and its end condition.
 
 use super::GravityDrive;
 use crate::bodies::{Dof, HeldAxis};
@@ -8,17 +8,17 @@ use serde::{Deserialize, Deserializer, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Until {
-    /// At a time of the run (s).
+    /// The phase ends at a time of the run (s).
     Time(f64),
-    /// After a duration (s).
+    /// The phase ends after a duration (s).
     After(f64),
-    /// After a number of steps.
+    /// The phase ends after a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains has stayed below a bound; and that of first bodies and
-    /// dynamical systems of which nothing is imposed.
+    /// The phase ends when the kinetic energy of the grains, and of first bodies and dynamical
+    /// systems without imposed motion, has stayed below a bound.
     AtRest {
-        /// Bound as a fraction of m g d, summed over them; d is twice
-        /// [`crate::bodies::DynamicalSystem::length`] of a system.
+        /// Bound as a fraction of m g d, summed over these bodies; for a system, d is twice
+        /// [`crate::bodies::DynamicalSystem::length`].
         #[serde(default)]
         share: Option<f64>,
         /// Bound as an energy (J; J/m in 2D).
@@ -38,7 +38,7 @@ pub struct Changes {
     /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time
     /// since the phase began.
     pub drives: Vec<(usize, usize, Dof)>,
-    /// Drives of what holds deformable bodies.
+    /// Drives of the holders of deformable bodies.
     pub holders: Vec<(HeldAxis, Dof)>,
     /// Gravity (m/s^2).
     pub gravity: Option<[f64; 3]>,
@@ -59,58 +59,58 @@ pub struct Phase {
     pub name: String,
     /// End condition; `None` for the end of the run.
     pub until: Option<Until>,
-    /// What changes at its start.
+    /// Changes at the start of the phase.
     pub changes: Changes,
-    /// Whether the same phase is repeated; only the last repetition is then drawn.
+    /// Whether the phase is repeated; only the last repetition is then drawn.
     pub recurs: bool,
 }
 
 /// A phase that has begun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Begun {
+pub struct StartedPhase {
     /// Name.
     pub name: String,
-    /// When it began (s).
+    /// Start of the phase (s).
     pub start: f64,
-    /// Steps completed before it.
+    /// Number of steps completed before the phase.
     pub first_step: u64,
-    /// When it ended (s); `None` while it runs.
+    /// End of the phase (s); `None` while it runs.
     pub end: Option<f64>,
-    /// Why it ended.
+    /// Reason for its end.
     #[serde(deserialize_with = "known")]
-    pub ended_by: Option<Ending>,
+    pub ended_by: Option<EndReason>,
 }
 
 /// Reason why a phase ended, as one word.
-pub type Ending = &'static str;
+pub type EndReason = &'static str;
 
-const ENDS: [Ending; 5] = ["time", "duration", "steps", "rest", "at_most"];
+const ENDS: [EndReason; 5] = ["time", "duration", "steps", "rest", "at_most"];
 
-fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ending>, D::Error> {
+fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<EndReason>, D::Error> {
     let said = Option::<String>::deserialize(from)?;
     let known = |said: String| ENDS.into_iter().find(|end| *end == said);
     Ok(said.and_then(known))
 }
 
 /// Time and step count after a step.
-pub(super) struct Moment {
+pub(super) struct StepTime {
     pub time: f64,
     pub step: u64,
     pub h: f64,
 }
 
-/// Motion of the grains and of other bodies that nothing drives.
+/// Motion of the grains and of other bodies without imposed motion.
 pub(super) struct UndrivenMotion {
-    /// Their kinetic energy (J).
+    /// Kinetic energy of these bodies (J).
     pub kinetic: f64,
-    /// Sum of m g d over them (J).
+    /// Sum of m g d over these bodies (J).
     pub scale: f64,
 }
 
 /// Progress of the schedule.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Clock {
-    pub begun: Vec<Begun>,
+    pub begun: Vec<StartedPhase>,
     /// Time since which the grains have been at rest (s).
     still_since: Option<f64>,
 }
@@ -123,7 +123,7 @@ impl Clock {
 
     pub fn open(&mut self, name: &str, time: f64, step: u64) {
         self.still_since = None;
-        self.begun.push(Begun {
+        self.begun.push(StartedPhase {
             name: name.to_owned(),
             start: time,
             first_step: step,
@@ -132,14 +132,14 @@ impl Clock {
         });
     }
 
-    pub fn close(&mut self, now: &Moment, why: &'static str) {
+    pub fn close(&mut self, now: &StepTime, why: &'static str) {
         if let Some(begun) = self.begun.last_mut() {
             (begun.end, begun.ended_by) = (Some(now.time), Some(why));
         }
     }
 
-    /// When the phase ends at the latest (s), and the longest step (s) after which its end is
-    /// judged: infinite where there is none.
+    /// Returns the latest end of the phase (s), and the longest step (s) after which its end
+    /// condition is evaluated: infinite where there is none.
     pub fn bounds(&self, until: &Until) -> [f64; 2] {
         let Some(begun) = self.begun.last() else {
             return [f64::INFINITY; 2];
@@ -147,7 +147,7 @@ impl Clock {
         match until {
             Until::Time(t) => [*t, f64::INFINITY],
             Until::After(t) => [begun.start + t, f64::INFINITY],
-            // Which step is the last does not depend on times.
+            // A number of steps does not depend on times.
             Until::Steps(_) => [f64::INFINITY, 0.0],
             Until::AtRest { held, at_most, .. } => {
                 let rest = self.still_since.map_or(f64::INFINITY, |t| t + held);
@@ -162,7 +162,7 @@ impl Clock {
     pub fn ends(
         &mut self,
         until: &Until,
-        now: &Moment,
+        now: &StepTime,
         motion: impl FnOnce() -> UndrivenMotion,
     ) -> Option<&'static str> {
         let begun = self.begun.last()?;
@@ -207,7 +207,7 @@ mod tests {
         clock
     }
 
-    /// A phase that began at 3 s; one of rest has been so since 10 s.
+    /// A phase began at 3 s; a phase of rest has been at rest since 10 s.
     #[test]
     fn steps_end_with_phases() {
         let clock = begun(3.0);
@@ -237,10 +237,10 @@ mod tests {
     }
 
     /// Times are reached within half a step of 1 s; rest has to last for 2 s, and a motion in
-    /// between begins it anew.
+    /// between restarts that time.
     #[test]
     fn phases_end_when_their_conditions_say() {
-        let now = |time: f64| Moment {
+        let now = |time: f64| StepTime {
             time,
             step: 10,
             h: 1.0,
@@ -266,7 +266,7 @@ mod tests {
             at_most: Some(8.0),
         };
         let mut clock = begun(0.0);
-        // Below 0.5 times 4 J, and below 3 J.
+        // The bounds are 0.5 times 4 J, and 3 J.
         for (time, kinetic, end) in [
             (1.0, 1.5, None),
             (2.0, 2.5, None),

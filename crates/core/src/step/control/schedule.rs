@@ -1,8 +1,8 @@
-//! What acts from outside and changes in time, as far as steps have come in it.
+//! Progress of the external actions that change in time.
 
 use super::GravityDrive;
-use super::phases::{Begun, Clock, Phase};
-use crate::bodies::pressure::{Pushed, Servo};
+use super::phases::{Clock, Phase, StartedPhase};
+use crate::bodies::pressure::{Servo, ServoTarget};
 use crate::bodies::{Dof, Driven, HeldAxis};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Kind};
@@ -20,8 +20,8 @@ pub struct Control<S: Space> {
     /// Drives whose force follows the loaded area.
     pub servos: Vec<Servo>,
     /// Bodies to remove: index among the driven bodies, and time (s).
-    pub gates: Vec<(usize, f64)>,
-    /// Tolerance of the solver that a phase has set, in place of that of the options.
+    pub removals: Vec<(usize, f64)>,
+    /// Tolerance of the solver set by a phase, which replaces that of the options.
     pub tolerance: Option<f64>,
     /// Parameters of contact laws that phases have set, by interface and parameter.
     pub(super) contact_parameters: BTreeMap<(usize, usize), f64>,
@@ -36,7 +36,7 @@ impl<S: Space> Default for Control<S> {
             gravity: S::Vector::zero(),
             gravity_drive: None,
             servos: Vec::new(),
-            gates: Vec::new(),
+            removals: Vec::new(),
             tolerance: None,
             contact_parameters: BTreeMap::new(),
             holder_drives: BTreeMap::new(),
@@ -52,7 +52,7 @@ impl<S: Space> Control<S> {
     }
 
     /// Returns the phases begun so far, in order.
-    pub fn begun(&self) -> &[Begun] {
+    pub fn begun(&self) -> &[StartedPhase] {
         &self.clock.begun
     }
 
@@ -61,7 +61,8 @@ impl<S: Space> Control<S> {
         self.clock.turns()
     }
 
-    /// Whether it is at one of these phases, and sets no other parameters than these laws have.
+    /// Returns whether the schedule is at one of these phases, and sets only parameters that these
+    /// laws have.
     pub(in crate::step) fn fits(
         &self,
         phases: &[Phase],
@@ -71,15 +72,17 @@ impl<S: Space> Control<S> {
         let parameters = |law: &Interface| law.contact().parameters.len();
         let mut set = self.contact_parameters.keys();
         self.phase() <= phases.len()
-            && self.servos.iter().all(|s| match s.pushed() {
-                Pushed::Body(place, dof) => driven.get(*place).is_some_and(|d| *dof < d.dofs.len()),
-                Pushed::Holder(_) => true,
+            && self.servos.iter().all(|s| match s.target() {
+                ServoTarget::Body(place, dof) => {
+                    driven.get(*place).is_some_and(|d| *dof < d.dofs.len())
+                }
+                ServoTarget::Holder(_) => true,
             })
-            && self.gates.iter().all(|(place, _)| *place < driven.len())
+            && self.removals.iter().all(|(place, _)| *place < driven.len())
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
 
-    /// Gives contact laws the parameters that phases have set so far.
+    /// Sets the parameters of contact laws to the values of the phases so far.
     pub(in crate::step) fn set_parameters(&self, laws: &mut [Interface]) {
         for ((law, at), value) in &self.contact_parameters {
             set_parameter(laws, *law, *at, *value);
@@ -102,8 +105,8 @@ mod tests {
     use crate::laws::sample_laws::interface;
     use crate::step::Simulation;
 
-    /// A state that was read is refused where it names a phase, a body, an axis or a parameter that
-    /// the case has not. The case has no phases, a body that is driven along x and y, and a law
+    /// A state read from a file is refused where it names a phase, a body, an axis or a parameter
+    /// that the case does not have. The case has no phases, a body driven along x and y, and a law
     /// with one parameter.
     #[test]
     fn a_schedule_of_another_case_does_not_fit() {
@@ -115,8 +118,8 @@ mod tests {
             area: 0.0,
         };
         let servo = |place, dof| {
-            let pushed = Pushed::Body(place, dof);
-            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, &pressure);
+            let target = ServoTarget::Body(place, dof);
+            let servos = Servo::of(&s.state.bodies, &s.shapes, &target, &pressure);
             servos.unwrap().remove(0)
         };
         let body = |dofs| Driven {
@@ -135,8 +138,8 @@ mod tests {
         assert!(fits(2, &|c| c.servos.push(servo(0, 1))));
         assert!(!fits(1, &|c| c.servos.push(servo(0, 1))));
         assert!(!fits(2, &|c| c.servos.push(servo(1, 0))));
-        assert!(fits(2, &|c| c.gates.push((0, 1.0))));
-        assert!(!fits(2, &|c| c.gates.push((1, 1.0))));
+        assert!(fits(2, &|c| c.removals.push((0, 1.0))));
+        assert!(!fits(2, &|c| c.removals.push((1, 1.0))));
         for (place, known) in [((0, 0), true), ((0, 1), false), ((1, 0), false)] {
             let set = |c: &mut Control<Dim2>| c.contact_parameters.extend([(place, 0.5)]);
             assert_eq!(fits(2, &set), known);

@@ -1,4 +1,4 @@
-//! What bounds a step that would span several steps of the case.
+//! Bounds of a step that spans several steps of the case.
 
 use super::GravityDrive;
 use crate::bodies::{Dof, TimeFunction};
@@ -6,20 +6,20 @@ use crate::geometry::space::Space;
 use crate::laws::Interface;
 use crate::step::Simulation;
 
-/// What a step must not pass, and how long it may be, as known from drives, gates and phases.
+/// Bounds of the next step from drives, gates and phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepBounds {
     /// Time of the next event (s): a gate, the end of a phase or stage, a kink of a drive; infinite
     /// if there is none.
     pub event: f64,
-    /// Longest step that resolves what changes smoothly (s); infinite where nothing does.
+    /// Longest step that resolves smooth changes (s); infinite where nothing changes.
     pub longest: f64,
 }
 
 impl StepBounds {
-    /// What bounds the next step, for [`Simulation::step_bounds`].
+    /// Returns the bounds of the next step, for [`Simulation::step_bounds`].
     pub(in crate::step) fn of<S: Space>(s: &Simulation<S>) -> StepBounds {
-        // An event that is due is one of the step that begins.
+        // An event that is due belongs to the step that begins.
         let t = s.state.time + 1e-6 * s.options.event_step();
         let control = &s.state.control;
         let mut bounds = StepBounds {
@@ -29,8 +29,8 @@ impl StepBounds {
         for dof in s.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
             bounds.drive(dof, t);
         }
-        for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
-            bounds.event = bounds.event.min(*gate);
+        for (_, removal) in control.removals.iter().filter(|g| g.1 > t) {
+            bounds.event = bounds.event.min(*removal);
         }
         let bonds = s.laws.iter().filter_map(Interface::bonding_time);
         bounds.event = bonds.filter(|b| *b > t).fold(bounds.event, f64::min);
@@ -61,19 +61,20 @@ impl StepBounds {
         self.longest = self.longest.min(drive.resolved_step(t));
     }
 
-    /// Steps of `h` (s) from `time` on to the event, or to the step in which it falls; and those
-    /// that one step may span, as far as what changes smoothly goes. Both are at least 1.
+    /// Returns the number of steps of `h` (s) from `time` to the event, or to the step in which it
+    /// falls; and the number that one step may span while resolving smooth changes. Both are at
+    /// least 1.
     pub fn steps(&self, time: f64, h: f64) -> [u64; 2] {
         let whole = |t: f64| {
             let steps = t / h;
-            // Times are sums of steps.
+            // Times are sums of steps, so that a whole number is only approximate.
             if (steps - steps.round()).abs() < 1e-6 * steps.abs().clamp(1.0, 1e3) {
                 steps.round()
             } else {
                 steps.floor()
             }
         };
-        // Saturates where there is no bound.
+        // The conversion saturates where there is no bound.
         [self.event - time, self.longest].map(|t| whole(t).max(1.0) as u64)
     }
 }
@@ -89,7 +90,8 @@ mod tests {
         assert_eq!(steps(1.0, 0.35, 0.0), [10, 3]);
         // 0.1 + 0.1 + 0.1 is above 0.3.
         assert_eq!(steps(1.0, 1.0, 0.1 + 0.1 + 0.1), [7, 10]);
-        // Between two steps: up to the first of them, then a step of the case.
+        // An event between two steps: one step reaches the first of them, then a step of the case
+        // follows.
         assert_eq!(steps(1.03, 1.0, 0.0), [10, 10]);
         assert_eq!(steps(1.03, 0.01, 1.0), [1, 1]);
         assert_eq!(steps(f64::INFINITY, f64::INFINITY, 0.0), [u64::MAX; 2]);

@@ -1,4 +1,5 @@
-//! Bodies that pass through others in the move before detection, which no step before has checked.
+//! Bodies that pass through others in the move before detection, which no previous step has
+//! checked.
 
 use crate::contact::detect;
 use crate::geometry::space::{Space, VectorLike};

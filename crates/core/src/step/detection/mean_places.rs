@@ -1,32 +1,32 @@
-//! Contacts of the points of one mesh with the surface of another act on the place that a point
-//! faces on average over the facets at it, see [`crate::geometry::mortar`]. Other contacts act on
-//! the nearest place.
+//! Contacts of the points of one mesh with the surface of another act on the position that a point
+//! faces on average over its facets, see [`crate::geometry::mortar`]. Other contacts act on the
+//! nearest position.
 
 use crate::bodies::Nodes;
 use crate::contact::Contact;
 use crate::geometry::mortar::Star;
-use crate::geometry::overlap::{Along, signed_size};
+use crate::geometry::overlap::{TangentialPoint, signed_size};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use crate::step::workspace::{MeanPlace, MeanPlaces, Reach};
 use std::collections::HashSet;
 
-/// Least cosine between a facet and the contact along it.
+/// Smallest cosine between the normal of a facet and that of the contact.
 const STEEPEST: f64 = 0.2;
-/// Largest difference of the cells of two grids that are equal, as a share.
+/// Largest relative difference of the cell sizes of two grids that count as equal.
 const EQUAL: f64 = 1e-9;
 
-/// The coordinates along a contact of a place from its point: in the plane to the right of the
-/// normal, in space such that triangles that are anticlockwise seen from the tip of the normal are
-/// so in these.
-fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> Along {
+/// Returns the coordinates of a position along the contact, relative to its point: in the plane to
+/// the right of the normal, in space such that triangles that are anticlockwise seen from the tip
+/// of the normal are anticlockwise in these coordinates.
+fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> TangentialPoint {
     let [first, second] = S::tangents(normal);
     let sign = if S::D == 2 { -1.0 } else { 1.0 };
     move |from| [sign * from.dot(&first), sign * from.dot(&second)]
 }
 
-/// Length or area of a facet (m or m^2), of which the first D corners count.
+/// Returns length or area of a facet (m or m^2), given by its first D corners.
 fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
     let (u, v) = (*b - *a, *c - *a);
     match S::D {
@@ -35,13 +35,13 @@ fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
     }
 }
 
-/// Adds to a star the facets of a surface that it faces, starting at one of them; `project` gives
+/// Adds the facets of a surface that a star faces, starting at one of them; `project` gives
 /// coordinates along the contact. `None` where one of these facets is steep.
 fn add_facets<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,
     near: u32,
-    project: impl Fn(&S::Vector) -> Along,
+    project: impl Fn(&S::Vector) -> TangentialPoint,
 ) -> Option<()> {
     let vertices = surface.moving_vertices();
     let (mut found, mut seen) = (vec![near], HashSet::from([near]));
@@ -52,7 +52,7 @@ fn add_facets<S: Space>(
         let at = corners.each_ref().map(&project);
         let (ids, at) = (&facet.vertices[..S::D], &at[..S::D]);
         let across = signed_size(at);
-        // A facet that is turned away is beyond an edge of what the point faces.
+        // A facet that is turned away is beyond an edge of the part that the point faces.
         let faces = across > 0.0 && star.is_near(at);
         if faces && star.add_facet(ids, at) && across < STEEPEST * size::<S>(&corners) {
             return None;
@@ -69,7 +69,7 @@ fn add_facets<S: Space>(
     Some(())
 }
 
-/// The nodes that a contact acts on, for [`Simulation::nodes_of_side`].
+/// Returns the nodes on which a contact acts, for [`Simulation::nodes_of_side`].
 pub(in crate::step) fn nodes_of_side<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,
@@ -96,7 +96,7 @@ pub(in crate::step) fn worn_shares<'a, S: Space>(
     }
 }
 
-/// Where contacts with surfaces acted, for [`Simulation::acted_on_mean_places`].
+/// Returns where contacts with surfaces acted, for [`Simulation::acted_on_mean_places`].
 pub(in crate::step) fn acted_on_mean_places<S: Space>(
     s: &Simulation<S>,
 ) -> impl Iterator<Item = (&Contact<S>, bool)> {
@@ -108,8 +108,8 @@ pub(in crate::step) fn acted_on_mean_places<S: Space>(
     })
 }
 
-/// What a contact acts on: the nodes of the antagonist that a point of a mesh faces on average, and
-/// their mean place.
+/// Finds the nodes of the antagonist that a point of a mesh faces on average, and their mean
+/// position.
 fn reach<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> Reach<S> {
     let carriers = contact.bodies.map(|b| s.state.bodies.carrier(b as usize));
     let ([Some(point), Some(carrier)], Some(surface)) = (carriers, contact.key.surface()) else {
@@ -181,8 +181,8 @@ pub(super) fn find<S: Space>(s: &mut Simulation<S>) {
     find_of_new_contacts(s);
 }
 
-/// Finds the mean positions for contacts that are new or have another normal; bodies have not moved
-/// since those of the others were found.
+/// Finds the mean positions for contacts that are new or have another normal; bodies must not have
+/// moved since the others were found.
 pub(super) fn find_of_new_contacts<S: Space>(s: &mut Simulation<S>) {
     if s.state.systems.is_empty() {
         return;
@@ -212,14 +212,14 @@ pub(super) fn find_of_new_contacts<S: Space>(s: &mut Simulation<S>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::mortar::Faced;
+    use crate::geometry::mortar::FacedVertices;
     use crate::geometry::polyline::Polyline;
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// The mean place of a point above the foot of a flank of length one, whose cosine against the
-    /// contact is this.
-    fn below(cosine: f64) -> Option<Faced> {
+    /// Returns the mean position of a point above the foot of a flank of length one, whose normal
+    /// has this cosine to that of the contact.
+    fn below(cosine: f64) -> Option<FacedVertices> {
         let top = Vector2::new(cosine, (1.0 - cosine * cosine).sqrt());
         let ends = [Vector2::new(-2.0, 0.0), top + Vector2::new(2.0, 0.0)];
         let chain = vec![ends[0], Vector2::zeros(), top, ends[1]];

@@ -6,14 +6,14 @@ pub(super) mod projection;
 
 pub(super) use first_move::{watch_first_move, watch_push};
 
-use super::motion::Motion;
+use super::motion::BodyVelocity;
 use super::process::Process;
 use super::{Simulation, StepError};
 use crate::contact::{Contact, detect};
 use crate::geometry::space::Space;
 use crate::laws::StepInfo;
 
-/// Finds the contacts at the current places of the bodies.
+/// Finds the contacts at the current positions of the bodies.
 pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {
     let time = [s.state.time, s.options.scheme.h];
     let (network, bodies) = (&mut s.state.network, &s.state.bodies);
@@ -23,14 +23,14 @@ pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {
 }
 
 /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
-pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
+pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[BodyVelocity<S>]) {
     add_predicted(s, free);
     mean_places::find_of_new_contacts(s);
 }
 
-fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
-    // Over a step that has grown nothing moves: what falls without contacts is held by those at
-    // hand. The velocities after the solve tell whether that is so.
+fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[BodyVelocity<S>]) {
+    // In a step that spans several steps, the prediction is skipped: bodies that would fall without
+    // contacts are held by those at hand. The velocities after the solve show whether this is so.
     if s.options.grown > 0 {
         return;
     }
@@ -47,13 +47,13 @@ fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
     }
 }
 
-/// Adds contacts that were found after a solve of the step, to the places of detection.
+/// Adds contacts that were found after a solve of the step, at the positions of detection.
 pub(super) fn add_contacts<S: Space>(s: &mut Simulation<S>, found: Vec<Contact<S>>) {
     s.state.network.merge_contacts(found);
     mean_places::find_of_new_contacts(s);
 }
 
-/// Shows the contacts of the step to processes, gives new contacts their memory, and forms the
+/// Passes the contacts of the step to processes, gives new contacts their memory, and forms the
 /// bonds that are due.
 pub(super) fn prepare_contacts<S: Space>(
     s: &mut Simulation<S>,

@@ -19,24 +19,24 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::solve::error::Norm;
-use crate::solve::{ContactForm, Options, Problem, nlgs};
-use crate::step::{Projected, Scheme, Simulation, StepError};
+use crate::solve::{ContactForm, Problem, SolverOptions, nlgs};
+use crate::step::{ProjectionReport, Scheme, Simulation, StepError};
 use crate::threads::largest;
 
 /// Displacement of a body's centre (m) and its rotation (rad).
 type Move<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-/// Relative tolerance of the displacements. The remainder is removed by the next projection.
+/// Relative tolerance of the displacements. The next projection removes the remainder.
 const TOLERANCE: f64 = 1e-3;
 /// Iteration limit: no solution exists where bodies have no room to move apart.
 const MAX_SWEEPS: u32 = 5000;
-/// About what it takes to find how deep a contact is (ns).
+/// Approximate time to compute the depth of a contact (ns).
 const DEPTH: f64 = 3.0;
 
-/// Refuses projection in a scene with dynamical systems, which it would leave where they are.
+/// Refuses projection in a scene with dynamical systems, which projection does not move.
 ///
 /// # Errors
-/// Projection is on and there are systems.
+/// Projection is requested and there are systems.
 pub(in crate::step) fn check_bodies<S: Space>(s: &Simulation<S>) -> Result<(), StepError> {
     match s.state.systems.get(0) {
         Some(system) if s.options.projection > 0.0 => Err(StepError::SystemProjection {
@@ -49,7 +49,7 @@ pub(in crate::step) fn check_bodies<S: Space>(s: &Simulation<S>) -> Result<(), S
 
 /// Removes penetrations if one exceeds the bound, repeats detection, and adds the work to the
 /// ledger.
-pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projected> {
+pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<ProjectionReport> {
     if s.options.projection <= 0.0 {
         return None;
     }
@@ -63,12 +63,12 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
         &s.state.network,
         &s.laws,
     );
-    let options = Options {
+    let options = SolverOptions {
         tolerance: TOLERANCE,
         norm: Norm::Velocity,
         max_iterations: MAX_SWEEPS,
         parallel: s.options.solver.parallel,
-        ..Options::default()
+        ..SolverOptions::default()
     };
     let solved = nlgs::solve(&mut s.workspace.problem, &options);
     let moves: Vec<Move<S>> = (0..s.state.bodies.len())
@@ -86,7 +86,7 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
         .iter()
         .any(|d| moves[d.body as usize].1 != S::Spin::zero())
     {
-        // A rotating surface moves more than its frame does.
+        // A rotating surface moves more than its origin does.
         s.state.network.forget_neighbours();
     }
     // No time passes: bond openings follow the normals and are not rotated by spins again.
@@ -94,7 +94,7 @@ pub(in crate::step) fn project<S: Space>(s: &mut Simulation<S>) -> Option<Projec
     let (time, parallel) = ([s.state.time, 0.0], s.options.solver.parallel);
     detect(&mut s.state.network, &scene, time, parallel);
     s.state.projection_work += against_loads;
-    Some(Projected {
+    Some(ProjectionReport {
         before,
         after: deepest_overlap(s),
         sweeps: solved.iterations,
@@ -112,15 +112,15 @@ pub(in crate::step) fn deepest_overlap<S: Space>(s: &Simulation<S>) -> f64 {
     })
 }
 
-/// The overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` says which bodies are
-/// grains.
+/// Returns the overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` says which
+/// bodies are grains.
 #[inline]
 pub(in crate::step) fn overlap<S: Space>(
     c: &Contact<S>,
     (bodies, network, laws): (&Bodies<S>, &Network<S>, &[Interface]),
     grain: &[bool],
 ) -> f64 {
-    // One that was found on its way has the place where it closes.
+    // A contact predicted within the step has the geometry at the time of closing.
     if c.gap >= 0.0 || c.closing || laws[usize::from(c.law)].compliant() {
         return 0.0;
     }
@@ -139,7 +139,7 @@ pub(in crate::step) fn overlap<S: Space>(
 }
 
 /// Adds the work of displacements against gravity and imposed forces to the ledger; returns the
-/// latter (J).
+/// work against imposed forces (J).
 fn record_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
     let bodies = &s.state.bodies;
     let Scheme { h, theta } = s.options.scheme;
@@ -181,7 +181,8 @@ fn pose<S: Space>(
     network: &Network<S>,
     laws: &[Interface],
 ) {
-    /// Times total moved mass times deepest penetration: larger than any impulse of this problem.
+    /// Factor on total moved mass times deepest penetration: larger than any impulse of this
+    /// problem.
     const UNBREAKABLE: f64 = 1e6;
     problem.clear();
     for b in 0..bodies.len() {
@@ -205,7 +206,7 @@ fn pose<S: Space>(
             normal: contact.normal,
             arms: contact.arms,
             central: contact.central,
-            // Overlaps are taken out along normals, about which arms along them do not turn.
+            // Overlaps are removed along normals; arms along the normal cause no rotation.
             shift_n: if kept { 0.0 } else { contact.gap },
             tension: hold,
             cohesion: hold,

@@ -138,7 +138,8 @@ fn forces<S: Space>(newton: &'static str) -> Vec<Field<S, Contact<S>>> {
     fields
 }
 
-/// What stands as components as well, as vectors in world axes: viewers draw arrows of these.
+/// Returns the components of vectors as vectors in world axes too, since viewers draw arrows of
+/// vectors.
 fn vectors<S: Space>(newton: &'static str) -> [Field<S, Contact<S>>; 2] {
     [
         Field::vector("force", newton, "force on body_1", |s, c| force(s, c)),
@@ -151,7 +152,7 @@ fn vectors<S: Space>(newton: &'static str) -> [Field<S, Contact<S>>; 2] {
     ]
 }
 
-/// Normal and tangent.
+/// Returns normal and tangent.
 fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
     let normal = |name, axis: usize| {
         Field::number(
@@ -178,9 +179,10 @@ fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
     fields
 }
 
-/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give:
-/// kind and number of the contactor of each of these bodies, in the same order, and the feature of
-/// the name. For programs that match contacts of several files; of the present shapes and bodies.
+/// Returns the parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do
+/// not give: kind and number of the contactor of each of these bodies, in the same order, and the
+/// feature, for programs that match contacts of several files. They refer to the present shapes and
+/// bodies.
 pub fn id_fields<S: Space>(s: &Simulation<S>) -> Vec<Field<S, Contact<S>>> {
     let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.state.bodies));
     let side = |name, doc, side: usize, number: bool| {

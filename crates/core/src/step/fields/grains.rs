@@ -13,16 +13,16 @@ pub struct GrainPart<S: Space> {
     pub body: u32,
     /// Index of the material.
     pub material: u16,
-    /// Radius; of other shapes that of the ball (2D: disk) of the same volume (m).
+    /// Radius (m); for shapes other than balls that of the ball (2D: disk) of the same volume.
     pub radius: f64,
-    /// Corners of a polygon or polyhedron, 2 of a capsule, 0 of a ball.
+    /// Number of corners: of a polygon or polyhedron, 2 for a capsule, 0 for a ball.
     pub corners: u32,
-    /// Its centre (m).
+    /// Centre (m).
     pub centre: S::Vector,
 }
 
 impl<S: Space> GrainPart<S> {
-    /// All balls and then all pieces of a simulation, then its grains that deform.
+    /// Iterates over all balls, then all pieces, then all deformable grains.
     pub fn all(s: &Simulation<S>) -> impl Iterator<Item = Self> {
         let bodies = &s.state.bodies;
         let deforms = |body: u32| bodies.carrier(body as usize).is_some_and(|c| c.grain);
@@ -152,7 +152,7 @@ pub const ORIENTATION: [&str; 4] = [
     "orientation_z",
 ];
 
-/// Orientations, for simulations with grains that are no lone balls.
+/// Returns orientations, for simulations with grains other than single balls.
 pub fn orientation<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
     let number = |name, unit, doc, k: usize| {
         Field::number(
@@ -173,7 +173,7 @@ pub fn orientation<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
         .collect()
 }
 
-/// Whether a grain was removed, for simulations that remove grains.
+/// Returns whether a grain was removed, for simulations that remove grains.
 pub fn removed<S: Space>() -> Field<S, GrainPart<S>> {
     Field::number(
         "removed",

@@ -6,7 +6,7 @@ use crate::geometry::space::Space;
 use crate::step::Simulation;
 use crate::unit::{CONDUCTANCE, ELECTRIC_CONDUCTANCE, ENERGY};
 
-/// Temperature of the body of a grain, for simulations with heat.
+/// Returns the temperature of the body of a grain, for simulations with heat.
 pub fn heat_of_grains<S: Space>() -> Field<S, GrainPart<S>> {
     Field::number(
         "temperature",
@@ -30,7 +30,8 @@ fn of_contact<S: Space>(
     found.and_then(|(t, k)| get(t, k)).unwrap_or(f64::NAN)
 }
 
-/// Temperature, heat and conductances of contacts in the last step, for simulations with heat.
+/// Returns temperature, heat and conductances of contacts in the last step, for simulations with
+/// heat.
 pub fn heat_of_contacts<S: Space>() -> [Field<S, Contact<S>>; 4] {
     let units = [ENERGY, CONDUCTANCE, ELECTRIC_CONDUCTANCE];
     let [joule, thermal, electric] = units.map(|unit| unit.symbol(S::D));

@@ -1,7 +1,7 @@
-//! What grains and contacts carry for output, each field registered once with its name, unit and a
-//! line of explanation.
+//! Output quantities of grains and contacts; each field is registered once with its name, unit and
+//! a line of explanation.
 //!
-//! The views of `results.h5`, pictures and the test of the documentation draw from the list; a
+//! The views of `results.h5`, the pictures and the test of the documentation use the list; a
 //! program adds its own fields to [`Simulation::fields`] before the first state is written:
 //!
 //! ```
@@ -34,7 +34,7 @@ use std::sync::Arc;
 /// The function behind a field.
 type Get<S, T, V> = Arc<dyn Fn(&Simulation<S>, &T) -> V + Send + Sync>;
 
-/// How a value is read.
+/// Function that reads a value.
 pub enum Value<S: Space, T> {
     /// A number.
     Number(Get<S, T, f64>),
@@ -44,13 +44,13 @@ pub enum Value<S: Space, T> {
     Vector(Get<S, T, [f64; 3]>),
 }
 
-/// A quantity that each thing of a kind (`T`: [`GrainPart`], [`Contact`]) carries.
+/// A quantity of each item of a kind (`T`: [`GrainPart`], [`Contact`]).
 pub struct Field<S: Space, T> {
     /// Name: a-z, 0-9 and _.
     pub name: &'static str,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
-    /// One line.
+    /// Description in one line.
     pub doc: &'static str,
     /// The value.
     pub value: Value<S, T>,
@@ -101,7 +101,7 @@ impl<S: Space, T> Field<S, T> {
         }
     }
 
-    /// Its value as a number, of a vector its norm.
+    /// Returns the value as a number; for a vector its norm.
     pub fn get(&self, s: &Simulation<S>, of: &T) -> f64 {
         match &self.value {
             Value::Number(get) => get(s, of),
@@ -110,12 +110,12 @@ impl<S: Space, T> Field<S, T> {
         }
     }
 
-    /// Whether its values are whole numbers.
+    /// Returns whether the values are whole numbers.
     pub fn is_whole(&self) -> bool {
         matches!(self.value, Value::Whole(_))
     }
 
-    /// Numbers of a value: 3 of a vector, 1 of others.
+    /// Returns the number of components of a value: 3 for a vector, otherwise 1.
     pub fn width(&self) -> usize {
         match self.value {
             Value::Vector(_) => 3,
@@ -141,19 +141,19 @@ impl<S: Space, T> fmt::Debug for Field<S, T> {
     }
 }
 
-/// Fields of one kind of things, in the order in which they are written.
+/// Fields of one kind of items, in the order in which they are written.
 #[derive(Clone, Debug)]
 pub struct FieldList<S: Space, T>(Vec<Field<S, T>>);
 
 impl<S: Space, T> FieldList<S, T> {
-    /// A list; of two fields of one name the later one.
+    /// Creates a list; of two fields with the same name the later one is kept.
     pub fn new(fields: impl IntoIterator<Item = Field<S, T>>) -> Self {
         let mut list = Self(Vec::new());
         fields.into_iter().for_each(|f| list.add(f));
         list
     }
 
-    /// Adds a field, in the place of that of its name where there is one.
+    /// Adds a field, replacing the field of the same name if there is one.
     pub fn add(&mut self, field: Field<S, T>) {
         match self.0.iter_mut().find(|f| f.name == field.name) {
             Some(same) => *same = field,
@@ -166,13 +166,13 @@ impl<S: Space, T> FieldList<S, T> {
         self.0.iter().find(|f| f.name == name)
     }
 
-    /// All of them.
+    /// Iterates over all fields.
     pub fn iter(&self) -> impl Iterator<Item = &Field<S, T>> {
         self.0.iter()
     }
 }
 
-/// What grains and contacts carry; see the [module](self).
+/// Fields of grains and contacts; see the [module](self).
 #[derive(Clone, Debug)]
 pub struct Fields<S: Space> {
     /// Fields of grains, and of the balls and pieces of first bodies.
@@ -182,7 +182,7 @@ pub struct Fields<S: Space> {
 }
 
 impl<S: Space> Default for Fields<S> {
-    /// The fields that every simulation has.
+    /// Returns the fields that every simulation has.
     fn default() -> Self {
         Self {
             grains: FieldList::new(grains::standard()),
@@ -197,7 +197,7 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// A number, a whole number and a vector of a thing that is a number itself.
+    /// A number, a whole number and a vector of an item that is a number itself.
     #[test]
     fn a_field_gives_numbers() {
         let s = Simulation::<Dim2>::of_disks(&[]);

@@ -1,15 +1,15 @@
-//! The energy of a step.
+//! Energies of a step.
 
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, SpringForm};
 use crate::step::control::watch_imposed;
-use crate::step::motion::{Motion, StepStart, end_systems};
+use crate::step::motion::{BodyVelocity, StepStart, end_systems};
 use crate::step::{Scheme, Simulation, StepReport};
 use crate::threads::{map_chunks, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to look whether a contact is one of a driven body (ns).
+/// Approximate time to check whether a contact belongs to a driven body (ns).
 const RECEIVED: f64 = 5.0;
 
 /// Adds the step to the energy ledger.
@@ -50,7 +50,7 @@ pub(in crate::step) fn close_energy<S: Space>(
     s.state.received = received;
 }
 
-/// Energy in the springs of compliant contacts (J).
+/// Returns the energy in the springs of compliant contacts (J).
 pub(super) fn spring_energy<S: Space>(s: &Simulation<S>) -> f64 {
     if s.laws.iter().any(Interface::compliant) {
         let parallel = s.options.solver.parallel;
@@ -60,8 +60,8 @@ pub(super) fn spring_energy<S: Space>(s: &Simulation<S>) -> f64 {
     }
 }
 
-/// Impulses and moments that contacts gave to the driven bodies, in their order (N s, N m s).
-fn received<S: Space>(s: &Simulation<S>) -> Vec<Motion<S>> {
+/// Returns the impulses and moments of contacts on the driven bodies, in their order (N s, N m s).
+fn received<S: Space>(s: &Simulation<S>) -> Vec<BodyVelocity<S>> {
     let (driven, contacts) = (&s.state.bodies.driven, &s.state.network.contacts);
     let mut place = vec![u32::MAX; s.state.bodies.len()];
     for (driven, d) in driven.iter().zip(0..) {

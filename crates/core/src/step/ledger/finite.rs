@@ -8,13 +8,13 @@ use crate::threads::any;
 /// Motion lost to rounding from which a warning is issued, as a fraction of the alert distance: for
 /// spheres, a millionth of the radius.
 const LOST: f64 = 2e-5;
-/// About what it takes to look at a position (ns).
+/// Approximate time to check a position (ns).
 const LOOK: f64 = 2.0;
 
 /// Checks the state at the end of the step, and records motion that is lost to rounding.
 ///
 /// # Errors
-/// Names the first quantity that is not finite, and its body.
+/// Returns an error that names the first quantity that is not finite, and its body.
 pub(in crate::step) fn check_finite<S: Space>(s: &mut Simulation<S>) -> Result<(), StepError> {
     find_overflow(s)?;
     watch_rounding(s);
@@ -24,7 +24,7 @@ pub(in crate::step) fn check_finite<S: Space>(s: &mut Simulation<S>) -> Result<(
 /// Checks that the state and the ledger are finite.
 ///
 /// # Errors
-/// Names the first quantity that is not finite, and its body.
+/// Returns an error that names the first quantity that is not finite, and its body.
 fn find_overflow<S: Space>(s: &Simulation<S>) -> Result<(), StepError> {
     let overflow = |quantity: String, value: f64| StepError::Overflow {
         step: s.state.steps,

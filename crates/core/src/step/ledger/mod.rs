@@ -1,4 +1,4 @@
-//! What a step comes to: its energy and momentum, and whether all of it is finite.
+//! The balance of a step: its energy and momentum, and the check that all values are finite.
 
 mod energy;
 mod finite;

@@ -7,15 +7,15 @@ use crate::step::motion::StepStart;
 use crate::step::{Simulation, StepReport};
 use crate::threads::{map_ranges, worth_dividing};
 
-/// Bodies and contacts of a task.
+/// Number of bodies or contacts of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to find the momentum of a body, and to look whether a contact acts from
+/// Approximate time to compute the momentum of a body, and to check whether a contact acts from
 /// outside (ns).
 const BODY: f64 = 10.0;
 const CONTACT: f64 = 4.0;
 
-/// Adds what the free rigid bodies gained in the step, at q_m: there an impulse changes the
-/// angular momentum of a step by its moment, whatever theta is.
+/// Adds the momentum that the free rigid bodies gained in the step, at q_m: there an impulse
+/// changes the angular momentum of a step by its moment, for any theta.
 pub(in crate::step) fn close_momentum<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
@@ -53,8 +53,8 @@ pub(in crate::step) fn close_momentum<S: Space>(
         }
         sum
     });
-    // What is less deep than the deepest share of the smallest body is not the deepest of any, and
-    // is not looked into.
+    // A contact less deep than the deepest share so far of the smallest body cannot be the deepest,
+    // and is skipped.
     let smallest = bodies.length.iter().copied().fold(f64::INFINITY, f64::min);
     let divide = worth_dividing(parallel, network.contacts.len(), CONTACT);
     let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {

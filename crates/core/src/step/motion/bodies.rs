@@ -8,9 +8,9 @@ use crate::energy::BodyWork;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, map_ranges, worth_dividing};
 
-/// Bodies of a task.
+/// Number of bodies of a task.
 const CHUNK: usize = 1024;
-/// About what a pass over bodies takes for each (ns).
+/// Approximate time per body of a pass over bodies (ns).
 const EACH: f64 = 10.0;
 
 /// Advances positions and orientations by `time` (s) without forces.
@@ -125,7 +125,7 @@ impl<S: Space> StepStart<S> {
         }
     }
 
-    /// Takes the spins that bodies reach by free rotation over the first half move.
+    /// Stores the spins that bodies reach by free rotation over the first half move.
     pub fn take_rotated_spins(&mut self, bodies: &Bodies<S>) {
         for b in 0..bodies.tensors.len() {
             if bodies.tensor(b).is_some() {

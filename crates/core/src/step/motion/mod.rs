@@ -11,7 +11,7 @@ use super::{Scheme, Simulation};
 use crate::geometry::space::Space;
 
 /// Velocity and spin of a body.
-pub(super) type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+pub(super) type BodyVelocity<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// Moves the bodies to q_m.
 pub(super) fn move_to_detection<S: Space>(s: &mut Simulation<S>) {
@@ -21,12 +21,12 @@ pub(super) fn move_to_detection<S: Space>(s: &mut Simulation<S>) {
     systems::begin_systems(s, time);
 }
 
-/// The velocities without contacts at the end of the step, from bodies at q_m. `start` takes the
-/// spins that they have there.
+/// Computes the velocities at the end of the step without contacts, from bodies at q_m. `start`
+/// receives their spins at q_m.
 pub(super) fn free_motion<S: Space>(
     s: &mut Simulation<S>,
     start: &mut StepStart<S>,
-) -> Vec<Motion<S>> {
+) -> Vec<BodyVelocity<S>> {
     start.take_rotated_spins(&s.state.bodies);
     s.state.started = start.of_driven(&s.state.bodies);
     let Scheme { h, theta } = s.options.scheme;
@@ -37,7 +37,7 @@ pub(super) fn free_motion<S: Space>(
     free
 }
 
-/// Gives all bodies the velocities that they began the step with.
+/// Restores the velocities of all bodies at the start of the step.
 pub(super) fn restart<S: Space>(s: &mut Simulation<S>, start: &StepStart<S>) {
     start.restore(&mut s.state.bodies);
     systems::restart_systems(s);

@@ -15,7 +15,7 @@ pub(in crate::step) fn add_system<S: Space>(
     let (kinetic, stored) = (system.kinetic_energy(), system.stored_energy());
     let contactors = system.contactors();
     let index = s.state.systems.add(system, &mut s.state.bodies);
-    // Contacts in the first move are looked for with the velocities at the start.
+    // Contacts in the first move are searched with the velocities at the start.
     s.state.systems.carry(&mut s.state.bodies);
     let system = s.state.systems.get(index);
     let mut points = 0..0;
@@ -73,7 +73,7 @@ pub(in crate::step) fn add_system<S: Space>(
     index
 }
 
-/// Takes all systems through the first part of a step (s).
+/// Advances all systems through the first part of a step (s).
 pub(super) fn begin_systems<S: Space>(s: &mut Simulation<S>, time: f64) {
     if s.state.systems.is_empty() {
         return;
@@ -90,7 +90,7 @@ pub(super) fn carry_systems<S: Space>(s: &mut Simulation<S>) {
     s.state.systems.deform(&s.state.bodies, &mut s.shapes);
 }
 
-/// The velocities of systems without contacts; those of their bodies into `free`.
+/// Computes the velocities of systems without contacts, and writes those of their bodies to `free`.
 pub(super) fn free_systems<S: Space>(s: &mut Simulation<S>, free: &mut [(S::Vector, S::Spin)]) {
     if !s.state.systems.is_empty() {
         let step = system_step(s);
@@ -98,7 +98,7 @@ pub(super) fn free_systems<S: Space>(s: &mut Simulation<S>, free: &mut [(S::Vect
     }
 }
 
-/// Sets all systems and their bodies to the velocities at the start of the step.
+/// Restores the velocities of all systems and their bodies at the start of the step.
 pub(super) fn restart_systems<S: Space>(s: &mut Simulation<S>) {
     if !s.state.systems.is_empty() {
         s.state.systems.restart();
@@ -106,8 +106,8 @@ pub(super) fn restart_systems<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Takes all systems through the last part of a step (s) and adds their work; gives their kinetic
-/// and stored energy.
+/// Advances all systems through the last part of a step (s) and adds their work; returns their
+/// kinetic and stored energy.
 pub(in crate::step) fn end_systems<S: Space>(
     s: &mut Simulation<S>,
     time: f64,
@@ -126,7 +126,7 @@ pub(in crate::step) fn end_systems<S: Space>(
     s.state.systems.energies()
 }
 
-/// The data of the current step that systems receive.
+/// Returns the data of the current step that systems receive.
 pub(in crate::step) fn system_step<S: Space>(s: &Simulation<S>) -> SystemStep<S> {
     SystemStep {
         time: s.state.time,

@@ -1,34 +1,34 @@
-//! Where the impulses of contacts act.
+//! Positions at which the impulses of contacts act.
 
-use crate::contact::{Acts, Contact};
+use crate::contact::{ActionPoint, Contact};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 use crate::threads::{map_chunks_mut, worth_dividing};
 
-/// Contacts of a task.
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
-/// About what it takes to look where a contact acts (ns).
+/// Approximate time to find where a contact acts (ns).
 const LOOK: f64 = 4.0;
 
-/// What of an interface acts across a gap.
-struct Across {
+/// Parts of an interface that act across a gap.
+struct GapActions {
     spring: bool,
     attraction: bool,
     bond: bool,
 }
 
 /// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act
-/// on each other when they touch, on their surfaces: that these are apart at q_m is an error of the
-/// step. A bond, a spring or an attraction acts across the gap, or the overlap, that there is.
+/// on each other when they touch, on their surfaces: a gap at q_m is an error of the step. A bond,
+/// a spring or an attraction acts across the actual gap or overlap.
 pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
-    let across = s.laws.iter().map(|law| Across {
+    let across = s.laws.iter().map(|law| GapActions {
         spring: law.compliant(),
         attraction: law.cohesion().is_some() && !law.opens(),
         bond: law.opens(),
     });
-    let across: Vec<Across> = across.collect();
-    // What acts on surfaces does so from the start.
-    let never = |a: &Across| !(a.spring || a.attraction || a.bond);
+    let across: Vec<GapActions> = across.collect();
+    // Contacts are created with an action on the surfaces.
+    let never = |a: &GapActions| !(a.spring || a.attraction || a.bond);
     if across.iter().all(never) {
         return;
     }
@@ -47,11 +47,11 @@ pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
             let sides = contact
                 .bodies
                 .map(|b| deforms && bodies.carrier(b as usize).is_some());
-            contact.acts = match (apart, sides) {
-                (false, _) | (true, [true, true]) => Acts::Surfaces,
-                (true, [false, false]) => Acts::Middle,
-                (true, [true, false]) => Acts::Candidate,
-                (true, [false, true]) => Acts::Antagonist,
+            contact.action_point = match (apart, sides) {
+                (false, _) | (true, [true, true]) => ActionPoint::Surfaces,
+                (true, [false, false]) => ActionPoint::Middle,
+                (true, [true, false]) => ActionPoint::Candidate,
+                (true, [false, true]) => ActionPoint::Antagonist,
             };
         }
     });
@@ -64,13 +64,13 @@ mod tests {
     use crate::geometry::space::Dim2;
     use crate::laws::sample_laws::{bond, interface, sticky};
 
-    /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond
-    /// it; friction acts on the surfaces, also where another interface attracts.
+    /// An attraction without a bond acts in the middle of the gap, unless the contact is beyond the
+    /// alert distance; friction acts on the surfaces, also where another interface attracts.
     #[test]
     fn attraction_acts_across_the_gap() {
         for (law, acts) in [
-            (0, [Acts::Middle, Acts::Surfaces]),
-            (1, [Acts::Surfaces; 2]),
+            (0, [ActionPoint::Middle, ActionPoint::Surfaces]),
+            (1, [ActionPoint::Surfaces; 2]),
         ] {
             let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
             let mut table = LawTable::new(1);
@@ -81,13 +81,14 @@ mod tests {
             let placed = [false, true].map(|beyond| {
                 s.state.network.contacts[0].beyond = beyond;
                 place_actions(&mut s);
-                s.state.network.contacts[0].acts
+                s.state.network.contacts[0].action_point
             });
             assert_eq!(placed, acts);
         }
     }
 
-    /// A bond acts across its gap, a contact of the same interface without one on the surfaces.
+    /// A bond acts across its gap; a contact of the same interface without a bond acts on the
+    /// surfaces.
     #[test]
     fn a_bond_acts_across_its_gap() {
         let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
@@ -97,8 +98,8 @@ mod tests {
         let placed = [slot, Contact::<Dim2>::NO_MEMORY].map(|slot| {
             s.state.network.contacts[0].slot = slot;
             place_actions(&mut s);
-            s.state.network.contacts[0].acts
+            s.state.network.contacts[0].action_point
         });
-        assert_eq!(placed, [Acts::Middle, Acts::Surfaces]);
+        assert_eq!(placed, [ActionPoint::Middle, ActionPoint::Surfaces]);
     }
 }

@@ -1,4 +1,4 @@
-//! Solves a step again until what laws gave for it agrees with what it came to.
+//! Solves a step again until the values of the laws agree with its solution.
 
 use super::{answers, attraction, posing, sliding};
 use crate::geometry::space::Space;
@@ -8,22 +8,23 @@ use crate::step::motion::StepStart;
 use crate::step::{Agreement, Simulation, StepError, StepReport};
 use std::time::Instant;
 
-/// Difference between the attraction used and that over the gaps passed, over the load of the
-/// contact, that is let stand.
+/// Accepted difference between the attraction used and that over the gaps passed, relative to the
+/// load of the contact.
 const TOLERANCE: f64 = 1e-4;
-/// Solves of a step, at most, and those in which attractions follow: one contact takes up to eight,
-/// and among many some may jump between gaps that hold and gaps that do not.
+/// Largest number of solves of a step, and of those in which attractions are updated: a single
+/// contact takes up to eight, and among many contacts some may jump between gaps that hold and gaps
+/// that do not.
 const MOST: u32 = 40;
-const MOST_OF_ATTRACTION: u32 = 12;
-/// Iterations of a solve whose laws are not those of the solution yet.
+const MAX_OF_ATTRACTION: u32 = 12;
+/// Number of iterations of a solve whose laws do not agree with its solution yet.
 const BRIEF: u32 = 100;
 
-/// Solves the contacts with the forms that laws prepared, and collects what they did.
+/// Solves the contacts with the forms that laws prepared, and collects the results.
 pub(super) fn solve_in_agreement<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
     free: &[(S::Vector, S::Spin)],
-    options: &solve::Options,
+    options: &solve::SolverOptions,
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
@@ -33,11 +34,11 @@ pub(super) fn solve_in_agreement<S: Space>(
     let mut sliding = sliding.map_err(|e| s.law_error(e))?;
     report.timing.laws += clock.elapsed();
     let mut agreement = Agreement::default();
-    let brief = solve::Options {
+    let brief = solve::SolverOptions {
         max_iterations: options.max_iterations.min(BRIEF),
         ..*options
     };
-    // Laws that follow the velocity are brought near to their solution first.
+    // Laws that depend on the velocity are first brought near to their solution.
     let mut to_the_end = sliding.is_empty();
     loop {
         let clock = Instant::now();
@@ -47,11 +48,11 @@ pub(super) fn solve_in_agreement<S: Space>(
         agreement.solves += 1;
         let solved = to_the_end || report.solver.converged;
         let clock = Instant::now();
-        // After the last solve nothing is linearised anew: its forms are those of the solution.
+        // After the last solve nothing is linearised again: its forms belong to the solution.
         let again = agreement.solves < MOST;
         let friction = sliding::compare_sliding(s, &mut sliding, again, info);
         let friction = friction.map_err(|e| s.law_error(e))?;
-        let tolerance = if agreement.solves < MOST_OF_ATTRACTION {
+        let tolerance = if agreement.solves < MAX_OF_ATTRACTION {
             TOLERANCE
         } else {
             f64::INFINITY

@@ -1,7 +1,7 @@
-//! Contact states of a step: the relative velocities before it, and the solver's results in the
-//! form in which the laws commit them.
+//! Contact states of a step: the relative velocities before it, and the solver's results as the
+//! laws receive them.
 
-use super::swerve::shift_of_gap;
+use super::nonlinear_closing::shift_of_gap;
 use super::{systems, turning};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{ContactStep, Interface, MomentStep};
@@ -11,11 +11,12 @@ use crate::step::{Scheme, Simulation};
 use crate::threads::fill;
 use std::sync::{Mutex, PoisonError};
 
-/// Least overlap, over the reduced radius, for which a law is evaluated at a contact that closes
-/// within the step: its velocity before may not tell of that.
+/// Smallest overlap, over the reduced radius, for which a law is evaluated at a contact that closes
+/// within the step: the velocity before the step may not show that it closes.
 const CLOSING_OVERLAP: f64 = 1e-3;
 
-/// The velocities of the candidates relative to their antagonists, at the current velocities.
+/// Returns the velocities of the candidates relative to their antagonists, at the current
+/// velocities.
 fn fill_relative_velocities<S: Space>(s: &Simulation<S>, list: &mut Vec<S::Vector>) {
     let (bodies, contacts) = (&s.state.bodies, &s.state.network.contacts);
     if s.state.systems.is_empty() {
@@ -51,8 +52,8 @@ pub(super) fn relative_velocities<S: Space>(s: &mut Simulation<S>) {
         let (divide, count) = (s.divides_contacts(), network.contacts.len());
         let relative = &before.relative;
         fill(divide, &mut before.overlap, count, |k| {
-            // Not below the overlap at hand: a body that moves apart by more than that in a step
-            // would find no spring, and stiff contacts no equilibrium.
+            // The estimate is at least the current overlap: otherwise a body that separates by more
+            // than that in a step would find no spring, and stiff contacts no equilibrium.
             let contact = &network.contacts[k];
             let gap = network.spring_gap(contact);
             let end = gap + h * contact.normal.dot(&relative[k]);
@@ -70,7 +71,7 @@ pub(super) fn relative_velocities<S: Space>(s: &mut Simulation<S>) {
     s.workspace.solved.before = before;
 }
 
-/// Collects what compliant contacts did, which need their velocities at the end of the step.
+/// Collects the results of compliant contacts, which need the velocities at the end of the step.
 pub(super) fn collect_spring_steps<S: Space>(s: &mut Simulation<S>) {
     let mut steps = std::mem::take(&mut s.workspace.solved.springs);
     let (springs, forms) = (&s.workspace.springs, &s.workspace.forms);
@@ -89,7 +90,7 @@ pub(super) fn collect_spring_steps<S: Space>(s: &mut Simulation<S>) {
     s.workspace.solved.springs = steps;
 }
 
-/// Collects the results of all contacts, but for springs.
+/// Collects the results of all contacts, except those of springs.
 pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
     let mut after = std::mem::take(&mut s.workspace.solved.after);
     fill_relative_velocities(s, &mut after);
@@ -97,7 +98,7 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
     let (before, after_all) = (&s.workspace.solved.before.relative, &after);
     let (forms, problem) = (&s.workspace.forms, &s.workspace.problem);
     let (network, correction) = (&s.state.network, s.options.correction);
-    let swerves = &s.workspace.swerves;
+    let nonlinear_closing = &s.workspace.nonlinear_closing;
     let Scheme { h, theta } = s.options.scheme;
     let count = network.contacts.len();
     let mut begin = std::mem::take(&mut s.workspace.solved.begin);
@@ -119,11 +120,11 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
         // The shift comes from the position correction unless restitution replaced it; a bounce
         // does no correction work.
         let of_gap = shift_of_gap(network, contact, correction, h);
-        let swerve = swerves.get(k).map_or(0.0, |s| s / h);
+        let closing = nonlinear_closing.get(k).map_or(0.0, |s| s / h);
         let lifts = of_gap < 0.0
             && form.compliance[0] == 0.0
             && n.dot(before) >= form.shift_n
-            && form.shift_n == of_gap - swerve;
+            && form.shift_n == of_gap - closing;
         let lift = if lifts {
             -theta * of_gap * solution.unilateral_n.max(0.0)
         } else {
@@ -152,8 +153,8 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
     s.workspace.solved.begin = begin;
 }
 
-/// Whether a contact begins to slide in a set that was too large to seek another solution, and one
-/// of a body that controlled bodies squeeze.
+/// Returns whether a contact begins to slide in a set that was too large for a search for another
+/// solution, and whether such a contact belongs to a body squeezed by controlled bodies.
 pub(super) fn is_not_searched<S: Space>(s: &mut Simulation<S>) -> [bool; 2] {
     let workspace = &mut s.workspace;
     let (begin, forms) = (&workspace.solved.begin, &workspace.forms);

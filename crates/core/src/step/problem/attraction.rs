@@ -1,16 +1,16 @@
-//! Attraction that depends on the gap, over the gaps that a contact passes in the step.
+//! Attraction that depends on the gap, for the gaps that a contact passes in the step.
 //!
-//! Over a step in which the gap at detection g changes by x until the next detection the attraction
-//! is G(x): its mean over the gaps passed from the start of the step to its end, g - (1 - theta) h
-//! u^- to g + theta x, which does the work of its potential whatever the step; or its value at g +
-//! x where that holds back more. The latter is a state of equilibrium on the branch on which
-//! attraction grows with the gap, as on a neck before pull-off; it loses a little energy there,
-//! where the mean would swing about that state.
+//! Over a step in which the gap at detection g changes by x until the next detection, the
+//! attraction is G(x): its mean over the gaps passed from the start of the step to its end, g -
+//! (1 - theta) h u^- to g + theta x, which does the work of its potential for any step; or its
+//! value at g + x where that is larger. The latter is a state of equilibrium on the branch on which
+//! attraction grows with the gap, as on a neck before pull-off; it dissipates a little energy
+//! there, while the mean would oscillate about that state.
 //!
 //! A solve with the attraction R found x_s. A contact of the effective mass m would be at x under
-//! R(x) = R + (x_s - x) m/h^2. The step ends at the first x on the way at which G(x) holds it, or,
-//! if there is none, at x_s or beyond. There the attraction is linearised: by its value, and, where
-//! it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
+//! R(x) = R + (x_s - x) m/h^2. The step ends at the first x at which G(x) holds the contact, or, if
+//! there is none, at x_s or beyond. There the attraction is linearised by its value and, where it
+//! grows with the gap, by its slope, which is the single-valued part b_n of the standard form.
 
 use super::law_step::law_step;
 use crate::geometry::space::{Space, VectorLike};
@@ -19,26 +19,27 @@ use crate::laws::StepInfo;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 
-/// The nodes at which an attraction is evaluated: powers of two of the distance from the smallest
-/// gap, and parts of each.
+/// The gaps at which an attraction is evaluated: powers of two of the distance from the smallest
+/// gap, and fractions of each.
 const OCTAVES: usize = 18;
 const PARTS: usize = 8;
-/// Nodes at gaps below zero, where bodies overlap.
+/// Number of nodes at negative gaps, where bodies overlap.
 const BELOW: usize = 4;
-/// Difference of attractions over the load of a contact that is none.
+/// Difference of attractions, relative to the load of a contact, that is negligible.
 const NO_DIFFERENCE: f64 = 1e-4;
-/// Share of the load of all contacts below which an attraction is left as it is at detection.
+/// Share of the load of all contacts below which an attraction keeps its value at detection.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// An attraction linearised at a change of the gap x (m): force (N) and slope (N/m), not negative.
+/// An attraction linearised at a change of the gap x (m): force (N), and slope (N/m), which is not
+/// negative.
 #[derive(Clone, Copy, Debug, Default)]
-struct Linear {
+struct LinearAttraction {
     x: f64,
     force: f64,
     slope: f64,
 }
 
-impl Linear {
+impl LinearAttraction {
     fn at(&self, x: f64) -> f64 {
         self.force + self.slope * (x - self.x)
     }
@@ -48,19 +49,19 @@ impl Linear {
 #[derive(Clone, Copy, Debug)]
 struct AttractedContact {
     at: usize,
-    /// What the form has beside the attraction: tension (N s), and the shift without what a tension
-    /// adds to it (m/s).
+    /// Parts of the form other than the attraction: tension (N s), and the shift without the
+    /// contribution of a tension (m/s).
     tension: f64,
     shift: f64,
     /// Attraction at the gap of detection (N).
     start: f64,
-    linear: Linear,
+    linear: LinearAttraction,
 }
 
 impl AttractedContact {
     /// Writes the linearised attraction into the form.
     fn apply<S: Space>(&self, form: &mut ContactForm<S>, h: f64) {
-        let Linear { x, force, slope } = self.linear;
+        let LinearAttraction { x, force, slope } = self.linear;
         let implicit = slope > 0.0;
         if implicit || form.elastic.is_some() {
             let bond = form.elastic.get_or_insert_with(Elastic::none);
@@ -75,7 +76,8 @@ impl AttractedContact {
     }
 }
 
-/// Contacts of one interface: where attraction acts, and those whose attraction is linearised.
+/// Contacts of one interface: those on which attraction acts, and those whose attraction is
+/// linearised.
 #[derive(Debug)]
 struct AttractionGroup {
     interface: usize,
@@ -83,19 +85,18 @@ struct AttractionGroup {
     pulls: Vec<AttractedContact>,
 }
 
-/// How attractions differ from those over the gaps that a solve led to.
+/// Differences between the attractions used and those over the gaps of a solution.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Differences {
-    /// The largest difference, over the load of its contact, to which a hundredth of all load is
-    /// added.
+pub(super) struct AttractionMismatch {
+    /// Largest difference, over the load of its contact plus a hundredth of all load.
     pub worst: f64,
     /// Sum of the differences, and of the loads of all contacts of the scene (N).
     all: f64,
     loads: f64,
 }
 
-impl Differences {
-    /// The sum of the differences over that of the loads of all contacts.
+impl AttractionMismatch {
+    /// Returns the sum of the differences over that of the loads of all contacts.
     pub fn share(&self) -> f64 {
         if self.loads > 0.0 {
             self.all / self.loads
@@ -114,16 +115,17 @@ pub(super) struct Attractions {
 /// Gaps of a contact in a step (m).
 #[derive(Clone, Copy, Debug)]
 struct GapPath {
-    /// At the start of the step, and at detection.
+    /// Gap at the start of the step, and at detection.
     start: f64,
     gap: f64,
-    /// Change until the next detection, and the share of it by the end of the step.
+    /// Change until the next detection, and the fraction of it by the end of the step.
     x: f64,
     theta: f64,
 }
 
 impl GapPath {
-    /// At the start of the step, at detection, at the next detection, at the end of the step.
+    /// Returns the gaps at the start of the step, at detection, at the next detection, and at the
+    /// end of the step.
     fn gaps(&self) -> [f64; 4] {
         let Self {
             start,
@@ -140,8 +142,8 @@ impl GapPath {
         [least, all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Gaps at which to ask for the attraction, in ascending order: close to each other where they
-    /// are small.
+    /// Returns the gaps at which to evaluate the attraction, in ascending order: close to each
+    /// other where they are small.
     fn nodes(&self) -> Vec<f64> {
         let [low, high] = self.bounds();
         let near = 0f64.clamp(low, high);
@@ -162,7 +164,7 @@ impl GapPath {
 }
 
 /// The attraction over the gaps of a path, linear between nodes.
-struct Passed {
+struct PathAttraction {
     path: GapPath,
     gaps: Vec<f64>,
     force: Vec<f64>,
@@ -170,7 +172,7 @@ struct Passed {
     work: Vec<f64>,
 }
 
-impl Passed {
+impl PathAttraction {
     fn of(path: GapPath, gaps: &[f64], force: &[f64]) -> Self {
         let mut work = vec![0.0; gaps.len()];
         for k in 1..gaps.len() {
@@ -184,7 +186,7 @@ impl Passed {
         }
     }
 
-    /// Force at a gap, and its integral up to there.
+    /// Returns the force at a gap, and its integral up to that gap.
     fn at(&self, gap: f64) -> [f64; 2] {
         let last = self.gaps.len() - 1;
         if last == 0 {
@@ -200,7 +202,7 @@ impl Passed {
         ]
     }
 
-    /// G(x).
+    /// Returns G(x).
     fn given(&self, x: f64) -> f64 {
         let GapPath {
             start, gap, theta, ..
@@ -218,7 +220,7 @@ impl Passed {
         }
     }
 
-    /// Changes of the gap from zero to x_s at nodes, in the order passed.
+    /// Returns the changes of the gap from zero to x_s at nodes, in the order passed.
     fn changes(&self) -> Vec<f64> {
         let GapPath { gap, x, .. } = self.path;
         let within = |c: &f64| *c != 0.0 && (0.0..1.0).contains(&(c / x));
@@ -233,18 +235,18 @@ impl Passed {
         all
     }
 
-    /// Where to linearise, see the module, under `needed` R(x), and whether that is before x_s, by
-    /// more than a force `margin`.
-    fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (Linear, bool) {
+    /// Returns where to linearise, see the module, for `needed` R(x), and whether that is before
+    /// x_s, by more than a force `margin`.
+    fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (LinearAttraction, bool) {
         let nodes = self.changes();
         let given: Vec<f64> = nodes.iter().map(|x| self.given(*x)).collect();
         let last = nodes.len() - 1;
         if last == 0 {
             let force = given[0];
             return (
-                Linear {
+                LinearAttraction {
                     force,
-                    ..Linear::default()
+                    ..LinearAttraction::default()
                 },
                 false,
             );
@@ -259,7 +261,7 @@ impl Passed {
         } else {
             1.0
         };
-        let linear = Linear {
+        let linear = LinearAttraction {
             x: nodes[k - 1] + share * (nodes[k] - nodes[k - 1]),
             force: given[k - 1] + share * (given[k] - given[k - 1]),
             slope: slope.max(0.0),
@@ -269,13 +271,13 @@ impl Passed {
 }
 
 /// A contact that may pass gaps with different attraction.
-struct Moved {
+struct MovedContact {
     at: usize,
     path: GapPath,
     pull: Option<AttractedContact>,
 }
 
-/// Finds the contacts that are attracted.
+/// Finds the contacts on which an attraction acts.
 pub(super) fn begin_attractions<S: Space>(s: &Simulation<S>) -> Attractions {
     let attracted = s.workspace.evaluator.attracted(&s.laws);
     let group = |(interface, members)| AttractionGroup {
@@ -288,17 +290,17 @@ pub(super) fn begin_attractions<S: Space>(s: &Simulation<S>) -> Attractions {
     }
 }
 
-/// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by
-/// more than the tolerance, attractions are linearised anew.
+/// Compares the attraction of a solve with that over the gaps of its solution. Where one differs by
+/// more than the tolerance, attractions are linearised again.
 pub(super) fn compare_attractions<S: Space>(
     s: &mut Simulation<S>,
     attractions: &mut Attractions,
     tolerance: f64,
     info: &StepInfo,
-) -> Result<Differences, LawError> {
-    let mut differences = Differences::default();
+) -> Result<AttractionMismatch, LawError> {
+    let mut differences = AttractionMismatch::default();
     if !attractions.groups.is_empty() {
-        // Loads of this solve: the forms change below.
+        // These are the loads of this solve, since the forms change below.
         let contacts = 0..s.workspace.solved.contact_steps.len();
         let loads = contacts.map(|at| load(s, at) / info.h);
         differences.loads = loads.sum();
@@ -309,18 +311,19 @@ pub(super) fn compare_attractions<S: Space>(
     Ok(differences)
 }
 
-/// What a contact carries in a step, or its attraction, if that is more (N s).
+/// Returns the load of a contact in a step, or its attraction if that is larger (N s).
 fn load<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
     let carried = s.workspace.solved.contact_steps[at].solution.unilateral_n;
     s.workspace.forms[at].tension.max(carried.abs())
 }
 
-/// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
+/// Returns the contacts of a group that pass gaps where attraction may change, and the load of all
+/// (N s).
 fn moved<S: Space>(
     s: &Simulation<S>,
     group: &AttractionGroup,
     info: &StepInfo,
-) -> (Vec<Moved>, f64) {
+) -> (Vec<MovedContact>, f64) {
     let (workspace, contacts) = (&s.workspace, &s.state.network.contacts);
     let mut moved = Vec::new();
     let mut whole = 0.0;
@@ -339,7 +342,7 @@ fn moved<S: Space>(
         whole += load(s, *at);
         let [low, high] = path.bounds();
         if pull.is_some() || (high > low && high > 0.0) {
-            moved.push(Moved {
+            moved.push(MovedContact {
                 at: *at,
                 path,
                 pull,
@@ -353,12 +356,12 @@ fn compare_attraction<S: Space>(
     s: &mut Simulation<S>,
     group: &mut AttractionGroup,
     tolerance: f64,
-    differences: &mut Differences,
+    differences: &mut AttractionMismatch,
     info: &StepInfo,
 ) -> Result<(), LawError> {
     let h = info.h;
     let (mut moved, whole) = moved(s, group, info);
-    // Contacts that are not linearised yet, and pass one attraction only, are left as they are.
+    // Contacts that are not linearised yet, and pass one attraction only, are not changed.
     let unknown = moved.iter().filter(|m| m.pull.is_none());
     let (mut places, mut gaps) = (Vec::new(), Vec::new());
     for m in unknown {
@@ -381,9 +384,9 @@ fn compare_attraction<S: Space>(
             tension: form.tension - h * here,
             shift: form.shift_n - form.compliance[0] * form.tension,
             start: *here,
-            linear: Linear {
+            linear: LinearAttraction {
                 force: *here,
-                ..Linear::default()
+                ..LinearAttraction::default()
             },
         });
         let most = here.max(*start).max(*next);
@@ -402,13 +405,13 @@ fn compare_attraction<S: Space>(
     let (mut differs, mut next) = (0.0f64, Vec::with_capacity(moved.len()));
     for (m, range) in moved.iter().zip(ranges) {
         let Some(mut pull) = m.pull else { continue };
-        let passed = Passed::of(m.path, &gaps[range.clone()], &force[range]);
+        let passed = PathAttraction::of(m.path, &gaps[range.clone()], &force[range]);
         let x = m.path.x;
         let (used, given) = (pull.linear.at(x), passed.given(x));
         let own = used.abs().max(pull.start).max(given);
         let inertia = inertia_of(s, m.at) / (h * h);
         let needed = |here: f64| used + (x - here) * inertia;
-        // What is linearised is no tension of the form.
+        // A linearised attraction is not a tension of the form.
         differences.loads += (own - load(s, m.at) / h).max(0.0);
         let load = own + 0.01 * whole / h;
         let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
@@ -451,8 +454,8 @@ fn attraction_at<S: Space>(
     evaluator.attraction_at(&mut step, group.interface, places, gaps)
 }
 
-/// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a
-/// body deforms, which only a solve shows.
+/// Returns a lower bound of the effective mass of a contact along its normal (kg; kg/m in 2D): zero
+/// where a body deforms, since only a solve gives its response.
 fn inertia_of<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
     let (bodies, contact) = (&s.state.bodies, &s.state.network.contacts[at]);
     let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();
@@ -487,14 +490,14 @@ pub(super) fn settle_attractions<S: Space>(
 mod tests {
     use super::*;
 
-    fn passed(path: GapPath, force: impl Fn(f64) -> f64) -> Passed {
+    fn passed(path: GapPath, force: impl Fn(f64) -> f64) -> PathAttraction {
         let gaps = path.nodes();
         let force: Vec<f64> = gaps.iter().map(|g| force(*g)).collect();
-        Passed::of(path, &gaps, &force)
+        PathAttraction::of(path, &gaps, &force)
     }
 
-    /// The mean over the gaps passed has the work of the potential, whatever the distance over the
-    /// range.
+    /// The mean over the gaps passed has the work of the potential, for any ratio of the distance
+    /// to the range.
     #[test]
     fn the_mean_does_the_work_of_the_potential() {
         for (start, gap, x) in [
@@ -519,7 +522,7 @@ mod tests {
         }
     }
 
-    /// F = 1 + x up to 2 and nothing beyond holds up to 2, at x = P - 1, whatever the mass.
+    /// F = 1 + x up to 2 and zero beyond holds loads up to 2, at x = P - 1, for any mass.
     #[test]
     fn the_first_state_that_holds_is_found() {
         let path = GapPath {

@@ -3,7 +3,7 @@
 use super::{agreement, systems};
 use crate::geometry::space::Space;
 use crate::laws::StepInfo;
-use crate::step::motion::{Motion, StepStart};
+use crate::step::motion::{BodyVelocity, StepStart};
 use crate::step::{Coupling, CouplingReport, Simulation, StepError, StepReport};
 use std::time::Instant;
 
@@ -47,13 +47,13 @@ impl Progress {
     }
 }
 
-/// Prepares and solves the step: once with explicit coupling and with damage predicted at its
-/// middle, otherwise until the damage used in the impulses is the one that the resulting openings
-/// give.
+/// Prepares and solves the step: once with explicit coupling or with damage predicted at the middle
+/// of the step, otherwise until the damage used in the impulses equals the damage that the
+/// resulting openings give.
 pub(super) fn couple<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {

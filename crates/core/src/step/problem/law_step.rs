@@ -1,11 +1,11 @@
-//! What laws are evaluated with in the course of a step.
+//! Data with which laws are evaluated in the course of a step.
 
 use crate::geometry::space::Space;
 use crate::laws::evaluator::LawEvaluator;
 use crate::laws::{LawStep, StepInfo};
 use crate::step::Simulation;
 
-/// The evaluator of laws, and the contacts that it evaluates them at.
+/// Returns the evaluator of laws, and the contacts at which it evaluates them.
 pub(super) fn law_step<'a, S: Space>(
     s: &'a mut Simulation<S>,
     info: &'a StepInfo,

@@ -1,5 +1,5 @@
 //! The contact problem of a step: contacts in the standard form, solved until laws, damage and
-//! contacts agree with the velocities that they lead to.
+//! contacts agree with the resulting velocities.
 
 mod action;
 mod agreement;
@@ -7,15 +7,15 @@ mod answers;
 mod attraction;
 mod coupling;
 mod law_step;
+mod nonlinear_closing;
 mod posing;
 mod sliding;
 pub(super) mod surfaces;
-mod swerve;
 mod systems;
 mod turning;
 
 use super::detection::{add_contacts, prepare_contacts};
-use super::motion::{Motion, StepStart, restart};
+use super::motion::{BodyVelocity, StepStart, restart};
 use super::{Simulation, StepError, StepReport};
 use crate::contact::{Key, Occurrence, detect};
 use crate::geometry::space::{Space, VectorLike};
@@ -23,9 +23,9 @@ use crate::laws::StepInfo;
 use crate::threads::{count, fill, worth_dividing};
 use std::time::Instant;
 
-/// Maximum number of solves of a step: each may close contacts that the previous one did not.
+/// Maximum number of solves of a step: each solve may close contacts that the previous one did not.
 const MAX_SOLVES: usize = 6;
-/// About what it takes to copy the velocity of a body, and to look whether a contact carries an
+/// Approximate time to copy the velocity of a body, and to check whether a contact carries an
 /// impulse (ns).
 const COPY: f64 = 3.0;
 const ACTS: f64 = 5.0;
@@ -35,7 +35,7 @@ const ACTS: f64 = 5.0;
 pub(super) fn solve<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
@@ -47,7 +47,7 @@ pub(super) fn solve<S: Space>(
 fn solve_with_all<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
-    free: &[Motion<S>],
+    free: &[BodyVelocity<S>],
     info: &StepInfo,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
@@ -59,7 +59,7 @@ fn solve_with_all<S: Space>(
         answers::relative_velocities(s);
         posing::geometry_of_forms(s, free, info.h);
         for (form, contact) in s.workspace.forms.iter_mut().zip(&s.state.network.contacts) {
-            // From the solve before.
+            // Initial impulses come from the previous solve.
             if let Ok(at) = last.binary_search_by_key(&contact.key, |c| c.0) {
                 form.impulse = last[at].1;
             }
@@ -114,7 +114,7 @@ fn report_held_back<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Forgets what the last step left in work arrays.
+/// Clears the work arrays of the last step.
 pub(super) fn begin_step<S: Space>(s: &mut Simulation<S>) {
     s.workspace.evaluator.parallel = s.options.solver.parallel;
     s.workspace.surfaces.velocities.clear();

@@ -1,9 +1,9 @@
-//! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities
-//! taken over.
+//! The contact problem of a step is set up from bodies, contacts and laws, and solved, and its
+//! velocities are assigned to the bodies.
 
-use super::swerve::shift_of_gap;
-use super::{swerve, systems, turning};
-use crate::contact::Acts;
+use super::nonlinear_closing::shift_of_gap;
+use super::{nonlinear_closing, systems, turning};
+use crate::contact::ActionPoint;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::solver::Method;
@@ -11,21 +11,21 @@ use crate::solve::{self, ContactForm};
 use crate::step::{Simulation, StepError, StepReport};
 use crate::threads::{fill, map_chunks_of_two, worth_dividing};
 
-/// Bodies of a task.
+/// Number of bodies of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to adopt the velocity of a body (ns).
+/// Approximate time to set the velocity of a body (ns).
 const ADOPT: f64 = 5.0;
 
-/// Solves the contacts with the current forms, and again while dynamical systems linearise anew at
+/// Solves the contacts with the current forms, and again while dynamical systems are linearised at
 /// the velocities that they reach.
 pub(super) fn solve_contacts<S: Space>(
     s: &mut Simulation<S>,
     free: &[(S::Vector, S::Spin)],
-    options: &solve::Options,
+    options: &solve::SolverOptions,
     report: &mut StepReport,
 ) -> Result<(), StepError> {
     loop {
-        // The solver knows the motion of bodies, laws that of their surfaces.
+        // The solver uses the motion of bodies, laws that of their surfaces.
         let (forms, contacts) = (&s.workspace.forms, &s.state.network.contacts);
         let of_laws = s.workspace.surfaces.forms_of_bodies(forms, contacts);
         let of_laws = of_laws.map(|forms| std::mem::replace(&mut s.workspace.forms, forms));
@@ -87,8 +87,8 @@ pub(super) fn geometry_of_forms<S: Space>(
     free: &[(S::Vector, S::Spin)],
     h: f64,
 ) {
-    swerve::find_swerves(s, free, h);
-    let swerves = &s.workspace.swerves;
+    nonlinear_closing::find_nonlinear_closing(s, free, h);
+    let nonlinear_closing = &s.workspace.nonlinear_closing;
     let mut forms = std::mem::take(&mut s.workspace.forms);
     let (network, correction) = (&s.state.network, s.options.correction);
     let count = network.contacts.len();
@@ -99,9 +99,9 @@ pub(super) fn geometry_of_forms<S: Space>(
             normal: contact.normal,
             arms: contact.levers(),
             central: contact.central,
-            apart: contact.central && contact.acts != Acts::Surfaces,
+            apart: contact.central && contact.action_point != ActionPoint::Surfaces,
             shift_n: shift_of_gap(network, contact, correction, h)
-                - swerves.get(k).map_or(0.0, |s| s / h),
+                - nonlinear_closing.get(k).map_or(0.0, |s| s / h),
             shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: 0.0,

@@ -1,16 +1,16 @@
-//! Friction that depends on the velocity of sliding, at the velocity at the end of the step.
+//! Friction that depends on the sliding velocity, evaluated at the velocity at the end of the step.
 //!
 //! A law is linearised at a velocity V: |p_t| = (mu + m (|u_t| - V)) P. Where it rises (m > 0) this
-//! is Coulomb's law with the coefficient mu - m V beside a damper m P, which the standard form has
-//! as the single-valued part b_t, and Newton's iteration follows: a law that rises cannot make a
-//! step unstable, however long. Where friction falls with the velocity the coefficient is that at
-//! the last velocity found; the iteration then goes to the next state of equilibrium, stick or
-//! slip, in the direction in which the step sets out.
+//! is Coulomb's law with the coefficient mu - m V in parallel with a damper m P, which is the
+//! single-valued part b_t of the standard form, and Newton's iteration follows: a rising law cannot
+//! make a step unstable, for any step length. Where friction falls with the velocity the
+//! coefficient is that at the last velocity; the iteration then goes to the next state of
+//! equilibrium, stick or slip, in the direction in which the step starts.
 //!
-//! Laws in the logarithm of the velocity rise without bound towards rest, m P then being far above
-//! all masses, and a network of such dampers is as good as glued. Velocities below the floor V_0,
-//! the tolerance of the solver times the root mean square of the velocities of all contacts, are
-//! none that a solution could tell from rest: laws are evaluated at max(|u_t|, V_0).
+//! The slope of laws in the logarithm of the velocity is unbounded towards rest; m P is then far
+//! above all masses, and a network of such dampers is practically rigid. A solution cannot
+//! distinguish velocities below the floor V_0, the tolerance of the solver times the root mean
+//! square of the velocities of all contacts, from rest: laws are evaluated at max(|u_t|, V_0).
 
 use super::law_step::law_step;
 use crate::contact::Contact;
@@ -21,40 +21,40 @@ use crate::laws::{FrictionAt, LawError};
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 
-/// Share of the friction of a contact by which that of a law which rises may differ, and share of
-/// the friction of all contacts that counts with its own.
+/// Accepted relative difference of the friction of a contact with a rising law, and share of the
+/// friction of all contacts that is added to that of the contact as its reference.
 const TOLERANCE: f64 = 1e-4;
 const NEXT_TO_NOTHING: f64 = 1e-2;
-/// Share of the friction of all contacts by which that of laws which fall may differ; that of laws
-/// which rise, too, after a number of solves: among many contacts some always turn.
+/// Accepted difference for falling laws as a share of the friction of all contacts; after a number
+/// of solves also for rising laws, since among many contacts some always reverse.
 const TOLERANCE_OF_ALL: f64 = 1e-3;
-/// Solves after which laws that fall may differ by more: a contact that jumps between stick and
-/// slip has no state in between.
+/// Number of solves after which falling laws may differ by more: a contact that jumps between stick
+/// and slip has no state in between.
 const MANY: u32 = 8;
-/// Share of the velocity of linearisation below which Newton's step is taken in the logarithm of
-/// the velocity: laws that rise do so ever slower, and their tangent leads to rest.
+/// Share of the velocity of linearisation below which Newton's step uses the logarithm of the
+/// velocity: the slope of rising laws decreases with velocity, so that their tangent leads to rest.
 const FAR_BELOW: f64 = 0.1;
-/// Largest step of that (powers of e): among many contacts one that is held now may have to slide
-/// in the next solve.
+/// Largest step of the logarithm: among many contacts one that is held now may have to slide in the
+/// next solve.
 const LONGEST: f64 = 4.0;
-/// Largest tolerance that the floor of velocities is taken from.
+/// Largest tolerance that is used for the floor of velocities.
 const COARSEST: f64 = 1e-4;
-/// Iterations after which those that rise go half as far, in the logarithm.
+/// Number of iterations after which steps of rising laws are halved in the logarithm.
 const CAUTIOUS: u32 = 10;
 
 /// A contact whose friction depends on the velocity.
 #[derive(Clone, Debug)]
 struct Sliding<S: Space> {
-    /// Its place in the network.
+    /// Index of the contact in the network.
     at: usize,
-    /// Velocity V of linearisation (m/s), and the friction there.
+    /// Velocity V of linearisation (m/s), and the friction at it.
     speed: f64,
     friction: FrictionAt,
     /// Damping m P in the form (kg).
     damping: f64,
-    /// What its form has of a bond.
+    /// Bond part of the form without the damper.
     bond: Option<Elastic<S>>,
-    /// Last change of its coefficient, where that falls.
+    /// Last change of the coefficient of a falling law.
     change: f64,
 }
 
@@ -84,7 +84,7 @@ struct SlidingGroup<S: Space> {
     contacts: Vec<Sliding<S>>,
 }
 
-/// Direction and size of the tangential part of a velocity; any direction for none.
+/// Returns direction and size of the tangential part of a velocity; any direction for zero.
 fn direction<S: Space>(normal: &S::Vector, velocity: &S::Vector) -> (S::Tangent, f64) {
     let ut = S::tangential(normal, velocity);
     let speed = ut.norm();
@@ -95,13 +95,13 @@ fn direction<S: Space>(normal: &S::Vector, velocity: &S::Vector) -> (S::Tangent,
     }
 }
 
-/// What a contact did in a solve.
+/// Result of a contact in a solve.
 #[derive(Clone, Copy, Debug)]
 struct SlidingAnswer<S: Space> {
     /// Direction of sliding, and velocity (m/s).
     along: S::Tangent,
     speed: f64,
-    /// P, and the friction used (N s).
+    /// Normal load P, and the friction used (N s).
     load: f64,
     used: f64,
     /// Whether friction is at its bound.
@@ -128,17 +128,18 @@ impl<S: Space> SlidingAnswer<S> {
     }
 }
 
-/// How the friction of a solve and that of the laws differ.
+/// Difference between the friction of a solve and that of the laws.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mismatch {
-    /// Sum of the differences over that of the friction.
+pub(super) struct FrictionMismatch {
+    /// Sum of the differences over the sum of the friction.
     pub share: f64,
-    /// Whether they agree, or differ by no more than another solve would.
+    /// Whether the two agree, or differ by no more than another solve would change.
     pub agrees: bool,
 }
 
-impl Mismatch {
-    /// From differences, friction (N s), and whether the law rises there.
+impl FrictionMismatch {
+    /// Computes the difference from the entries: difference, friction (N s), and whether the law
+    /// rises.
     fn of(differences: &[(f64, f64, bool)], iterations: u32) -> Self {
         let whole: f64 = differences.iter().map(|d| d.1).sum();
         let differs = |rises: bool| differences.iter().filter(move |d| d.2 == rises);
@@ -146,7 +147,7 @@ impl Mismatch {
         let rising: f64 = differs(true).map(|d| d.0).sum();
         let share = |x: f64| if x > 0.0 { x / whole } else { 0.0 };
         let many = iterations >= MANY;
-        // Each that rises is compared by itself, unless it carries next to nothing.
+        // Each rising law is compared separately, unless its load is negligible.
         let each = differs(true).all(|d| d.0 <= TOLERANCE * (d.1 + NEXT_TO_NOTHING * whole));
         let rises = each || many && share(rising) <= TOLERANCE_OF_ALL;
         let falls = share(falling) <= TOLERANCE_OF_ALL || many;
@@ -162,7 +163,7 @@ impl Mismatch {
 pub(super) struct SlidingLaws<S: Space> {
     groups: Vec<SlidingGroup<S>>,
     iterations: u32,
-    /// V_0 (m/s).
+    /// Floor V_0 (m/s).
     floor: f64,
 }
 
@@ -173,13 +174,13 @@ impl<S: Space> SlidingLaws<S> {
     }
 }
 
-/// V_0 from relative velocities (m/s).
+/// Returns V_0 from relative velocities (m/s).
 fn floor<S: Space>(tolerance: f64, relative: &[S::Vector]) -> f64 {
     let squared: f64 = relative.iter().map(|u| u.dot(u)).sum();
     tolerance.min(COARSEST) * (squared / relative.len().max(1) as f64).sqrt()
 }
 
-/// Finds the contacts whose friction depends on the velocity of sliding, and linearises it at the
+/// Finds the contacts whose friction depends on the sliding velocity, and linearises it at the
 /// velocities at the start of the step.
 pub(super) fn begin_sliding<S: Space>(
     s: &mut Simulation<S>,
@@ -232,17 +233,17 @@ pub(super) fn begin_sliding<S: Space>(
     Ok(all)
 }
 
-/// Compares the friction of a solve with that of the laws at the velocities which it led to. Unless
-/// they agree, the laws are linearised anew if `again`.
+/// Compares the friction of a solve with that of the laws at the resulting velocities. Unless they
+/// agree, the laws are linearised again if `again`.
 pub(super) fn compare_sliding<S: Space>(
     s: &mut Simulation<S>,
     laws: &mut SlidingLaws<S>,
     again: bool,
     info: &StepInfo,
-) -> Result<Mismatch, LawError> {
+) -> Result<FrictionMismatch, LawError> {
     laws.iterations += 1;
     if laws.groups.is_empty() {
-        return Ok(Mismatch {
+        return Ok(FrictionMismatch {
             share: 0.0,
             agrees: true,
         });
@@ -287,7 +288,7 @@ pub(super) fn compare_sliding<S: Space>(
         }
         found.push((done, friction));
     }
-    let mismatch = Mismatch::of(&differences, laws.iterations);
+    let mismatch = FrictionMismatch::of(&differences, laws.iterations);
     if mismatch.agrees || !again {
         return Ok(mismatch);
     }
@@ -359,7 +360,7 @@ fn linearise_sliding<S: Space>(
     Ok(())
 }
 
-/// Writes what the laws came to as friction alone: forms have its coefficient and no damper,
+/// Writes the result of the laws as friction alone: forms get its coefficient and no damper,
 /// solutions all of it.
 pub(super) fn settle_sliding<S: Space>(s: &mut Simulation<S>, laws: SlidingLaws<S>) {
     let contacts = laws.groups.into_iter().flat_map(|group| group.contacts);
@@ -380,7 +381,7 @@ pub(super) fn settle_sliding<S: Space>(s: &mut Simulation<S>, laws: SlidingLaws<
     }
 }
 
-/// Where to linearise next (m/s).
+/// Returns the next velocity of linearisation (m/s).
 fn next_speed<S: Space>(
     sliding: &Sliding<S>,
     done: &SlidingAnswer<S>,

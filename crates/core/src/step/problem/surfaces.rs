@@ -1,22 +1,22 @@
-//! Surfaces that move on their bodies, as those of bodies that expand do.
+//! Surfaces that move relative to their bodies, such as those of bodies that expand.
 //!
-//! At a contact the surfaces have the velocity u_surface = u_bodies + w relative to each other.
-//! Laws see u_surface. The solver, which knows bodies, gets w with what else is added to its
-//! velocities: s becomes s + w, and the impulse of a bond -(a + B u) becomes -(a + B w + B u).
-//! Contacts then work on bodies by sum p.u_bodies and take sum p.u_surface; the difference is the
-//! work of what moves the surfaces.
+//! At a contact the surfaces have the relative velocity u_surface = u_bodies + w. Laws receive
+//! u_surface. The solver, which uses velocities of bodies, gets w with the other shifts: s becomes
+//! s + w, and the impulse of a bond -(a + B u) becomes -(a + B w + B u). Contacts then do the work
+//! sum p.u_bodies on bodies and receive sum p.u_surface; the difference is the work of the motion
+//! of the surfaces.
 
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::ContactForm;
 
-/// How surfaces move on their bodies in a step.
+/// Motion of surfaces relative to their bodies in a step.
 #[derive(Debug)]
 pub(crate) struct Surfaces<S: Space> {
-    /// Velocities of both surfaces of each contact on their bodies (m/s), in the order of the
-    /// network; empty where none moves.
+    /// Velocities of both surfaces of each contact relative to their bodies (m/s), in the order of
+    /// the network; empty where none moves.
     pub velocities: Vec<[S::Vector; 2]>,
-    /// Work that this does in the step (J; J/m in 2D).
+    /// Work of this motion in the step (J; J/m in 2D).
     pub work: f64,
 }
 
@@ -35,8 +35,8 @@ impl<S: Space> Surfaces<S> {
         }
     }
 
-    /// The forms of the contacts in the velocities of the bodies; `None` where these are those of
-    /// the surfaces.
+    /// Returns the forms of the contacts in the velocities of the bodies; `None` where these equal
+    /// those of the surfaces.
     pub fn forms_of_bodies(
         &self,
         forms: &[ContactForm<S>],
@@ -53,7 +53,7 @@ impl<S: Space> Surfaces<S> {
             if let Some(bond) = &mut form.elastic {
                 bond.a_n += bond.b_n * n;
             }
-            // What is along the normal has a part across it that is rounding.
+            // A velocity along the normal has a tangential part by rounding.
             if !contact.central || t.norm() > 1e-12 * w.norm() {
                 form.shift_t += t;
                 if let Some(bond) = &mut form.elastic {

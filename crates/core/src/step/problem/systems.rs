@@ -13,9 +13,9 @@ use std::sync::Arc;
 /// Index for a contact without systems.
 const RIGID: u32 = u32::MAX;
 
-/// The different points in an order of their own, where they are fewer than the nodes that they are
-/// sums of, and not these themselves: a contact on a facet is then one unknown of the solver and
-/// not one for each vertex.
+/// Returns the distinct points in a canonical order, where they are fewer than the nodes of their
+/// sums, and not single nodes: a contact on a facet is then one unknown of the solver instead of
+/// one for each vertex.
 fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
     if points.iter().all(|point| point.count() == 1) {
         return Vec::new();
@@ -28,7 +28,7 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
     points
 }
 
-/// The sides of a contact, by its place in the network; `None` where both are rigid.
+/// Returns the sides of a contact, by its index in the network; `None` where both are rigid.
 fn sides<S: Space>(s: &Simulation<S>, k: usize) -> Option<[Side<S>; 2]> {
     let contact = &s.state.network.contacts[k];
     let carriers = contact.bodies.map(|b| s.state.bodies.carrier(b as usize));
@@ -54,7 +54,7 @@ fn sides<S: Space>(s: &Simulation<S>, k: usize) -> Option<[Side<S>; 2]> {
     }))
 }
 
-/// Forgets what the step before found of systems, whose compliance is that of its A.
+/// Discards data of systems from the previous step, whose compliance is that of its matrix A.
 pub(super) fn forget_system_contacts<S: Space>(s: &mut Simulation<S>) {
     s.workspace.systems.sides.clear();
     s.workspace.systems.places.clear();
@@ -64,14 +64,14 @@ pub(super) fn forget_system_contacts<S: Space>(s: &mut Simulation<S>) {
     s.workspace.systems.turned.clear();
 }
 
-/// Finds what the current contacts act on. Asked again in the same step, for more contacts, it
-/// keeps the compliance of systems of which no other nodes are touched.
+/// Finds the nodes and points on which the current contacts act. A second call in the same step,
+/// with more contacts, keeps the compliance of systems without newly touched nodes.
 pub(super) fn find_system_contacts<S: Space>(s: &mut Simulation<S>) {
     find_touched_nodes(s, &[]);
 }
 
-/// Finds what the current contacts act on, with the nodes that turn by laws that resist rotation,
-/// once these laws were called.
+/// Finds the nodes and points on which the current contacts act, and the nodes that represent
+/// rotation for laws that resist it, once these laws were called.
 pub(super) fn find_turned_systems<S: Space>(s: &mut Simulation<S>) {
     let moments = std::mem::take(&mut s.workspace.moments);
     if !moments.is_empty() {
@@ -119,7 +119,7 @@ fn find_touched_nodes<S: Space>(s: &mut Simulation<S>, moments: &[MomentForm<S>]
         nodes.sort_unstable();
         nodes.dedup();
         *points = fewer_points(std::mem::take(points), nodes.len());
-        // A few points with many nodes each need no compliance of all these.
+        // A few points with many nodes each do not need the compliance of all these nodes.
         let all = points.is_empty() || !far_fewer(points.len(), nodes.len());
         let of_system = all.then(|| s.state.systems.kept_compliance(system, nodes));
         let of_system = of_system.flatten();
@@ -146,8 +146,8 @@ fn find_touched_nodes<S: Space>(s: &mut Simulation<S>, moments: &[MomentForm<S>]
     s.workspace.systems = found;
 }
 
-/// A system as the solver sees it, by all nodes of the compliance that it keeps, by touched nodes,
-/// or, where there are any, by points.
+/// Returns a system as the solver uses it: by all nodes of the compliance that it keeps, by touched
+/// nodes, or by points if there are any.
 fn nodal<S: Space>(
     s: &Simulation<S>,
     system: usize,
@@ -174,7 +174,7 @@ fn nodal<S: Space>(
     NodalSystem::new(nodes, free.collect(), &compliance)
 }
 
-/// Hands systems, as far as contacts see them, and all contacts to the solver.
+/// Passes systems and all contacts to the solver.
 pub(super) fn pose_with_systems<S: Space>(s: &mut Simulation<S>) {
     let SystemContacts {
         sides,
@@ -206,10 +206,10 @@ pub(super) fn pose_with_systems<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Gives systems and their bodies the velocities that the solved impulses lead to.
+/// Assigns systems and their bodies the velocities that result from the solved impulses.
 ///
 /// # Errors
-/// A velocity that is not finite.
+/// A velocity is not finite.
 pub(super) fn adopt_system_velocities<S: Space>(s: &mut Simulation<S>) -> Result<(), StepError> {
     if s.state.systems.is_empty() {
         return Ok(());
@@ -241,11 +241,11 @@ pub(super) fn adopt_system_velocities<S: Space>(s: &mut Simulation<S>) -> Result
     Ok(())
 }
 
-/// Linearises nonlinear systems at the velocities that they reached; returns whether any was, so
-/// that the contacts are to be solved again. Their next impulses start from the current ones.
+/// Linearises nonlinear systems at the velocities that they reached; returns whether any was
+/// linearised, so that the contacts must be solved again, starting from the current impulses.
 ///
 /// # Errors
-/// A system that finds no balance.
+/// A system finds no equilibrium.
 pub(super) fn relinearise_systems<S: Space>(s: &mut Simulation<S>) -> Result<bool, StepError> {
     if s.state.systems.is_empty() {
         return Ok(false);
@@ -267,7 +267,7 @@ pub(super) fn relinearise_systems<S: Space>(s: &mut Simulation<S>) -> Result<boo
             touched, points, ..
         } = &s.workspace.systems;
         let (touched, points) = (&touched[*system], &points[*system]);
-        // Where there are points it is known by these.
+        // With points the system is known by these.
         let kept = points.is_empty();
         let kept = kept.then(|| s.state.systems.kept_compliance(*system, touched));
         let kept = kept.flatten();
@@ -282,7 +282,7 @@ pub(super) fn relinearise_systems<S: Space>(s: &mut Simulation<S>) -> Result<boo
     Ok(!changed.is_empty())
 }
 
-/// Velocity of a side of a contact, at the current velocities (m/s).
+/// Returns the velocity of a side of a contact, at the current velocities (m/s).
 fn velocity_of_side<S: Space>(s: &Simulation<S>, side: &Side<S>) -> S::Vector {
     match side {
         Side::Nodes { system, nodes } => s.state.systems.velocity_at(*system as usize, nodes),
@@ -293,8 +293,8 @@ fn velocity_of_side<S: Space>(s: &Simulation<S>, side: &Side<S>) -> S::Vector {
     }
 }
 
-/// Velocity of the candidate of the `k`-th contact relative to its antagonist where a system is one
-/// of them (m/s).
+/// Returns the velocity of the candidate of the `k`-th contact relative to its antagonist, where
+/// one of them is a system (m/s).
 pub(super) fn relative_velocity_of_sides<S: Space>(
     s: &Simulation<S>,
     k: usize,

@@ -1,5 +1,5 @@
-//! Moments of contacts with dynamical systems: what of a system turns where a contact acts, and the
-//! spins that laws receive.
+//! Moments of contacts with dynamical systems: the nodes that represent rotation where a contact
+//! acts, and the spins that laws receive.
 
 use crate::bodies::{Nodes, TurningNode};
 use crate::contact::Contact;
@@ -7,7 +7,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use crate::step::workspace::SystemContacts;
 
-/// By side of a contact the node that its moment turns; `None` for a rigid side.
+/// Returns, by side of a contact, the node on which its moment acts; `None` for a rigid side.
 pub(super) fn turned<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,
@@ -18,8 +18,9 @@ pub(super) fn turned<S: Space>(
     })
 }
 
-/// Spin of the candidate of a contact relative to its antagonist at the start of the step, and now
-/// (rad/s), with the nodes that turn. `start` gives the spin of a rigid body at the start.
+/// Returns the spin of the candidate of a contact relative to its antagonist, at the start of the
+/// step and now (rad/s), with the nodes that represent rotation. `start` gives the spin of a rigid
+/// body at the start.
 fn relative_spins<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,
@@ -38,16 +39,16 @@ fn relative_spins<S: Space>(
     [a - c, b - d]
 }
 
-/// Spin of the candidate of a contact relative to its antagonist at the start of the step (rad/s).
+/// Returns the spin of the candidate of a contact relative to its antagonist at the start of the
+/// step (rad/s).
 pub(super) fn relative_spin_before<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> S::Spin {
     let now = |body: usize| s.state.bodies.spin[body];
     let turned = turned(s, contact);
     relative_spins(s, contact, &turned, now)[0]
 }
 
-/// The relative spins of the `k`-th contact that resists rotation, at the start and the end of the
-/// step.
-/// `start` gives the spin of a rigid body at the start.
+/// Returns the relative spins of the `k`-th contact that resists rotation, at the start and the end
+/// of the step. `start` gives the spin of a rigid body at the start.
 pub(super) fn relative_spins_of_moment<S: Space>(
     s: &Simulation<S>,
     k: usize,
@@ -60,7 +61,7 @@ pub(super) fn relative_spins_of_moment<S: Space>(
     relative_spins(s, contact, turned.unwrap_or(&none), start)
 }
 
-/// Hands the moments of contacts to the solver.
+/// Passes the moments of contacts to the solver.
 pub(super) fn pose_moments<S: Space>(s: &mut Simulation<S>) {
     for k in 0..s.workspace.moments.len() {
         let form = s.workspace.moments[k];

@@ -1,4 +1,4 @@
-//! Alternatives of a factor compared with each other, such as laws.
+//! Comparison of the alternatives of a factor, such as laws.
 
 use super::Data;
 use crate::study::spec::DesignSpec;
@@ -12,16 +12,17 @@ pub struct Alternatives {
     pub factor: String,
     /// Names of the alternatives.
     pub names: Vec<String>,
-    /// What the means are over, as the end of a sentence.
+    /// Quantity over which the means are taken, as the end of a sentence.
     pub over: String,
-    /// What is paired: seeds or combinations.
+    /// Paired quantity: seeds or combinations.
     pub paired: &'static str,
     /// The comparison, seed by seed, or combination by combination of the other factors where there
     /// is one seed.
     pub comparisons: Comparisons,
 }
 
-/// The alternatives of factors without numbers, in designs that have each with the same others.
+/// Returns the alternatives of factors without numbers, in designs in which each occurs with the
+/// same other values.
 pub(super) fn comparisons(data: &Data<'_>) -> Vec<Alternatives> {
     match data.design {
         DesignSpec::Grid | DesignSpec::OneAtATime | DesignSpec::Table { .. } => {
@@ -39,7 +40,8 @@ fn comparison(data: &Data<'_>, factor: usize) -> Option<Alternatives> {
         return None;
     }
     let place: HashMap<&str, usize> = names.iter().copied().zip(0..).collect();
-    // A block is a combination of all other factors; by alternative the first setting that has it.
+    // A block is a combination of all other factors; for each alternative the first setting with it
+    // is used.
     let mut blocks: Vec<Vec<Option<usize>>> = Vec::new();
     let mut known: HashMap<Vec<&str>, usize> = HashMap::new();
     for (k, setting) in plan.settings.iter().enumerate() {
@@ -59,7 +61,7 @@ fn comparison(data: &Data<'_>, factor: usize) -> Option<Alternatives> {
         .filter_map(|block| block.into_iter().collect())
         .collect();
     let seeds = data.seeds();
-    // Runs of one seed have one sample: they are not independent, and count as one.
+    // Runs with one seed have the same sample: they are not independent, and count as one.
     let by_seed = seeds > 1;
     let row = |name: usize| -> Vec<Option<f64>> {
         let runs: Vec<&[Option<f64>]> = whole

@@ -1,4 +1,4 @@
-//! The output over each factor that has numbers.
+//! An output as a function of each factor with numbers.
 
 use super::Data;
 use crate::study::plan::Plan;
@@ -6,28 +6,29 @@ use crate::study::spec::DesignSpec;
 use fretwork_math::statistics::interval::Mean;
 use std::collections::BTreeSet;
 
-/// Lines of a response; of more, the mean over the other factors is shown.
+/// Largest number of lines of a response; if there are more, the mean over the other factors is
+/// shown.
 const LINES: usize = 7;
 
-/// The output over one factor.
+/// An output as a function of one factor.
 #[derive(Clone, Debug)]
 pub struct Response {
     /// Number of the factor.
     pub factor: usize,
-    /// What the lines and intervals are, as a sentence.
+    /// Meaning of the lines and intervals, as a sentence.
     pub note: String,
     /// Lines, or single points.
     pub curves: Vec<Curve>,
-    /// Whether points stand alone, since other factors vary between them too.
+    /// Whether points are not connected, since other factors vary between them too.
     pub scattered: bool,
 }
 
 /// One line.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What holds along it; empty if there is one only.
+    /// Common value along the line; empty if there is only one line.
     pub label: String,
-    /// Value of the factor, and the mean output.
+    /// Values of the factor, with the mean output.
     pub points: Vec<(f64, Mean)>,
 }
 
@@ -39,7 +40,7 @@ pub(super) fn responses(data: &Data<'_>) -> Vec<Response> {
         .collect()
 }
 
-/// Different numbers that a factor takes.
+/// Returns the number of different values of a factor.
 fn numbers(plan: &Plan, factor: usize) -> usize {
     let numbers = plan.settings.iter().filter_map(|s| s[factor].number);
     let different: BTreeSet<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
@@ -86,8 +87,8 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
             false,
         ),
         DesignSpec::Grid => {
-            // One other factor distinguishes the lines, best one without numbers; over the rest is
-            // averaged.
+            // One other factor distinguishes the lines, preferably one without numbers; the output
+            // is averaged over the rest.
             let few = |f: &&usize| data.labels(**f).len() <= LINES;
             let words = varied
                 .iter()
@@ -132,8 +133,8 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
     }
 }
 
-/// The mean output by value of a factor, over the settings that are kept: for each seed the mean
-/// over those with that value.
+/// Returns the mean output by value of a factor, over the settings that are kept: for each seed the
+/// mean over those with that value.
 fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> bool) -> Curve {
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
     for (k, setting) in data.plan.settings.iter().enumerate() {
@@ -161,7 +162,7 @@ fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> 
     }
 }
 
-/// Name of a line by its factor, `pressure 300.0 Pa`.
+/// Returns the name of a line by its factor, `pressure 300.0 Pa`.
 fn line_label(plan: &Plan, factor: usize, label: &str) -> String {
     let unit = plan.unit_of(factor);
     let words = format!("{} {label} {unit}", plan.factors[factor].name);

@@ -1,4 +1,4 @@
-//! How much each factor matters for an output.
+//! Importance of each factor for an output.
 
 use super::{Data, logarithmic};
 use crate::study::spec::DesignSpec;
@@ -8,32 +8,32 @@ use fretwork_math::sensitivity::ranks::{RankCorrelation, rank_correlations};
 use fretwork_math::sensitivity::regression::{Regression, regression};
 use fretwork_math::sensitivity::sobol_indices::{SobolIndices, sobol_indices};
 
-/// What a design says of the importance of its factors.
+/// Effects of the factors, in the form that the design permits.
 #[derive(Clone, Debug)]
 pub enum Effects {
-    /// Nothing, and why.
+    /// None, and the reason.
     Nothing(String),
-    /// Of a grid: means by level, and shares of the variance.
+    /// Means by level and shares of the variance, for a grid.
     Levels {
-        /// By factor.
+        /// Effects by factor.
         effects: Vec<MainEffect>,
-        /// The analysis of variance, or why there is none.
+        /// The analysis of variance, or the reason why there is none.
         anova: Result<Anova, String>,
     },
-    /// Of one factor at a time: the change from the case as it is.
+    /// Changes from the case itself, for one factor at a time.
     FromCase(Vec<Change>),
-    /// Of a design for Sobol indices.
+    /// Sobol indices, for a design made for them.
     Indices(SobolIndices),
-    /// Of points spread over all factors.
+    /// Trends, for points distributed over all factors.
     Trend {
-        /// Linear model in the factors, logarithms of those that are spread so.
+        /// Linear model in the factors, or in their logarithms for logarithmic factors.
         regression: Result<Regression, String>,
         /// Rank correlations.
         ranks: Vec<RankCorrelation>,
     },
 }
 
-/// The change that a level of a factor makes of the case as it is.
+/// Change by a level of a factor from the case itself.
 #[derive(Clone, Debug)]
 pub struct Change {
     /// Number of the factor.
@@ -44,7 +44,7 @@ pub struct Change {
     pub change: Option<fretwork_math::statistics::interval::Mean>,
 }
 
-/// Seed of the resamples behind intervals of Sobol indices.
+/// Seed of the resamples for intervals of Sobol indices.
 const BOOTSTRAP: u64 = 1;
 
 pub(super) fn effects(data: &Data<'_>) -> Effects {
@@ -67,7 +67,7 @@ pub(super) fn effects(data: &Data<'_>) -> Effects {
         }
         DesignSpec::OneAtATime => Effects::FromCase(changes(data)),
         DesignSpec::Sensitivity { .. } => {
-            // By setting, since the order of the rows is that of the settings.
+            // Rows are ordered by setting, as are these means.
             let means = data.means().into_iter().map(|m| m.map(|m| m.mean));
             let outputs: Vec<Option<f64>> = means.collect();
             match sobol_indices(&outputs, data.plan.factors.len(), BOOTSTRAP) {

@@ -1,5 +1,5 @@
-//! What the runs of a study say: means over seeds, response curves, effects of factors, comparisons
-//! of alternatives, maps of regimes. Only runs that are done and trusted count.
+//! Analysis of the runs of a study: means over seeds, response curves, effects of factors,
+//! comparisons of alternatives, maps of regimes. Only runs that are done and trusted are used.
 
 mod comparisons;
 mod curves;
@@ -19,37 +19,37 @@ use crate::runs::unit::heading;
 use fretwork_math::statistics::interval::Mean;
 use std::collections::HashMap;
 
-/// Everything that is said of a study.
+/// Analysis of a study.
 #[derive(Clone, Debug)]
 pub struct Analysis {
-    /// By output.
+    /// Analyses of the outputs.
     pub outputs: Vec<OutputAnalysis>,
-    /// By regime that is asked for.
+    /// Requested regimes.
     pub regimes: Vec<Regimes>,
 }
 
-/// What is said of an output.
+/// Analysis of an output.
 #[derive(Clone, Debug)]
 pub struct OutputAnalysis {
-    /// Its name.
+    /// Name of the output.
     pub name: String,
-    /// Its SI unit.
+    /// SI unit of the output.
     pub unit: String,
-    /// The mean over the seeds of each setting; `None` where no run is done.
+    /// Mean over the seeds of each setting; `None` where no run is done.
     pub means: Vec<Option<Mean>>,
-    /// The output over each factor with numbers.
+    /// The output as a function of each factor with numbers.
     pub responses: Vec<Response>,
-    /// How much each factor matters.
+    /// Importance of each factor.
     pub effects: Effects,
     /// Alternatives of the factors without numbers.
     pub alternatives: Vec<Alternatives>,
 }
 
-/// A study with one output by run.
+/// A study with the values of one output.
 struct Data<'a> {
     plan: &'a Plan,
     design: &'a DesignSpec,
-    /// One for each run; `None` where it is not done.
+    /// One value for each run; `None` where it is not done.
     values: Vec<Option<f64>>,
 }
 
@@ -109,12 +109,12 @@ impl Data<'_> {
             .collect()
     }
 
-    /// Labels that a factor takes, in the order of its first settings.
+    /// Returns the labels of a factor, in the order of its first settings.
     fn labels(&self, factor: usize) -> Vec<&str> {
         self.plan.labels(factor)
     }
 
-    /// Level numbers of all settings.
+    /// Returns the level numbers of all settings.
     fn levels(&self) -> (Vec<usize>, Vec<Vec<usize>>) {
         let places: Vec<HashMap<&str, usize>> = (0..self.plan.factors.len())
             .map(|f| self.labels(f).into_iter().zip(0..).collect())
@@ -129,7 +129,7 @@ impl Data<'_> {
     }
 }
 
-/// Whether a factor is spread evenly in its logarithm.
+/// Returns whether a factor has evenly spaced logarithms.
 pub fn logarithmic(factor: &Factor) -> bool {
     matches!(
         &factor.values,
@@ -140,8 +140,8 @@ pub fn logarithmic(factor: &Factor) -> bool {
     )
 }
 
-/// Whether the values of a factor read better on a logarithmic axis: those of a range by its scale,
-/// listed ones if their ratios are more alike than their differences.
+/// Returns whether the values of a factor are better shown on a logarithmic axis: for a range by
+/// its scale, for listed values if their ratios vary less than their differences.
 pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
     if matches!(plan.factors[factor].values, Values::Range { .. }) {
         return logarithmic(&plan.factors[factor]);
@@ -156,8 +156,8 @@ pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
     ratios_are_alike(&numbers)
 }
 
-/// Of numbers in their order: whether ratios of neighbours vary less, by their standard deviation
-/// over their mean, than differences.
+/// Returns, for numbers in their order, whether ratios of neighbours vary less, by their standard
+/// deviation over their mean, than differences.
 fn ratios_are_alike(numbers: &[f64]) -> bool {
     let variation = |of: &dyn Fn(f64) -> f64| {
         let steps: Vec<f64> = numbers.windows(2).map(|w| of(w[1]) - of(w[0])).collect();
@@ -166,7 +166,7 @@ fn ratios_are_alike(numbers: &[f64]) -> bool {
     match numbers {
         [low, .., high] if *low > 0.0 => match (variation(&f64::ln), variation(&|x| x)) {
             (Some(ratios), Some(differences)) => ratios < differences,
-            // Two numbers.
+            // There are two numbers.
             _ => *high > 20.0 * *low,
         },
         _ => false,

@@ -1,4 +1,4 @@
-//! Regimes: which of several behaviours the runs of a setting show, and where over two factors.
+//! Regimes: the behaviour of the runs of a setting, and its map over two factors.
 
 use crate::study::plan::Plan;
 use crate::study::rows::Rows;
@@ -6,27 +6,27 @@ use crate::study::rows::Rows;
 /// The regimes of all settings, by one text of the summary.
 #[derive(Clone, Debug)]
 pub struct Regimes {
-    /// What distinguishes them.
+    /// Name of the text that distinguishes them.
     pub name: String,
-    /// For each setting, the regimes of its runs that are done with their number, the most frequent
+    /// For each setting, the regimes of its completed runs with their number, the most frequent
     /// first.
     pub shown: Vec<Vec<(String, usize)>>,
-    /// Where each occurs; `None` without a factor with numbers.
+    /// Map of the regimes; `None` without a factor with numbers.
     pub map: Option<RegimeMap>,
 }
 
-/// Where each regime occurs.
+/// Map of the regimes over two factors.
 #[derive(Clone, Debug)]
 pub struct RegimeMap {
     /// The factors of the two axes; one if only one has numbers.
     pub axes: (usize, Option<usize>),
-    /// By regime the settings at least half of whose runs show it: values of both axes, the second
-    /// 0 without one.
+    /// For each regime the settings with it in at least half of their runs: values of both axes,
+    /// the second 0 without one.
     pub places: Vec<(String, Vec<(f64, f64)>)>,
 }
 
 impl Regimes {
-    /// The regimes of a setting in words: one name, or names with numbers of runs.
+    /// Describes the regimes of a setting: one name, or names with numbers of runs.
     pub fn words(&self, setting: usize) -> String {
         match self.shown[setting].as_slice() {
             [(one, _)] => one.clone(),
@@ -38,8 +38,8 @@ impl Regimes {
     }
 }
 
-/// For each regime that is asked for what the settings show, with a map over the first two factors
-/// with numbers.
+/// Returns, for each requested regime, the regimes of the settings, with a map over the first two
+/// factors with numbers.
 pub(super) fn regimes(plan: &Plan, rows: &Rows) -> Vec<Regimes> {
     let of = |name: &String| {
         let shown = shown(plan, rows, name);

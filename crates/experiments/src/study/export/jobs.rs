@@ -21,7 +21,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     })
 }
 
-/// Runs as `study point` takes them.
+/// Formats runs as `study point` takes them.
 pub(super) fn range(first: usize, last: usize) -> String {
     match first == last {
         true => first.to_string(),

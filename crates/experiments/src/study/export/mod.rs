@@ -26,16 +26,16 @@ pub enum Engine {
     Jobs,
 }
 
-/// What an export depends on beside the study.
+/// Inputs of an export in addition to the study.
 #[derive(Clone, Debug)]
 pub struct Export<'a> {
     /// The study.
     pub plan: &'a Plan,
-    /// Options that every call needs: plugins, cache.
+    /// Options for every call: plugins, cache.
     pub options: Vec<String>,
-    /// Limit of the time of a run.
+    /// Time limit of a run.
     pub limit: Option<Duration>,
-    /// Runs of a task.
+    /// Number of runs of a task.
     pub chunk: usize,
     /// Expected time of a task (s), if it is known.
     pub task_seconds: Option<f64>,
@@ -43,7 +43,7 @@ pub struct Export<'a> {
     pub lines: Vec<String>,
 }
 
-/// Files that were written, and the command that starts them.
+/// Written files, and the command that starts them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// The files.
@@ -67,8 +67,8 @@ impl Export<'_> {
         }
     }
 
-    /// Refuses texts that a script cannot hold: a line of it would end in them, or an engine would
-    /// read more than a name.
+    /// Refuses texts that a script cannot contain: they would end a line of it, or an engine would
+    /// interpret them.
     fn check_texts(&self, engine: Engine) -> Result<(), Error> {
         let plan = self.plan;
         for path in [&plan.file, &plan.out, &plan.launcher.case] {
@@ -109,7 +109,7 @@ impl Export<'_> {
         }
     }
 
-    /// Words of a call of the program, `study VERB FILE ...`, with paths from the root.
+    /// Returns the words of a call of the program, `study VERB FILE ...`, with absolute paths.
     fn call(&self, verb: &str, middle: &[&str]) -> Result<Vec<String>, Error> {
         let command = program::command().map_err(|e| {
             Error::Usage(format!("the path of the program cannot be determined: {e}"))
@@ -131,7 +131,7 @@ impl Export<'_> {
         Ok(words)
     }
 
-    /// Numbers of the first and the last run of each task.
+    /// Returns the numbers of the first and the last run of each task.
     fn tasks(&self) -> Vec<(usize, usize)> {
         let count = self.plan.count();
         (1..=count)
@@ -140,7 +140,7 @@ impl Export<'_> {
             .collect()
     }
 
-    /// Makes the folder of what the tasks print.
+    /// Creates the folder for the output of the tasks.
     fn logs(&self) -> Result<PathBuf, Error> {
         let logs = self.plan.out.join("logs");
         std::fs::create_dir_all(&logs).map_err(|e| Error::write(&logs, &e))?;
@@ -153,7 +153,7 @@ impl Export<'_> {
         Ok(path)
     }
 
-    /// One name for engines that take no spaces.
+    /// Returns a name without spaces, for engines that need one.
     fn name(&self) -> String {
         let stem = self
             .plan
@@ -177,7 +177,7 @@ fn absolute(path: &Path) -> String {
     whole.display().to_string()
 }
 
-/// Words for a POSIX shell, of which one is a text that is one already.
+/// Returns words for a POSIX shell, one of which is a text that is already quoted.
 fn shell_with(words: &[String], marked: &str, text: &str) -> String {
     let word = |w: &String| match w == marked {
         true => text.to_owned(),

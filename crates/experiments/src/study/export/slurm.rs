@@ -17,10 +17,10 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let expected = export.task_seconds.map_or(String::new(), |s| {
         format!("# A task takes about {}.\n", crate::duration::seconds(s))
     });
-    // No other word of a call has a control character.
+    // No other word of a call contains a control character.
     let words = export.call("point", &["\u{1}"])?;
     let point = shell_with(&words, "\u{1}", "\"$first-$last\"");
-    // A percent sign begins what Slurm fills in.
+    // Slurm replaces patterns that begin with a percent sign.
     let logs = logs.replace('%', "%%");
     let array = format!(
         "#!/bin/sh\n\

@@ -12,15 +12,16 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let (count, chunk) = (export.plan.count(), export.chunk);
     // Snakemake formats commands and paths, so that literal braces are doubled.
     let escaped = |text: String| text.replace('{', "{{").replace('}', "}}");
-    // A control character, which no other argument has, holds the place of the numbers of the runs.
+    // A control character, which no other argument contains, is the placeholder for the numbers of
+    // the runs.
     let point = shell_with(&export.call("point", &["\u{1}"])?, "\u{1}", "\u{1}");
     let point = escaped(point).replace('\u{1}', "{params.runs}");
     let collect = escaped(shell(&export.call("collect", &[])?));
     // A string literal of JSON is also one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));
-    // If one of these files has changed, Snakemake runs the rule again, which then skips the runs
-    // that are already there.
+    // If one of these files has changed, Snakemake runs the rule again, which then skips existing
+    // runs.
     let mut inputs = vec![export.plan.file.clone(), export.plan.launcher.case.clone()];
     if let DesignSpec::Table { file } = &export.plan.design {
         let beside = export.plan.file.parent().unwrap_or(Path::new(""));

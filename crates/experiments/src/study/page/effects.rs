@@ -1,4 +1,4 @@
-//! What a page says of the factors: alternatives compared, effects, indices, trends.
+//! Effects of the factors on a page: comparisons of alternatives, effects, indices, trends.
 
 use super::mean_text;
 use crate::page::table;

@@ -12,9 +12,9 @@ use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::quantity;
 use fretwork_view::{Block, Section, Sheet};
 
-/// Settings that a page lists; all are in the tables.
+/// Largest number of settings that a page lists; the tables contain all.
 const LISTED: usize = 100;
-/// Failed runs that a page lists.
+/// Largest number of failed runs that a page lists.
 const FAILURES: usize = 30;
 
 /// The page of a study.
@@ -172,7 +172,7 @@ fn inputs_section(plan: &Plan) -> Section {
     section("The study", vec![Block::Text(made), Block::Code(text)])
 }
 
-/// A mean with its interval.
+/// Formats a mean with its interval.
 pub(super) fn mean_text(mean: &Mean, unit: &str) -> String {
     let value = quantity(mean.mean, unit);
     match mean.half_width {

@@ -1,4 +1,5 @@
-//! The evolution strategy with covariance matrix adaptation, CMA-ES: a minimum by values alone.
+//! The evolution strategy with covariance matrix adaptation, CMA-ES: minimisation by function
+//! values alone.
 //!
 //! N. Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772. A generation draws lambda
 //! points from a normal distribution,
@@ -8,21 +9,21 @@
 //! ```
 //!
 //! and moves m, sigma and C by the ranks of their values, with positive weights for the better half
-//! and negative ones for the rest (figure 6 there). Ranks alone count: any increasing function of
-//! the values gives the same search, so that failed runs have a place, behind all others.
+//! and negative ones for the rest (figure 6 there). Only ranks matter: any increasing function of
+//! the values gives the same search, so that failed runs can be ranked last.
 //!
 //! [`Cma::ask`] gives the points, [`Cma::tell`] takes their values. The points of a generation are
-//! independent of each other, and may run at the same time. The same seed and values give the same
-//! search, with the same bits.
+//! independent, and may run in parallel. The same seed and values give the same search, with the
+//! same bits.
 //!
-//! **Failed runs** have no value (`None`). They are behind all others; they pull nothing, and push
-//! the distribution away by their negative weights. Where fewer runs succeed than have positive
-//! weights, these are shared among the successes. A generation without any success is drawn again
-//! with other points.
+//! **Failed runs** have no value (`None`). They are ranked last; they do not attract the
+//! distribution, and repel it by their negative weights. Where fewer runs succeed than have
+//! positive weights, these weights are distributed among the successes. A generation without any
+//! success is drawn again with other points.
 //!
-//! **Noise**: hand in means over seeds, as many as [`seeds`](super::seeds) proposes. With noise the
-//! best value seen is too low by luck, and the mean of the distribution ([`Cma::mean`]) is the
-//! better estimate of the minimum.
+//! **Noise**: the values should be means over seeds, as many as [`seeds`](super::seeds) proposes.
+//! With noise the best value seen is too low by chance, and the mean of the distribution
+//! ([`Cma::mean`]) is the better estimate of the minimum.
 //!
 //! **Limits** of the region: [`bounds`](super::bounds) maps any point into it.
 
@@ -41,25 +42,25 @@ use strategy::Strategy;
 use thiserror::Error;
 
 /// Largest ratio of the variances of two axes.
-const MOST_CONDITION: f64 = 1e14;
+const MAX_CONDITION: f64 = 1e14;
 
-/// Growth of an axis from the start at which a search is said to run away.
-const MOST_GROWTH: f64 = 1e4;
+/// Growth of an axis from the start above which a search counts as divergent.
+const MAX_GROWTH: f64 = 1e4;
 
-/// Wrong use of a search.
+/// Invalid use of a search.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CmaError {
-    /// Start or settings are wrong.
+    /// The start or the settings are invalid.
     #[error("{0}")]
     Start(String),
-    /// Another number of values than points.
+    /// The number of values is not that of the points.
     #[error(
         "{values} values for {points} points: give one value per point of the last `ask`, none for a failed run"
     )]
     Length {
-        /// Points of the generation.
+        /// Number of points of the generation.
         points: usize,
-        /// Values given.
+        /// Number of given values.
         values: usize,
     },
 }
@@ -78,22 +79,22 @@ pub struct Cma {
     covariance: DMatrix<f64>,
     path_step: Vec<f64>,
     path_covariance: Vec<f64>,
-    /// Points of the generation that is asked for, in units of the step from the mean.
+    /// Points of the current generation, in units of the step from the mean.
     pending: Vec<Vec<f64>>,
     best: Option<(Vec<f64>, f64)>,
     history: History,
 }
 
 impl Cma {
-    /// A search from `mean`, with the standard deviation `step` in each coordinate, and
+    /// Creates a search from `mean`, with the standard deviation `step` in each coordinate, and
     /// `population` points per generation (4 + 3 ln n if not given; more for a noisy function or
     /// one of many minima). The minimum should lie within two or three steps of the start; in unit
     /// coordinates a step of 0.3 suits.
     ///
     /// # Errors
     ///
-    /// No coordinates, numbers that are not finite, a step that is not positive, or fewer than four
-    /// points.
+    /// There are no coordinates, numbers are not finite, the step is not positive, or there are
+    /// fewer than four points.
     pub fn new(
         mean: &[f64],
         step: f64,
@@ -144,15 +145,15 @@ impl Cma {
         self
     }
 
-    /// Bounds the step of the search by `largest` (for unit coordinates 1, since a wider
+    /// Limits the step of the search to `largest` (1 for unit coordinates, since a wider
     /// distribution covers the region several times).
     pub fn with_largest_step(mut self, largest: f64) -> Self {
         self.largest_step = Some(largest);
         self
     }
 
-    /// The points of this generation. Until [`tell`](Self::tell) gets their values it gives the
-    /// same points.
+    /// Returns the points of this generation. Until [`tell`](Self::tell) receives their values the
+    /// points are the same.
     pub fn ask(&mut self) -> Vec<Vec<f64>> {
         if self.pending.is_empty() {
             let n = self.mean.len();
@@ -173,8 +174,8 @@ impl Cma {
         self.pending.iter().map(|y| self.at(y)).collect()
     }
 
-    /// The generator of this generation: from seed and number, so that nothing but these need be
-    /// kept.
+    /// Returns the generator of this generation, from seed and number, so that no other state must
+    /// be stored.
     fn generator(&self) -> Pcg64 {
         // The odd number is 2^64 over the golden ratio, as in the generator SplitMix64: no two
         // generations of a search share a seed.
@@ -186,12 +187,12 @@ impl Cma {
         self.mean.iter().zip(y).map(place).collect()
     }
 
-    /// Takes the values of the points of the last [`ask`](Self::ask), in their order; `None`, or a
-    /// value that is not finite, is a run that failed.
+    /// Receives the values of the points of the last [`ask`](Self::ask), in their order; `None`, or
+    /// a value that is not finite, is a failed run.
     ///
     /// # Errors
     ///
-    /// Another number of values than points.
+    /// The number of values is not that of the points.
     pub fn tell(&mut self, values: &[Option<f64>]) -> Result<(), CmaError> {
         if values.len() != self.pending.len() {
             return Err(CmaError::Length {
@@ -222,7 +223,7 @@ impl Cma {
         Ok(())
     }
 
-    /// Moves the distribution: the numbers of the points from the best to the worst, those of
+    /// Moves the distribution: `order` has the numbers of the points from the best to the worst,
     /// failed runs last.
     fn update(&mut self, ranked: &[usize], successes: usize) {
         let n = self.mean.len();
@@ -230,7 +231,7 @@ impl Cma {
         let (weights, effective) = shared_among(&strategy.weights, successes);
         let points: Vec<&Vec<f64>> = ranked.iter().map(|k| &self.pending[*k]).collect();
 
-        // The weighted mean of the better points, and the same in coordinates without correlation.
+        // This is the weighted mean of the better points, and the same in uncorrelated coordinates.
         let mean_step: Vec<f64> = (0..n)
             .map(|i| {
                 let better = weights.iter().zip(&points).filter(|(w, _)| **w > 0.0);
@@ -258,7 +259,7 @@ impl Cma {
         }
         let length = self.path_step.iter().map(|p| p * p).sum::<f64>().sqrt();
         let relative = length / strategy.expected_length;
-        // Powers by the library with the same bits everywhere.
+        // The powers of this library have the same bits everywhere.
         let settled = 1.0 - libm::pow(1.0 - rate, 2.0 * (self.generation + 1) as f64);
         let moves_on = relative < (1.4 + 2.0 / (n as f64 + 1.0)) * settled.sqrt();
 
@@ -329,9 +330,9 @@ impl Cma {
             Some(Stop::Step)
         } else if self.history.flat(n, self.population, self.limits.value) {
             Some(Stop::Value)
-        } else if self.step * widest.sqrt() > MOST_GROWTH * self.first_step {
+        } else if self.step * widest.sqrt() > MAX_GROWTH * self.first_step {
             Some(Stop::Diverges)
-        } else if narrowest * MOST_CONDITION < widest {
+        } else if narrowest * MAX_CONDITION < widest {
             Some(Stop::Condition)
         } else if self.without_effect(&deviations) {
             Some(Stop::Step)
@@ -350,7 +351,7 @@ impl Cma {
             .any(|(m, d)| *m == m + 0.2 * d)
     }
 
-    /// Mean of the distribution: the estimate of the minimum.
+    /// Returns the mean of the distribution: the estimate of the minimum.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
@@ -361,14 +362,14 @@ impl Cma {
             .collect()
     }
 
-    /// The best point that was evaluated, with its value.
+    /// Returns the best point that was evaluated, with its value.
     pub fn best(&self) -> Option<(&[f64], f64)> {
         self.best.as_ref().map(|(x, v)| (x.as_slice(), *v))
     }
 }
 
-/// The weights where only the first `successes` points may have positive ones, and the effective
-/// number of these points.
+/// Returns the weights if only the first `successes` points may have positive ones, and the
+/// effective number of these points.
 fn shared_among(weights: &[f64], successes: usize) -> (Vec<f64>, f64) {
     let mut weights = weights.to_vec();
     for weight in weights.iter_mut().skip(successes) {

@@ -1,19 +1,19 @@
-//! When a search ends: appendix B.3 of Hansen's tutorial.
+//! End of a search: appendix B.3 of Hansen's tutorial.
 
 use thiserror::Error;
 
 /// Settings of the end of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Smallest standard deviation of any coordinate that the search goes on with.
+    /// Standard deviation of all coordinates below which the search ends.
     pub step: f64,
-    /// Smallest range of the best values of the last generations, and of the values of the last
-    /// one, that it goes on with.
+    /// Range of the best values of the last generations, and of the values of the last one, below
+    /// which it ends.
     pub value: f64,
 }
 
 impl Default for Limits {
-    /// Steps and ranges of 1e-12.
+    /// Returns steps and ranges of 1e-12.
     fn default() -> Self {
         Self {
             step: 1e-12,
@@ -22,7 +22,7 @@ impl Default for Limits {
     }
 }
 
-/// Why a search has ended.
+/// Reason for the end of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Stop {
     /// All steps are below the limit: the usual end.
@@ -31,7 +31,7 @@ pub enum Stop {
     /// The values hardly change.
     #[error("the values differ by less than the wanted difference")]
     Value,
-    /// Best and median values have not become better over many generations: noise, or a limit of
+    /// Best and median values have not improved over many generations: noise, or a limit of
     /// precision.
     #[error("the values have not become better for many generations")]
     Stagnation,
@@ -48,10 +48,10 @@ pub enum Stop {
     Failures(usize),
 }
 
-/// Generations without any success after which a search ends.
+/// Number of generations without any success after which a search ends.
 pub(super) const FAILED_GENERATIONS: usize = 5;
 
-/// What the criteria look at, of the generations so far.
+/// Data of earlier generations for the criteria.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct History {
     /// Best value of each generation that had one.
@@ -60,12 +60,12 @@ pub(super) struct History {
     pub median: Vec<f64>,
     /// Largest less smallest value of the last generation.
     pub last_range: f64,
-    /// Generations since a run succeeded.
+    /// Number of generations since a run succeeded.
     pub failed: usize,
 }
 
 impl History {
-    /// Appends a generation's values of the runs that succeeded, sorted.
+    /// Appends a generation: the sorted values of its successful runs.
     pub(super) fn record(&mut self, sorted: &[f64]) {
         let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else {
             self.failed += 1;
@@ -77,8 +77,8 @@ impl History {
         self.last_range = last - first;
     }
 
-    /// No change of the best values of the last 10 + 30 n / lambda generations, nor within the last
-    /// one.
+    /// Returns whether the best values of the last 10 + 30 n / lambda generations are equal, and
+    /// all values of the last one too.
     pub(super) fn flat(&self, dimensions: usize, population: usize, limit: f64) -> bool {
         let recent = 10 + (30 * dimensions).div_ceil(population);
         let Some(start) = self.best.len().checked_sub(recent) else {
@@ -90,8 +90,9 @@ impl History {
         most - least < limit && self.last_range < limit
     }
 
-    /// Of the last 20 % of the generations, at least 120 + 30 n / lambda, the newest 30 % have
-    /// medians of best and median values that are no better than those of the oldest 30 %.
+    /// Returns whether, of the last 20 % of the generations, at least 120 + 30 n / lambda, the
+    /// newest 30 % have medians of best and median values that are no better than those of the
+    /// oldest 30 %.
     pub(super) fn stagnates(&self, dimensions: usize, population: usize) -> bool {
         let count = self.best.len();
         let span = (120 + 30 * dimensions / population)

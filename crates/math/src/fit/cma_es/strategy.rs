@@ -1,5 +1,5 @@
 //! Weights and rates of the strategy: table 1 of Hansen's tutorial (arXiv:1604.00772), with the
-//! equations' numbers.
+//! numbers of its equations.
 
 /// Constants of a search in n dimensions with lambda points per generation.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub(super) struct Strategy {
     pub weights: Vec<f64>,
     /// Effective number of selected points mu_eff (eq. 8).
     pub effective: f64,
-    /// Rates of the step size: c_sigma and d_sigma (eq. 55).
+    /// Rate of the step size c_sigma (eq. 55).
     pub step_rate: f64,
     /// Damping d_sigma.
     pub step_damping: f64,
@@ -69,7 +69,7 @@ impl Strategy {
         }
     }
 
-    /// Points per generation: 4 + 3 ln n (eq. 48).
+    /// Returns the number of points per generation: 4 + 3 ln n (eq. 48).
     pub(super) fn population(dimensions: usize) -> usize {
         4 + (3.0 * (dimensions as f64).ln()).floor() as usize
     }
@@ -79,8 +79,8 @@ impl Strategy {
 mod tests {
     use super::*;
 
-    /// Default population sizes of the tutorial, and what its text says of the weights: mu_eff is
-    /// about 0.3 lambda, positive weights sum to 1, negative ones to at most -1 - 2 mu_eff^- /
+    /// The default population sizes of the tutorial satisfy its statements on the weights: mu_eff
+    /// is about 0.3 lambda, positive weights sum to 1, negative ones to at most -1 - 2 mu_eff^- /
     /// (mu_eff + 2).
     #[test]
     fn follows_the_table() {

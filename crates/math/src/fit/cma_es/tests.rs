@@ -7,7 +7,8 @@ fn sphere(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum()
 }
 
-/// Axes whose stiffness differs by 1e6 in all, turned by 45 degrees in the planes of neighbours.
+/// Returns a quadratic function whose stiffness varies by 1e6 between axes, rotated by 45 degrees
+/// in the planes of neighbours.
 fn ellipsoid(x: &[f64]) -> f64 {
     let n = x.len();
     let mut y = x.to_vec();
@@ -24,13 +25,14 @@ fn rosenbrock(x: &[f64]) -> f64 {
     x.windows(2).map(term).sum()
 }
 
-/// One generation; `None` values are failed runs.
+/// Makes one generation; `None` values are failed runs.
 fn generation(cma: &mut Cma, f: impl Fn(&[f64]) -> Option<f64>) {
     let values: Vec<_> = cma.ask().iter().map(|x| f(x)).collect();
     cma.tell(&values).unwrap();
 }
 
-/// Evaluations until a value below 1e-8, or a large number if the search ends before.
+/// Returns the number of evaluations until a value below 1e-8, or a large number if the search ends
+/// before.
 fn evaluations(f: fn(&[f64]) -> f64, start: &[f64], seed: u64) -> usize {
     let mut cma = Cma::new(start, 0.5, None, seed).unwrap();
     let mut count = 0;
@@ -122,7 +124,7 @@ fn the_same_seed_gives_the_same_search() {
     assert_ne!(run(8), run(9));
 }
 
-/// Ranks alone count: exp(f) gives the same search as f.
+/// Only ranks matter: exp(f) gives the same search as f.
 #[test]
 fn any_increasing_function_gives_the_same_search() {
     let mut plain = Cma::new(&[0.5; 3], 0.3, None, 3).unwrap();
@@ -134,7 +136,7 @@ fn any_increasing_function_gives_the_same_search() {
     assert_eq!(plain.mean(), other.mean());
 }
 
-/// Runs fail in a half-space that holds most of the first points and ends beside the minimum.
+/// Runs fail in a half-space that contains most of the first points and ends next to the minimum.
 #[test]
 fn a_region_where_runs_fail_is_left() {
     for seed in 0..20 {
@@ -227,7 +229,7 @@ fn more_seeds_where_noise_hides_the_minimum() {
     };
     let (fixed, adapted) = (median(2, 2), median(2, 64));
     assert!(adapted < 0.5 * fixed && adapted < 0.01, "{adapted} {fixed}");
-    // With few seeds the search says that it can go no further.
+    // With few seeds the search reports that it can make no further progress.
     assert!((0..5).all(|seed| distance(2, 4, seed).1));
 }
 

@@ -1,20 +1,20 @@
-//! The minimum of the polynomial model, and what the data say of the parameters there.
+//! The minimum of the polynomial model, and the information of the data on the parameters there.
 
 use super::surrogate::Surrogate;
 use crate::statistics::eigen;
 use nalgebra::{DMatrix, DVector};
 
-/// Iterations of the minimisation; it converges in a few.
-const MOST_ITERATIONS: usize = 200;
+/// Largest number of iterations of the minimisation; it converges in a few.
+const MAX_ITERATIONS: usize = 200;
 
 /// Half-width of an interval in unit coordinates above which a direction counts as undetermined:
 /// the interval is as wide as the range.
 const UNDETERMINED: f64 = 0.5;
 
-/// Share of an eigenvalue that must remain when the part of noise is taken off.
+/// Share of an eigenvalue that must remain after subtracting the part of noise.
 const ABOVE_NOISE: f64 = 0.5;
 
-/// 97.5 % of the normal distribution.
+/// Quantile of 97.5 % of the normal distribution.
 const NORMAL: f64 = 1.959_964;
 
 /// The polynomial model with the data.
@@ -32,10 +32,10 @@ pub(super) struct Model<'a> {
 pub(super) struct Minimum {
     pub point: Vec<f64>,
     pub chi_squared: f64,
-    /// -1 or 1 for a parameter at its smallest or largest value with squares that fall outwards,
-    /// otherwise 0.
+    /// -1 or 1 for a parameter at its smallest or largest value with a sum of squares that
+    /// decreases outwards, otherwise 0.
     pub held: Vec<i8>,
-    /// Whether it lies at the edge of the neighbourhood of the runs.
+    /// Whether the minimum is at the edge of the neighbourhood of the runs.
     pub at_edge: bool,
 }
 
@@ -48,14 +48,14 @@ pub(super) struct Axis {
     pub determined: bool,
 }
 
-/// What the data say of some of the parameters, the others being held.
+/// Information of the data on some of the parameters, with the others fixed.
 pub(super) struct Information {
     pub axes: Vec<Axis>,
-    /// Covariance by the errors of the measurement.
+    /// Covariance due to the errors of the measurement.
     pub by_measurement: DMatrix<f64>,
-    /// Covariance by the errors of the simulated values.
+    /// Covariance due to the errors of the simulated values.
     pub by_simulation: DMatrix<f64>,
-    /// Change of each parameter with each simulated value, a row for each parameter.
+    /// Change of each parameter with each simulated value, one row per parameter.
     pub by_value: DMatrix<f64>,
 }
 
@@ -73,15 +73,15 @@ impl Model<'_> {
             .sum()
     }
 
-    /// J^T W: a row per parameter.
+    /// Returns J^T W: one row per parameter.
     fn weighted(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(jacobian.ncols(), jacobian.nrows(), |i, j| {
             jacobian[(j, i)] * self.weights[j]
         })
     }
 
-    /// Levenberg and Marquardt's method within the part of the region that the runs cover; a
-    /// parameter at its limit that would go beyond is held.
+    /// Minimises by the method of Levenberg and Marquardt within the part of the region that the
+    /// runs cover; a parameter at its limit that would go beyond is fixed.
     pub(super) fn minimise(&self) -> Minimum {
         let (centre, radius) = (&self.surrogate.centre, self.surrogate.radius);
         let n = centre.len();
@@ -91,7 +91,7 @@ impl Model<'_> {
         let mut chi_squared = self.chi_squared(&point);
         let mut damping = 1e-9;
         let mut held = vec![0i8; n];
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let jacobian = self.surrogate.jacobian(&point);
             let weighted = self.weighted(&jacobian);
             let downhill = &weighted * self.residuals(&point);
@@ -144,7 +144,7 @@ impl Model<'_> {
                 break;
             }
         }
-        // Held by the region, not by the neighbourhood.
+        // The parameter is fixed by the region, not by the neighbourhood.
         let at_limit = |i: usize| match held[i] {
             -1 => low[i] == 0.0,
             1 => high[i] == 1.0,
@@ -162,12 +162,12 @@ impl Model<'_> {
         }
     }
 
-    /// Share of the noise of a run in the difference of measured and simulated values.
+    /// Returns the share of the noise of a run in the difference of measured and simulated values.
     pub(super) fn noise_share(&self, point: &[f64]) -> f64 {
         self.surrogate.errors(point).0 + if self.specimen_scatters { 1.0 } else { 0.0 }
     }
 
-    /// Variance of the residuals of each value.
+    /// Returns the variance of the residuals of each value.
     pub(super) fn noise(&self) -> Vec<f64> {
         let degrees = self.surrogate.degrees.max(1) as f64;
         self.surrogate
@@ -177,8 +177,8 @@ impl Model<'_> {
             .collect()
     }
 
-    /// The information of the parameters `free` at a point; covariances are those of the errors
-    /// times `scale`.
+    /// Returns the information on the parameters `free` at a point; covariances are those of the
+    /// errors times `scale`.
     pub(super) fn information(&self, point: &[f64], free: &[usize], scale: f64) -> Information {
         let n = free.len();
         let jacobian = self.surrogate.jacobian(point).select_columns(free);
@@ -194,7 +194,7 @@ impl Model<'_> {
         let corrected = DMatrix::from_fn(n, n, |i, j| {
             plain[(i, j)] - noise * slopes[(free[i], free[j])]
         });
-        // J^T W times the errors of both kinds.
+        // This is J^T W times the errors of both kinds.
         let measured =
             DMatrix::from_fn(n, self.sigma.len(), |i, j| weighted[(i, j)] * self.sigma[j]);
         let measured = &measured * measured.transpose() * scale;

@@ -15,10 +15,10 @@
 //! minimum (h is the leverage of the centre). S has the covariance of values of one run: a seed may
 //! shift a whole curve. If the sum of squares exceeds what both explain (probability below 5 %),
 //! the model does not describe the data, and Cov is multiplied by the ratio: an honest interval
-//! only if the departures are as random as noise. Without a given sigma it always is. Intervals are
-//! Student's, with the degrees of freedom of both parts by Satterthwaite (Biometrics Bulletin 2
-//! (1946) 110). Sources: Bates and Watts, Nonlinear Regression Analysis, 1988; Seber and Wild,
-//! Nonlinear Regression, 1989, chapter 5.
+//! only if the departures are as random as noise. Without a given sigma this is always done.
+//! Intervals are Student's, with the degrees of freedom of both parts by Satterthwaite (Biometrics
+//! Bulletin 2 (1946) 110). Sources: Bates and Watts, Nonlinear Regression Analysis, 1988; Seber and
+//! Wild, Nonlinear Regression, 1989, chapter 5.
 //!
 //! **Directions** are eigenvectors of H in unit coordinates. One whose interval is wider than the
 //! region, or whose eigenvalue cannot be distinguished from noise, is a combination of parameters
@@ -42,9 +42,9 @@ use thiserror::Error;
 /// A run of a fit: one seed, or the mean over as many seeds as all other runs have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Its parameters in unit coordinates, within [0, 1] (see [`Bounds::folded`]).
+    /// Parameters in unit coordinates, within [0, 1] (see [`Bounds::folded`]).
     pub point: Vec<f64>,
-    /// Its values where they are measured (see
+    /// Simulated values at the measured points (see
     /// [`Target::simulated`](super::residuals::Target::simulated)).
     pub simulated: Vec<f64>,
 }
@@ -52,64 +52,64 @@ pub struct Run {
 /// The measured values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data<'a> {
-    /// The values.
+    /// Measured values.
     pub measured: &'a [f64],
-    /// Their standard deviations; `None` to estimate one for all from how far the model lies off.
+    /// Standard deviations; `None` to estimate a common one from the deviations of the model.
     pub sigma: Option<&'a [f64]>,
-    /// Their weights in the fit; `None` for 1.
+    /// Weights in the fit; `None` for 1.
     pub weights: Option<&'a [f64]>,
-    /// Whether the measured specimen scatters as one run does from seed to seed: its share then
-    /// joins the error of measurement.
+    /// Whether the measured specimen scatters as one run does from seed to seed: this scatter is
+    /// then added to the error of measurement.
     pub specimen_scatters: bool,
 }
 
-/// Why nothing can be said of the parameters.
+/// Reason why the parameters cannot be estimated.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IdentifyError {
-    /// Lists of the wrong length.
+    /// Lists have the wrong length.
     #[error("{what}: {found} where {expected} are expected")]
     Length {
-        /// What has the wrong length.
+        /// Name of the list.
         what: &'static str,
         /// Expected number.
         expected: usize,
         /// Number given.
         found: usize,
     },
-    /// Too few runs.
+    /// There are too few runs.
     #[error(
         "{runs} runs near the minimum are too few for {parameters} parameters, or vary only some of them: make at least {needed} runs in all directions around it"
     )]
     Few {
-        /// Runs given.
+        /// Number of given runs.
         runs: usize,
-        /// Parameters.
+        /// Number of parameters.
         parameters: usize,
-        /// Fewest runs.
+        /// Smallest number of runs.
         needed: usize,
     },
-    /// No degrees of freedom to estimate the error from.
+    /// There are no degrees of freedom to estimate the error.
     #[error(
         "{values} values without standard deviations for {parameters} parameters: give the standard deviations, or measure more"
     )]
     NoError {
-        /// Measured values.
+        /// Number of measured values.
         values: usize,
-        /// Parameters.
+        /// Number of parameters.
         parameters: usize,
     },
-    /// A number that is not finite, or a standard deviation that is not positive.
+    /// A number is not finite, or a standard deviation is not positive.
     #[error("{0} must be finite, and standard deviations and weights positive")]
     Number(&'static str),
 }
 
-/// Estimates of the parameters with intervals, correlations and directions, from the runs near
-/// `minimum` (unit coordinates, the mean of the search). Runs that failed are not given.
+/// Estimates the parameters with intervals, correlations and directions, from the runs near
+/// `minimum` (unit coordinates, the mean of the search). Failed runs are not given.
 ///
 /// # Errors
 ///
-/// Lists of the wrong length, numbers that are not finite, too few runs, or no values to estimate
-/// the error from.
+/// Lists have the wrong length, numbers are not finite, there are too few runs, or no values to
+/// estimate the error.
 pub fn identify(
     bounds: &Bounds,
     runs: &[Run],
@@ -150,7 +150,8 @@ pub fn identify(
     Ok(report::report(bounds, &model))
 }
 
-/// Root mean square of the differences of the run nearest to the minimum; a positive number.
+/// Returns the root mean square of the differences of the run nearest to the minimum; a positive
+/// number.
 fn misfit_of_nearest(runs: &[Run], minimum: &[f64], measured: &[f64]) -> Option<f64> {
     let distance = |r: &&Run| -> f64 {
         r.point

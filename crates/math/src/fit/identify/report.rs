@@ -1,4 +1,4 @@
-//! What is said of each parameter, and of combinations of them.
+//! Results for each parameter, and for combinations of parameters.
 
 use super::information::{Information, Model};
 use crate::fit::bounds::Bounds;
@@ -6,10 +6,10 @@ use crate::statistics::distribution::{chi_squared_upper, student_quantile};
 use crate::statistics::interval::{CONFIDENCE, Interval};
 use serde::Serialize;
 
-/// Component of a direction from which a parameter is named in it.
+/// Component of a direction above which a parameter is named in it.
 const NAMED: f64 = 0.2;
 
-/// Component of an undetermined direction from which a parameter is undetermined.
+/// Component of an undetermined direction above which a parameter is undetermined.
 const INVOLVED: f64 = 0.2;
 
 /// An end of a range.
@@ -22,24 +22,25 @@ pub enum End {
     Highest,
 }
 
-/// What is known of one parameter.
+/// Estimate of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterEstimate {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its estimate.
+    /// Estimated value.
     pub value: f64,
     /// Whether the data determine it; otherwise its intervals are the whole range.
     pub determined: bool,
     /// Interval of 95 %, within the range. One-sided for a parameter at an end.
     pub interval: Interval,
-    /// Interval that, with those of the other parameters, holds the truth in 95 % (Bonferroni).
+    /// Interval that, jointly with those of the other parameters, contains the true values in 95 %
+    /// (Bonferroni).
     pub simultaneous: Interval,
     /// Whether the range, and not the data, limits the interval below.
     pub open_below: bool,
     /// Whether the range, and not the data, limits the interval above.
     pub open_above: bool,
-    /// The end of its range at which it lies, if the squares fall beyond: the range should be
+    /// End of its range at which it lies, if the squares decrease beyond: the range should be
     /// extended, or the end is physical.
     pub at: Option<End>,
 }
@@ -47,20 +48,20 @@ pub struct ParameterEstimate {
 /// A combination of parameters in unit coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// Parameters with their components, the largest first (to a tenth) and positive; together the
-    /// squares of all components are 1. Small components are left out.
+    /// Parameters with their components, the largest first (to a tenth) and positive; the squares
+    /// of all components sum to 1. Small components are left out.
     pub parts: Vec<(usize, f64)>,
-    /// Singular value: how many standard errors of the data a step over the whole range changes
-    /// them.
+    /// Singular value: the change of the data by a step over the whole range, in standard errors.
     pub singular_value: f64,
-    /// Half-width of the interval of 95 % along it, the range being 1; `None` for no limit at all.
+    /// Half-width of the interval of 95 % along the direction, with the range as 1; `None` if
+    /// unlimited.
     pub half_width: Option<f64>,
-    /// Whether the data determine it better than the range does.
+    /// Whether the data determine the direction better than the range does.
     pub determined: bool,
 }
 
 impl Direction {
-    /// In words, as "k up, mu down"; `names` are those of all parameters.
+    /// Describes the direction, as "k up, mu down"; `names` are those of all parameters.
     pub fn words(&self, names: &[&str]) -> String {
         let part = |(i, component): &(usize, f64)| {
             let way = if *component > 0.0 { "up" } else { "down" };
@@ -70,20 +71,20 @@ impl Direction {
     }
 }
 
-/// What the data say of the parameters.
+/// Estimates of the parameters of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// One per parameter.
     pub estimates: Vec<ParameterEstimate>,
-    /// Correlation of the estimates, a row per parameter; `None` where one is at an end or not
+    /// Correlation of the estimates, one row per parameter; `None` where one is at an end or not
     /// determined.
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Combinations of parameters, the best determined first.
     pub directions: Vec<Direction>,
     /// Weighted sum of squares at the estimate.
     pub chi_squared: f64,
-    /// `chi_squared` over what the errors explain: about 1 if the model describes the data. `None`
-    /// without degrees of freedom.
+    /// Ratio of `chi_squared` to its expected value: about 1 if the model describes the data.
+    /// `None` without degrees of freedom.
     pub reduced: Option<f64>,
     /// Probability of such a ratio by chance; `None` without degrees of freedom, or if no standard
     /// deviations are given.
@@ -92,12 +93,12 @@ pub struct Identification {
     pub describes: bool,
     /// Factor of all standard errors: above 1 where the model does not describe the data.
     pub widened: f64,
-    /// Whether the estimate lies at the edge of the neighbourhood: the minimum is farther out, and
+    /// Whether the estimate is at the edge of the neighbourhood: the minimum is farther out, and
     /// runs around it are missing.
     pub at_edge: bool,
-    /// How the estimates move with the simulated values, in unit coordinates: a row per parameter,
-    /// a column per value. To first order -H^-1 J^T W; zero for a parameter at an end, and along
-    /// directions that are not determined.
+    /// Derivative of the estimates by the simulated values, in unit coordinates: one row per
+    /// parameter, one column per value. To first order -H^-1 J^T W; zero for a parameter at an end,
+    /// and along directions that are not determined.
     pub influence: Vec<Vec<f64>>,
 }
 
@@ -181,7 +182,7 @@ struct Spread {
 }
 
 impl Spread {
-    /// `None` where the parameter is part of an undetermined direction.
+    /// Returns the spread; `None` where the parameter is part of an undetermined direction.
     fn of(information: &Information, i: usize, of_errors: f64, of_noise: f64) -> Option<Self> {
         if is_undetermined(information, i) {
             return None;
@@ -217,7 +218,7 @@ fn estimate(
 ) -> ParameterEstimate {
     let parameter = &bounds.parameters()[i];
     let ends = |miss: f64| -> (f64, f64) {
-        // A chance to miss of the interval, at one end or shared by two.
+        // The probability to be outside the interval is at one end, or divided between two.
         let one_sided = held != 0;
         let tail = if one_sided { miss } else { 0.5 * miss };
         let half_width = spread
@@ -265,7 +266,7 @@ fn correlation(information: &Information, free: &[usize], i: usize, j: usize) ->
 fn directions(information: &Information) -> Vec<Direction> {
     let direction = |axis: &super::information::Axis| {
         let mut parts: Vec<(usize, f64)> = axis.vector.iter().copied().enumerate().collect();
-        // Of components that are about equal the first parameter's counts as the largest.
+        // Of components of about equal size the first parameter's counts as the largest.
         parts.sort_by(|a, b| {
             let size = |c: f64| (c.abs() * 10.0).round();
             size(b.1).total_cmp(&size(a.1)).then(a.0.cmp(&b.0))

@@ -12,19 +12,19 @@
 //! h s_0^2 + max(0, s^2 - s_0^2),
 //! ```
 //!
-//! h s_0^2 being the variance of the polynomial at the centre. All that are small beside the errors
-//! of the measurement count the same, and of these the largest is taken.
+//! where h s_0^2 is the variance of the polynomial at the centre. Neighbourhoods whose error is
+//! small compared with that of the measurement count as equal, and the largest of these is used.
 
 use super::Run;
 use crate::statistics::distribution::chi_squared_quantile;
 use crate::statistics::least_squares::pseudo_inverse;
 use nalgebra::{DMatrix, DVector};
 
-/// Ratio of the radii that are tried.
+/// Ratio of successive radii.
 const SHRINK: f64 = 0.8;
 
-/// Error of the polynomial, in standard errors of the estimate, that is small beside the
-/// measurement.
+/// Error of the polynomial, in standard errors of the estimate, that is negligible compared with
+/// the measurement.
 const SMALL: f64 = 0.1;
 
 /// Probability that the upper limit of the noise is below the noise.
@@ -39,11 +39,11 @@ pub(super) struct Surrogate {
     coefficients: DMatrix<f64>,
     /// Covariance of the coefficients of a value whose residuals have the variance 1.
     covariance: DMatrix<f64>,
-    /// Residuals, a row per run.
+    /// Residuals, one row per run.
     pub residuals: DMatrix<f64>,
-    /// Runs less terms.
+    /// Degrees of freedom: number of runs less number of terms.
     pub degrees: usize,
-    /// Variance of the residuals, in those of the measurement, mean over the values.
+    /// Variance of the residuals relative to that of the measurement, as a mean over the values.
     spread: f64,
 }
 
@@ -58,14 +58,14 @@ impl Surrogate {
         1 + parameters + second
     }
 
-    /// Fewest runs from which a linear polynomial is fitted.
+    /// Returns the smallest number of runs from which a linear polynomial is fitted.
     pub(super) fn fewest_runs(parameters: usize) -> usize {
         2 * Self::terms(parameters, false)
     }
 
-    /// The polynomials in the best neighbourhood of `centre`; `sigma` is the error of each measured
-    /// value. `None` where there are too few runs, or they lie in fewer directions than there are
-    /// parameters.
+    /// Fits the polynomials in the best neighbourhood of `centre`; `sigma` is the error of each
+    /// measured value. `None` if there are too few runs, or they span fewer directions than there
+    /// are parameters.
     pub(super) fn fit(runs: &[Run], centre: &[f64], sigma: &[f64]) -> Option<Self> {
         let n = centre.len();
         let mut near: Vec<(f64, &Run)> = runs
@@ -91,24 +91,26 @@ impl Surrogate {
                 break;
             }
         }
-        // Linear polynomials only where no neighbourhood has enough runs for others.
+        // Linear polynomials are used only where no neighbourhood has enough runs for others.
         if found.iter().any(|s| s.quadratic) {
             found.retain(|s| s.quadratic);
         }
-        // Values of a run may scatter together, so that only the runs count as degrees of freedom.
+        // Values of a run may be correlated, so that only the runs count as degrees of freedom.
         let limit = |s: &Self| {
             let degrees = s.degrees as f64;
             Some(s.spread * degrees / chi_squared_quantile(LUCK, degrees)?)
         };
         let noise = found.iter().filter_map(limit).fold(f64::MAX, f64::min);
-        // What an error of the estimate of one standard error makes, mean over the values.
+        // This is the deviation for an error of the estimate of one standard error, as a mean over
+        // the values.
         let enough = SMALL * SMALL * n as f64 / sigma.len() as f64;
         let error = |s: &Self| {
             let excess = (s.spread - noise).max(0.0);
             (s.covariance[(0, 0)] * noise + excess).max(enough)
         };
         let best = found.iter().map(error).fold(f64::MAX, f64::min);
-        // Radii fall, so that the first is the largest, and of one radius the one with fewer terms.
+        // Radii decrease, so that the first is the largest, and of equal radii the one with fewer
+        // terms.
         found.into_iter().find(|s| error(s) <= best)
     }
 
@@ -159,13 +161,13 @@ impl Surrogate {
         self.coefficients.tr_mul(&row)
     }
 
-    /// Their derivatives by the coordinates: a row per value, a column per parameter.
+    /// Returns the derivatives by the coordinates: one row per value, one column per parameter.
     pub(super) fn jacobian(&self, point: &[f64]) -> DMatrix<f64> {
         self.coefficients.tr_mul(&self.slopes(point))
     }
 
-    /// Variance of a value at a point, and covariance of its derivatives there, where its residuals
-    /// have the variance 1.
+    /// Returns the variance of a value at a point, and the covariance of its derivatives there, for
+    /// residuals with the variance 1.
     pub(super) fn errors(&self, point: &[f64]) -> (f64, DMatrix<f64>) {
         let row = DVector::from_vec(terms(&self.distance(point), self.quadratic));
         let slopes = self.slopes(point);
@@ -175,7 +177,7 @@ impl Surrogate {
         )
     }
 
-    /// Derivatives of the terms by the coordinates, a row per term.
+    /// Returns the derivatives of the terms by the coordinates, one row per term.
     fn slopes(&self, point: &[f64]) -> DMatrix<f64> {
         let d = self.distance(point);
         let n = d.len();
@@ -202,7 +204,7 @@ impl Surrogate {
     }
 }
 
-/// 1, the coordinates, and their products.
+/// Returns 1, the coordinates, and their products.
 fn terms(d: &[f64], quadratic: bool) -> Vec<f64> {
     let mut row = vec![1.0];
     row.extend(d);
@@ -214,7 +216,7 @@ fn terms(d: &[f64], quadratic: bool) -> Vec<f64> {
     row
 }
 
-/// Largest difference of a coordinate.
+/// Returns the largest difference of a coordinate.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter()
         .zip(b)
@@ -235,7 +237,7 @@ mod tests {
         latin_hypercube(80, 2, 4).into_iter().map(made).collect()
     }
 
-    /// A quadratic function is found everywhere, with its derivatives (2 u + v, u - 3).
+    /// A quadratic function is reproduced everywhere, with its derivatives (2 u + v, u - 3).
     #[test]
     fn quadratic_functions_are_exact() {
         let f = |u: &[f64]| u[0] * u[0] + u[0] * u[1] - 3.0 * u[1];
@@ -248,8 +250,8 @@ mod tests {
         assert!(slopes.row(1).norm() < 1e-11);
     }
 
-    /// exp(6 u) is no quadratic function over the whole cube: a small neighbourhood is taken where
-    /// the measurement is accurate, a larger one where it is not.
+    /// exp(6 u) is not a quadratic function over the whole cube: a small neighbourhood is used
+    /// where the measurement is accurate, a larger one where it is not.
     #[test]
     fn the_neighbourhood_follows_the_accuracy() {
         let made = runs(|u| vec![(6.0 * u[0]).exp() / 20.0 + u[1]]);

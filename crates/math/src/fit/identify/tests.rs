@@ -41,9 +41,9 @@ struct Planted<F: Fn(&[f64]) -> Vec<f64>> {
     sigma: f64,
     /// Noise of each value of a run.
     noise: f64,
-    /// Noise of a run that all its values share.
+    /// Noise that all values of a run share.
     shared: f64,
-    /// Runs in the box around the truth of this half-edge, in unit coordinates.
+    /// Half-edge of the box around the truth that contains the runs, in unit coordinates.
     runs: usize,
     spread: f64,
     model: F,
@@ -80,9 +80,9 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Planted<F> {
         measured
     }
 
-    /// In how many of 300 fits the interval of each parameter, and in how many all simultaneous
-    /// ones, hold the truth. The minimum that a search would give is off by some hundredths of the
-    /// range.
+    /// Returns in how many of 300 fits the interval of each parameter, and in how many all
+    /// simultaneous ones, contain the true value. The minimum of the search deviates by some
+    /// hundredths of the range.
     fn held(&self, sigma_known: bool) -> (Vec<usize>, usize) {
         let mut rng = Pcg64::seed_from_u64(77);
         let mut held = vec![0; self.truth.len()];
@@ -110,8 +110,8 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Planted<F> {
         (held, all_held)
     }
 
-    /// Of 300 fits 285 should hold: the standard deviation is 3.8, so that 272 to 297 leave out 1
-    /// of 1000 each side. Simultaneous intervals are at least as often right.
+    /// Of 300 fits 285 should contain it: the standard deviation is 3.8, so that 272 to 297 exclude
+    /// 1 of 1000 on each side. Simultaneous intervals contain it at least as often.
     fn assert_coverage(&self, sigma_known: bool) {
         let (held, all_held) = self.held(sigma_known);
         for count in &held {
@@ -140,8 +140,8 @@ fn line() -> Planted<impl Fn(&[f64]) -> Vec<f64>> {
     }
 }
 
-/// The error of ordinary least squares in closed form, for the measurement alone: Var(slope) =
-/// sigma^2 / sum (x - mean)^2.
+/// The error of ordinary least squares is known in closed form, for the measurement alone:
+/// Var(slope) = sigma^2 / sum (x - mean)^2.
 #[test]
 fn a_line_without_noise_has_the_errors_of_least_squares() {
     let planted = Planted {
@@ -167,7 +167,7 @@ fn a_line_without_noise_has_the_errors_of_least_squares() {
         (half_width - 1.959_964 * 0.2 / sxx.sqrt()).abs() < 1e-6,
         "{slope:?}"
     );
-    // Offset and slope: -mean x / sqrt(mean of x^2).
+    // The correlation of offset and slope is -mean x / sqrt(mean of x^2).
     let squares = abscissae(30).map(|x| x * x).sum::<f64>() / 30.0;
     let expected = -0.5 / squares.sqrt();
     assert!((found.correlation[0][1].unwrap() - expected).abs() < 1e-6);
@@ -240,7 +240,7 @@ fn intervals_of_curved_models_hold_the_truth() {
     falling_friction().assert_coverage(true);
 }
 
-/// Without any noise the polynomial must not spoil the interval.
+/// Without any noise the polynomial must not affect the interval.
 #[test]
 fn intervals_of_models_without_noise_hold_the_truth() {
     Planted {
@@ -251,8 +251,8 @@ fn intervals_of_models_without_noise_hold_the_truth() {
     .assert_coverage(true);
 }
 
-/// A model of the product a b alone, c being determined: a up and b down in one direction with
-/// equal components.
+/// The model depends on the product a b, and on c: a up and b down is one direction with equal
+/// components.
 #[test]
 fn a_product_leaves_a_flat_direction() {
     for noise in [0.0, 0.02] {
@@ -302,7 +302,7 @@ fn a_product_leaves_a_flat_direction() {
     }
 }
 
-/// A parameter without any effect is not determined, the others are.
+/// A parameter without any effect is undetermined, the others are determined.
 #[test]
 fn a_parameter_without_effect_is_said() {
     let planted = Planted {
@@ -328,8 +328,8 @@ fn a_parameter_without_effect_is_said() {
     }
 }
 
-/// Measured values with a wave that the line cannot follow: the ratio is the mean square of the
-/// wave over sigma^2, intervals are wider by its root, and the text says so.
+/// Measured values have a wave that the line cannot follow: the ratio is the mean square of the
+/// wave over sigma^2, intervals are wider by its root, and the text reports it.
 #[test]
 fn a_model_that_does_not_describe_the_data_has_wider_intervals() {
     let planted = line();
@@ -344,7 +344,7 @@ fn a_model_that_does_not_describe_the_data_has_wider_intervals() {
     let data = |sigma| data(&measured, sigma);
     let known = identify(&planted.bounds, &runs, &[0.6, 0.3], &data(Some(&[0.2; 30]))).unwrap();
     assert!(!known.describes && known.p.unwrap() < 1e-6);
-    // 0.5 / 0.2^2 + 1 with few degrees of freedom.
+    // The ratio is 0.5 / 0.2^2 + 1 with few degrees of freedom.
     let ratio = known.widened.powi(2);
     assert!((9.0..20.0).contains(&ratio), "{ratio}");
     let unknown = identify(&planted.bounds, &runs, &[0.6, 0.3], &data(None)).unwrap();
@@ -352,8 +352,8 @@ fn a_model_that_does_not_describe_the_data_has_wider_intervals() {
     assert!((width(&known) / width(&unknown) - 1.0).abs() < 0.1);
 }
 
-/// The truth at the end of a range: in half of the fits the estimate is held there, with a
-/// one-sided interval. All intervals hold the truth at least as often as stated.
+/// The truth is at the end of a range: in half of the fits the estimate is held there, with a
+/// one-sided interval. All intervals contain the truth at least as often as stated.
 #[test]
 fn a_parameter_at_its_end_has_a_one_sided_interval() {
     let planted = Planted {
@@ -381,7 +381,7 @@ fn a_parameter_at_its_end_has_a_one_sided_interval() {
     assert!(held >= 272, "{held}");
 }
 
-/// The whole way: a search with noise, two seeds per point, then intervals from its own runs.
+/// The whole sequence: a search with noise, two seeds per point, then intervals from its own runs.
 #[test]
 fn runs_of_a_search_suffice() {
     let planted = softening();
@@ -417,7 +417,7 @@ fn runs_of_a_search_suffice() {
             held += usize::from(estimate.interval.holds(*truth));
         }
     }
-    // 76 of 80 expected; below 70 has a probability of 1 % were they independent.
+    // Expected are 76 of 80; below 70 has a probability of 1 % if they are independent.
     assert!(held >= 70, "{held}");
 }
 

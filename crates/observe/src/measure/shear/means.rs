@@ -3,7 +3,7 @@
 
 use crate::quantity::Unit;
 use crate::quantity::unit::{ONE, PASCAL};
-use crate::steady::{BLOCKS, Flow, of_blocks};
+use crate::steady::{BLOCKS, MeanFlow, of_blocks};
 
 const PER_SECOND: Unit = Unit::of("1/s");
 
@@ -18,15 +18,15 @@ pub(super) struct Means {
     mu: f64,
     inertial: f64,
     /// Means over blocks of equal time: p, mu, phi, I; `None` without enough rows.
-    blocks: Option<[Flow; 4]>,
+    blocks: Option<[MeanFlow; 4]>,
     /// Strain before the time, and from it on.
     strain: [f64; 2],
 }
 
 impl Means {
-    /// From the columns rate, p, tau and phi, and the kinetic parts of p and tau, whose rows are
-    /// means over the time since the row before. `inertial` is the inertial number at a rate and a
-    /// pressure. `None` without rows after `start`.
+    /// Computes the means from the columns rate, p, tau and phi, and the kinetic parts of p and
+    /// tau, whose rows are means over the time since the row before. `inertial` is the inertial
+    /// number at a rate and a pressure. `None` without rows after `start`.
     pub fn new(
         time: &[f64],
         columns: &[Vec<f64>; 4],
@@ -36,7 +36,7 @@ impl Means {
     ) -> Option<Self> {
         let end = *time.last()?;
         let rows = || (1..time.len()).map(|k| (k, time[k] - time[k - 1]));
-        // A row that began before the time, but for round-off, is not of the mean.
+        // A row that began before the time, except by round-off, is not part of the mean.
         let counts = |k: usize| time[k - 1] >= start - 1e-6 * (time[k] - time[k - 1]);
         let total = |values: &[f64], of: &dyn Fn(usize) -> bool| {
             let due = rows().filter(|(k, _)| of(*k));
@@ -69,8 +69,8 @@ impl Means {
             let (Some(r), Some(q), Some(t), Some(f)) = (of(0), of(1), of(2), of(3)) else {
                 break;
             };
-            // Ratios to first order in the deviations from the means, so that the mean of the
-            // blocks is the value above.
+            // Ratios are expanded to first order in the deviations from the means, so that the mean
+            // of the blocks is the value above.
             blocks[0].push(q);
             blocks[1].push(mu + (t * tau.signum() - mu * q) / p);
             blocks[2].push(f);
@@ -92,7 +92,7 @@ impl Means {
         })
     }
 
-    /// Name, value, unit and explanation of each.
+    /// Returns name, value, unit and explanation of each mean.
     pub fn values(&self) -> Vec<(&'static str, f64, Unit, &'static str)> {
         let mut out = vec![
             ("rate", self.rate, PER_SECOND, "mean shear rate"),
@@ -142,7 +142,7 @@ impl Means {
         out
     }
 
-    /// What the means are worth.
+    /// Returns a description of the reliability of the means.
     pub fn describe(&self) -> String {
         let [before, during] = self.strain;
         let strains = format!("strain {before:.2} before the mean, {during:.2} in it");
@@ -175,8 +175,8 @@ mod tests {
 
     #[test]
     fn ratios_are_of_means_that_rows_of_any_length_give() {
-        // From 1 s on rows of 0.1 and 0.3 s in turn: p 100 and 300 Pa, tau 50 and 90 Pa, so that p
-        // = 250, tau = 80 Pa.
+        // From 1 s on rows of 0.1 and 0.3 s alternate: p 100 and 300 Pa, tau 50 and 90 Pa, so that
+        // p = 250, tau = 80 Pa.
         let mut time = vec![0.0, 1.0];
         let mut columns = [
             vec![0.0, 7.0],
@@ -208,7 +208,7 @@ mod tests {
         assert!(
             (value("strain_before") - 7.0).abs() < 1e-9 && (value("strain") - 16.0).abs() < 1e-9
         );
-        // Each block has two rows of each kind: no scatter.
+        // Each block has two rows of each kind, so that there is no scatter.
         assert!(value("mu_half_width") < 1e-12 && value("p_half_width") < 1e-9);
         assert!(Means::new(&time, &columns, &kinetic, 99.0, inertial).is_none());
     }

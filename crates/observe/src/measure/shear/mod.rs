@@ -1,11 +1,11 @@
 //! Plane shear of the grains between two heights, away from the walls.
 //!
-//! The shear rate is the slope of v_x over height. The stress is that of the contacts and that of
-//! the motion (da Cruz et al., Phys. Rev. E 72 (2005) 021309, section II), the sum of what crosses
-//! a layer in momentum: (sum f l + sum m v' v')/V, with the part of each branch l that lies between
-//! the heights, and v' relative to the mean velocity of the layers, a straight line over the
-//! height. The solid fraction counts the part of each grain between the heights. The inertial
-//! number is rate sqrt(m/p) with the mean mass in 2D, and rate d sqrt(density/p) in 3D.
+//! The shear rate is the slope of v_x over height. The stress is that of the contacts plus that of
+//! the motion (da Cruz et al., Phys. Rev. E 72 (2005) 021309, section II), the momentum flux across
+//! a layer: (sum f l + sum m v' v')/V, with the part of each branch l that lies between the
+//! heights, and v' relative to the mean velocity of the layers, a straight line over the height.
+//! The solid fraction counts the part of each grain between the heights. The inertial number is
+//! rate sqrt(m/p) with the mean mass in 2D, and rate d sqrt(density/p) in 3D.
 //!
 //! A row of the statistics has means over the steps since the row before: contacts between rigid
 //! grains carry impulses, and the pressure of one step differs from that of the next by as much as
@@ -16,7 +16,7 @@ mod means;
 mod sums;
 
 use crate::chart::Axis;
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::figures::history;
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
@@ -26,7 +26,7 @@ use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use means::Means;
 use std::f64::consts::PI;
-use sums::{Layer, Sums};
+use sums::{ShearedLayer, Sums};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::Shear`].
 #[derive(Clone, Debug)]
@@ -34,13 +34,13 @@ pub struct Shear {
     /// Number of dimensions.
     dimension: usize,
     name: String,
-    layer: Layer,
+    layer: ShearedLayer,
     start: f64,
     /// Velocities at the start of a step, by body (m/s).
     before: Vec<[f64; 3]>,
     /// Sums since the last row.
     row: Sums,
-    /// Sums that the last row was made of.
+    /// Sums from which the last row was computed.
     last: Sums,
     /// Sums since `start`.
     whole: Sums,
@@ -82,7 +82,7 @@ impl Shear {
         Self {
             dimension,
             name,
-            layer: Layer { low, high },
+            layer: ShearedLayer { low, high },
             start,
             before: Vec::new(),
             row: Sums::default(),
@@ -135,13 +135,13 @@ impl Observer for Shear {
     }
 
     fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
-        // A second look at the same moment gives the same row.
+        // A second request at the same time gives the same row.
         if self.row.time > 0.0 {
             self.last = std::mem::take(&mut self.row);
         }
         let mut sums = self.last;
         if sums.time <= 0.0 {
-            // Before the first step nothing has been carried; the weight cancels.
+            // Before the first step there is no momentum flux; the weight cancels.
             let now: Vec<[f64; 3]> = run.bodies().velocity.iter().collect();
             sums = self.layer.step(run, &now, 1.0);
             sums.contacts = [0.0; 2];
@@ -175,12 +175,12 @@ impl Observer for Shear {
         }
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(&self.row, &self.last, &self.whole))
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(&(&self.row, &self.last, &self.whole))
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.row, self.last, self.whole) = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        (self.row, self.last, self.whole) = encoding::decode(from)?;
         Ok(())
     }
 
@@ -202,11 +202,12 @@ impl Observer for Shear {
     }
 }
 
-/// Volume of a ball (m^3; m^2 in 2D) below a horizontal plane at height `d` above its centre (m).
+/// Returns the volume of a ball (m^3; m^2 in 2D) below a horizontal plane at height `d` above its
+/// centre (m).
 pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
     let d = d.clamp(-r, r);
     if dimension == 2 {
-        // Half the chord; this form has no cancellation near the poles.
+        // This is half the chord, in a form without cancellation near the poles.
         let half = ((r - d) * (r + d)).sqrt();
         r * r * half.atan2(-d) + d * half
     } else {

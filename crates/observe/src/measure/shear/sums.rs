@@ -1,4 +1,4 @@
-//! Sums over steps of what plane shear is measured by: momentum that contacts carry across the
+//! Sums over steps for the measures of plane shear: momentum that contacts transmit across the
 //! layers, momentum that grains carry by their motion, shear rate and solid fraction.
 
 use super::below;
@@ -44,7 +44,8 @@ impl AddAssign<&Sums> for Sums {
 }
 
 impl Sums {
-    /// Stress across the layers and shear stress, of contacts and motion together (Pa).
+    /// Returns the normal stress across the layers and the shear stress, of contacts and motion
+    /// together (Pa).
     pub fn stress(&self) -> [f64; 2] {
         [0, 1].map(|k| (self.contacts[k] + self.motion[k]) / self.time)
     }
@@ -54,8 +55,8 @@ impl Sums {
         self.motion.map(|m| m / self.time)
     }
 
-    /// Inertial number at a shear rate and a pressure: rate sqrt(m/p) in 2D, rate d sqrt(density/p)
-    /// in 3D; zero without pressure.
+    /// Returns the inertial number at a shear rate and a pressure: rate sqrt(m/p) in 2D, rate d
+    /// sqrt(density/p) in 3D; zero without pressure.
     pub fn inertial(&self, dimension: usize, rate: f64, p: f64) -> f64 {
         let (mass, radius) = (self.mass / self.time, self.radius / self.time);
         if p <= 0.0 || mass <= 0.0 {
@@ -70,15 +71,16 @@ impl Sums {
 
 /// The layer between two heights.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layer {
+pub(super) struct ShearedLayer {
     /// Lower height (m).
     pub low: f64,
     /// Upper height (m).
     pub high: f64,
 }
 
-impl Layer {
-    /// The last step, weighted by `weight` (s). `before` are the velocities at its start, by body.
+impl ShearedLayer {
+    /// Returns the sums of the last step, weighted by `weight` (s). `before` holds the velocities
+    /// at its start, by body.
     pub fn step(self, run: &dyn RunView, before: &[[f64; 3]], weight: f64) -> Sums {
         let up = run.dimension() - 1;
         let section: f64 = (0..up)
@@ -87,7 +89,7 @@ impl Layer {
         let volume = section * (self.high - self.low);
         let all = grains(run);
         let theta = run.options().scheme.theta;
-        // Momentum is carried at the velocity that moves the grains, v_theta.
+        // Momentum is carried at v_theta, the velocity that moves the grains.
         let after = run.bodies().velocity;
         let velocity = |g: &Grain| {
             let after = Vector3::from(after.at(g.body));
@@ -122,15 +124,15 @@ impl Layer {
         }
     }
 
-    /// Sums of impulse times branch of the contacts, across the layers and along, each by the part
-    /// of its branch that lies in the layer; the shear is the traction of the upper side on the
-    /// lower.
+    /// Returns the sums of impulse times branch of the contacts, across the layers and along them,
+    /// each weighted by the part of its branch in the layer; the shear is the traction of the upper
+    /// side on the lower.
     fn impulses(self, run: &dyn RunView) -> [f64; 2] {
         let up = run.dimension() - 1;
         let mut sum = [0.0; 2];
         run.visit_contacts(&mut |contact| {
             let [a, b] = run.ends_of_contact(contact.place);
-            // From the antagonist to the candidate, on which the impulse acts.
+            // The branch is from the antagonist to the candidate, on which the impulse acts.
             let part = a[up].clamp(self.low, self.high) - b[up].clamp(self.low, self.high);
             sum[0] += contact.impulse[up] * part;
             sum[1] -= contact.impulse[0] * part;
@@ -139,9 +141,9 @@ impl Layer {
     }
 }
 
-/// Sums m v_y' v_y' and m v_x' v_y' over grains given by mass, height and velocity (x, y): v' is
-/// relative to the straight line through the velocities over the height, so that an affine field
-/// has none.
+/// Returns the sums m v_y' v_y' and m v_x' v_y' over grains given by mass, height and velocity (x,
+/// y): v' is relative to the straight line through the velocities over the height, so that an
+/// affine field has none.
 fn fluctuations(grains: impl Iterator<Item = (f64, f64, [f64; 2])> + Clone) -> [f64; 2] {
     let (mut mass, mut height, mut momentum) = (0.0, 0.0, [0.0; 2]);
     for (m, y, v) in grains.clone() {
@@ -186,8 +188,8 @@ mod tests {
 
     #[test]
     fn pairs_of_opposite_velocity_carry_momentum_across_the_layers() {
-        // Two grains of 2 kg/m at each height, v = U(y) +- (0.3, -0.2) m/s: m v_y' v_y' = 0.08, m
-        // v_x' v_y' = -0.12 each.
+        // There are two grains of 2 kg/m at each height with v = U(y) +- (0.3, -0.2) m/s: m v_y'
+        // v_y' = 0.08, m v_x' v_y' = -0.12 each.
         let grains: Vec<_> = (0..4)
             .flat_map(|k| {
                 let y = f64::from(k);

@@ -16,7 +16,7 @@ pub(super) struct Cell {
     pub space: f64,
     /// Volume of grains in it.
     pub volume: f64,
-    /// Their mass (kg; kg/m).
+    /// Mass of these grains (kg; kg/m).
     pub mass: f64,
     /// Mass times depth over the thickness.
     pub height: f64,
@@ -34,7 +34,7 @@ pub(super) struct Cell {
     pub warmth: f64,
     /// Number of grains, by their volume fractions in the bin.
     pub grains: f64,
-    /// Number of their contacts that carry force.
+    /// Number of contacts of these grains that carry force.
     pub contacts: f64,
     /// Number of their intact bonds.
     pub bonds: f64,
@@ -70,43 +70,43 @@ impl AddAssign<&Cell> for Cell {
 }
 
 impl Cell {
-    /// Solid fraction.
+    /// Returns the solid fraction.
     pub fn solid(&self) -> f64 {
         self.volume / self.space
     }
 
-    /// Mass-weighted mean depth over the thickness.
+    /// Returns the mass-weighted mean depth over the thickness.
     pub fn depth(&self) -> f64 {
         self.height / self.mass
     }
 
-    /// Mean velocity relative to the first body (m/s).
+    /// Returns the mean velocity relative to the first body (m/s).
     pub fn velocity(&self) -> f64 {
         self.momentum / self.mass
     }
 
-    /// Mass-weighted mean granular temperature (m^2/s^2).
+    /// Returns the mass-weighted mean granular temperature (m^2/s^2).
     pub fn granular_temperature(&self) -> f64 {
         self.granular / self.mass
     }
 
-    /// Mass-weighted mean temperature (K), where heat is computed.
+    /// Returns the mass-weighted mean temperature (K), where heat is computed.
     pub fn temperature(&self) -> f64 {
         self.warmth / self.mass
     }
 
-    /// Velocity over that of the second body, weighted by its square: <v V>/<V^2>, which is also
-    /// defined for reciprocating sliding.
+    /// Returns the ratio of the velocity to that of the second body, weighted by the square of the
+    /// latter: <v V>/<V^2>, which is also defined for reciprocating sliding.
     pub fn carried(&self) -> f64 {
         self.drive / self.square
     }
 
-    /// Mean stress (Pa).
+    /// Returns the mean stress (Pa).
     pub fn stress(&self) -> [f64; STRESSES] {
         self.moment.map(|m| m / self.space)
     }
 
-    /// Broken bonds over bonds made, of the grains in it.
+    /// Returns broken bonds over bonds made, of the grains in the bin.
     pub fn damage(&self) -> f64 {
         self.broken / (self.broken + self.bonds)
     }
@@ -129,7 +129,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Merges the block that follows.
+    /// Merges the following block.
     pub fn join(&mut self, next: &Block) {
         if self.samples == 0 {
             self.clone_from(next);
@@ -152,18 +152,18 @@ impl Block {
             .unwrap_or_default()
     }
 
-    /// Mean thickness (m).
+    /// Returns the mean thickness (m).
     pub fn mean_thickness(&self) -> f64 {
         self.thickness / self.samples.max(1) as f64
     }
 
-    /// Duration (s).
+    /// Returns the duration (s).
     pub fn duration(&self) -> f64 {
         self.time[1] - self.time[0]
     }
 
-    /// Pairs (depth over thickness, velocity over the second body's) of bins with mass, if there is
-    /// sliding.
+    /// Returns pairs (depth over thickness, velocity over that of the second body) of bins with
+    /// mass, if there is sliding.
     pub fn profile(&self) -> Vec<(f64, f64)> {
         let full = self
             .bins()
@@ -207,12 +207,12 @@ impl History {
         self.blocks.push(sample);
     }
 
-    /// The whole history as one block.
+    /// Returns the whole history as one block.
     pub fn whole(&self) -> Block {
         whole(&self.blocks)
     }
 
-    /// The blocks that lie mostly after a time, merged; at least the last block.
+    /// Returns the blocks that lie mostly after a time, merged; at least the last block.
     pub fn since(&self, time: f64) -> Block {
         let middle = |b: &Block| 0.5 * (b.time[0] + b.time[1]);
         let first = self.blocks.partition_point(|b| middle(b) < time);

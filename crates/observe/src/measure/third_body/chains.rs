@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Two grains that press on each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(super) struct GrainPair {
     /// The grains.
     pub ends: [usize; 2],
     /// Vector from the first to the second (m).
@@ -27,21 +27,21 @@ pub(super) struct Pair {
 pub(super) struct Chains {
     /// Number of chains.
     pub count: usize,
-    /// Number of grains in them.
+    /// Number of grains in chains.
     pub grains: usize,
     /// Links of the chains, as indices of pairs.
     pub links: Vec<usize>,
 }
 
 /// Finds the chains. `loads` are the stresses of the grains, symmetric and positive in compression.
-pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[Pair]) -> Chains {
+pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[GrainPair]) -> Chains {
     let major: Vec<(f64, Vector3<f64>)> = loads.iter().map(|m| principal(m, flat)).collect();
     let carrying = || major.iter().filter(|m| m.0 > 0.0);
     let mean = carrying().map(|m| m.0).sum::<f64>() / carrying().count().max(1) as f64;
     let heavy = |k: usize| major[k].0 > 0.0 && major[k].0 >= mean * (1.0 - 1e-12);
-    // The best pair of each grain on either side.
+    // This is the best pair of each grain on either side.
     let mut best: Vec<[Option<usize>; 2]> = vec![[None; 2]; loads.len()];
-    let side = |pair: &Pair, end: usize| {
+    let side = |pair: &GrainPair, end: usize| {
         let away = if end == 0 { pair.branch } else { -pair.branch };
         let cosine = major[pair.ends[end]].1.dot(&away) / away.norm();
         (cosine.abs() >= FRAC_1_SQRT_2).then_some(usize::from(cosine < 0.0))
@@ -81,7 +81,7 @@ pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[Pair]) -> Chai
     }
 }
 
-/// Major principal value and its direction.
+/// Returns the major principal value and its direction.
 fn principal(m: &Matrix3<f64>, flat: bool) -> (f64, Vector3<f64>) {
     if flat {
         let (mean, half) = (0.5 * (m[(0, 0)] + m[(1, 1)]), 0.5 * (m[(0, 0)] - m[(1, 1)]));
@@ -101,10 +101,10 @@ fn principal(m: &Matrix3<f64>, flat: bool) -> (f64, Vector3<f64>) {
 mod tests {
     use super::*;
 
-    /// Grains on a line through the origin, with stress `load` along it.
-    fn column(n: usize, direction: Vector3<f64>, load: f64) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+    /// Returns grains on a line through the origin, with stress `load` along it.
+    fn column(n: usize, direction: Vector3<f64>, load: f64) -> (Vec<Matrix3<f64>>, Vec<GrainPair>) {
         let loads = vec![direction * direction.transpose() * load; n];
-        let pair = |k: usize| Pair {
+        let pair = |k: usize| GrainPair {
             ends: [k, k + 1],
             branch: direction,
             force: load,
@@ -120,12 +120,12 @@ mod tests {
             (false, Vector3::new(0.48, 0.6, 0.64)),
         ] {
             let (mut loads, mut pairs) = column(7, direction, 5.0);
-            // Two weakly loaded grains beside it, one of them touching it.
+            // Two weakly loaded grains are next to the line, one of them touching it.
             loads.extend([Matrix3::identity() * 0.1; 2]);
             for ends in [[3, 7], [7, 8]] {
                 let branch = Vector3::new(0.8, -0.6, 0.0);
                 let force = 0.1;
-                pairs.push(Pair {
+                pairs.push(GrainPair {
                     ends,
                     branch,
                     force,
@@ -154,12 +154,12 @@ mod tests {
     fn a_chain_follows_the_largest_force() {
         let (mut loads, mut pairs) = column(4, Vector3::y(), 1.0);
         loads.push(loads[0]);
-        pairs.push(Pair {
+        pairs.push(GrainPair {
             ends: [1, 4],
             branch: Vector3::new(0.5, 0.9, 0.0),
             force: 2.0,
         });
-        // 0-1-4 is the chain; 2-3 remain as a pair.
+        // The chain is 0-1-4; 2-3 remain as a pair.
         let found = chains(&loads, true, &pairs);
         assert_eq!((found.count, found.grains), (1, 3));
         assert_eq!(found.links, [0, 3]);

@@ -12,14 +12,14 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    /// `count` sets of one member each.
+    /// Creates `count` sets of one member each.
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
         }
     }
 
-    /// Representative of a member's set.
+    /// Returns the representative of a member's set.
     pub fn of(&mut self, member: usize) -> usize {
         let mut k = member;
         while self.parent[k] as usize != k {
@@ -29,8 +29,8 @@ impl Sets {
         k
     }
 
-    /// Merges the sets of two members; the lower representative is kept, so the result does not
-    /// depend on the order.
+    /// Merges the sets of two members; the lower representative is kept, so that the result does
+    /// not depend on the order.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.parent[a.max(b)] = a.min(b) as u32;
@@ -42,7 +42,7 @@ impl Sets {
 pub(super) struct Clusters {
     /// Number of sets of two grains or more.
     pub count: usize,
-    /// Number of grains of the largest; 1 if there are no bonds.
+    /// Number of grains of the largest cluster; 1 if there are no bonds.
     pub largest: usize,
     /// Mass-weighted mean size, sum m n / sum m over all grains, with n the size of a grain's
     /// cluster: 1 if there are no bonds.
@@ -100,7 +100,7 @@ mod tests {
         let ties = [[1, 2], [3, 2], [0, 1], [0, 4], [5, 6]];
         let c = count(&mass, &grain, ties.into_iter());
         assert_eq!((c.count, c.largest), (2, 3));
-        // {1, 2, 3} of 4 kg, {4} of 1, {5, 6} of 2, {7} of 3.
+        // The clusters are {1, 2, 3} of 4 kg, {4} of 1, {5, 6} of 2, {7} of 3.
         assert!((c.mean - (4.0 * 3.0 + 1.0 + 2.0 * 2.0 + 3.0) / 10.0).abs() < 1e-15);
         assert_eq!(
             c.sizes,

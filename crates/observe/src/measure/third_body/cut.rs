@@ -35,7 +35,7 @@ pub(super) fn share(run: &dyn RunView, gap: &Gap, grain: &Grain, take: impl FnMu
     }
 }
 
-/// Area of the part of a convex polygon below a height.
+/// Returns the area of the part of a convex polygon below a height.
 fn area_below(corners: &[[f64; 2]], height: f64) -> f64 {
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(corners.len() + 2);
     for (k, b) in corners.iter().enumerate() {

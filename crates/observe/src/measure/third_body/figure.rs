@@ -7,14 +7,14 @@ use crate::chart::{Axis, Chart, Series, Style, quantity};
 use crate::figures::history;
 
 /// Content of the figure.
-pub(super) struct Figure<'a> {
+pub(super) struct LayerFigure<'a> {
     /// The whole time.
     pub whole: &'a Block,
-    /// Its time slices.
+    /// Time slices of the measure.
     pub slices: &'a [Block],
     /// The first bodies.
     pub between: &'a (String, String),
-    /// Name of a column of the statistics from that of its quantity.
+    /// Returns the name of a column of the statistics from that of its quantity.
     pub column: &'a dyn Fn(&str) -> String,
     /// Dimension, 2 or 3.
     pub dimension: usize,
@@ -46,7 +46,7 @@ fn span(times: [f64; 2]) -> String {
     }
 }
 
-impl Figure<'_> {
+impl LayerFigure<'_> {
     fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
         let upwards = format!("y/e, {} to {}", self.between.0, self.between.1);
         let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));
@@ -66,7 +66,7 @@ impl Figure<'_> {
         [VELOCITY, SOLID].contains(&chart.title.as_str())
     }
 
-    /// A panel of one quantity, with a line for each time slice.
+    /// Adds a line for each time slice to a panel of one quantity.
     fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
         for (k, block) in self.slices.iter().enumerate() {
             let label = if Self::labelled(&chart) {

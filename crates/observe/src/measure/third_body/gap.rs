@@ -20,7 +20,7 @@ pub(super) struct Gap {
     pub closest_point: f64,
     /// 1 if depth increases with the coordinate, -1 if it decreases.
     pub side: f64,
-    /// Its thickness (m).
+    /// Thickness of the layer (m).
     pub thickness: f64,
     /// Area of a section (m^2; m in 2D).
     pub section: f64,
@@ -29,29 +29,30 @@ pub(super) struct Gap {
 }
 
 impl Gap {
-    /// Depth of a point (m).
+    /// Returns the depth of a point (m).
     pub fn depth(&self, at: &[f64; 3]) -> f64 {
         self.side * (at[self.across] - self.closest_point)
     }
 
-    /// Volume of a bin (m^3; m^2 in 2D).
+    /// Returns the volume of a bin (m^3; m^2 in 2D).
     pub fn bin_volume(&self) -> f64 {
         self.section * self.thickness / self.bins as f64
     }
 
-    /// The cell of a depth: 0 before the first face, 1 to `bins`, one more beyond the second.
+    /// Returns the cell of a depth: 0 before the first face, 1 to `bins`, one more beyond the
+    /// second.
     pub fn cell(&self, depth: f64) -> usize {
         let place = (depth / self.thickness * self.bins as f64).floor();
         // NaN is mapped to the first cell.
         (place.max(-1.0) + 1.0).min(self.bins as f64 + 1.0) as usize
     }
 
-    /// Bin of a depth, from 1; depths beyond a face count in the bin at that face.
+    /// Returns the bin of a depth, from 1; depths beyond a face count in the bin at that face.
     pub fn bin(&self, depth: f64) -> usize {
         self.cell(depth).clamp(1, self.bins)
     }
 
-    /// Depth of the end of a cell (m).
+    /// Returns the depth of the end of a cell (m).
     pub fn end(&self, cell: usize) -> f64 {
         self.thickness * cell as f64 / self.bins as f64
     }
@@ -89,7 +90,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Starts from the current state; `None` if a body is missing.
+    /// Creates the tracker from the current state; `None` if a body is missing.
     pub fn new(run: &dyn RunView, names: [&str; 2], across: usize, bins: usize) -> Option<Self> {
         let driven = run.bodies().driven;
         let place = |name: &str| driven.iter().position(|d| d.name == name);
@@ -109,7 +110,7 @@ impl Faces {
         })
     }
 
-    /// Index of one of the two bodies.
+    /// Returns the index of one of the two bodies.
     pub fn body(&self, run: &dyn RunView, k: usize) -> usize {
         run.bodies().driven[self.places[k]].body as usize
     }
@@ -145,7 +146,7 @@ impl Faces {
         }
     }
 
-    /// Velocity of the first body's face, and of the second's relative to it.
+    /// Returns the velocity of the first body's face, and that of the second's relative to it.
     pub fn sliding(&self, run: &dyn RunView) -> (Vector3<f64>, Vector3<f64>) {
         self.sliding_at(|k| {
             let (bodies, b) = (run.bodies(), self.body(run, k));
@@ -153,7 +154,7 @@ impl Faces {
         })
     }
 
-    /// Sliding velocity of [`Self::sliding`] at v_theta of the last step.
+    /// Returns the sliding velocity of [`Self::sliding`] at v_theta of the last step.
     pub fn sliding_over_step(&self, run: &dyn RunView) -> Vector3<f64> {
         let theta = run.options().scheme.theta;
         let started = run.started();
@@ -172,8 +173,8 @@ impl Faces {
     }
 }
 
-/// Mean coordinate of the parts of a body that face one side along an axis, or of the whole body if
-/// `towards` is 0 (m).
+/// Returns the mean coordinate of the parts of a body that face one side along an axis, or of the
+/// whole body if `towards` is 0 (m).
 fn face(run: &dyn RunView, body: u32, across: usize, towards: f64) -> f64 {
     let flat = run.dimension() == 2;
     let (mut sum, mut weight) = (0.0, 0.0);
@@ -234,9 +235,9 @@ fn face(run: &dyn RunView, body: u32, across: usize, towards: f64) -> f64 {
     }
 }
 
-/// Signed projected area of a part of an outline along an axis, positive if it faces the positive
-/// side, and its mean coordinate (m). In 2D a segment with the solid on its right, in 3D a polygon
-/// about its outward normal.
+/// Returns the signed projected area of a part of an outline along an axis, positive if it faces
+/// the positive side, and its mean coordinate (m). In 2D the part is a segment with the solid on
+/// its right, in 3D a polygon about its outward normal.
 fn projection(points: &[Vector3<f64>], across: usize, flat: bool) -> (f64, f64) {
     let mean = points.iter().map(|p| p[across]).sum::<f64>() / points.len().max(1) as f64;
     let (i, j) = match (flat, across) {
@@ -256,7 +257,7 @@ fn projection(points: &[Vector3<f64>], across: usize, flat: bool) -> (f64, f64) 
     (0.5 * cross.sum::<f64>(), mean)
 }
 
-/// Heights below and above which 1 % of the grains' mass lies (m).
+/// Returns the heights below and above which 1 % of the grains' mass lies (m).
 fn ends(all: &[Grain], across: usize) -> [f64; 2] {
     let total: f64 = all.iter().map(|g| g.mass).sum();
     let end = |sign: f64| {
@@ -273,8 +274,8 @@ fn ends(all: &[Grain], across: usize) -> [f64; 2] {
     [end(1.0), end(-1.0)]
 }
 
-/// Area of a section across the layer: the period along periodic axes, otherwise the extent of the
-/// grains (m^2; m in 2D).
+/// Returns the area of a section across the layer: the period along periodic axes, otherwise the
+/// extent of the grains (m^2; m in 2D).
 fn section(run: &dyn RunView, across: usize, all: &[Grain]) -> f64 {
     let axes = (0..run.dimension()).filter(|k| *k != across);
     let length = |k: usize| {

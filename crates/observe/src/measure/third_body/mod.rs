@@ -5,31 +5,31 @@ mod cells;
 mod chains;
 mod clusters;
 mod cut;
+mod dissipation;
 mod figure;
 mod gap;
 mod regime;
 mod snapshot;
-mod spent;
 mod tables;
 
 use super::{grains, mean, since};
-use crate::code::{self, CodeError};
+use crate::encoding::{self, EncodingError};
 use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
-use crate::picture::{Picture, Shows};
+use crate::picture::{Picture, PictureContent};
 use crate::quantity::unit::{ENERGY, ONE};
 use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
+use dissipation::{Dissipation, PairKind};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
-use regime::{Flow, Regime, flow};
+use regime::{FlowProfile, FlowRegime, flow};
 use serde::{Deserialize, Serialize};
 use snapshot::LayerSnapshot;
-use spent::{Dissipation, Place};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -56,12 +56,12 @@ pub struct ThirdBody {
     row: Vec<f64>,
 }
 
-/// Below this fraction of the largest sliding velocity the motion is at a reversal, and no regime
+/// Fraction of the largest sliding velocity below which the motion is at a reversal, and no regime
 /// is determined.
 const TURNING: f64 = 1e-2;
 
-/// Name, unit and description of the columns; `stress_lateral` exists in 3D only, `temperature`
-/// where heat is computed.
+/// Returns name, unit and description of the columns; `stress_lateral` exists in 3D only,
+/// `temperature` where heat is computed.
 const COLUMNS: [(&str, &str, &str); 21] = [
     ("thickness", "m", "thickness of the third body"),
     ("solid_fraction", "", "solid fraction between the faces"),
@@ -187,15 +187,16 @@ impl ThirdBody {
         format!("{}_{part}", self.spec.name)
     }
 
-    /// Whether the next step ends after the start: it is the first that counts, as in a friction
-    /// test.
+    /// Returns whether the next step ends after the start: it is the first that counts, as in a
+    /// friction test.
     fn due(&self, run: &dyn RunView) -> bool {
         run.time() + run.options().scheme.h > self.spec.start
     }
 
-    /// The flow at the end (over the last complete cycle of the friction test, or the second half
-    /// of the time), the mass-weighted mean cluster size there, and a description of that interval.
-    fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
+    /// Returns the flow at the end (over the last complete cycle of the friction test, or the
+    /// second half of the time), the mass-weighted mean cluster size there, and a description of
+    /// that interval.
+    fn flow(&self, table: &Table) -> (Option<FlowProfile>, f64, String) {
         let all = self.history.whole().time;
         let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
         let (over, start) = match cycle {
@@ -240,7 +241,7 @@ impl ThirdBody {
             now.chains.length,
             now.chains.angle,
             flow.map_or(f64::NAN, |f| f.interior),
-            Regime::of(flow.as_ref(), now.clusters.mean) as i32 as f64,
+            FlowRegime::of(flow.as_ref(), now.clusters.mean) as i32 as f64,
         ]);
         row
     }
@@ -302,7 +303,8 @@ impl Observer for ThirdBody {
         let mut now = LayerSnapshot::new(run, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
         if self.spent.counts() && run.time() > self.seen {
-            // Resistance to a reciprocating sliding keeps its sign.
+            // The sign of the resistance is that against the sliding, also if the sliding
+            // reciprocates.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
             for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
@@ -323,7 +325,7 @@ impl Observer for ThirdBody {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let (flow, cluster, over) = self.flow(end.table);
-        let regime = Regime::of(flow.as_ref(), cluster);
+        let regime = FlowRegime::of(flow.as_ref(), cluster);
         let said = regime.describe(flow.as_ref(), cluster);
         let doc = "flow regime of the layer";
         found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
@@ -382,8 +384,8 @@ impl Observer for ThirdBody {
         }
         let load = self.spent.load;
         if let Some(mu) = self.spent.friction() {
-            // Energy stored by the grains and their bonds, or supplied by the bodies other than by
-            // sliding.
+            // This is the energy stored by the grains and their bonds, less that supplied by the
+            // bodies other than by sliding.
             for (part, value, doc) in [
                 (
                     "mu_from_forces",
@@ -400,9 +402,9 @@ impl Observer for ThirdBody {
                 add(part, value, ONE, doc.to_owned());
             }
         }
-        for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {
+        for (place, energies) in PairKind::ALL.iter().zip(&self.spent.places) {
             let sum: f64 = energies.iter().sum();
-            if *energies == spent::Energies::default() {
+            if *energies == dissipation::Energies::default() {
                 continue;
             }
             let name = place.name(&self.spec.between);
@@ -420,16 +422,16 @@ impl Observer for ThirdBody {
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
             name: "chains",
-            shows: Shows::Chains(snapshot::links(run)),
+            shows: PictureContent::Chains(snapshot::links(run)),
         }]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(self)
+    fn save(&self) -> Result<Vec<u8>, EncodingError> {
+        encoding::encode(self)
     }
 
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        *self = code::decode(from)?;
+    fn restore(&mut self, from: &[u8]) -> Result<(), EncodingError> {
+        *self = encoding::decode(from)?;
         Ok(())
     }
 
@@ -459,7 +461,7 @@ impl Observer for ThirdBody {
                 tables::clusters(&self.clusters, self.inertia_scaling, self.dimension),
             ),
         ];
-        let figure = figure::Figure {
+        let figure = figure::LayerFigure {
             whole: &whole,
             slices: &slices,
             between: &self.spec.between,

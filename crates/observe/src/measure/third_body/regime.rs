@@ -11,7 +11,7 @@
 
 /// A flow regime; its discriminant is its code in the statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Regime {
+pub(super) enum FlowRegime {
     /// There is no sliding, or there are too few bins.
     None = 0,
     /// Sheared throughout the thickness.
@@ -35,7 +35,7 @@ const INTERIOR: [f64; 2] = [0.1, 0.9];
 
 /// Characteristics of a profile of w.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Flow {
+pub(super) struct FlowProfile {
     /// w(0.9) - w(0.1).
     pub interior: f64,
     /// R^2 of the least-squares line through the interior points; 0 if w is constant.
@@ -47,7 +47,7 @@ pub(super) struct Flow {
 }
 
 /// Evaluates a profile of (y, w), ordered by y; needs three points in the interior.
-pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
+pub(super) fn flow(points: &[(f64, f64)]) -> Option<FlowProfile> {
     let inner: Vec<(f64, f64)> = points
         .iter()
         .copied()
@@ -57,7 +57,7 @@ pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
     if inner.len() < 3 || !points.iter().all(|p| p.1.is_finite()) {
         return None;
     }
-    Some(Flow {
+    Some(FlowProfile {
         interior: at(points, INTERIOR[1]) - at(points, INTERIOR[0]),
         straight: determination(&inner),
         slip_first: first.1,
@@ -65,7 +65,7 @@ pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
     })
 }
 
-/// Linear interpolation, constant beyond the ends.
+/// Interpolates linearly, constant beyond the ends.
 fn at(points: &[(f64, f64)], y: f64) -> f64 {
     let k = points.partition_point(|p| p.0 < y);
     match (k.checked_sub(1).map(|i| points[i]), points.get(k)) {
@@ -76,7 +76,7 @@ fn at(points: &[(f64, f64)], y: f64) -> f64 {
     }
 }
 
-/// R^2 of the least-squares line through points.
+/// Returns R^2 of the least-squares line through points.
 fn determination(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
@@ -91,9 +91,9 @@ fn determination(points: &[(f64, f64)]) -> f64 {
     }
 }
 
-impl Regime {
+impl FlowRegime {
     /// The regime of a flow with a mass-weighted mean cluster size.
-    pub fn of(flow: Option<&Flow>, cluster: f64) -> Self {
+    pub fn of(flow: Option<&FlowProfile>, cluster: f64) -> Self {
         let Some(flow) = flow else { return Self::None };
         if flow.interior < SHEARED[0] {
             Self::Plug
@@ -106,8 +106,8 @@ impl Regime {
         }
     }
 
-    /// Name and criteria as a sentence.
-    pub fn describe(self, flow: Option<&Flow>, cluster: f64) -> String {
+    /// Returns name and criteria as a sentence.
+    pub fn describe(self, flow: Option<&FlowProfile>, cluster: f64) -> String {
         let Some(f) = flow else {
             return "none: there is no sliding, or fewer than three bins lie in the interior"
                 .to_owned();
@@ -137,7 +137,7 @@ impl Regime {
 mod tests {
     use super::*;
 
-    fn profile(w: impl Fn(f64) -> f64) -> Flow {
+    fn profile(w: impl Fn(f64) -> f64) -> FlowProfile {
         let y = (0..20).map(|k| (f64::from(k) + 0.5) / 20.0);
         let points: Vec<(f64, f64)> = y.map(|y| (y, w(y))).collect();
         flow(&points).unwrap()
@@ -148,20 +148,23 @@ mod tests {
         let linear = profile(|y| y);
         assert!((linear.interior - 0.8).abs() < 1e-12 && (linear.straight - 1.0).abs() < 1e-12);
         assert!((linear.slip_first - 0.025).abs() < 1e-12);
-        assert_eq!(Regime::of(Some(&linear), 500.0), Regime::Couette);
-        // A plug that moves with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
+        assert_eq!(FlowRegime::of(Some(&linear), 500.0), FlowRegime::Couette);
+        // A plug moves with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
         let plug = profile(|_| 0.3);
-        assert_eq!(Regime::of(Some(&plug), 500.0), Regime::Plug);
+        assert_eq!(FlowRegime::of(Some(&plug), 500.0), FlowRegime::Plug);
         assert!((plug.slip_first - 0.3).abs() < 1e-12 && (plug.slip_second - 0.7).abs() < 1e-12);
-        // All shear in a band in the middle: R^2 of a step is 3/4.
+        // All shear is in a band in the middle: R^2 of a step is 3/4.
         let step = profile(|y| if y < 0.5 { 0.0 } else { 1.0 });
         assert!((step.straight - 0.75).abs() < 0.01, "{}", step.straight);
-        assert_eq!(Regime::of(Some(&step), 1.0), Regime::Mixed);
-        assert_eq!(Regime::of(Some(&step), 30.0), Regime::Agglomerated);
-        // Half of the sliding at a wall, the other half distributed uniformly: 40 % in the
+        assert_eq!(FlowRegime::of(Some(&step), 1.0), FlowRegime::Mixed);
+        assert_eq!(FlowRegime::of(Some(&step), 30.0), FlowRegime::Agglomerated);
+        // Half of the sliding is at a wall, the other half distributed uniformly: 40 % in the
         // interior.
-        assert_eq!(Regime::of(Some(&profile(|y| 0.5 * y)), 1.0), Regime::Mixed);
-        assert_eq!(Regime::of(None, 1.0), Regime::None);
+        assert_eq!(
+            FlowRegime::of(Some(&profile(|y| 0.5 * y)), 1.0),
+            FlowRegime::Mixed
+        );
+        assert_eq!(FlowRegime::of(None, 1.0), FlowRegime::None);
         assert!(flow(&[(0.25, 0.0), (0.75, 1.0)]).is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! State of the layer at an instant: its cells, and its values for a row of the statistics.
 
 use super::cells::Cell;
-use super::chains::{Pair, chains};
+use super::chains::{GrainPair, chains};
 use super::clusters::{Clusters, clusters};
 use super::cut;
 use super::gap::{Faces, Gap};
@@ -31,9 +31,9 @@ pub(super) struct ChainNumbers {
 /// The layer at an instant.
 #[derive(Clone, Debug)]
 pub(super) struct LayerSnapshot {
-    /// Position.
+    /// Position and thickness of the layer.
     pub gap: Gap,
-    /// See [`super::cells::Block::cells`].
+    /// Cells across the layer, as in [`super::cells::Block::cells`].
     pub cells: Vec<Cell>,
     /// Velocity of the second body's face relative to the first's, along the sliding (m/s).
     pub sliding: f64,
@@ -122,7 +122,7 @@ impl LayerSnapshot {
         }
     }
 
-    /// Sum over the bins between the faces.
+    /// Returns the sum over the bins between the faces.
     pub fn whole(&self) -> Cell {
         let mut sum = Cell::default();
         self.cells[1..=self.gap.bins].iter().for_each(|c| sum += c);
@@ -130,8 +130,9 @@ impl LayerSnapshot {
     }
 }
 
-/// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the
-/// mean positions and velocities of the bins, so that an affine field has zero temperature.
+/// Returns mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly
+/// between the mean positions and velocities of the bins, so that an affine field has zero
+/// temperature.
 fn granular_temperature(
     run: &dyn RunView,
     gap: &Gap,
@@ -155,7 +156,7 @@ fn granular_temperature(
     }
 }
 
-/// Linear interpolation between the adjacent points, or extrapolation from the last two.
+/// Interpolates linearly between the adjacent points, or extrapolates from the last two.
 fn mean_at(points: &[(f64, Vector3<f64>)], place: f64) -> Vector3<f64> {
     if points.len() < 2 {
         return points.first().map_or(Vector3::zeros(), |p| p.1);
@@ -172,7 +173,7 @@ fn mean_at(points: &[(f64, Vector3<f64>)], place: f64) -> Vector3<f64> {
     a.1 + (b.1 - a.1) * ratio
 }
 
-/// Number of intact bonds of each body.
+/// Returns the number of intact bonds of each body.
 fn held(run: &dyn RunView) -> Vec<f64> {
     let mut held = vec![0.0; run.bodies().len()];
     run.visit_contacts(&mut |contact| {
@@ -183,7 +184,7 @@ fn held(run: &dyn RunView) -> Vec<f64> {
     held
 }
 
-/// Love-Weber stress, with each branch distributed by its length in the bins.
+/// Returns the Love-Weber stress, with each branch distributed by its length in the bins.
 fn stress(run: &dyn RunView, gap: &Gap, along: usize, cells: &mut [Cell]) {
     let across = gap.across;
     let lateral = (0..run.dimension()).find(|k| *k != across && *k != along);
@@ -207,7 +208,7 @@ fn stress(run: &dyn RunView, gap: &Gap, along: usize, cells: &mut [Cell]) {
     });
 }
 
-/// Links of the force chains, as sorted pairs of bodies.
+/// Returns the links of the force chains, as sorted pairs of bodies.
 pub(super) fn links(run: &dyn RunView) -> Vec<[u32; 2]> {
     let (loads, pairs) = loads(run, &run.grain_flags());
     let found = chains(&loads, run.dimension() == 2, &pairs);
@@ -242,8 +243,8 @@ fn chain_numbers(run: &dyn RunView, gap: &Gap, along: usize, grain: &[bool]) -> 
     }
 }
 
-/// Stresses of the grains, and the pairs of grains that press on each other.
-fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+/// Returns the stresses of the grains, and the pairs of grains that press on each other.
+fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<GrainPair>) {
     let bodies = run.bodies();
     let of_ball = |radius: f64| ball_volume(run.dimension(), radius);
     let mut volume = vec![0.0; bodies.len()];
@@ -271,7 +272,7 @@ fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
         }
     });
     pressed.sort_by_key(|p| p.0);
-    let mut pairs: Vec<Pair> = Vec::with_capacity(pressed.len());
+    let mut pairs: Vec<GrainPair> = Vec::with_capacity(pressed.len());
     for (ends, force) in pressed {
         let ends = ends.map(|b| b as usize);
         if let Some(last) = pairs.last_mut().filter(|p| p.ends == ends) {
@@ -280,7 +281,7 @@ fn loads(run: &dyn RunView, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
         }
         let [a, b] = ends.map(|b| Vector3::from(bodies.position.at(b)));
         let branch = run.periodic().shortest(b - a);
-        pairs.push(Pair {
+        pairs.push(GrainPair {
             ends,
             branch,
             force,

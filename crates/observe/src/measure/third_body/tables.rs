@@ -3,7 +3,7 @@
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
-use super::spent::{Dissipation, Place};
+use super::dissipation::{Dissipation, PairKind};
 use crate::quantity::unit::{ENERGY, MASS};
 
 /// Columns of the profiles, in the order of [`row`].
@@ -33,7 +33,7 @@ const PROFILE: [&str; 23] = [
     "correction [W/m^3]",
 ];
 
-/// Dissipated power density of a cell by mechanism (W/m^3), averaged over a block.
+/// Returns the dissipated power density of a cell by mechanism (W/m^3), averaged over a block.
 pub(super) fn powers(cell: &Cell, block: &Block) -> [f64; MECHANISMS.len()] {
     let volume = cell.space / block.samples.max(1) as f64;
     cell.energy.map(|e| e / (volume * block.duration()))
@@ -66,8 +66,8 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
     row
 }
 
-/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are
-/// `NaN`. Temperatures in kelvin stand there where grains are `heated`.
+/// Returns the profiles: slice 0 is the whole time, followed by the time slices; undefined values
+/// are `NaN`. Temperatures in kelvin are included where grains are `heated`.
 pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated: bool) -> String {
     // In 2D the stress has no lateral component.
     let shown = |k: &usize| match PROFILE[*k] {
@@ -89,7 +89,7 @@ pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated
     joined(&lines)
 }
 
-/// The energies by pair of bodies and by bin, each with its fraction of the total.
+/// Returns the energies by pair of bodies and by bin, each with its fraction of the total.
 pub(super) fn energies(
     spent: &Dissipation,
     between: &(String, String),
@@ -118,7 +118,7 @@ pub(super) fn energies(
         );
         lines.push(line);
     };
-    for (place, energies) in Place::ALL.iter().zip(&spent.places) {
+    for (place, energies) in PairKind::ALL.iter().zip(&spent.places) {
         add(place.name(between), energies);
     }
     for (k, energies) in spent.bins.iter().enumerate() {
@@ -127,7 +127,7 @@ pub(super) fn energies(
     joined(&lines)
 }
 
-/// Number of clusters of each size, and their mass without `inertia_scaling`.
+/// Returns the number of clusters of each size, and their mass without `inertia_scaling`.
 pub(super) fn clusters(clusters: &Clusters, inertia_scaling: f64, dimension: usize) -> String {
     let unit = MASS.symbol(dimension);
     let mut lines = vec![vec![

@@ -84,7 +84,7 @@ struct Material {
 struct Pascal(f64);
 
 const TEXT: &str = r##"#![enable(implicit_some)]
-// A comment with a brace { and a bracket ) in it.
+// The case has a comment with a brace { and a bracket ) in it.
 Case(
     name: "wheel (on rail) }",
     /* nested /* comment ] */ still */
@@ -102,7 +102,7 @@ Case(
 )
 "##;
 
-/// `TEXT` without the one `Some` that no type requires.
+/// Returns `TEXT` without the one `Some` that no type requires.
 fn text() -> String {
     TEXT.replace("Some(7.0e3)", "7.0e3")
 }
@@ -115,7 +115,7 @@ fn parsed(source: &Source) -> Case {
     source.parse().unwrap()
 }
 
-/// The first line of the error of a text with one change.
+/// Returns the first line of the error of a text with one change.
 fn refusal(old: &str, new: &str) -> String {
     assert!(text().contains(old), "no `{old}` to change");
     let changed = Source::from_text("case.ron", text().replace(old, new));

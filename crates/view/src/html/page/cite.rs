@@ -1,12 +1,12 @@
-//! Where the numbers come from, and how to cite them.
+//! Provenance of the numbers, and how to cite them.
 
 use super::results::clock;
 use super::{escape, hash};
 use crate::html::folder::RunFolder;
-use crate::html::laws::{LawInfo, Loaded};
+use crate::html::laws::{LawInfo, LoadedLaw};
 use serde_json::Value;
 
-/// Version, identity, seed, steps.
+/// Table of the provenance: version, identity, seed, steps.
 pub(crate) fn provenance(run: &RunFolder) -> String {
     let s = &run.summary;
     let mut rows: Vec<(&str, String)> = vec![
@@ -81,7 +81,7 @@ fn bibtex(text: &str) -> String {
 /// BibTeX entries for the program and the run, and the references of the laws.
 pub(crate) fn cite(
     run: &RunFolder,
-    laws: &[Loaded],
+    laws: &[LoadedLaw],
     law: &dyn Fn(&str, &str) -> Option<LawInfo>,
 ) -> String {
     let version = bibtex(&run.version);

@@ -2,10 +2,10 @@
 
 use super::{escape, table};
 use crate::html::folder::RunFolder;
-use fretwork_scene::inputs::{From, Input, of};
+use fretwork_scene::inputs::{Input, InputSource, of};
 use std::collections::BTreeMap;
 
-/// All inputs of a run, with a search.
+/// Table of all inputs of a run, with a search field.
 pub(crate) fn html(run: &RunFolder) -> String {
     let inputs = match of(&run.case_text) {
         Ok(inputs) => inputs,
@@ -19,9 +19,9 @@ pub(crate) fn html(run: &RunFolder) -> String {
     };
     let row = |i: &Input| {
         let (class, from) = match i.from {
-            From::Given => ("given", "given"),
-            From::Default => ("default", "default"),
-            From::NotSet => ("unset", "not set"),
+            InputSource::Given => ("given", "given"),
+            InputSource::Default => ("default", "default"),
+            InputSource::NotSet => ("unset", "not set"),
         };
         format!(
             "<tr class=\"{class}\"><th scope=\"row\"><code>{}</code></th><td>{}</td><td>{}</td><td>{from}</td></tr>\n",
@@ -31,7 +31,10 @@ pub(crate) fn html(run: &RunFolder) -> String {
         )
     };
     let rows: String = inputs.iter().map(row).collect();
-    let given = inputs.iter().filter(|i| i.from == From::Given).count();
+    let given = inputs
+        .iter()
+        .filter(|i| i.from == InputSource::Given)
+        .count();
     format!(
         "<p class=\"lead\">{given} of {} keys are given by the case, the others are defaults or not set. Any of them changes with \
          <code>--set KEY=VALUE</code>. Units are SI; texts and pure numbers have none.</p>\n\
@@ -58,7 +61,7 @@ fn text(run: &RunFolder) -> String {
     )
 }
 
-/// The inputs that differ between runs; columns are runs.
+/// Table of the inputs that differ between runs, one column per run.
 pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
     let mut paths: Vec<String> = Vec::new();
     let mut values: Vec<BTreeMap<String, Input>> = Vec::new();

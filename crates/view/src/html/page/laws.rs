@@ -1,11 +1,11 @@
-//! What was run: materials with sources, interfaces and laws with their parameters and libraries.
+//! Materials with sources, and interfaces and laws with their parameters and libraries.
 
 use super::{escape, hash, table};
-use crate::html::laws::{Interface, Loaded};
+use crate::html::laws::{Interface, LoadedLaw};
 use crate::html::materials::Files;
 use crate::html::results::number;
 
-/// Materials, each number with its source.
+/// Table of the materials, each number with its source.
 pub(crate) fn materials(files: &Files) -> String {
     let mut rows = String::new();
     for (name, material) in &files.materials {
@@ -44,7 +44,7 @@ pub(crate) fn materials(files: &Files) -> String {
     )
 }
 
-/// Interfaces with the parameters of their laws.
+/// Table of the interfaces with the parameters of their laws.
 pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
     let mut out = String::new();
     for interface in interfaces {
@@ -91,11 +91,11 @@ pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
 }
 
 /// The libraries of the laws.
-pub(crate) fn libraries(laws: &[Loaded]) -> String {
+pub(crate) fn libraries(laws: &[LoadedLaw]) -> String {
     if laws.is_empty() {
         return String::new();
     }
-    let row = |l: &Loaded| {
+    let row = |l: &LoadedLaw| {
         let certified = match l.certified {
             Some(true) => "yes",
             Some(false) => "<strong class=\"bad-text\">no</strong>",

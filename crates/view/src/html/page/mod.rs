@@ -1,4 +1,4 @@
-//! Pages as HTML: what all have in common. Texts of inputs are escaped here and nowhere else.
+//! Parts common to all HTML pages. Texts of inputs are escaped only here.
 
 mod cite;
 mod inputs;
@@ -55,16 +55,16 @@ pub(crate) struct Page {
     pub title: String,
     /// Body, as HTML.
     pub body: String,
-    /// What scripts read.
+    /// Data that the scripts read.
     pub data: Value,
     /// Packed arrays by identity.
     pub blobs: Vec<(String, String)>,
-    /// Whether it has a viewer.
+    /// Whether the page has a viewer.
     pub viewer: bool,
 }
 
 impl Page {
-    /// The page as one text.
+    /// Returns the page as one text.
     pub fn html(&self) -> String {
         let style = STYLE.join("\n");
         let viewer: &[&str] = if self.viewer { &VIEWER } else { &[] };
@@ -102,8 +102,8 @@ impl Page {
     }
 }
 
-/// A text for HTML, in elements and in attributes. Characters that change the direction of text are
-/// shown as what they are.
+/// Escapes a text for HTML elements and attributes. Characters that change the direction of text
+/// are shown by their codes.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -124,7 +124,7 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
-/// JSON that stands in a script element: it cannot end the element.
+/// Returns JSON for a script element, which it cannot end.
 fn json_in_html(value: &Value) -> String {
     value
         .to_string()
@@ -141,7 +141,7 @@ pub(crate) fn hash(text: &str) -> String {
     )
 }
 
-/// The end of a page: what made it, and the licence of what is in it.
+/// Returns the end of a page: the program that made it, and the licences of its content.
 pub(crate) fn footer(command: &str) -> String {
     format!(
         "<footer><p>Made by <code>{command}</code>. The page is complete in itself and loads nothing.</p>\n\
@@ -150,8 +150,8 @@ pub(crate) fn footer(command: &str) -> String {
     )
 }
 
-/// A table in a frame that scrolls sideways: its attributes, a label for screen readers,
-/// heads of the columns, and rows as HTML.
+/// Returns a table that scrolls sideways, from its attributes, a label for screen readers, column
+/// heads, and rows as HTML.
 pub(crate) fn table<H: AsRef<str>>(of: &str, label: &str, heads: &[H], rows: &str) -> String {
     let head = |h: &H| format!("<th scope=\"col\">{}</th>", escape(h.as_ref()));
     let heads: String = heads.iter().map(head).collect();
@@ -161,7 +161,7 @@ pub(crate) fn table<H: AsRef<str>>(of: &str, label: &str, heads: &[H], rows: &st
     )
 }
 
-/// A section with its heading.
+/// Returns a section with its heading.
 pub(crate) fn section(id: &str, title: &str, body: &str) -> String {
     format!(
         "<section id=\"{id}\" aria-labelledby=\"{id}-title\">\n<h2 id=\"{id}-title\">{}</h2>\n{body}</section>\n",

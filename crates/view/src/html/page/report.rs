@@ -11,11 +11,11 @@ use crate::html::{laws as law_data, results::quantity};
 use fretwork_scene::Case;
 use serde_json::{Value, json};
 
-/// Rows of the statistics in a page of the usual size.
+/// Number of rows of the statistics in a page of the usual size.
 const ROWS: usize = 4000;
-/// Rows in a page without a limit.
+/// Number of rows in a page without a limit.
 const ALL_ROWS: usize = 200_000;
-/// Share of a page that the statistics may take.
+/// The statistics may take 1/`SHARE` of a page.
 const SHARE: usize = 3;
 
 /// The page.
@@ -73,8 +73,8 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     page.html()
 }
 
-/// The statistics with at most about so many rows, and the figures: what scripts read of them, and
-/// the packed numbers.
+/// Returns the statistics with about `rows` rows at most, and the figures: the data that scripts
+/// read, and the packed numbers.
 fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics, Value, String) {
     let statistics = Statistics::read(run, most, gaps);
     let mut numbers = Arrays::default();
@@ -85,7 +85,7 @@ fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics,
     (statistics, data, numbers.packed())
 }
 
-/// Title, verdict and links.
+/// Returns title, verdict and links.
 fn head(run: &RunFolder, gaps: &[String]) -> String {
     let doc = fretwork_scene::source::Source::from_text("case", run.case_text.as_str());
     let doc = Case::read(&doc).map(|c| c.doc).unwrap_or_default();
@@ -147,7 +147,7 @@ fn rest(run: &RunFolder, files: &Files, options: &Options<'_>) -> String {
     out + "</main>\n" + &footer("fretwork report")
 }
 
-/// The place of the viewer; its controls are made by the script.
+/// Returns the container of the viewer; its controls are made by the script.
 fn viewer(scene: &Scene) -> String {
     format!(
         "<noscript><p>The viewer and the figures need JavaScript; all numbers are in the tables.</p></noscript>\n\

@@ -1,14 +1,14 @@
-//! Results with their intervals, and the whole summary.
+//! Results with their intervals, and the complete summary.
 
 use super::escape;
 use crate::html::folder::RunFolder;
 use crate::html::results::{self, ResultGroup, ResultRow};
 use crate::html::statistics::{Column, Statistics};
 use fretwork_observe::quantity::Catalogue;
-use fretwork_store::summary::FROM_THE_CLOCK;
+use fretwork_store::summary::NOT_REPRODUCIBLE;
 use serde_json::Value;
 
-/// Rows of a group that are shown before the rest is folded.
+/// Number of rows of a group that are shown; the rest is folded.
 const MANY: usize = 12;
 
 /// The results of a run.
@@ -18,7 +18,7 @@ pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
     }
     let groups = results::groups(run);
     if groups.is_empty() {
-        // The summary is of a version that wrote no catalogue.
+        // The summary was written by a version without a catalogue.
         return everything(&run.summary, &Catalogue::default());
     }
     let mut out = String::from(
@@ -31,7 +31,7 @@ pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
     out + &everything(&run.summary, &Catalogue::of(&run.summary))
 }
 
-/// The last row of the statistics, of a run that has no results.
+/// Returns the last row of the statistics, for a run without results.
 fn last_row(series: &Statistics) -> String {
     let row = |column: &Column| {
         Some(ResultRow {
@@ -77,7 +77,7 @@ fn table((title, rows): &ResultGroup) -> String {
     table
 }
 
-/// A value; one of many words may be broken into lines.
+/// Formats a value; a value of several words may be broken into lines.
 pub(crate) fn value(text: &str) -> String {
     let class = if text.len() > 28 {
         "value long"
@@ -87,21 +87,21 @@ pub(crate) fn value(text: &str) -> String {
     format!("<span class=\"{class}\">{}</span>", escape(text))
 }
 
-/// Class of a row that differs between two runs of the same case, in a line of its own.
+/// Returns the class of a row that differs between two runs of the same case, for a row of its own.
 pub(crate) fn clock(differs: bool) -> &'static str {
     if differs { " class=\"clock\"" } else { "" }
 }
 
-/// Whether a number, by its path, or the group it is in comes from the clock.
+/// Whether a number, given by its path, or its group is measured by the clock.
 fn from_the_clock(path: &str) -> bool {
-    FROM_THE_CLOCK.iter().any(|pointer| {
+    NOT_REPRODUCIBLE.iter().any(|pointer| {
         let of = pointer[1..].replace('/', ".");
         let rest = path.strip_prefix(&of);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     })
 }
 
-/// All numbers of the summary, by their paths.
+/// Returns a table of all numbers of the summary by their paths.
 fn everything(summary: &Value, catalogue: &Catalogue) -> String {
     let mut rows = Vec::new();
     flatten(summary, String::new(), &mut rows);
@@ -141,7 +141,7 @@ fn flatten(value: &Value, path: String, out: &mut Vec<(String, String)>) {
         }
     };
     match value {
-        // The path of a library means nothing on another machine.
+        // The path of a library has no meaning on another machine.
         Value::Object(map) => map
             .iter()
             .filter(|(key, _)| *key != "path")

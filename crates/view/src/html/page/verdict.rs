@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The verdict of a run on itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// All checks passed, nothing to note.
+    /// All checks passed, and there are no notes.
     Trustworthy,
     /// All checks passed, with notes.
     Noted,
@@ -31,7 +31,7 @@ impl Verdict {
         }
     }
 
-    /// Class of its colours.
+    /// CSS class of the verdict.
     pub fn class(self) -> &'static str {
         match self {
             Self::Trustworthy => "good",
@@ -41,7 +41,7 @@ impl Verdict {
         }
     }
 
-    /// In words.
+    /// Text of the verdict.
     pub fn words(self) -> &'static str {
         match self {
             Self::Trustworthy => "Trustworthy",
@@ -78,7 +78,7 @@ fn texts(list: &Value) -> Vec<&str> {
         .collect()
 }
 
-/// The verdict with its reasons, notes and gaps, worst first.
+/// Returns the verdict with its reasons, notes and gaps, the worst first.
 pub(crate) fn html(run: &RunFolder, gaps: &[String]) -> String {
     let verdict = Verdict::of(run);
     let mut out = format!(
@@ -103,7 +103,7 @@ pub(crate) fn html(run: &RunFolder, gaps: &[String]) -> String {
     out + "</div>\n"
 }
 
-/// A warning with its keyword, `NOT CONVERGED: ...`, in bold.
+/// Returns a warning with its keyword, as in `NOT CONVERGED: ...`, in bold.
 pub(crate) fn item(text: &str) -> String {
     let key = text.split_once(':').filter(|(key, _)| {
         key.chars().all(|c| c.is_ascii_uppercase() || c == ' ') && !key.is_empty()

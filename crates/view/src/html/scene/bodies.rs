@@ -1,12 +1,12 @@
-//! First bodies of a state: outlines in the plane, faces in space. A body that only moved without
-//! turning is its first state and a shift.
+//! First bodies of a state: outlines in 2D, faces in 3D. A body that moved without rotating is
+//! stored as its first state and a displacement.
 
 use super::states;
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 
 const VIEW: &str = "bodies";
-/// Change of shape, relative to its size, below which an outline only moved.
+/// Change of shape, relative to the size, below which an outline is taken as moved only.
 const SAME: f64 = 1e-6;
 
 /// An outline or a face.
@@ -22,8 +22,8 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Adds the arrays of a state; `skip` says by identity and first point what other parts of the
-    /// page show.
+    /// Adds the arrays of a state. `skip` tells by identity and first point which bodies other
+    /// parts of the page show.
     pub fn read(
         &mut self,
         run: &RunFolder,
@@ -71,25 +71,26 @@ impl Bodies {
             points.extend(chain.points.iter().flatten().copied());
             starts.push((points.len() / 3) as f64);
         }
-        arrays.push("body.start", Kind::U32, &starts);
+        arrays.push("body.start", NumberType::U32, &starts);
         let of: Vec<f64> = shown.iter().map(|c| c.body as f64).collect();
-        arrays.push("body.id", Kind::U32, &of);
+        arrays.push("body.id", NumberType::U32, &of);
         // The outlines of rough surfaces are fine against their size.
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
             let values: Vec<f64> = points.iter().skip(axis).step_by(3).copied().collect();
-            arrays.push(format!("body.{letter}"), Kind::F32, &values);
+            arrays.push(format!("body.{letter}"), NumberType::F32, &values);
             let values: Vec<f64> = shifts.iter().map(|s| s[axis]).collect();
-            arrays.push(format!("body.shift.{letter}"), Kind::F64, &values);
+            arrays.push(format!("body.shift.{letter}"), NumberType::F64, &values);
         }
         if dimension == 2 {
             let side: Vec<f64> = shown.iter().map(|c| side(c, grains)).collect();
-            arrays.push("body.side", Kind::U32, &side);
+            arrays.push("body.side", NumberType::U32, &side);
         }
         Ok(())
     }
 }
 
-/// Where the solid of an outline in the plane is: 0 on the right of it (open), 1 inside, 2 outside.
+/// Position of the solid relative to an outline in 2D: 0 on its right (open outline), 1 inside, 2
+/// outside.
 fn side(chain: &Chain, grains: &[[f64; 3]]) -> f64 {
     let (Some(first), Some(last)) = (chain.points.first(), chain.points.last()) else {
         return 0.0;
@@ -112,7 +113,7 @@ fn side(chain: &Chain, grains: &[[f64; 3]]) -> f64 {
     if around > 2 { 2.0 } else { 1.0 }
 }
 
-/// How far an outline moved, if it kept its shape.
+/// Returns the displacement of an outline that kept its shape.
 fn shift(from: &Chain, to: &Chain) -> Option<[f64; 3]> {
     let first = from.points.first()?;
     if from.points.len() != to.points.len() || from.body != to.body {
@@ -157,7 +158,7 @@ fn read(
         let range = usize::try_from(3 * bounds[0])
             .ok()
             .zip(usize::try_from(3 * bounds[1]).ok());
-        // Corners stand one cell after another, as they are written.
+        // Corners are stored one cell after another, in the order in which they are written.
         let chain = range.and_then(|(a, b)| points.get(a..b));
         let chain = chain.ok_or_else(|| format!("`views/{VIEW}` holds outlines without points"))?;
         let points: Vec<[f64; 3]> = chain.as_chunks::<3>().0.to_vec();

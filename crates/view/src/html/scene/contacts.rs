@@ -3,7 +3,7 @@
 use super::detail::Detail;
 use super::range::{FieldInfo, Ranges};
 use super::{Note, push_points, states};
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use serde_json::Value;
 
@@ -14,7 +14,7 @@ const ROOT: &str = "views/contacts";
 pub(super) struct Contacts(Vec<FieldInfo>);
 
 impl Contacts {
-    /// Finds the fields.
+    /// Finds the fields of contacts.
     pub fn find(run: &RunFolder) -> Self {
         Self(FieldInfo::numbers(run, &format!("{ROOT}/CellData")))
     }
@@ -59,7 +59,7 @@ impl Contacts {
                 .values(&format!("{ROOT}/CellData/{name}"), rows, 1)?;
             note("contacts", name, &values);
             let kind = if name.starts_with("body_") {
-                Kind::U32
+                NumberType::U32
             } else {
                 detail.kind()
             };

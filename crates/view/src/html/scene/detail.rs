@@ -1,16 +1,16 @@
-//! How much of a state goes into the page.
+//! Level of detail of the states in the page.
 
-use crate::html::arrays::Kind;
+use crate::html::arrays::NumberType;
 
-/// States below which a coarser detail is taken.
+/// If fewer states than this fit at a level of detail, a coarser level is chosen.
 const ENOUGH: [usize; 3] = [10, 8, 5];
-/// States that are always shown, of fewer grains if need be.
+/// Number of states that are always shown, with fewer grains if necessary.
 const FEW: usize = 4;
 
-/// Detail of the states of a page, from all that was recorded down.
+/// Level of detail of the states of a page; the finest shows all that was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Detail {
-    /// 0 all; 1 fields in 254 intervals; 2 without the less usual fields of contacts; 3 without
+    /// 0: all; 1: fields in 254 intervals; 2: without the less usual fields of contacts; 3: without
     /// contacts.
     level: u8,
     /// One grain in this many is shown.
@@ -23,12 +23,12 @@ impl Default for Detail {
     }
 }
 
-/// Fields of contacts that are kept to the last, since the viewer draws bonds and force chains by
-/// them.
+/// Fields of contacts that are omitted last, since the viewer draws bonds and force chains by them.
 const USUAL: [&str; 4] = ["state", "status", "damage", "force_normal"];
 
 impl Detail {
-    /// The next coarser detail if too few of `count` states fit into `bytes` at `size` each.
+    /// Returns the next coarser level if too few of `count` states of `size` bytes each fit into
+    /// `bytes`.
     pub fn coarser(self, fit: usize, count: usize, size: usize, bytes: usize) -> Option<Self> {
         let enough = ENOUGH.get(usize::from(self.level)).copied().unwrap_or(FEW);
         if fit >= enough.min(count) {
@@ -47,9 +47,13 @@ impl Detail {
         }
     }
 
-    /// How values of fields are stored.
-    pub fn kind(self) -> Kind {
-        if self.level == 0 { Kind::U16 } else { Kind::U8 }
+    /// Number format of the values of fields.
+    pub fn kind(self) -> NumberType {
+        if self.level == 0 {
+            NumberType::U16
+        } else {
+            NumberType::U8
+        }
     }
 
     /// Whether contacts are shown.
@@ -62,7 +66,7 @@ impl Detail {
         self.level < 2 || USUAL.contains(&field)
     }
 
-    /// What is left out, in sentences without a full stop.
+    /// Describes what is omitted, in sentences without a full stop.
     pub fn sentences(self) -> Vec<String> {
         let mut out = vec![match self.level {
             0 => "positions and fields are rounded to 1/65,000 of their range".to_owned(),

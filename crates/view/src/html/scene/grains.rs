@@ -1,10 +1,10 @@
-//! Grains of a state: balls and convex parts with their shapes, places, orientations and fields.
+//! Grains of a state: balls and convex parts with their shapes, positions, orientations and fields.
 
 use super::detail::Detail;
 use super::outline::{flat, solid};
 use super::range::{FieldInfo, Ranges};
 use super::{Note, push_points, states};
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use fretwork_store::results::shapes::Shaped;
 use fretwork_store::results::shapes::ShapedPiece;
@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
 const ROOT: &str = "views/grains/PointData";
-/// Fields that are used otherwise than as colours.
+/// Fields that define the geometry, and are not offered as colours.
 const OF_GEOMETRY: [&str; 7] = [
     "angle",
     "orientation_w",
@@ -20,7 +20,7 @@ const OF_GEOMETRY: [&str; 7] = [
     "orientation_y",
     "orientation_z",
     "removed",
-    // Name in older files.
+    // Older files use this name.
     "gone",
 ];
 
@@ -32,7 +32,7 @@ const SPEED: &str = "speed";
 pub(super) struct Grains {
     dimension: usize,
     fields: Vec<FieldInfo>,
-    /// Numbers of the convex parts of a body in the list of outlines, in the order of the view.
+    /// Indices of the convex parts of a body in the list of outlines, in the order of the view.
     parts: HashMap<u64, Vec<usize>>,
     pieces: Vec<ShapedPiece>,
     /// Identities of grains that other views show, as meshes.
@@ -44,7 +44,7 @@ pub(super) struct Grains {
 }
 
 impl Grains {
-    /// Reads what is the same in all states.
+    /// Reads what all states have in common.
     pub fn find(run: &RunFolder, meshed: HashSet<u64>) -> Result<Self, String> {
         let reader = &run.reader;
         let dimension = run.dimension();
@@ -125,10 +125,14 @@ impl Grains {
         let flat_points: Vec<f64> = self.places.iter().flatten().copied().collect();
         push_points(arrays, "grain", &flat_points, self.dimension);
         for (k, name) in self.turns.iter().enumerate() {
-            arrays.push(format!("grain.turn{k}"), Kind::U16, &pick(&column(name)?));
+            arrays.push(
+                format!("grain.turn{k}"),
+                NumberType::U16,
+                &pick(&column(name)?),
+            );
         }
         let shape = self.shape_of_rows(&column("id")?, &column("corners")?);
-        arrays.push("grain.shape", Kind::U32, &pick(&shape));
+        arrays.push("grain.shape", NumberType::U32, &pick(&shape));
         for field in &self.fields {
             if OF_GEOMETRY.contains(&field.name.as_str()) {
                 continue;
@@ -136,8 +140,8 @@ impl Grains {
             let values = pick(&column(&field.name)?);
             note("grains", &field.name, &values);
             let kind = match field.name.as_str() {
-                "id" => Kind::U32,
-                "radius" => Kind::U16,
+                "id" => NumberType::U32,
+                "radius" => NumberType::U16,
                 _ => detail.kind(),
             };
             arrays.push(format!("grain:{}", field.name), kind, &values);
@@ -168,7 +172,8 @@ impl Grains {
         Ok(squares.into_iter().map(f64::sqrt).collect())
     }
 
-    /// By row: 0 a ball, 1 nothing to draw here, 2 and up the number of its outline plus 2.
+    /// For each row: 0 for a ball, 1 for a grain that is not drawn here, otherwise the index of its
+    /// outline plus 2.
     fn shape_of_rows(&self, id: &[f64], corners: &[f64]) -> Vec<f64> {
         let mut seen: HashMap<u64, usize> = HashMap::new();
         let row = |(id, corners): (&f64, &f64)| {
@@ -187,8 +192,8 @@ impl Grains {
         id.iter().zip(corners).map(row).collect()
     }
 
-    /// The outlines of the convex parts about their centres: polygons in the plane, triangles in
-    /// space.
+    /// Returns the outlines of the convex parts about their centres: polygons in 2D, triangles in
+    /// 3D.
     fn push_outlines(&self, arrays: &mut Arrays) {
         if self.pieces.is_empty() {
             return;
@@ -203,7 +208,7 @@ impl Grains {
             points.extend(corners.into_iter().flatten());
             starts.push((points.len() / 3) as f64);
         }
-        arrays.push("outline.start", Kind::U32, &starts);
+        arrays.push("outline.start", NumberType::U32, &starts);
         push_points(arrays, "outline", &points, self.dimension);
     }
 }

@@ -1,9 +1,9 @@
-//! Bodies and grains that deform, and surfaces that touch: triangles or lines with fields at points
-//! and elements. Of tetrahedra only the faces outside are shown.
+//! Deformable bodies and grains, and surfaces with contacts: triangles or lines with fields at
+//! points and elements. Of tetrahedra only the outer faces are shown.
 
 use super::range::{FieldInfo, Ranges};
 use super::{Note, Places, place, push_points};
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 /// Groups of the views with meshes.
 const GROUPS: [&str; 3] = ["meshes", "elastic_grains", "surfaces"];
 
-/// A field with the count of its numbers at a place.
+/// A field with its number of components.
 struct MeshField {
     field: FieldInfo,
     width: usize,
@@ -21,8 +21,7 @@ struct MeshField {
 struct Mesh {
     path: String,
     points: Vec<f64>,
-    /// Points that are shown, the elements by their places in that list, and the cell that each
-    /// belongs to.
+    /// Points that are shown, elements as indices into these points, and the cell of each element.
     used: Vec<usize>,
     elements: Vec<usize>,
     corners: usize,
@@ -39,7 +38,7 @@ pub(super) struct Meshes {
 }
 
 impl Meshes {
-    /// Reads what is the same in all states.
+    /// Reads what all states have in common.
     pub fn find(run: &RunFolder) -> Result<Self, String> {
         let mut out = Self::default();
         for group in GROUPS {
@@ -100,7 +99,7 @@ impl Meshes {
             };
             push_points(arrays, &name, &pick(&mesh.points, 3, &mesh.used), dimension);
             let elements: Vec<f64> = mesh.elements.iter().map(|p| *p as f64).collect();
-            arrays.push(format!("{name}.element"), Kind::U32, &elements);
+            arrays.push(format!("{name}.element"), NumberType::U32, &elements);
             for field in &mesh.fields {
                 let place_of = if field.of_cells {
                     "CellData"
@@ -134,7 +133,7 @@ impl Meshes {
                     let value = |p: &usize| get.of(&values[field.width * p..field.width * (p + 1)]);
                     let values: Vec<f64> = rows.iter().map(value).collect();
                     note(&name, &part, &values);
-                    arrays.push(format!("{name}:{part}"), Kind::U16, &values);
+                    arrays.push(format!("{name}:{part}"), NumberType::U16, &values);
                 }
             }
         }
@@ -159,7 +158,8 @@ impl Part {
 }
 
 impl MeshField {
-    /// What is shown of a field: its value, the size of a vector, the components of a tensor.
+    /// Returns the values that are shown of a field: its value, the magnitude of a vector, the
+    /// components of a tensor.
     fn parts(&self) -> Vec<(String, Part)> {
         let named = |k: usize, of: &str| (format!("{} {of}", self.field.name), Part::At(k));
         match self.width {
@@ -228,7 +228,8 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
     }))
 }
 
-/// The faces of tetrahedra that belong to one only, turned outwards, and these tetrahedra.
+/// Returns the faces that belong to only one tetrahedron, with outward orientation, and their
+/// tetrahedra.
 fn outside(cells: &[usize]) -> (Vec<usize>, Vec<usize>) {
     const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
     let mut seen: HashMap<[usize; 3], usize> = HashMap::new();

@@ -1,5 +1,6 @@
 //! The scene over time for the viewer: grains, contacts, first bodies and meshes of the recorded
-//! states, quantised, each state packed alone, so that the browser unpacks only what it shows.
+//! states. Numbers are quantised, and each state is packed separately, so that the browser unpacks
+//! only what it shows.
 
 mod bodies;
 mod contacts;
@@ -10,7 +11,7 @@ mod outline;
 mod range;
 mod states;
 
-use crate::html::arrays::{Arrays, Kind};
+use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use bodies::Bodies;
 use contacts::Contacts;
@@ -25,15 +26,15 @@ use std::collections::HashSet;
 
 /// The scene of a page.
 pub(crate) struct Scene {
-    /// What the viewer needs beside the numbers.
+    /// Metadata that the viewer needs besides the numbers.
     pub head: Value,
-    /// The arrays of the first state, and of each state those that differ from it.
+    /// The arrays of the first state, and for each later state the arrays that differ from it.
     pub frames: Vec<String>,
-    /// What was left out or made coarser, in sentences.
+    /// What was omitted or made coarser, in sentences.
     pub said: Vec<String>,
 }
 
-/// What is read of a state.
+/// Readers of the parts of a state.
 struct Reading<'a> {
     run: &'a RunFolder,
     dimension: usize,
@@ -44,7 +45,7 @@ struct Reading<'a> {
 }
 
 impl Scene {
-    /// Reads the states of a run into at most about `bytes` of the page; `None` if none was
+    /// Reads the states of a run into about `bytes` of the page at most; `None` if no state was
     /// recorded.
     pub fn read(run: &RunFolder, bytes: Option<usize>, gaps: &mut Vec<String>) -> Option<Self> {
         match Self::try_read(run, bytes) {
@@ -79,7 +80,7 @@ impl Scene {
             chosen = spread(times.len(), fits);
             frames = reading.frames(&chosen, detail, &mut ranges)?;
             let taken: usize = frames.iter().map(String::len).sum();
-            // States differ in size: those that are too many are left out.
+            // States differ in size, so states beyond the limit are omitted.
             match bytes.filter(|b| taken > *b && fits > 1) {
                 Some(bytes) => fits = (chosen.len() * bytes / taken).clamp(1, chosen.len() - 1),
                 None => break,
@@ -113,7 +114,7 @@ impl Scene {
 }
 
 impl Reading<'_> {
-    /// The states as they stand in the page.
+    /// Returns the packed states of the page.
     fn frames(
         &mut self,
         chosen: &[usize],
@@ -129,8 +130,8 @@ impl Reading<'_> {
         Ok(frames)
     }
 
-    /// The finest detail of which enough states fit, and the packed size of a state beside the
-    /// first one.
+    /// Returns the finest detail at which enough states fit, and the packed size of a state besides
+    /// the first one.
     fn choose_detail(
         &mut self,
         last: usize,
@@ -196,19 +197,19 @@ impl Reading<'_> {
     }
 }
 
-/// Takes note of the values of a field, by group and name.
+/// Callback that receives the values of a field by group and name.
 pub(super) type Note<'a> = dyn FnMut(&str, &str, &[f64]) + 'a;
 
-/// A place to a billionth of a metre, to find it again.
+/// Rounds a position to 1e-9 m, so that it can be looked up.
 fn place(at: [f64; 3]) -> [i64; 3] {
     at.map(|x| (x * 1e12).round() as i64)
 }
 
-/// Places of points.
+/// Set of rounded positions of points.
 type Places = HashSet<[i64; 3]>;
 
-/// `most` of `count` states, equally far apart, with the first and the last; the last alone if one
-/// fits.
+/// Selects `most` of `count` states at equal distances, including the first and the last; only the
+/// last if `most` is 1.
 fn spread(count: usize, most: usize) -> Vec<usize> {
     if most >= count {
         return (0..count).collect();
@@ -223,7 +224,7 @@ fn parsed(run: &RunFolder) -> Option<Case> {
     Case::read(&Source::from_text("case", run.case_text.as_str())).ok()
 }
 
-/// Length of the period along each axis; null where there is none.
+/// Length of the period along each axis; null if the axis is not periodic.
 fn period(run: &RunFolder) -> Value {
     let period = parsed(run).map(|c| c.periodic).unwrap_or_default();
     json!([period.x, period.y, period.z])
@@ -235,11 +236,11 @@ fn body_names(run: &RunFolder) -> Value {
     json!(names.unwrap_or_default())
 }
 
-/// Coordinates of points as one array an axis; the third only in space.
+/// Adds the coordinates of points as one array per axis; the third only in 3D.
 fn push_points(arrays: &mut Arrays, name: &str, points: &[f64], dimension: usize) {
     for (axis, letter) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
         let values: Vec<f64> = points.iter().skip(axis).step_by(3).copied().collect();
-        arrays.push(format!("{name}.{letter}"), Kind::U16, &values);
+        arrays.push(format!("{name}.{letter}"), NumberType::U16, &values);
     }
 }
 

@@ -3,12 +3,12 @@
 use fretwork_core::geometry::convex::Boundary;
 use fretwork_store::results::shapes::ShapedPiece;
 
-/// The outline of a part in the plane, anticlockwise, about its centre.
+/// Returns the outline of a part in 2D, counter-clockwise, about its centre.
 pub(super) fn flat(piece: &ShapedPiece) -> Vec<[f64; 3]> {
     outline(piece, 2).concat()
 }
 
-/// The faces of a part in space as triangles about its centre.
+/// Returns the faces of a part in 3D as triangles about its centre.
 pub(super) fn solid(piece: &ShapedPiece) -> Vec<[f64; 3]> {
     let faces = outline(piece, 3).into_iter();
     let triangles = |face: Vec<[f64; 3]>| {
@@ -18,7 +18,8 @@ pub(super) fn solid(piece: &ShapedPiece) -> Vec<[f64; 3]> {
     faces.flat_map(triangles).collect()
 }
 
-/// Lines around a part, or around each of its faces; none of a part that is no valid shape.
+/// Returns closed lines around a part or each of its faces; none if the shape of the part is
+/// invalid.
 fn outline(piece: &ShapedPiece, dimension: usize) -> Vec<Vec<[f64; 3]>> {
     let boundary = Boundary {
         corners: piece.corners.clone(),

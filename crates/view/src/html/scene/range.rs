@@ -1,10 +1,10 @@
-//! Fields of a scene, and their ranges over all states that are shown, for the scales of colours.
+//! Fields of a scene, and their ranges over all states that are shown, for the colour scales.
 
 use crate::html::folder::RunFolder;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
-/// A field of a view, as its attributes describe it.
+/// Attributes of a field of a view.
 pub(super) struct FieldInfo {
     /// Name.
     pub name: String,
@@ -15,14 +15,14 @@ pub(super) struct FieldInfo {
 }
 
 impl FieldInfo {
-    /// The field of a name in a group of `results.h5`.
+    /// Returns the field with a name in a group of `results.h5`.
     pub fn read(run: &RunFolder, group: &str, name: &str) -> Self {
         let (unit, doc) = run.reader.described(&format!("{group}/{name}"));
         let name = name.to_owned();
         Self { name, unit, doc }
     }
 
-    /// The fields of numbers in a group; the components of vectors are fields of their own.
+    /// Returns the numeric fields of a group; each component of a vector is a field.
     pub fn numbers(run: &RunFolder, group: &str) -> Vec<Self> {
         let names = run.reader.datasets_in(group);
         let numbers = names.filter(|n| run.reader.width(&format!("{group}/{n}")) == Ok(1));
@@ -35,7 +35,7 @@ impl FieldInfo {
 pub(super) struct Range {
     /// Smallest and largest value.
     pub all: [f64; 2],
-    /// Smallest and largest value without the lowest and the highest hundredth of each state.
+    /// Range without the lowest and the highest hundredth of the values of each state.
     pub most: [f64; 2],
 }
 
@@ -66,7 +66,7 @@ impl Ranges {
             .or_insert(new);
     }
 
-    /// A field for the page under a name, if it has values.
+    /// Describes a field for the page under a name, if the field has values.
     pub fn head(&self, group: &str, name: &str, field: &FieldInfo) -> Option<Value> {
         let range = self.0.get(&(group.to_owned(), name.to_owned()))?;
         Some(json!({

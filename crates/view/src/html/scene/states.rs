@@ -1,8 +1,8 @@
-//! Where the rows of a recorded state stand in the views of `results.h5`.
+//! Positions of the rows of a recorded state in the views of `results.h5`.
 
 use crate::html::folder::RunFolder;
 
-/// Rows: the first, and how many.
+/// Index of the first row, and number of rows.
 pub(super) type Rows = (usize, usize);
 
 /// Times of the states that are complete in the file.
@@ -19,26 +19,27 @@ pub(super) fn times(run: &RunFolder) -> Result<Vec<f64>, String> {
             "Steps/PointOffsets",
             "Steps/CellOffsets",
         ] {
-            // The columns of a run that was killed may differ in length by the last state.
+            // In the file of a killed run, columns may differ in length by the last state.
             count = count.min(reader.rows(&format!("views/{view}/{column}"))?);
         }
     }
     reader.values("views/grains/Steps/Values", (0, count), 1)
 }
 
-/// One integer of a state.
+/// Returns one integer of a state.
 pub(super) fn whole(run: &RunFolder, name: &str, state: usize) -> Result<usize, String> {
     let value = run.reader.whole(name, (state, 1))?[0];
     usize::try_from(value).map_err(|_| format!("`{name}` holds {value}"))
 }
 
-/// Rows of the points of a state of a view.
+/// Returns the rows of the points of a state of a view.
 pub(super) fn points(run: &RunFolder, view: &str, state: usize) -> Result<Rows, String> {
     let at = |name: &str| whole(run, &format!("views/{view}/{name}"), state);
     Ok((at("Steps/PointOffsets")?, at("NumberOfPoints")?))
 }
 
-/// Rows of the cells of a state of a view; `kind` is the name of the kind of cells and its number.
+/// Returns the rows of the cells of a state of a view; `kind` is the name of the kind of cells and
+/// its number.
 pub(super) fn cells(
     run: &RunFolder,
     view: &str,

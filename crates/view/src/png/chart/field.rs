@@ -5,10 +5,10 @@ use crate::png::canvas::{Canvas, DrawError, INK, Rgb, SOFT_INK, TEXT, WHITE};
 use crate::png::font::{TextStyle, text_width};
 use crate::png::scene::paint::{ColourScale, Coloured, colour_bar};
 use crate::png::scene::zone::zone_entry;
-use fretwork_observe::chart::{Colours, Field};
-use fretwork_observe::picture::{OPEN, Paint};
+use fretwork_observe::chart::{Colours, FieldMap};
+use fretwork_observe::picture::{OPEN_COLOUR, Paint};
 
-/// Length of the longest arrow, and least distance of arrows, over the side of a plot.
+/// Length of the longest arrow, and least distance between arrows, relative to the side of a plot.
 const ARROW: f32 = 0.07;
 const BETWEEN: f32 = 0.035;
 
@@ -24,7 +24,7 @@ impl Layout<'_> {
             let points: Vec<[f32; 2]> = cell.iter().map(|p| place(*p)).collect();
             let colour = colour(field, k, top);
             page.polygon(&points, colour);
-            // An outline one pixel wide, so that no seam shows between neighbours.
+            // The outline is one pixel wide, so that no seam shows between neighbours.
             page.stroke(&points, true, 1.0, colour, None);
         }
         let mut drawn: Vec<[f32; 2]> = Vec::new();
@@ -36,13 +36,13 @@ impl Layout<'_> {
             }
             drawn.push(at);
             let by = [dx * ARROW * side, -dy * ARROW * side];
-            // Its middle is at the place.
+            // The middle of an arrow is at its point.
             let tail = [at[0] - 0.5 * by[0], at[1] - 0.5 * by[1]];
             arrow(page, tail, by, self.u);
         }
     }
 
-    /// Draws what the colours and the arrows say, below the axis.
+    /// Draws the meaning of the colours and the arrows below the axis.
     pub fn field_legend(&self, page: &mut Canvas) -> Result<(), DrawError> {
         let Some(field) = &self.chart.field else {
             return Ok(());
@@ -75,10 +75,10 @@ impl Layout<'_> {
 }
 
 /// Colour of a cell, for values up to `top`.
-fn colour(field: &Field, cell: usize, top: f64) -> Rgb {
+fn colour(field: &FieldMap, cell: usize, top: f64) -> Rgb {
     let (r, g, b) = match &field.colours {
         Colours::Classes { classes, of } => classes[of[cell]].1,
-        Colours::Values { values, .. } if values[cell].is_nan() => OPEN,
+        Colours::Values { values, .. } if values[cell].is_nan() => OPEN_COLOUR,
         Colours::Values { values, .. } => return Paint::Value(values[cell] / top).colour(0.0),
     };
     [r, g, b]
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::png::canvas::png_size;
     use fretwork_observe::chart::{Axis, Chart};
-    use fretwork_observe::picture::{SLIPS, STICKS};
+    use fretwork_observe::picture::{SLIP_COLOUR, STICK_COLOUR};
 
     fn chart(colours: Colours) -> Chart {
         let square = |x: f32| vec![[x, 0.0], [x + 1e-3, 0.0], [x + 1e-3, 2e-3], [x, 2e-3]];
@@ -120,7 +120,7 @@ mod tests {
         let mut chart = Chart::new("Stick and slip, flat", x, y);
         chart.subtitle = Some("case".to_owned());
         (chart.x_range, chart.y_range) = (Some((0.0, 2e-3)), Some((0.0, 2e-3)));
-        chart.field = Some(Field {
+        chart.field = Some(FieldMap {
             cells: vec![square(0.0), square(1e-3)],
             colours,
             arrows: vec![([1.5e-3, 1e-3], [1.0, 0.0])],
@@ -137,7 +137,7 @@ mod tests {
             values: vec![f64::NAN, 3e6],
             scale: Axis::new("pressure", "Pa"),
         };
-        let classes = [("sticks", STICKS), ("slips", SLIPS)];
+        let classes = [("sticks", STICK_COLOUR), ("slips", SLIP_COLOUR)];
         let zones = Colours::Classes {
             classes: classes
                 .map(|(name, colour)| (name.to_owned(), colour))
@@ -152,8 +152,8 @@ mod tests {
             let same = pixels.filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]);
             same.count()
         };
-        // Each is half of a plot, but for the arrow and the samples of the legend.
-        let [sticks, slips] = [STICKS, SLIPS].map(|c| count(c) as f64);
+        // Each zone takes half of the plot, except for the arrow and the samples of the legend.
+        let [sticks, slips] = [STICK_COLOUR, SLIP_COLOUR].map(|c| count(c) as f64);
         assert!(
             slips > 1e5 && (sticks / slips - 1.0).abs() < 0.05,
             "{sticks} {slips}"

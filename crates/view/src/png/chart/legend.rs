@@ -1,7 +1,7 @@
 //! Legend of a chart: a box where no curve passes, or rows above the plot.
 
 use super::curve::{draw_series, gradient};
-use super::{Layout, Runs};
+use super::{Layout, Polylines};
 use crate::png::canvas::{Canvas, INK, Rgb, TEXT, WHITE};
 use crate::png::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::{Chart, Style};
@@ -41,7 +41,7 @@ impl Legend {
     }
 
     /// Corner of a free area of the plot, in pixels of the picture, that no curve crosses.
-    pub fn free_place(&self, curves: &[Runs], layout: &Layout<'_>) -> Option<[f32; 2]> {
+    pub fn free_place(&self, curves: &[Polylines], layout: &Layout<'_>) -> Option<[f32; 2]> {
         let (plot, u) = (&layout.plot, layout.u);
         let (width, height) = (plot.width as f32, plot.height as f32);
         let gap = 20.0 * u;

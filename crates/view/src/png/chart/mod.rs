@@ -17,7 +17,7 @@ use std::path::Path;
 
 /// Width of a page of several charts in pixels: 318 per inch if it is printed 16 cm wide.
 const WIDTH: u32 = 2000;
-/// Height of a panel over its width: in two columns, alone in a row, and of coloured cells.
+/// Ratio of height to width of a panel: in two columns, alone in a row, and with coloured cells.
 const ASPECTS: [f32; 3] = [0.8, 0.6, 1.16];
 /// Limit on the columns: in narrower panels text of 9 pt leaves no room for curves.
 const COLUMNS: usize = 2;
@@ -82,8 +82,8 @@ fn common(charts: &mut [Chart]) -> String {
     first
 }
 
-/// Polylines in pixels of the plot; a gap starts a new one.
-type Runs = Vec<Vec<[f32; 2]>>;
+/// Polylines in pixels of the plot; a gap starts a new polyline.
+type Polylines = Vec<Vec<[f32; 2]>>;
 
 /// Rectangle in pixels of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ struct Plot {
     height: i32,
 }
 
-/// A chart with its scales and the place of its plot; `u` is the scale of the picture.
+/// A chart with its scales and the position of its plot; `u` is the scale of the picture.
 struct Layout<'a> {
     chart: &'a Chart,
     x: AxisScale,
@@ -216,7 +216,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Error bars of a series from low to high, in pixels of the plot.
-    fn bars(&self, series: &Series) -> Runs {
+    fn bars(&self, series: &Series) -> Polylines {
         let with = series.points.iter().zip(&series.intervals);
         let bars =
             with.map(|(p, (low, high))| vec![self.place((p.0, *low)), self.place((p.0, *high))]);
@@ -224,7 +224,7 @@ impl<'a> Layout<'a> {
             .collect()
     }
 
-    fn all_bars(&self) -> Runs {
+    fn all_bars(&self) -> Polylines {
         let all = self.chart.series.iter();
         all.flat_map(|s| self.bars(s)).collect()
     }
@@ -253,9 +253,9 @@ impl<'a> Layout<'a> {
     }
 
     /// All series in pixels of the plot, thinned to the pixel resolution.
-    fn curves(&self) -> Vec<Runs> {
+    fn curves(&self) -> Vec<Polylines> {
         let curve = |s: &Series| {
-            let mut runs: Runs = vec![Vec::new()];
+            let mut runs: Polylines = vec![Vec::new()];
             for (raw, p) in s.points.iter().map(|raw| (raw, self.place(*raw))) {
                 let finite = [raw.0, raw.1, f64::from(p[0]), f64::from(p[1])]
                     .iter()
@@ -286,7 +286,8 @@ impl<'a> Layout<'a> {
         [left, top, width, height].map(|x| x as f32)
     }
 
-    /// Pixels of the ticks, `minor` or labelled: to the right, and downwards.
+    /// Returns the pixel positions of the `minor` or the labelled ticks of both axes, to the right
+    /// and downwards.
     fn ticks(&self, minor: bool) -> [Vec<f32>; 2] {
         let [left, top, width, height] = self.box_px();
         let places = |scale: &AxisScale| -> Vec<f64> {
@@ -305,7 +306,7 @@ impl<'a> Layout<'a> {
         ]
     }
 
-    /// Lines across the plot at the ticks.
+    /// Draws lines across the plot at the ticks.
     fn grid(&self, page: &mut Canvas) {
         let [left, top, width, height] = self.box_px();
         let thick = (1.2 * self.u).round().max(1.0);
@@ -318,7 +319,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Box of the plot, with ticks inwards on the four sides, as in print.
+    /// Draws the box of the plot, with ticks inwards on its four sides, as in print.
     fn frame(&self, page: &mut Canvas) {
         let [left, top, width, height] = self.box_px();
         let thick = (2.0 * self.u).round().max(1.0);
@@ -336,7 +337,7 @@ impl<'a> Layout<'a> {
         page.frame([left, top, width, height], thick, INK);
     }
 
-    /// Heading, tick labels and axis names.
+    /// Writes heading, tick labels and axis names.
     fn write(&self, page: &mut Canvas) {
         let (em, u) = (TEXT * self.u, self.u);
         let [left, top, width, height] = self.box_px();
@@ -380,7 +381,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Ends of the intervals that are shown.
+/// Returns the ends of the intervals that are shown.
 fn ends(chart: &Chart) -> impl Iterator<Item = f64> + '_ {
     chart.series.iter().flat_map(|s| {
         let with = s.points.iter().zip(&s.intervals);
@@ -389,8 +390,8 @@ fn ends(chart: &Chart) -> impl Iterator<Item = f64> + '_ {
     })
 }
 
-/// Lines of the heading with their sizes and whether they are bold, wrapped to a width, and the
-/// total height.
+/// Returns the lines of the heading with their sizes and whether they are bold, wrapped to a width,
+/// and their total height.
 fn header(chart: &Chart, room: f32, u: f32) -> (Vec<(String, f32, bool)>, f32) {
     let title = (chart.title.as_str(), 31.0 * u, true);
     let subtitle = chart.subtitle.as_deref().unwrap_or_default();

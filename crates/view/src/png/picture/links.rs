@@ -15,12 +15,12 @@ pub fn state(contact: &ContactView) -> LinkState {
     }
 }
 
-/// The contacts that carry force, or had a bond, with the state of their bonds.
+/// Returns the contacts that carry force or had a bond, with the state of their bonds.
 pub(crate) fn links(run: &dyn RunView, window: [f64; 4]) -> Vec<Link> {
     links_in(run, window, state)
 }
 
-/// The contacts that carry force, with those of the chains marked.
+/// Returns the contacts that carry force, with those of the force chains marked.
 pub(crate) fn forces(run: &dyn RunView, window: [f64; 4], chains: &[[u32; 2]]) -> Vec<Link> {
     let pair = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
     links_in(run, window, |contact| {

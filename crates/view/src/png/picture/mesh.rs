@@ -1,4 +1,4 @@
-//! Deformable bodies in the plane: their elements, in grey or by their von Mises stress.
+//! Deformable bodies in 2D: their elements, in grey or coloured by their von Mises stress.
 
 use super::images;
 use crate::{ColourScale, Outline, Paint};
@@ -7,7 +7,8 @@ use fretwork_core::view::RunView;
 use fretwork_observe::chart::round_top;
 use std::collections::HashMap;
 
-/// Elements in a window with their corners and stress (Pa); of grains only where asked for.
+/// Returns the elements in a window with their corners and stress (Pa); elements of grains only if
+/// requested.
 fn seen(run: &dyn RunView, window: [f64; 4], grains: bool) -> Vec<(Vec<[f64; 2]>, f64)> {
     let period = run.periodic().period[0];
     let systems = (0..run.system_count()).filter_map(|k| run.system(k));
@@ -41,7 +42,7 @@ fn seen(run: &dyn RunView, window: [f64; 4], grains: bool) -> Vec<(Vec<[f64; 2]>
     out
 }
 
-/// Grains that deform, by their outlines.
+/// Returns deformable grains as outlines.
 pub(crate) fn grains(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {
     let bodies = run.bodies();
     // A grain has the colour of its points.
@@ -98,7 +99,7 @@ pub(crate) fn elements(
     let paint = |stress: f64| scale.map_or(Paint::Grey, |scale| Paint::Value(stress / scale.top));
     let outline = |(points, stress): (Vec<[f64; 2]>, f64)| Outline {
         points,
-        // Colours of a scale are those of its bar.
+        // With a colour scale, elements use the colours of its bar.
         shade: Some(if scale.is_some() { 0.0 } else { 0.5 }),
         paint: paint(stress),
         element: true,

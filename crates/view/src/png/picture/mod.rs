@@ -8,7 +8,7 @@ mod zones;
 
 use crate::{ColourScale, Disk, Frame, Link, LinkState, Outline, Paint};
 use fretwork_core::view::{BallView, BodyColumns, RunView, SurfaceView};
-use fretwork_observe::picture::Shows;
+use fretwork_observe::picture::PictureContent;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
 use nalgebra::Vector3;
@@ -41,7 +41,7 @@ impl Camera {
         camera
     }
 
-    /// Colours the grains by the layers in which they are now.
+    /// Colours the grains by the layers in which they are at present.
     pub fn assign_layers(&mut self, run: &dyn RunView) {
         if let Some(thickness) = self.layers {
             self.paints = layers(run, thickness);
@@ -112,33 +112,35 @@ impl Camera {
         w
     }
 
-    /// A picture, to be drawn later, by any thread; `None` where the dimension has no such picture,
-    /// and for charts, which are drawn by [`crate::draw_panels`].
+    /// Returns a picture that any thread can draw later. `None` if the dimension has no such
+    /// picture, and for charts, which are drawn by [`crate::draw_panels`].
     pub fn frame(
         &self,
         run: &dyn RunView,
-        shows: &Shows,
+        shows: &PictureContent,
         title: &str,
         caption: Vec<String>,
     ) -> Option<Frame> {
         let flat = run.dimension() == 2;
         match shows {
-            Shows::Charts(_) => return None,
-            Shows::Chains(_) | Shows::Stress if !flat => return None,
+            PictureContent::Charts(_) => return None,
+            PictureContent::Chains(_) | PictureContent::Stress if !flat => return None,
             _ => {}
         }
         let made: Vec<Paint>;
         let (paints, scale) = match shows {
-            Shows::Scene if self.paints.is_empty() => {
+            PictureContent::Scene if self.paints.is_empty() => {
                 let scale;
                 (made, scale) = quantity::of(run);
                 (&made[..], scale)
             }
-            Shows::Scene => (&self.paints[..], None),
-            Shows::Bonds | Shows::Chains(_) | Shows::Charts(_) => (&[][..], None),
-            Shows::Paints(paints) => (&paints[..], None),
-            Shows::Stress => (&[][..], mesh::scale(run, self.window)),
-            Shows::Values { values, label, top } => {
+            PictureContent::Scene => (&self.paints[..], None),
+            PictureContent::Bonds | PictureContent::Chains(_) | PictureContent::Charts(_) => {
+                (&[][..], None)
+            }
+            PictureContent::Paints(paints) => (&paints[..], None),
+            PictureContent::Stress => (&[][..], mesh::scale(run, self.window)),
+            PictureContent::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
                 let scale = ColourScale {
                     label: (*label).to_owned(),
@@ -157,10 +159,12 @@ impl Camera {
             links = self.lines(run, shows);
             bodies = outlines(run, self.window);
             bodies.extend(zones::solids(run, self.window));
-            if matches!(shows, Shows::Stress) {
+            if matches!(shows, PictureContent::Stress) {
                 along = zones::lines(run, self.window);
             }
-            let shown = scale.as_ref().filter(|_| matches!(shows, Shows::Stress));
+            let shown = scale
+                .as_ref()
+                .filter(|_| matches!(shows, PictureContent::Stress));
             bodies.extend(mesh::elements(run, self.window, shown));
             if shown.is_none() {
                 bodies.extend(mesh::grains(run, self.window, paints));
@@ -183,17 +187,17 @@ impl Camera {
     }
 
     /// The contacts drawn as lines (2D).
-    fn lines(&self, run: &dyn RunView, shows: &Shows) -> Vec<Link> {
+    fn lines(&self, run: &dyn RunView, shows: &PictureContent) -> Vec<Link> {
         match shows {
-            // A map of the bond states only: forces would cover it.
-            Shows::Bonds => {
+            // A picture of the bond states shows no forces, which would cover it.
+            PictureContent::Bonds => {
                 let bonds = links(run, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
                 bonds.map(|l| Link { width: 0.3, ..l }).collect()
             }
-            Shows::Chains(pairs) => forces(run, self.window, pairs),
-            Shows::Scene if self.paints.is_empty() => links(run, self.window),
-            // The colours of grains carry the information: nothing is drawn over them.
+            PictureContent::Chains(pairs) => forces(run, self.window, pairs),
+            PictureContent::Scene if self.paints.is_empty() => links(run, self.window),
+            // Nothing is drawn over the grains, since their colours carry the information.
             _ => Vec::new(),
         }
     }
@@ -250,8 +254,8 @@ fn pieces(run: &dyn RunView, window: [f64; 4], paints: &[Paint]) -> Vec<Outline>
     out
 }
 
-/// For each first body made of balls that is large in the window, an outline of its largest ball,
-/// which is hidden under its disk and carries the name.
+/// Returns, for each first body made of balls that is large in the window, an outline of its
+/// largest ball. The outline is hidden under the disk of the ball and carries the name.
 pub fn named_balls(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
@@ -285,7 +289,7 @@ pub fn named_balls(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// The periodic images of a point that are visible in the window.
+/// Returns the periodic images of a point that are visible in the window.
 fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64> {
     let Some(period) = period else { return vec![x] };
     let x = x - period * (x / period).floor();
@@ -327,13 +331,13 @@ fn paint(paints: &[Paint], ball: usize) -> Paint {
     paints.get(ball).copied().unwrap_or_default()
 }
 
-/// First bodies as closed polygons that extend beyond the window.
+/// Returns the first bodies as closed polygons that extend beyond the window.
 fn outlines(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     let period = run.periodic().period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
     let bodies = run.bodies();
-    // Those of deformable bodies are drawn as their elements.
+    // First bodies that are deformable are drawn as their elements.
     let shown =
         |body: u32| !bodies.removed[body as usize] && bodies.carrier(body as usize).is_none();
     let surfaces = run.surfaces().into_iter().enumerate();
@@ -394,8 +398,8 @@ fn outlines(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// The outside of a closed convex polyline that runs counter-clockwise: a square of size `far` with
-/// the polyline cut out, joined by a seam on the right.
+/// Returns the outside of a closed convex polyline that runs counter-clockwise: a square of size
+/// `far` with the polyline cut out, joined by a seam on the right.
 fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
     let ring = &chain[..chain.len() - 1];
     let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));

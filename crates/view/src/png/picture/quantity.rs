@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 /// make all others pale.
 const WITHIN: f64 = 0.98;
 
-/// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In
-/// 2D bonds are drawn one by one, and the scale is theirs.
+/// Returns the colours of the balls and then of the convex parts, and their scale; `None` if
+/// nothing moves. In 2D bonds are drawn individually, and the scale is that of the bonds.
 pub(crate) fn of(run: &dyn RunView) -> (Vec<Paint>, Option<ColourScale>) {
     let values = match (run.bonds_made() > 0, run.dimension()) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),
@@ -58,7 +58,7 @@ pub(crate) fn of(run: &dyn RunView) -> (Vec<Paint>, Option<ColourScale>) {
     (of.iter().zip(&grain).map(paint).collect(), Some(scale))
 }
 
-/// The unit of a field of grains as its registry has it.
+/// Returns the unit of a field of grains from its registry.
 fn unit(run: &dyn RunView, name: &str) -> String {
     let fields = run.grain_fields(GrainFields::default());
     let field = fields.iter().find(|f| f.name == name);
@@ -79,7 +79,8 @@ fn damage_scale(bonds: bool) -> ColourScale {
     }
 }
 
-/// Mean damage of the bonds of each body, broken ones counting 1; NaN if it never had a bond.
+/// Returns the mean damage of the bonds of each body, where broken bonds count as 1; NaN if the
+/// body never had a bond.
 fn damage(run: &dyn RunView) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); run.bodies().len()];
     let mut add = |body: u32, damage: f64| {

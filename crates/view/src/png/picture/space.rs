@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 
 type Point = [f64; 3];
 
-/// Extent of a plane beyond the grains, as a fraction of their extent; also the largest distance at
-/// which it is shown.
+/// Extent of a plane beyond the grains, as a fraction of their extent. It is also the largest
+/// distance at which a plane is shown.
 const MARGIN: f64 = 0.06;
 const FAR: f64 = 0.5;
 
@@ -18,7 +18,8 @@ fn view() -> View {
     View::new(0.6, 0.4)
 }
 
-/// The solids of a picture. `paints` are those of the balls, then of the convex parts.
+/// Returns the solids of a picture. `paints` has the colours of the balls, then of the convex
+/// parts.
 pub(crate) fn scene(run: &dyn RunView, paints: &[Paint]) -> SolidScene {
     let bodies = run.bodies();
     let shown = |body: u32| !bodies.removed[body as usize];
@@ -61,7 +62,8 @@ fn walls(run: &dyn RunView) -> Vec<Faces> {
         .collect();
     let (low, high) = room(run, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);
-    // The open sides of planes; the inside of a drum is open, and clips the planes across it.
+    // The open sides of planes are kept. The inside of a drum is open, and clips the planes across
+    // it.
     let planes: Vec<Option<Side<3>>> = surfaces.iter().map(|f| solid_side(run, &f.1)).collect();
     let faces = |(place, surface): &(usize, SurfaceView), reach: f64| {
         placed(run, surface, &run.surface_faces(*place, reach))
@@ -97,7 +99,7 @@ fn walls(run: &dyn RunView) -> Vec<Faces> {
     walls.collect()
 }
 
-/// Faces of a piece in world coordinates, in the periodic cell.
+/// Returns the faces of a piece in world coordinates, in the periodic cell.
 fn placed_piece(run: &dyn RunView, piece: usize, centre: Point) -> Vec<Vec<Point>> {
     let centre = run.periodic().wrapped(Vector3::from(centre));
     let place = |p: &Point| Point::from(Vector3::from(*p) + centre);
@@ -108,7 +110,7 @@ fn placed_piece(run: &dyn RunView, piece: usize, centre: Point) -> Vec<Vec<Point
         .collect()
 }
 
-/// Faces of a surface in world coordinates.
+/// Returns the faces of a surface in world coordinates.
 fn placed(run: &dyn RunView, surface: &SurfaceView, faces: &[Vec<Point>]) -> Vec<Vec<Point>> {
     faces
         .iter()
@@ -116,7 +118,7 @@ fn placed(run: &dyn RunView, surface: &SurfaceView, faces: &[Vec<Point>]) -> Vec
         .collect()
 }
 
-/// The open side of a plane; `None` for other surfaces.
+/// Returns the open side of a plane; `None` for other surfaces.
 fn solid_side(run: &dyn RunView, surface: &SurfaceView) -> Option<Side<3>> {
     let normal = run.turned(surface.body as usize, surface.flat?);
     let at = super::placed(run, surface, &[0.0; 3]);
@@ -126,10 +128,10 @@ fn solid_side(run: &dyn RunView, surface: &SurfaceView) -> Option<Side<3>> {
     })
 }
 
-/// The box to which planes and drums are clipped: around grains and bounded surfaces, extended to
-/// nearby planes.
+/// Returns the box to which planes and drums are clipped: it surrounds grains and bounded surfaces,
+/// and is extended to nearby planes.
 fn room(run: &dyn RunView, surfaces: &[(usize, SurfaceView)]) -> (Point, Point) {
-    let mut bound = Bound::default();
+    let mut bound = Bounds::default();
     let wrapped = |p: Point| Point::from(run.periodic().wrapped(Vector3::from(p)));
     for ball in run.balls() {
         bound.take(&wrapped(ball.centre), ball.radius);
@@ -179,12 +181,12 @@ fn room(run: &dyn RunView, surfaces: &[(usize, SurfaceView)]) -> (Point, Point) 
     (bound.low, bound.high)
 }
 
-struct Bound {
+struct Bounds {
     low: Point,
     high: Point,
 }
 
-impl Default for Bound {
+impl Default for Bounds {
     fn default() -> Self {
         Self {
             low: [f64::INFINITY; 3],
@@ -193,7 +195,7 @@ impl Default for Bound {
     }
 }
 
-impl Bound {
+impl Bounds {
     fn take(&mut self, p: &Point, radius: f64) {
         if p.iter().all(|x| x.is_finite()) {
             for (k, x) in p.iter().enumerate() {
@@ -208,7 +210,7 @@ impl Bound {
     }
 }
 
-/// Inner half-spaces of the faces of a drum.
+/// Returns the inner half-spaces of the faces of a drum.
 fn inside(faces: &[Vec<Point>]) -> Vec<Side<3>> {
     let side = |face: &Vec<Point>| {
         let (a, b, c) = (face.first()?, face.get(1)?, face.get(2)?);

@@ -1,17 +1,17 @@
-//! What sticks and what slips along the surfaces of deformable bodies in the plane, and half-spaces
-//! as solids below their surface.
+//! Sticking and slipping zones along the surfaces of deformable bodies in 2D, and half-spaces as
+//! solids below their surface.
 
 use super::images;
 use crate::{Outline, ZoneLine};
 use fretwork_core::view::RunView;
-use fretwork_observe::tractions::{SurfaceState, Zone};
+use fretwork_observe::tractions::{ContactZone, SurfaceState};
 
 fn surfaces(run: &dyn RunView) -> impl Iterator<Item = (usize, SurfaceState)> {
     (0..run.system_count()).filter_map(move |k| Some((k, SurfaceState::of(run, k)?)))
 }
 
-/// Along the surface of each body that touches, from the middle of one facet to that of the next:
-/// what does not slip and what slips.
+/// Returns sticking and slipping zones along the surface of each body with contacts, from the
+/// middle of one facet to that of the next.
 pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
     let period = run.periodic().period[0];
     let mut out = Vec::new();
@@ -21,7 +21,7 @@ pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
             let middle = (a + b) * 0.5;
             for (k, from, to) in [(ends[0], a, middle), (ends[1], middle, b)] {
                 let zone = state.zone[k as usize];
-                if zone == Zone::Open {
+                if zone == ContactZone::Open {
                     continue;
                 }
                 let along = to - from;
@@ -29,7 +29,7 @@ pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
                     out.push(ZoneLine {
                         a: [x, from[1]],
                         b: [x + along[0], to[1]],
-                        slips: zone == Zone::Slip,
+                        slips: zone == ContactZone::Slip,
                     });
                 }
             }
@@ -38,7 +38,8 @@ pub(crate) fn lines(run: &dyn RunView, window: [f64; 4]) -> Vec<ZoneLine> {
     out
 }
 
-/// The solids of half-spaces, as far as their cells reach: from the surface to beyond the window.
+/// Returns the solids of half-spaces over the range of their cells, from the surface to beyond the
+/// window.
 pub(crate) fn solids(run: &dyn RunView, window: [f64; 4]) -> Vec<Outline> {
     let depth = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();

@@ -1,6 +1,6 @@
 //! Polygons clipped to half-spaces.
 
-/// The half-space n . x <= d.
+/// The half-space n · x ≤ d.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side<const N: usize> {
     pub normal: [f64; N],
@@ -8,7 +8,7 @@ pub(crate) struct Side<const N: usize> {
 }
 
 impl<const N: usize> Side<N> {
-    /// How far a point is outside, times the length of the normal.
+    /// Returns the distance of a point outside, times the length of the normal.
     pub fn outside(&self, p: &[f64; N]) -> f64 {
         let products = self.normal.iter().zip(p).map(|(n, x)| n * x);
         products.sum::<f64>() - self.offset
@@ -27,7 +27,8 @@ pub(crate) fn sides_of_box<const N: usize>(low: &[f64; N], high: &[f64; N]) -> V
     (0..N).flat_map(pair).collect()
 }
 
-/// Clips a polygon to all half-spaces; of one that is not convex parts may stay joined by edges.
+/// Clips a polygon to all half-spaces. The parts of a clipped non-convex polygon may remain joined
+/// by edges.
 pub(crate) fn clip<const N: usize>(polygon: Vec<[f64; N]>, sides: &[Side<N>]) -> Vec<[f64; N]> {
     let mut kept = polygon;
     for side in sides {

@@ -9,7 +9,7 @@ use crate::png::canvas::{Canvas, INK, TEXT, mix};
 use crate::png::font::{Anchor, TextStyle, text_width};
 
 /// Draws the legend of the link colours that are present, from a point on the middle of the line;
-/// gives where it ends.
+/// returns where the legend ends.
 pub(crate) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) -> f32 {
     let em = TEXT * u;
     let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));

@@ -18,7 +18,7 @@ use clip::{clip, sides_of_box};
 use frame::{centroid, push_bar};
 use fretwork_observe::picture::Paint;
 use paint::{ColourScale, Coloured, DAMAGED, SOUND};
-use solid::{Place, SolidScene};
+use solid::{PixelMap, SolidScene};
 use zone::ZoneLine;
 
 /// A first body (rail, wheel), or a grain with corners.
@@ -97,7 +97,7 @@ pub struct Frame {
     pub disks: Vec<Disk>,
     /// Interactions, drawn over the grains.
     pub links: Vec<Link>,
-    /// What sticks and slips, drawn over all others.
+    /// Sticking and slipping zones, drawn over everything else.
     pub zones: Vec<ZoneLine>,
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
     pub scale: Option<ColourScale>,
@@ -133,7 +133,7 @@ impl Frame {
         // Limits on the aspect ratio of the field.
         let scale = (f64::from(field_width) / dx).min(1.4 * f64::from(field_width) / dy);
         let field_height = ((dy * scale) as f32).max(0.08 * field_width).round();
-        let map = Place {
+        let map = PixelMap {
             left: (xmin + xmax) / 2.0 - f64::from(field_width) / scale / 2.0,
             top: (ymin + ymax) / 2.0 + f64::from(field_height) / scale / 2.0,
             scale,
@@ -143,7 +143,7 @@ impl Frame {
         let lines = joined(&self.caption, "   ·   ", TEXT * u, room);
         let title = if self.title.is_empty() { 0.0 } else { 42.0 * u };
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
-        // Under the field: the colour bar and the scale bar, then the legend of the links.
+        // Below the field are the colour bar and the scale bar, then the legend of the links.
         let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
         let marked = !(self.links.is_empty() && self.zones.is_empty());
         let line = if self.scale.is_none() || marked {
@@ -194,7 +194,7 @@ impl Frame {
         page.save(path, "")
     }
 
-    fn draw_bodies(&self, field: &mut Canvas, map: &Place, u: f32) {
+    fn draw_bodies(&self, field: &mut Canvas, map: &PixelMap, u: f32) {
         for body in &self.bodies {
             let polygon = visible(&body.points, field, map);
             let (fill, edge, width) = match body.shade {
@@ -202,7 +202,7 @@ impl Frame {
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
             if body.element {
-                // An outline one pixel wide, so that no seam shows between neighbours.
+                // The outline is one pixel wide, so that no seam shows between neighbours.
                 field.polygon(&polygon, fill);
                 field.stroke(&polygon, true, 1.0, fill, None);
                 continue;
@@ -212,7 +212,7 @@ impl Frame {
         }
     }
 
-    fn draw_disks(&self, field: &mut Canvas, map: &Place, u: f32) {
+    fn draw_disks(&self, field: &mut Canvas, map: &PixelMap, u: f32) {
         let mut ticks = PathBuilder::new();
         let edge = GRAIN_EDGE.map(f32::from);
         for (disk, at, radius) in self.seen(field, map) {
@@ -220,7 +220,7 @@ impl Frame {
             let inner = radius - (1.3 * u).min(0.3 * radius);
             field.disk(at, radius, |_, distance| {
                 let t = (distance - inner + 0.5).clamp(0.0, 1.0);
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 let mixed = |i: usize| grain[i] + t * (edge[i] - grain[i]);
                 [mixed(0), mixed(1), mixed(2)]
             });
@@ -238,7 +238,7 @@ impl Frame {
 
     /// Unit of line width: proportional to the grains, so that links neither cover small grains nor
     /// vanish between large ones.
-    fn line_unit(&self, field: &Canvas, map: &Place, u: f32) -> f32 {
+    fn line_unit(&self, field: &Canvas, map: &PixelMap, u: f32) -> f32 {
         let (sum, count) = self
             .seen(field, map)
             .iter()
@@ -250,8 +250,8 @@ impl Frame {
         }
     }
 
-    /// Grains that overlap the field, with centre and radius in pixels.
-    fn seen(&self, field: &Canvas, map: &Place) -> Vec<(&Disk, [f32; 2], f32)> {
+    /// Returns the grains that overlap the field, with centre and radius in pixels.
+    fn seen(&self, field: &Canvas, map: &PixelMap) -> Vec<(&Disk, [f32; 2], f32)> {
         let disks = self.disks.iter();
         disks
             .filter_map(|disk| pixels(disk, field, map).map(|(at, r)| (disk, at, r)))
@@ -259,7 +259,7 @@ impl Frame {
     }
 
     /// Links of one colour are filled together, plain ones at the bottom.
-    fn draw_links(&self, field: &mut Canvas, map: &Place, u: f32) {
+    fn draw_links(&self, field: &mut Canvas, map: &PixelMap, u: f32) {
         const LEVELS: usize = 8;
         let unit = self.line_unit(field, map, u);
         let mut paths: [_; LEVELS + 3] = std::array::from_fn(|_| PathBuilder::new());
@@ -295,7 +295,7 @@ impl Frame {
         }
     }
 
-    fn draw_labels(&self, field: &mut Canvas, map: &Place, u: f32) {
+    fn draw_labels(&self, field: &mut Canvas, map: &PixelMap, u: f32) {
         let name = TextStyle::new(TEXT * u, INK)
             .anchored(Anchor::Middle)
             .bold();
@@ -307,8 +307,8 @@ impl Frame {
     }
 }
 
-/// Centre and radius of a disk in pixels, if it overlaps the field.
-fn pixels(disk: &Disk, field: &Canvas, map: &Place) -> Option<([f32; 2], f32)> {
+/// Returns centre and radius of a disk in pixels, if it overlaps the field.
+fn pixels(disk: &Disk, field: &Canvas, map: &PixelMap) -> Option<([f32; 2], f32)> {
     let at = map.point(disk.centre);
     let r = (disk.radius * map.scale) as f32;
     let (width, height) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
@@ -316,9 +316,9 @@ fn pixels(disk: &Disk, field: &Canvas, map: &Place) -> Option<([f32; 2], f32)> {
     (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((at, r))
 }
 
-/// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm
-/// exceeds single precision.
-fn visible(points: &[[f64; 2]], field: &Canvas, map: &Place) -> Vec<[f32; 2]> {
+/// Returns a body clipped to the field and a margin, in pixels. Without clipping, a wheel of 0.5 m
+/// around a field of 0.1 mm exceeds single precision.
+fn visible(points: &[[f64; 2]], field: &Canvas, map: &PixelMap) -> Vec<[f32; 2]> {
     let margin = 8.0 / map.scale;
     let (width, height) = (
         f64::from(field.pixmap.width()),

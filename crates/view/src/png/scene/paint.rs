@@ -14,7 +14,8 @@ pub struct ColourScale {
     pub unit: String,
     /// Value at the end of the colour scale; larger values are drawn the same.
     pub top: f64,
-    /// Whether it is the damage of bonds between grains, and not a value of the grains.
+    /// Whether the value is the damage of bonds between grains. Otherwise it is a value of the
+    /// grains.
     pub bonds: bool,
 }
 
@@ -41,7 +42,7 @@ const VALUES: [Rgb; 5] = [
     [66, 14, 84],
 ];
 
-/// What has a colour in a picture.
+/// Objects that have a colour in a picture.
 pub(crate) trait Coloured {
     /// The colour of a grain of this shade, 0 light to 1 dark.
     fn colour(self, shade: f64) -> Rgb;

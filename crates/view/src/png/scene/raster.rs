@@ -15,7 +15,7 @@ pub(crate) struct Raster {
 
 /// How a polygon is blended.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Cover {
+pub(crate) enum Blend {
     /// Hides what is behind it.
     Opaque,
     /// Tints what is behind it by this fraction, and leaves the depth unchanged.
@@ -40,7 +40,7 @@ impl Raster {
 
     /// Draws a lit sphere.
     pub fn sphere(&mut self, [x, y, z]: Corner, radius: f64, base: Rgb) {
-        // Light from the upper left in front of the picture; unit length.
+        // The light comes from the upper left in front of the picture; the vector has unit length.
         const LIGHT: [f32; 3] = [-0.45, -0.6, 0.661];
         // The smallest spheres remain visible.
         let radius = radius.max(0.75);
@@ -71,7 +71,7 @@ impl Raster {
                 // The rim is darkened as well, so that equal spheres are distinguishable.
                 let light = (0.5 + 0.54 * facing) * (0.62 + 0.38 * nz.sqrt());
                 let gleam = 36.0 * facing.powi(24);
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 let lit = |c: f32| (light * c + gleam).min(255.0) as u8;
                 *pixel = [lit(base[0]), lit(base[1]), lit(base[2])];
             }
@@ -110,7 +110,7 @@ impl Raster {
     }
 
     /// Fills a convex polygon.
-    pub fn polygon(&mut self, corners: &[Corner], colour: Rgb, cover: Cover) {
+    pub fn polygon(&mut self, corners: &[Corner], colour: Rgb, cover: Blend) {
         let (mut pixels, mut depths) = (
             std::mem::take(&mut self.colour),
             std::mem::take(&mut self.depth),
@@ -120,14 +120,15 @@ impl Raster {
                 return;
             }
             match cover {
-                Cover::Opaque => (pixels[at], depths[at]) = (colour, depth),
-                Cover::Veil(share) => pixels[at] = tinted(pixels[at], colour, share),
+                Blend::Opaque => (pixels[at], depths[at]) = (colour, depth),
+                Blend::Veil(share) => pixels[at] = tinted(pixels[at], colour, share),
             }
         });
         (self.colour, self.depth) = (pixels, depths);
     }
 
-    /// Number of pixels that a convex polygon covers, and of those with something behind it.
+    /// Returns the number of pixels that a convex polygon covers, and of those in front of
+    /// something.
     pub fn hidden(&self, corners: &[Corner]) -> (usize, usize) {
         let (mut covered, mut hidden) = (0, 0);
         self.scan(corners, |at, depth| {
@@ -177,8 +178,8 @@ impl Raster {
         }
     }
 
-    /// Halves the resolution, by the mean of four pixels; width, height, and rows of red, green and
-    /// blue.
+    /// Halves the resolution by the mean of four pixels. Returns width, height, and rows of red,
+    /// green and blue.
     pub fn halved(&self) -> (usize, usize, Vec<Rgb>) {
         let (width, height) = (self.width / 2, self.height / 2);
         let mut out = Vec::with_capacity(width * height);
@@ -188,14 +189,14 @@ impl Raster {
             out.extend(upper.iter().zip(lower).map(|([a, b], [c, d])| {
                 let of = |p: &Rgb, i: usize| u16::from(p[i]);
                 let mean = |i: usize| ((of(a, i) + of(b, i) + of(c, i) + of(d, i) + 2) / 4) as u8;
-                // Not `map`, which is not inlined.
+                // `map` is not used, since it is not inlined.
                 [mean(0), mean(1), mean(2)]
             }));
         }
         (width, height, out)
     }
 
-    /// Width, height, and rows of red, green and blue.
+    /// Returns width, height, and rows of red, green and blue.
     pub fn pixels(self) -> (usize, usize, Vec<Rgb>) {
         (self.width, self.height, self.colour)
     }
@@ -215,7 +216,7 @@ fn tinted(under: Rgb, colour: Rgb, share: f32) -> Rgb {
     [mixed(0), mixed(1), mixed(2)]
 }
 
-/// Depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.
+/// Returns the depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.
 fn plane(corners: &[Corner]) -> Option<[f64; 3]> {
     let mut n = [0.0; 3];
     for (k, p) in corners.iter().enumerate() {
@@ -255,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_nearer_hides_the_farther_in_any_order() {
-        let far = |r: &mut Raster| r.polygon(&square(0.0), RED, Cover::Opaque);
+        let far = |r: &mut Raster| r.polygon(&square(0.0), RED, Blend::Opaque);
         let near = |r: &mut Raster| r.sphere([10.0, 10.0, 5.0], 6.0, BLUE);
         let [mut one, mut other] = [(); 2].map(|()| Raster::new(20, 20, [255; 3]));
         far(&mut one);
@@ -278,7 +279,7 @@ mod tests {
         assert!((40..=60).contains(&hidden), "{hidden}");
         assert_eq!(r.hidden(&square(-20.0)).1, 0);
         let before = r.colour[10 * 20 + 10];
-        r.polygon(&square(20.0), BLUE, Cover::Veil(0.25));
+        r.polygon(&square(20.0), BLUE, Blend::Veil(0.25));
         let after = r.colour[10 * 20 + 10];
         assert!(after[0] < before[0] && after[0] > before[0] / 2 && after[2] >= 50);
         // A slanted polygon has the depth of its plane at each pixel.
@@ -297,7 +298,7 @@ mod tests {
     #[test]
     fn lines_are_hidden_by_what_is_nearer() {
         let mut r = Raster::new(40, 20, [255; 3]);
-        r.polygon(&square(50.0), RED, Cover::Opaque);
+        r.polygon(&square(50.0), RED, Blend::Opaque);
         r.line([0.0, 10.0, 0.0], [40.0, 10.0, 0.0], 2.0, 3.0, BLUE, 1.0);
         assert_eq!(r.colour[10 * 40 + 10], RED);
         assert_eq!(r.colour[10 * 40 + 30], BLUE);

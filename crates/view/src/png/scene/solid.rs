@@ -2,7 +2,7 @@
 //! are behind them.
 
 use super::paint::Coloured;
-use super::raster::{Corner, Cover, Raster};
+use super::raster::{Blend, Corner, Raster};
 use super::view::View;
 use crate::png::canvas::{Canvas, Rgb, WHITE, mix};
 use fretwork_observe::picture::Paint;
@@ -57,7 +57,7 @@ const VEIL: f32 = 0.07;
 
 /// Map from metres to pixels of a field.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PixelMap {
     /// Metres at the left and at the top.
     pub left: f64,
     pub top: f64,
@@ -65,7 +65,7 @@ pub(crate) struct Place {
     pub scale: f64,
 }
 
-impl Place {
+impl PixelMap {
     pub fn point(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         let (x, y) = ((x - self.left) * self.scale, (self.top - y) * self.scale);
         [x as f32, y as f32]
@@ -80,7 +80,7 @@ struct SmoothPart {
 
 /// Visible parts of an object: groups of faces towards the viewer, faces away from it, and edges.
 #[derive(Default)]
-struct Seen {
+struct VisibleParts {
     groups: Vec<SmoothPart>,
     away: Vec<Vec<Corner>>,
     edges: Vec<[Corner; 2]>,
@@ -99,7 +99,7 @@ impl SolidScene {
     }
 
     /// Paints the field; `u` is the scale of the picture.
-    pub(crate) fn paint(&self, field: &mut Canvas, place: &Place, u: f32) {
+    pub(crate) fn paint(&self, field: &mut Canvas, place: &PixelMap, u: f32) {
         let (width, height) = (
             field.pixmap.width() as usize,
             field.pixmap.height() as usize,
@@ -165,7 +165,7 @@ impl SolidScene {
         let nearness = |f: &Vec<Corner>| f.iter().map(|c| c[2]).sum::<f64>() / f.len() as f64;
         veils.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
         for face in &veils {
-            raster.polygon(face, WALL_EDGE, Cover::Veil(VEIL));
+            raster.polygon(face, WALL_EDGE, Blend::Veil(VEIL));
         }
         for [a, b] in edges {
             raster.line(a, b, 1.8 * line, 12.0, WALL_EDGE, 0.85);
@@ -198,8 +198,8 @@ impl SolidScene {
     }
 
     /// Visible parts of an object.
-    fn seen(&self, faces: &Faces, pixel: &impl Fn([f64; 3]) -> Corner) -> Seen {
-        let mut seen = Seen::default();
+    fn seen(&self, faces: &Faces, pixel: &impl Fn([f64; 3]) -> Corner) -> VisibleParts {
+        let mut seen = VisibleParts::default();
         let normals: Vec<[f64; 3]> = faces.polygons.iter().map(|p| normal(p)).collect();
         let lights: Vec<(f64, f64)> = normals.iter().map(|n| self.light(n)).collect();
         let (edges, parts) = joined(&faces.polygons, &normals);
@@ -238,8 +238,8 @@ impl SolidScene {
         seen
     }
 
-    /// For a normal: its component towards the viewer, and the light from the upper left in front
-    /// of the picture.
+    /// Returns for a normal its component towards the viewer, and its illumination from the upper
+    /// left in front of the picture.
     fn light(&self, n: &[f64; 3]) -> (f64, f64) {
         const LIGHT: [f64; 3] = [-0.45, 0.6, 0.661];
         let ([x, y], z) = self.view.project(*n);
@@ -252,7 +252,7 @@ fn solid(raster: &mut Raster, group: &SmoothPart, base: Rgb) {
     for (face, light) in group.faces.iter().zip(&group.lights) {
         let by = 0.7 + 0.36 * light;
         let colour = base.map(|c| (f64::from(c) * by).min(255.0) as u8);
-        raster.polygon(face, colour, Cover::Opaque);
+        raster.polygon(face, colour, Blend::Opaque);
     }
 }
 
@@ -263,7 +263,7 @@ struct Edge {
     crease: bool,
 }
 
-/// The edges of polygons, and the smooth part to which each polygon belongs.
+/// Returns the edges of polygons, and the index of the smooth part of each polygon.
 fn joined(polygons: &[Vec<[f64; 3]>], normals: &[[f64; 3]]) -> (Vec<Edge>, Vec<usize>) {
     let all = || polygons.iter().flatten().flatten().copied();
     let size = all()
@@ -367,7 +367,7 @@ mod tests {
     /// The field of 100 by 100 pixels over four metres about the origin.
     fn painted(scene: &SolidScene) -> Canvas {
         let mut field = Canvas::new(100, 100).unwrap();
-        let place = Place {
+        let place = PixelMap {
             left: -2.0,
             top: 2.0,
             scale: 25.0,
@@ -418,7 +418,7 @@ mod tests {
         let alone = middle(Vec::new(), 3.0);
         let blue = |c: [u8; 3]| c[2] > c[0] + 40;
         assert!(blue(alone));
-        // In front of the wall, behind it, behind a grain with corners.
+        // The three points are in front of the wall, behind it, and behind a grain with corners.
         assert_eq!(middle(vec![wall(true)], -3.0), alone);
         let veiled = middle(vec![wall(true)], 3.0);
         assert!(blue(veiled) && veiled != alone, "{veiled:?}");

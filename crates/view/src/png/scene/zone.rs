@@ -1,4 +1,4 @@
-//! What sticks and slips along surfaces: bands over a picture, and their legend.
+//! Sticking and slipping zones along surfaces: bands over a picture, and their legend.
 
 use super::frame::push_bar;
 use crate::png::canvas::{Canvas, INK, Rgb, TEXT};
@@ -6,8 +6,8 @@ use crate::png::font::{TextStyle, text_width};
 use fretwork_observe::picture;
 use tiny_skia::PathBuilder;
 
-const STICKS: Rgb = rgb(picture::STICKS);
-const SLIPS: Rgb = rgb(picture::SLIPS);
+const STICKS: Rgb = rgb(picture::STICK_COLOUR);
+const SLIPS: Rgb = rgb(picture::SLIP_COLOUR);
 
 const fn rgb((r, g, b): (u8, u8, u8)) -> Rgb {
     [r, g, b]
@@ -20,12 +20,12 @@ pub struct ZoneLine {
     pub a: [f64; 2],
     /// Other end, metres.
     pub b: [f64; 2],
-    /// Whether it slips, or sticks.
+    /// Whether this part slips. Otherwise it sticks.
     pub slips: bool,
 }
 
-/// Draws a band inside each body along its surface, on a dark rim that sets it off from any colour;
-/// `point` gives the pixels of a place.
+/// Draws a band inside each body along its surface, with a dark rim that sets it off from any
+/// colour; `point` returns the pixels of a position.
 pub(crate) fn draw(
     field: &mut Canvas,
     lines: &[ZoneLine],
@@ -41,13 +41,13 @@ pub(crate) fn draw(
         if !(length > 0.0 && length.is_finite()) {
             continue;
         }
-        // To the right of the direction, in pixels with y downwards.
+        // The direction is to the right of the line, in pixels with y downwards.
         let (x, y) = (dx / length, dy / length);
         let shifted = |p: [f32; 2], more: f32, aside: f32| {
             [p[0] + more * x - aside * y, p[1] + more * y + aside * x]
         };
         let aside = rim + 0.5 * wide;
-        // A little longer, so that no seam shows.
+        // The bar is a little longer than the line, so that no seam shows.
         let bar = |path: &mut PathBuilder, more: f32, width: f32| {
             let ends = [shifted(a, -more, aside), shifted(b, more, aside)];
             push_bar(path, ends[0], ends[1], width);
@@ -62,7 +62,7 @@ pub(crate) fn draw(
     }
 }
 
-/// Draws the legend of what is there, from a point on the middle of the line.
+/// Draws the legend of the zones that are present, from a point on the middle of the line.
 pub(crate) fn legend(page: &mut Canvas, lines: &[ZoneLine], [left, middle]: [f32; 2], u: f32) {
     let (em, mut x) = (TEXT * u, left);
     for (slips, label, colour) in [(false, "sticks", STICKS), (true, "slips", SLIPS)] {
@@ -73,7 +73,7 @@ pub(crate) fn legend(page: &mut Canvas, lines: &[ZoneLine], [left, middle]: [f32
     }
 }
 
-/// Draws a sample of a zone with a rim and its label; gives where the label begins.
+/// Draws a sample of a zone with a rim and its label; returns where the label begins.
 pub(crate) fn zone_entry(
     page: &mut Canvas,
     label: &str,
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn bands_are_inside_of_bodies_below_and_above_their_surface() {
         let mut field = Canvas::new(200, 100).unwrap();
-        // Towards +x the body is below, towards -x above; y upwards.
+        // Towards +x the body is below, towards -x above, with y upwards.
         let line = |from: f64, to: f64, slips| ZoneLine {
             a: [from, 50.0],
             b: [to, 50.0],

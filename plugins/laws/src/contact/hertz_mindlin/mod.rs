@@ -25,7 +25,7 @@ parameters! {
     }
 }
 
-// The corners of the displacement that a contact remembers, see [`profile`].
+// Corners of the displacement profile that a contact stores, see [`profile`].
 const fn overlap(name: &'static CStr) -> Variable {
     Variable::new(
         name,
@@ -75,17 +75,17 @@ impl Law for HertzMindlin {
     ];
 }
 
-/// Place of the overlap among the variables.
+/// Index of the overlap among the variables.
 const OVERLAP: usize = 15;
-/// Least slope of the tangential force, over k_0.
-const LEAST_SLOPE: f64 = 1e-3;
-/// Share of the friction bound from which a contact is taken to slip as a whole.
+/// Smallest slope of the tangential force, as a fraction of k_0.
+const MIN_SLOPE: f64 = 1e-3;
+/// Fraction of the friction bound above which the whole contact is assumed to slip.
 const WHOLE: f64 = 1.0 - 1e-3;
 
-/// What the geometry of a contact of spheres makes of its profile.
+/// Factors by which the geometry of a contact of spheres turns its profile into forces.
 struct Sphere {
-    /// k_0 (N/m), 8 G* sqrt(R), the factor of [`Profile::sums`] (N/m^1.5), and beta for a friction
-    /// coefficient of 1.
+    /// Stiffness k_0 (N/m), the factor 8 G* sqrt(R) of [`Profile::sums`] (N/m^1.5), and beta for a
+    /// friction coefficient of 1.
     k_0: f64,
     scale: f64,
     beta: f64,
@@ -93,7 +93,7 @@ struct Sphere {
 }
 
 impl HertzMindlin {
-    /// E*, 8 G* (Pa).
+    /// Returns E* and 8 G* (Pa).
     fn moduli(&self) -> [f64; 2] {
         let sides = [
             (self.young_1, self.poisson_1),
@@ -119,8 +119,8 @@ impl HertzMindlin {
     }
 }
 
-/// The profile that a contact remembers. Its parts are along and across the tangential force, which
-/// the host turns with the pair.
+/// Reads the profile that a contact stores. Its components are along and across the tangential
+/// force, with which the host rotates them.
 fn remembered(state: &[f64], force: Pair) -> Profile {
     let [x, y] = unit(force);
     let mut corners = [(0.0, [0.0; 2]); KEPT - 1];
@@ -145,7 +145,7 @@ fn remember(profile: &Profile, overlap: f64, force: Pair, next: &mut [f64]) {
     }
 }
 
-/// Direction of a force; the first axis for none.
+/// Direction of a force; the first axis for a zero force.
 fn unit(force: Pair) -> Pair {
     let length = norm(force);
     if length > 0.0 {
@@ -161,7 +161,7 @@ impl Sphere {
         profile.sums().0.map(|t| t * self.scale)
     }
 
-    /// The tangential part of a spring that carries `force_n` with its damping (N).
+    /// Returns the tangential part of a spring that carries `force_n`, including damping (N).
     fn tangential(&self, law: &HertzMindlin, site: &Site, state: &[f64], force_n: f64) -> Spring {
         let (d, bound) = (site.overlap, law.mu * force_n);
         let beta = if self.force_n > 0.0 {
@@ -179,8 +179,8 @@ impl Sphere {
         let after = self.force(&profile);
         let expected = self.k_0 * dot(by, by);
         let share = dot(minus(after, before), by) / expected;
-        // Where all of it slips the host holds the force at its bound, which the damping of the
-        // step decides.
+        // Where the whole contact slips, the host holds the force at its bound, which depends on
+        // the damping of the step.
         let slope = if norm(after) >= WHOLE * bound || !share.is_finite() {
             1.0
         } else {
@@ -188,24 +188,24 @@ impl Sphere {
         };
         Spring {
             force_t: before,
-            stiffness_t: self.k_0 * slope.clamp(LEAST_SLOPE, 1.0),
+            stiffness_t: self.k_0 * slope.clamp(MIN_SLOPE, 1.0),
             unloading_t: self.k_0,
-            // More than T^2/(2 k_0), because displacements differ.
+            // The energy exceeds T^2/(2 k_0), because displacements differ within the contact.
             energy_t: 0.5 * self.scale * squares,
             ..Spring::default()
         }
     }
 
-    /// The profile after a step that ended with this force, of which the displacement by the mean
-    /// velocity is a guess.
+    /// Returns the profile after a step that ended with this force, for which the displacement by
+    /// the mean velocity is a first guess.
     fn follow(&self, law: &HertzMindlin, site: &Site, state: &[f64]) -> Profile {
-        /// Rounds, the share of the force to which it is met, and the least slope between two
-        /// rounds over k_0.
+        /// Number of iterations, relative tolerance of the force, and smallest slope between two
+        /// iterations over k_0.
         const ROUNDS: usize = 12;
         const CLOSE: f64 = 1e-6;
         const FLATTEST: f64 = 0.1;
-        // The force is that of the overlap at the start of the step where it decreases: the next
-        // step takes what parts.
+        // If the overlap decreases, the force is that at the start of the step: the next step
+        // releases the springs that part.
         let (d, bound) = (site.overlap.max(state[OVERLAP]), law.mu * self.force_n);
         let wanted = site.spring_t;
         let size = norm(wanted);
@@ -233,7 +233,7 @@ impl Sphere {
             if norm(left) < best.0 {
                 best = (norm(left), profile);
             }
-            if norm(left) <= CLOSE * size.max(LEAST_SLOPE * bound) {
+            if norm(left) <= CLOSE * size.max(MIN_SLOPE * bound) {
                 break;
             }
             if let Some((by_last, force_last)) = last {
@@ -268,7 +268,7 @@ impl ContactLaw for HertzMindlin {
         }
         let sphere = self.sphere(site);
         let k = 2.0 * modulus * (site.radius * site.overlap).sqrt();
-        // sqrt(5/6) of Hertz' spring is 1 for a linear one.
+        // The factor sqrt(5/6) of Hertz' spring is 1 for a linear spring.
         let damping_n = 2.0 * damping * (5.0f64 / 6.0).sqrt() * (k * site.effective_mass).sqrt();
         let force_n = (sphere.force_n - damping_n * site.velocity[0]).max(0.0);
         Spring {
@@ -317,8 +317,8 @@ mod tests {
         }
     }
 
-    /// K. L. Johnson, eqs. 4.22 to 4.24: a^3 = 3 P R/(4 E*), d = a^2/R; the slope is that of the
-    /// force.
+    /// K. L. Johnson, eqs. 4.22 to 4.24, gives a^3 = 3 P R/(4 E*) and d = a^2/R; the stiffness must
+    /// be the slope of the force.
     #[test]
     fn force_is_that_of_hertz() {
         let [modulus, _] = STEEL.moduli();
@@ -330,7 +330,7 @@ mod tests {
         assert!(((more - s.force_n) / 1e-10 / s.stiffness_n - 1.0).abs() < 1e-4);
     }
 
-    /// Mindlin's ratio of stiffnesses of two like spheres, 2 (1 - nu)/(2 - nu) (K. L. Johnson,
+    /// Mindlin's ratio of stiffnesses of two equal spheres is 2 (1 - nu)/(2 - nu) (K. L. Johnson,
     /// section 7.2).
     #[test]
     fn tangential_stiffness_is_that_of_mindlin() {

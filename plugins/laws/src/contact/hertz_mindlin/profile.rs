@@ -1,39 +1,39 @@
-//! The tangential displacement of a contact by radius: what the history of load and displacement
-//! left of stick and slip.
+//! The tangential displacement of a contact as a function of the radius, which stores the history
+//! of stick and slip under varying load and displacement.
 //!
 //! By the method of dimensionality reduction a sphere in contact is a row of independent springs at
-//! the distances x from its middle. At an overlap d the spring at x is pressed by d - s, s = x^2/R,
-//! and carries a tangential displacement u up to the share beta of that, beyond which it slips; one
-//! that parts carries none. For contacts that are loaded and sheared in any order this is the
-//! theory of Cattaneo, Mindlin and Deresiewicz, annulus by annulus (V. L. Popov, M. Hess, Method of
-//! Dimensionality Reduction in Contact Mechanics and Friction (2015) 5.4; J. Jaeger, Arch. Appl.
-//! Mech. 65 (1995) 478). Under a constant load u is piecewise linear in s, and so exact here; for
-//! other histories the least corners are left out.
+//! the distances x from its middle. At an overlap d the spring at x is compressed by d - s, with
+//! s = x^2/R. It carries a tangential displacement u of at most beta (d - s), beyond which it
+//! slips; a spring that is not compressed carries none. For contacts that are loaded and sheared in
+//! any order this is the theory of Cattaneo, Mindlin and Deresiewicz, annulus by annulus (V. L.
+//! Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015) 5.4;
+//! J. Jaeger, Arch. Appl. Mech. 65 (1995) 478). Under a constant load u is piecewise linear in s,
+//! so its representation here is exact; for other histories the least significant corners are
+//! removed.
 
 /// Tangential components (m, or N).
 pub type Pair = [f64; 2];
 
-/// Corners that are kept from step to step, with the edge of the contact.
+/// Number of corners that are stored from step to step, including the edge of the contact.
 pub const KEPT: usize = 6;
-/// Corners while a step is followed.
+/// Number of corners within a step.
 const MOST: usize = 3 * KEPT + 4;
-/// Excess over the bound that is rounding, as a share of it.
+/// Excess over the friction bound that is attributed to rounding, relative to the bound.
 const ROUNDING: f64 = 1e-12;
 
-/// u as a function of s: straight between corners, the last of which is the edge of the contact
-/// with u = 0.
+/// Function u(s), linear between corners. The last corner is the edge of the contact, where u = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile {
     corners: [(f64, Pair); MOST],
     count: usize,
 }
 
-/// a - b.
+/// Returns a - b.
 pub fn minus(a: Pair, b: Pair) -> Pair {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// a . b.
+/// Returns the dot product of a and b.
 pub fn dot(a: Pair, b: Pair) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -59,7 +59,7 @@ fn between(a: Pair, b: Pair, share: f64) -> Pair {
 }
 
 impl Profile {
-    /// A contact of this overlap (m) without displacement.
+    /// Returns a contact of this overlap (m) without displacement.
     pub fn flat(edge: f64) -> Self {
         let mut out = Self {
             corners: [(0.0, [0.0; 2]); MOST],
@@ -70,8 +70,8 @@ impl Profile {
         out
     }
 
-    /// From corners in increasing order, of which the first is the middle; those beyond the edge
-    /// are left out.
+    /// Returns the profile with these corners in increasing order, the first of which is the
+    /// middle. Corners beyond the edge are removed.
     pub fn new(corners: &[(f64, Pair)], edge: f64) -> Self {
         let mut out = Self::flat(edge);
         out.count = 0;
@@ -100,19 +100,19 @@ impl Profile {
         &self.corners[..self.count.saturating_sub(1)]
     }
 
-    /// Where u ends (m).
+    /// Value of s at the edge of the contact (m).
     pub fn edge(&self) -> f64 {
         self.corners[self.count - 1].0
     }
 
-    /// Displaces all of the contact.
+    /// Displaces the whole contact.
     pub fn shift(&mut self, by: Pair) {
         for (_, u) in &mut self.corners[..self.count] {
             *u = [u[0] + by[0], u[1] + by[1]];
         }
     }
 
-    /// Goes to another overlap: springs that part are lost, new ones have no displacement.
+    /// Changes the overlap: springs that part are removed, new ones have no displacement.
     fn reach(&mut self, edge: f64) {
         if edge >= self.edge() {
             if edge > self.edge() {
@@ -132,7 +132,7 @@ impl Profile {
         self.count = k + 1;
     }
 
-    /// Goes to an overlap (m) and lets slip what is beyond the bound beta (d - s).
+    /// Changes the overlap (m), and limits the displacement to beta (d - s) by slip.
     pub fn slip(&mut self, edge: f64, beta: f64) {
         self.reach(edge);
         let bound = |s: f64| beta * (edge - s).max(0.0);
@@ -159,7 +159,7 @@ impl Profile {
                     None if over[0] > 0.0 => [0.0, 1.0],
                     None => [1.0; 2],
                 };
-                // Where it slips the direction of slip may change along it.
+                // Where springs slip, the direction of slip may vary with s.
                 let mut at = |x: f64| {
                     let (s, u) = (s0 + x * (s - s0), between(u0, u, x));
                     self.push(s, limited(u, bound(s)));
@@ -179,7 +179,7 @@ impl Profile {
         self.prune();
     }
 
-    /// Leaves out corners on straight lines, and the least until as many are left as are kept.
+    /// Removes corners on straight lines, then the least significant ones until the limit is met.
     fn prune(&mut self) {
         let largest = (0..self.count)
             .map(|k| norm(self.corners[k].1))
@@ -197,8 +197,8 @@ impl Profile {
         }
     }
 
-    /// Leaves out a corner; the one before it makes up for what that changes of the force, but not
-    /// by more displacement than there was.
+    /// Removes a corner. The corner before it compensates the change of the force, but its
+    /// displacement does not exceed the largest one before.
     fn leave_out(&mut self, k: usize) {
         let ([x, y], [p, q]) = (self.part(k).0, self.part(k + 1).0);
         let most = norm(self.corners[k].1).max(norm(self.corners[k - 1].1));
@@ -215,8 +215,8 @@ impl Profile {
         }
     }
 
-    /// How far a corner is off the line between its neighbours, times the square of the width
-    /// between these: what its loss displaces of the force, with how far.
+    /// Returns the distance of a corner from the line between its neighbours, times the square of
+    /// their distance: a measure of the error of the force if the corner is removed.
     fn bend(&self, k: usize) -> f64 {
         let [(s0, u0), (s, u), (s1, u1)] = [k - 1, k, k + 1].map(|k| self.corners[k]);
         if s1 <= s0 {
@@ -226,8 +226,8 @@ impl Profile {
         norm(off) * (s1 - s0).powi(2)
     }
 
-    /// The integrals of u (m^1.5) and of |u|^2 (m^2.5) over sqrt(s): the force and twice the
-    /// energy, each over the shear modulus 8 G* and sqrt(R).
+    /// Returns the integrals of u (m^1.5) and of |u|^2 (m^2.5) over sqrt(s). Multiplied by the
+    /// shear modulus 8 G* and sqrt(R) they are the force and twice the energy.
     pub fn sums(&self) -> (Pair, f64) {
         let (mut force, mut squares) = ([0.0; 2], 0.0);
         for k in 1..self.count {
@@ -238,9 +238,9 @@ impl Profile {
         (force, squares)
     }
 
-    /// What the part between a corner and the one before it adds to [`Self::sums`].
+    /// Contribution to [`Self::sums`] of the segment between a corner and the one before it.
     fn part(&self, k: usize) -> (Pair, f64) {
-        // Of three points by Gauss: exact, since u is of second order in sqrt(s).
+        // Gauss' rule with three points is exact, since u is of second order in sqrt(s).
         const AT: f64 = 0.774_596_669_241_483_4;
         const WEIGHTS: [f64; 3] = [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0];
         let ((s0, u0), (s1, u1)) = (self.corners[k - 1], self.corners[k]);
@@ -260,7 +260,7 @@ impl Profile {
     }
 }
 
-/// Where between two points the length of u passes the bound.
+/// Returns where between two points the magnitude of u exceeds the bound.
 fn crossing([u0, u1]: [Pair; 2], [b0, b1]: [f64; 2]) -> Option<f64> {
     let (du, db) = (minus(u1, u0), b1 - b0);
     let (a, b, c) = (
@@ -279,7 +279,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Many springs side by side, followed one by one: s_i, with weights d(sqrt s).
+    /// Reference model: many springs side by side, each followed separately: s_i, with weights
+    /// d(sqrt s).
     struct Springs {
         u: Vec<Pair>,
         width: f64,
@@ -311,8 +312,8 @@ mod tests {
         }
     }
 
-    /// The largest difference of the force from that of many springs, over the largest force, on a
-    /// path of overlap and displacement.
+    /// Largest difference of the force from that of many springs, over the largest force, on a path
+    /// of overlap and displacement.
     fn off(beta: f64, path: impl Fn(f64) -> (f64, Pair)) -> f64 {
         const STEPS: usize = 1000;
         let (mut springs, mut profile) = (Springs::new(beta), Profile::flat(0.0));
@@ -332,8 +333,8 @@ mod tests {
         worst / largest
     }
 
-    /// Forces on paths of load and displacement against those of 1000 springs, for a small and a
-    /// large friction.
+    /// Forces on paths of load and displacement are compared with those of 1000 springs, for a
+    /// small and a large friction.
     #[test]
     fn follows_any_history_of_load_and_displacement() {
         let ramp = |t: f64, points: &[(f64, f64)]| {
@@ -414,7 +415,8 @@ mod tests {
         for (name, path) in &paths {
             for beta in [0.3, 0.7, 12.0] {
                 let off = off(beta, path);
-                // A rim that moves while all slides along leaves more corners than are kept.
+                // A rim that moves while the whole contact slips leaves more corners than are
+                // stored.
                 let many = ["out of phase", "around"].contains(name);
                 let allowed = if many { 0.08 } else { 0.015 };
                 assert!(off < allowed, "{name}, {beta}: {off}");

@@ -1,5 +1,5 @@
-//! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the
-//! old ones, so that a second list is not needed.
+//! Update of the contacts: the contacts of each pair are replaced where they are, with the memory
+//! of the old ones, so that a second list is not needed.
 
 use super::narrow::{BallData, Narrow};
 use super::partners::Partners;
@@ -15,11 +15,11 @@ const CHUNK: [usize; 2] = [512, 128];
 const COST: [f64; 2] = [15.0, 200.0];
 /// Approximate time to collect the data of a ball (ns).
 const BALL: f64 = 5.0;
-/// Tasks whose new contacts are kept at a time: a few megabytes.
+/// Number of tasks whose new contacts are kept at the same time: a few megabytes.
 const BATCH: usize = 64;
 
 /// A contact found in this step, without memory; the fields mean the same as in [`Contact`].
-pub(super) struct Hit<S: Space> {
+pub(super) struct DetectedContact<S: Space> {
     pub key: Key,
     pub bodies: [u32; 2],
     pub law: u16,
@@ -28,8 +28,8 @@ pub(super) struct Hit<S: Space> {
     pub geometry: ContactGeometry<S>,
 }
 
-/// An event of the renewal that changes more than the contact; events are in the order of contacts.
-enum RenewalEvent<S: Space> {
+/// An event of the update that changes more than the contact; events are in the order of contacts.
+enum UpdateEvent<S: Space> {
     /// A contact with memory separated.
     Dropped(Contact<S>),
     /// A new contact; the largest penetration among the old contacts of its pair (m), and the size
@@ -38,7 +38,7 @@ enum RenewalEvent<S: Space> {
 }
 
 /// The memory of a contact, rotated with its normal.
-struct Turned<S: Space> {
+struct RotatedMemory<S: Space> {
     law: u16,
     slot: u32,
     /// Tangential opening in the new frame (m).
@@ -47,28 +47,28 @@ struct Turned<S: Space> {
     rotation: Option<S::Spin>,
 }
 
-/// The contacts of the pairs of a task while they are renewed.
-pub(super) struct Renewed<'c, S: Space> {
+/// The contacts of the pairs of a task while they are updated.
+pub(super) struct ContactUpdate<'c, S: Space> {
     contacts: &'c mut [Contact<S>],
     /// The old contacts of the current pair.
     old: Vec<Contact<S>>,
     out: TaskResult<S>,
 }
 
-/// Changes made by a task besides the contacts that it renews in place.
+/// Changes made by a task besides the contacts that it updates in place.
 #[derive(Default)]
 struct TaskResult<S: Space> {
-    /// Number of contacts renewed in place.
+    /// Number of contacts updated in place.
     kept: usize,
     /// Number of old contacts read.
     read: usize,
     /// New contacts after those in place, for which there was no room.
     more: Vec<Contact<S>>,
-    turned: Vec<Turned<S>>,
-    events: Vec<RenewalEvent<S>>,
+    rotated: Vec<RotatedMemory<S>>,
+    events: Vec<UpdateEvent<S>>,
 }
 
-impl<'c, S: Space> Renewed<'c, S> {
+impl<'c, S: Space> ContactUpdate<'c, S> {
     pub fn new(contacts: &'c mut [Contact<S>]) -> Self {
         Self {
             contacts,
@@ -130,7 +130,7 @@ impl<'c, S: Space> Renewed<'c, S> {
     pub fn drop_old(&mut self, k: usize) {
         let contact = &self.contacts[k];
         if contact.memory().is_some() {
-            self.out.events.push(RenewalEvent::Dropped(contact.clone()));
+            self.out.events.push(UpdateEvent::Dropped(contact.clone()));
         }
     }
 
@@ -138,7 +138,7 @@ impl<'c, S: Space> Renewed<'c, S> {
     pub fn drop_others(&mut self, continues: impl Fn(usize) -> bool) {
         for (k, contact) in self.old.iter().enumerate() {
             if !continues(k) && contact.memory().is_some() {
-                self.out.events.push(RenewalEvent::Dropped(contact.clone()));
+                self.out.events.push(UpdateEvent::Dropped(contact.clone()));
             }
         }
     }
@@ -151,55 +151,55 @@ impl<'c, S: Space> Renewed<'c, S> {
         self.out.read = self.contacts.len();
     }
 
-    /// Renews the contact found by [`Self::old_of_balls`].
+    /// Updates the contact found by [`Self::old_of_balls`].
     #[inline]
-    pub fn renew_in_place(&mut self, narrow: &Narrow<S>, k: usize, hit: &Hit<S>) {
+    pub fn continue_in_place(&mut self, narrow: &Narrow<S>, k: usize, found: &DetectedContact<S>) {
         if self.out.more.is_empty() {
             if self.out.kept < k {
                 self.contacts.swap(self.out.kept, k);
             }
-            renew(
+            set_geometry(
                 narrow,
                 &mut self.contacts[self.out.kept],
-                hit,
-                &mut self.out.turned,
+                found,
+                &mut self.out.rotated,
             );
             self.out.kept += 1;
         } else {
             let mut contact = self.contacts[k].clone();
-            renew(narrow, &mut contact, hit, &mut self.out.turned);
+            set_geometry(narrow, &mut contact, found, &mut self.out.rotated);
             self.out.more.push(contact);
         }
     }
 
     /// Adds the contact that continues the old contact `k` of the pair.
-    pub fn renew(&mut self, narrow: &Narrow<S>, k: usize, hit: &Hit<S>) {
+    pub fn continue_old(&mut self, narrow: &Narrow<S>, k: usize, found: &DetectedContact<S>) {
         // In most cases the contact keeps its place in the list, which still holds it.
         if self.out.more.is_empty() && self.out.kept == self.out.read - self.old.len() + k {
             let contact = &mut self.contacts[self.out.kept];
-            renew(narrow, contact, hit, &mut self.out.turned);
+            set_geometry(narrow, contact, found, &mut self.out.rotated);
             self.out.kept += 1;
             return;
         }
         let mut contact = self.old[k].clone();
-        renew(narrow, &mut contact, hit, &mut self.out.turned);
+        set_geometry(narrow, &mut contact, found, &mut self.out.rotated);
         self.push(contact);
     }
 
     /// Adds a new contact of bodies of the reduced radius `size` (m).
-    pub fn add(&mut self, narrow: &Narrow<S>, hit: &Hit<S>, size: f64) {
+    pub fn add(&mut self, narrow: &Narrow<S>, found: &DetectedContact<S>, size: f64) {
         let mut contact = Contact {
-            central: hit.central,
-            vertex_contact: hit.vertex_contact,
+            central: found.central,
+            vertex_contact: found.vertex_contact,
             ..Contact::new(
-                hit.key,
-                hit.bodies,
-                hit.law,
-                hit.geometry,
+                found.key,
+                found.bodies,
+                found.law,
+                found.geometry,
                 narrow.placed.time,
             )
         };
-        contact.broken = narrow.network.broken_pairs.contains(&hit.key.pair());
+        contact.broken = narrow.network.broken_pairs.contains(&found.key.pair());
         // Penetrations in the initial state come from the sample, not from the step.
         if narrow.placed.time > 0.0 {
             let known = self.old.iter().map(|c| -c.gap).fold(0.0, f64::max);
@@ -211,7 +211,7 @@ impl<'c, S: Space> Renewed<'c, S> {
             if contact.gap < 0.0 {
                 self.out
                     .events
-                    .push(RenewalEvent::New(contact.clone(), [known, size]));
+                    .push(UpdateEvent::New(contact.clone(), [known, size]));
             }
         }
         self.push(contact);
@@ -227,13 +227,13 @@ impl<'c, S: Space> Renewed<'c, S> {
     }
 }
 
-/// Gives an old contact the geometry of this step; the rotated memory is added to `turned`.
+/// Gives an old contact the geometry of this step; the rotated memory is added to `rotated`.
 #[inline]
-fn renew<S: Space>(
+fn set_geometry<S: Space>(
     narrow: &Narrow<S>,
     contact: &mut Contact<S>,
-    hit: &Hit<S>,
-    turned: &mut Vec<Turned<S>>,
+    found: &DetectedContact<S>,
+    rotated: &mut Vec<RotatedMemory<S>>,
 ) {
     let from = contact.normal;
     let ContactGeometry {
@@ -241,12 +241,12 @@ fn renew<S: Space>(
         normal,
         arms,
         radius,
-    } = hit.geometry;
-    contact.key = hit.key;
-    contact.bodies = hit.bodies;
-    contact.law = hit.law;
-    contact.central = hit.central;
-    contact.vertex_contact = hit.vertex_contact;
+    } = found.geometry;
+    contact.key = found.key;
+    contact.bodies = found.bodies;
+    contact.law = found.law;
+    contact.central = found.central;
+    contact.vertex_contact = found.vertex_contact;
     (contact.gap, contact.normal) = (gap, normal);
     (contact.arms, contact.radius) = (arms, radius);
     (contact.closing, contact.later) = (false, false);
@@ -256,7 +256,7 @@ fn renew<S: Space>(
     if S::D == 2 || !(springs || contact.memory().is_some()) {
         return;
     }
-    let [i, j] = hit
+    let [i, j] = found
         .bodies
         .map(|b| narrow.placed.scene.bodies.spin[b as usize]);
     let angle = 0.5 * narrow.placed.h * S::split_spin(&normal, &(i + j)).0;
@@ -268,7 +268,7 @@ fn renew<S: Space>(
         let memory = &narrow.network.memory[contact.law as usize];
         let opening = &memory.bonds[slot].opening_t;
         let rotation = memory.rotations.get(slot);
-        turned.push(Turned {
+        rotated.push(RotatedMemory {
             law: contact.law,
             slot: contact.slot,
             opening: S::transport(&from, &normal, angle, opening),
@@ -288,15 +288,15 @@ pub(super) struct PlacedScene<'a, S: Space> {
     pub h: f64,
 }
 
-/// Renews all contacts of the network from its candidate pairs, on several threads if `parallel`.
-pub(super) fn renew_contacts<S: Space>(
+/// Updates all contacts of the network from its candidate pairs, on several threads if `parallel`.
+pub(super) fn update_contacts<S: Space>(
     network: &mut Network<S>,
     placed: &PlacedScene<S>,
     parallel: bool,
 ) {
     let candidates = std::mem::take(&mut network.candidates);
     let (shapes, bodies) = (placed.scene.shapes, placed.scene.bodies);
-    let cores = turned_cores(network, placed.scene, parallel);
+    let cores = rotated_cores(network, placed.scene, parallel);
     let surfaces = shapes.surfaces.iter();
     let frames: Vec<_> = surfaces.map(|s| super::frame(s, bodies)).collect();
     let balls = &shapes.balls;
@@ -311,7 +311,7 @@ pub(super) fn renew_contacts<S: Space>(
     let divide = threads::worth_dividing(parallel, candidates.len(), COST[kind]);
     let size = threads::chunk_size(CHUNK[kind]);
     let batch = if divide { BATCH } else { 1 };
-    let mut renewal = Renewal {
+    let mut list = ContactList {
         contacts: std::mem::take(&mut network.contacts),
         written: 0,
         read: 0,
@@ -331,7 +331,7 @@ pub(super) fn renew_contacts<S: Space>(
             partners: &partners,
         };
         let mut tasks = Vec::with_capacity(batch);
-        let mut contacts = &mut renewal.contacts[renewal.read..];
+        let mut contacts = &mut list.contacts[list.read..];
         let mut chunks = pairs.chunks(size).peekable();
         while let Some(chunk) = chunks.next() {
             let next = chunks.peek().map_or(after.first(), |next| next.first());
@@ -341,23 +341,23 @@ pub(super) fn renew_contacts<S: Space>(
             tasks.push((chunk, own));
         }
         let results = threads::map_tasks(divide, tasks, |(pairs, contacts)| {
-            narrow.renew(pairs, contacts).out
+            narrow.update(pairs, contacts).out
         });
         for result in results {
-            result.apply(network, &mut renewal, placed);
+            result.apply(network, &mut list, placed);
         }
     }
     // Where there are no candidates all old contacts end.
-    for contact in &renewal.contacts[renewal.read..] {
+    for contact in &list.contacts[list.read..] {
         drop_contact(network, contact);
     }
-    network.contacts = renewal.end();
+    network.contacts = list.end();
     network.candidates = candidates;
     network.cores = cores;
 }
 
-/// Returns the place of the first contact whose pair is not before this one. It is probably near
-/// the start, hence the search by doubling.
+/// Returns the place of the first contact whose pair is not before `pair`. That place is probably
+/// near the start, hence the search by doubling.
 fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
     let before = |c: &Contact<S>| c.key.pair() < *pair;
     let mut end = 64;
@@ -368,7 +368,7 @@ fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
 }
 
 /// Cores of the convex pieces in world axes.
-fn turned_cores<S: Space>(
+fn rotated_cores<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
     parallel: bool,
@@ -393,18 +393,18 @@ fn turned_cores<S: Space>(
 
 impl<S: Space> TaskResult<S> {
     /// Applies the result to the network; tasks are applied in the order of their pairs.
-    fn apply(self, network: &mut Network<S>, renewal: &mut Renewal<S>, placed: &PlacedScene<S>) {
-        for turned in self.turned {
-            let memory = &mut network.memory[turned.law as usize];
-            memory.bonds[turned.slot as usize].opening_t = turned.opening;
-            if let Some(rotation) = turned.rotation {
-                memory.rotations[turned.slot as usize] = rotation;
+    fn apply(self, network: &mut Network<S>, list: &mut ContactList<S>, placed: &PlacedScene<S>) {
+        for rotated in self.rotated {
+            let memory = &mut network.memory[rotated.law as usize];
+            memory.bonds[rotated.slot as usize].opening_t = rotated.opening;
+            if let Some(rotation) = rotated.rotation {
+                memory.rotations[rotated.slot as usize] = rotation;
             }
         }
         for event in self.events {
             match event {
-                RenewalEvent::Dropped(contact) => drop_contact(network, &contact),
-                RenewalEvent::New(contact, sizes) => {
+                UpdateEvent::Dropped(contact) => drop_contact(network, &contact),
+                UpdateEvent::New(contact, sizes) => {
                     let compliant = network.memory[contact.law as usize].compliant;
                     let step_size = &mut network.step_size;
                     let times = [placed.time, placed.h];
@@ -413,16 +413,16 @@ impl<S: Space> TaskResult<S> {
                 }
             }
         }
-        renewal.keep(self.kept, self.read);
+        list.keep(self.kept, self.read);
         for contact in self.more {
-            renewal.insert(contact);
+            list.insert(contact);
         }
     }
 }
 
-/// The list of contacts while it is renewed: the new ones, free places, and the old ones of later
-/// pairs.
-struct Renewal<S: Space> {
+/// The list of contacts while it is updated: the new ones, free places, and the old contacts of
+/// later pairs.
+struct ContactList<S: Space> {
     contacts: Vec<Contact<S>>,
     /// Number of new contacts.
     written: usize,
@@ -430,7 +430,7 @@ struct Renewal<S: Space> {
     read: usize,
 }
 
-impl<S: Space> Renewal<S> {
+impl<S: Space> ContactList<S> {
     /// Keeps the first `kept` of the next `read` old contacts.
     fn keep(&mut self, kept: usize, read: usize) {
         if self.written == self.read {
@@ -452,7 +452,7 @@ impl<S: Space> Renewal<S> {
         }
         let (written, count) = (self.written, self.contacts.len());
         if written < count {
-            // The old contacts are moved once, to make room for this one and some more.
+            // The old contacts are moved once, to make room for this contact and some more.
             let room = 16 + count / 64;
             self.contacts.reserve_exact(room);
             self.contacts.resize(count + room, contact.clone());

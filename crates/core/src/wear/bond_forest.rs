@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 
 /// The forest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Ties {
+pub struct BondForest {
     /// Neighbours of each body, once per bond.
     bonds: Vec<Vec<u32>>,
     /// Base to which a body is connected; a base is connected to itself.
@@ -26,31 +26,31 @@ pub struct Ties {
 
 /// Effect of formed and broken bonds on the grains.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct ForestChange {
     /// Pieces that became loose, each with its former base and its bodies in order.
     pub loose: Vec<(u32, Vec<u32>)>,
     /// Bodies that became connected, with their new base.
     pub tied: Vec<(u32, u32)>,
 }
 
-impl Ties {
+impl BondForest {
     /// Builds the forest of a number of bodies from these bases and bonds.
     pub fn new(bodies: usize, bases: &[u32], bonds: impl IntoIterator<Item = [u32; 2]>) -> Self {
-        let mut ties = Self {
+        let mut forest = Self {
             bonds: vec![Vec::new(); bodies],
             base: vec![NONE; bodies],
             parent: vec![NONE; bodies],
             bases: bases.to_vec(),
         };
         for [a, b] in bonds {
-            ties.add_bond(a, b);
+            forest.add_bond(a, b);
         }
         for base in bases {
-            ties.base[*base as usize] = *base;
+            forest.base[*base as usize] = *base;
         }
         let mut tied = Vec::new();
-        ties.spread(bases.to_vec(), &mut tied);
-        ties
+        forest.spread(bases.to_vec(), &mut tied);
+        forest
     }
 
     /// Returns the base to which a body is connected.
@@ -95,7 +95,7 @@ impl Ties {
     }
 
     /// Applies the bonds formed and broken since the last call, with one pair of bodies per bond.
-    pub fn change(&mut self, made: &[[u32; 2]], broken: &[[u32; 2]]) -> Change {
+    pub fn change(&mut self, made: &[[u32; 2]], broken: &[[u32; 2]]) -> ForestChange {
         for [a, b] in made {
             self.add_bond(*a, *b);
         }
@@ -111,7 +111,7 @@ impl Ties {
                 }
             }
         }
-        let mut change = Change::default();
+        let mut change = ForestChange::default();
         // Connected bodies may now reach loose ones.
         let grown = made
             .iter()
@@ -126,7 +126,7 @@ impl Ties {
         for b in &branch {
             (self.base[*b as usize], self.parent[*b as usize]) = (NONE, NONE);
         }
-        let tied_still = |ties: &Self, b: u32| ties.base[b as usize] != NONE;
+        let tied_still = |forest: &Self, b: u32| forest.base[b as usize] != NONE;
         // Search from the bodies that remain connected next to the branch, along the remaining
         // bonds.
         let mut seeds: Vec<u32> = branch
@@ -154,7 +154,7 @@ impl Ties {
             if self.base[*body as usize] != NONE || seen.contains(body) {
                 continue;
             }
-            // Only the newly loose part; loose grains bonded to it were debris before.
+            // Only the newly loose part counts; loose grains bonded to it were debris before.
             let piece: Vec<u32> = self.piece(*body);
             let now = piece.iter().filter(|b| before(**b) == Some(*base));
             let now: Vec<u32> = now.copied().collect();
@@ -208,29 +208,29 @@ mod tests {
     #[test]
     fn a_chain_cut_in_the_middle_loses_its_end_and_gets_it_back() {
         let chain = (0..4).map(|k| [k, k + 1]);
-        let mut ties = Ties::new(6, &[0], chain);
-        assert_eq!((ties.base(4), ties.base(5)), (Some(0), None));
-        let change = ties.change(&[], &[[2, 3]]);
+        let mut forest = BondForest::new(6, &[0], chain);
+        assert_eq!((forest.base(4), forest.base(5)), (Some(0), None));
+        let change = forest.change(&[], &[[2, 3]]);
         assert_eq!(change.loose, [(0, vec![3, 4])]);
-        assert_eq!(ties.piece(4), [3, 4]);
-        let change = ties.change(&[[4, 1], [5, 3]], &[]);
+        assert_eq!(forest.piece(4), [3, 4]);
+        let change = forest.change(&[[4, 1], [5, 3]], &[]);
         assert_eq!(change.tied, [(3, 0), (4, 0), (5, 0)]);
         assert!(change.loose.is_empty());
     }
 
     #[test]
     fn a_bond_that_is_doubled_holds_once_more() {
-        let mut ties = Ties::new(2, &[0], [[0, 1], [1, 0]]);
-        assert_eq!(ties.change(&[], &[[0, 1]]), Change::default());
-        assert_eq!(ties.change(&[], &[[0, 1]]).loose, [(0, vec![1])]);
+        let mut forest = BondForest::new(2, &[0], [[0, 1], [1, 0]]);
+        assert_eq!(forest.change(&[], &[[0, 1]]), ForestChange::default());
+        assert_eq!(forest.change(&[], &[[0, 1]]).loose, [(0, vec![1])]);
     }
 
     #[test]
     fn a_grain_between_two_bases_goes_over_to_the_other() {
-        let mut ties = Ties::new(4, &[0, 3], [[0, 1], [1, 2], [2, 3]]);
-        assert_eq!((ties.base(1), ties.base(2)), (Some(0), Some(3)));
-        assert_eq!(ties.change(&[], &[[0, 1]]).tied, [(1, 3)]);
-        assert_eq!(ties.base(1), Some(3));
+        let mut forest = BondForest::new(4, &[0, 3], [[0, 1], [1, 2], [2, 3]]);
+        assert_eq!((forest.base(1), forest.base(2)), (Some(0), Some(3)));
+        assert_eq!(forest.change(&[], &[[0, 1]]).tied, [(1, 3)]);
+        assert_eq!(forest.base(1), Some(3));
     }
 
     /// Bodies connected to a base, by traversing all bonds.
@@ -260,11 +260,12 @@ mod tests {
                 .map(|_| [rng.random_range(0..bodies), rng.random_range(0..bodies)])
                 .filter(|[a, b]| a != b)
                 .collect();
-            let mut ties = Ties::new(bodies as usize, &bases, bonds.iter().copied());
+            let mut forest = BondForest::new(bodies as usize, &bases, bonds.iter().copied());
             for _ in 0..60 {
-                let tied =
-                    |t: &Ties| -> Vec<bool> { (0..bodies).map(|b| t.base(b).is_some()).collect() };
-                let before = tied(&ties);
+                let tied = |t: &BondForest| -> Vec<bool> {
+                    (0..bodies).map(|b| t.base(b).is_some()).collect()
+                };
+                let before = tied(&forest);
                 let broken: Vec<[u32; 2]> = (0..rng.random_range(0..12usize).min(bonds.len()))
                     .map(|_| bonds.swap_remove(rng.random_range(0..bonds.len())))
                     .collect();
@@ -273,8 +274,8 @@ mod tests {
                     .filter(|[a, b]| a != b)
                     .collect();
                 bonds.extend(&made);
-                let change = ties.change(&made, &broken);
-                let after = tied(&ties);
+                let change = forest.change(&made, &broken);
+                let after = tied(&forest);
                 assert_eq!(after, reached(bodies as usize, &bases, &bonds));
                 // The reported change is exactly the difference.
                 let mut told = before;

@@ -9,9 +9,9 @@ use serde::de::DeserializeOwned;
 /// Error in serializing or deserializing a state.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct CodeError(String);
+pub struct EncodingError(String);
 
-impl CodeError {
+impl EncodingError {
     /// Error for bytes of another case: `what` names, in the plural, what differs.
     pub fn other(what: &str) -> Self {
         Self(format!("it holds other {what} than the case has"))
@@ -22,28 +22,28 @@ impl CodeError {
 ///
 /// # Errors
 /// The type cannot be serialized by postcard.
-pub fn encode<T: Serialize + ?Sized>(state: &T) -> Result<Vec<u8>, CodeError> {
-    postcard::to_stdvec(state).map_err(|e| CodeError(e.to_string()))
+pub fn encode<T: Serialize + ?Sized>(state: &T) -> Result<Vec<u8>, EncodingError> {
+    postcard::to_stdvec(state).map_err(|e| EncodingError(e.to_string()))
 }
 
 /// Deserializes a state, which must use all bytes.
 ///
 /// # Errors
 /// The bytes do not represent a `T`.
-pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodeError> {
+pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, EncodingError> {
     let (state, rest) = decode_first(bytes)?;
     if rest.is_empty() {
         return Ok(state);
     }
-    Err(CodeError(format!("{} bytes too many", rest.len())))
+    Err(EncodingError(format!("{} bytes too many", rest.len())))
 }
 
 /// Deserializes a state at the start of the bytes; returns it with the bytes after it.
 ///
 /// # Errors
 /// The bytes do not begin with a `T`.
-pub fn decode_first<T: DeserializeOwned>(bytes: &[u8]) -> Result<(T, &[u8]), CodeError> {
-    postcard::take_from_bytes(bytes).map_err(|e| CodeError(e.to_string()))
+pub fn decode_first<T: DeserializeOwned>(bytes: &[u8]) -> Result<(T, &[u8]), EncodingError> {
+    postcard::take_from_bytes(bytes).map_err(|e| EncodingError(e.to_string()))
 }
 
 #[cfg(test)]

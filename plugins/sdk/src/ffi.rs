@@ -1,5 +1,5 @@
-//! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law
-//! is here.
+//! The interface layer, which converts the host's columns to the values of one contact and back.
+//! All `unsafe` code of a law is here.
 
 use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
 use core::cell::{Cell, OnceCell};
@@ -12,7 +12,7 @@ use fretwork_abi::{
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Maximum number of internal variables of a law.
-pub const MOST_VARIABLES: usize = 16;
+pub const MAX_VARIABLES: usize = 16;
 
 /// Writes an error message and the index of the contact that caused it into the host's buffer.
 fn write_message(message: *mut FwMessage, contact: i64, text: &str) {
@@ -80,23 +80,25 @@ unsafe fn at(column: *const f64, k: usize) -> f64 {
     if column.is_null() {
         0.0
     } else {
-        // SAFETY: by the contract above.
+        // SAFETY: the caller guarantees that the column is null or has more than k values.
         unsafe { *column.add(k) }
     }
 }
 
 /// # Safety
-/// As [`at`], and nobody else uses the column during the call.
+/// The column must be null or have more than `k` values, and nobody else may use it during the
+/// call.
 #[inline(always)]
 unsafe fn put(column: *mut f64, k: usize, value: f64) {
     if !column.is_null() {
-        // SAFETY: by the contract above.
+        // SAFETY: the caller guarantees that the column has more than k values, and that nobody
+        // else uses it.
         unsafe { *column.add(k) = value }
     }
 }
 
 /// # Safety
-/// The batch is the host's and `k` is below its `n`.
+/// The batch must be the host's, and `k` below its `n`.
 #[inline(always)]
 unsafe fn site(b: &FwBatch, k: usize) -> Site {
     // SAFETY: a column is null or has n > k values.
@@ -106,7 +108,7 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             area: at(b.area, k),
             radius: at(b.radius, k),
             age: at(b.age, k),
-            pressed: at(b.pressed, k),
+            compression_time: at(b.pressed, k),
             rotation: [
                 at(b.rotation_n, k),
                 at(b.rotation_t1, k),
@@ -142,7 +144,7 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
 }
 
 /// # Safety
-/// As [`site`].
+/// The batch must be the host's, and `k` below its `n`.
 #[inline(always)]
 unsafe fn intact(b: &FwBatch, k: usize) -> Intact {
     // SAFETY: a column is null or has n > k values.
@@ -168,15 +170,15 @@ unsafe fn parameters<'a, L: Law>(values: *const f64) -> Option<&'a [f64]> {
     match L::FIELDS.len() {
         0 => Some(&[]),
         _ if values.is_null() => None,
-        // SAFETY: by the contract above.
+        // SAFETY: the caller guarantees one value per parameter of the schema.
         count => Some(unsafe { core::slice::from_raw_parts(values, count) }),
     }
 }
 
-/// Describes which value of a contact is not finite, and where.
+/// Describes which value of which contact is not finite.
 #[cold]
 fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32 {
-    // SAFETY: only called with a contact of the batch.
+    // SAFETY: this function is called only with a contact of the batch.
     let site = unsafe { site(b, k) };
     write_message(
         message,
@@ -186,15 +188,15 @@ fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32
     STATUS_ERROR
 }
 
-/// Runs `each` over the contacts of a batch, with the law and the internal variables, which it may
-/// change in a `COMMIT`; only there they are stored. It returns the name of an output that is not
-/// finite.
+/// Calls `each` for the contacts of a batch, with the law and the internal variables. `each` may
+/// change the variables in a `COMMIT`, in which alone they are stored. It returns the name of an
+/// output that is not finite.
 fn over<L: Law, const COMMIT: bool>(
     raw: *const FwBatch,
     message: *mut FwMessage,
     each: impl Fn(&L, &FwBatch, usize, &Site, &mut [f64]) -> Option<&'static str>,
 ) -> i32 {
-    const { assert!(L::VARIABLES.len() <= MOST_VARIABLES) };
+    const { assert!(L::VARIABLES.len() <= MAX_VARIABLES) };
     guarded(message, |contact| {
         // SAFETY: the host passes a valid batch.
         let Some(batch) = (unsafe { known(raw) }) else {
@@ -216,12 +218,12 @@ fn over<L: Law, const COMMIT: bool>(
             return STATUS_ERROR;
         }
         let law = L::read(values);
-        let mut state = [0.0; MOST_VARIABLES];
+        let mut state = [0.0; MAX_VARIABLES];
         let state = &mut state[..L::VARIABLES.len()];
         for k in 0..batch.n {
             contact.set(k as i64);
             for (v, value) in state.iter_mut().enumerate() {
-                // SAFETY: one column per variable of the schema, or null.
+                // SAFETY: there is one column per variable of the schema, or none.
                 *value = unsafe {
                     match batch.state.is_null() {
                         true => 0.0,
@@ -240,7 +242,8 @@ fn over<L: Law, const COMMIT: bool>(
                         let name = L::VARIABLES[v].name.to_str().unwrap_or("state_next");
                         return not_finite(message, &batch, k, name);
                     }
-                    // SAFETY: as above; `state_next` columns belong to this call.
+                    // SAFETY: there is one column per variable, k < n, and the `state_next` columns
+                    // belong to this call.
                     unsafe {
                         if !batch.state_next.is_null() {
                             put(*batch.state_next.add(v), k, *value);
@@ -274,10 +277,11 @@ macro_rules! give {
     }};
 }
 
-/// `validate` of any law.
+/// The function `validate` of any law.
 ///
 /// # Safety
-/// As required by the ABI: `values` has one value per parameter, `message` is valid or null.
+/// `values` must have one value per parameter, and `message` must be valid or null, as the ABI
+/// requires.
 pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMessage) -> i32 {
     guarded(message, |_| {
         // SAFETY: one value per parameter of the schema.
@@ -295,10 +299,10 @@ pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMe
     })
 }
 
-/// `fracture_energy` of any law; NaN if none is declared, or the law panics.
+/// The function `fracture_energy` of any law. It returns NaN if none is declared or the law panics.
 ///
 /// # Safety
-/// As required by the ABI: `values` has one value per parameter.
+/// `values` must have one value per parameter, as the ABI requires.
 pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64) -> f64 {
     let asked = catch_unwind(AssertUnwindSafe(|| {
         // SAFETY: one value per parameter of the schema.
@@ -308,13 +312,13 @@ pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64)
     asked.ok().flatten().unwrap_or(f64::NAN)
 }
 
-/// Declares functions of the table: what each does with a contact of a batch.
+/// Declares functions of the table by their effect on a contact of a batch.
 macro_rules! calls {
     ($($(#[$doc:meta])* $name:ident<$law:ident>, $commit:literal: $each:expr;)*) => { $(
         $(#[$doc])*
         ///
         /// # Safety
-        /// As required by the ABI: a valid batch and message.
+        /// Batch and message must be valid, as the ABI requires.
         pub unsafe extern "C" fn $name<L: $law>(
             batch: *const FwBatch,
             message: *mut FwMessage,
@@ -324,10 +328,10 @@ macro_rules! calls {
     )* };
 }
 
-/// `prepare` of a contact law.
+/// The function `prepare` of a contact law.
 ///
 /// # Safety
-/// As required by the ABI: a valid batch and message.
+/// Batch and message must be valid, as the ABI requires.
 pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -377,13 +381,13 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
 }
 
 calls! {
-    /// `commit` of a contact law.
+    /// The function `commit` of a contact law.
     contact_commit<ContactLaw>, true: |law: &L, _, _, site, state| {
         law.commit(site, state);
         None
     };
 
-    /// `prepare` of a cohesion law.
+    /// The function `prepare` of a cohesion law.
     cohesion_prepare<CohesionLaw>, false: |law: &L, b, k, site, state| {
         let t = law.traction(site, state);
         give!(
@@ -406,29 +410,29 @@ calls! {
         )
     };
 
-    /// `energy` of a cohesion law.
+    /// The function `energy` of a cohesion law.
     cohesion_energy<CohesionLaw>, false: |law: &L, b, k, site, state| {
         give!(b, k, out_energy = law.energy(site, state))
     };
 
-    /// `commit` of a cohesion law.
+    /// The function `commit` of a cohesion law.
     cohesion_commit<CohesionLaw>, true: |law: &L, b, k, site, state| {
         give!(b, k, out_damage = law.commit(site, state))
     };
 
-    /// `commit` of a damage law.
+    /// The function `commit` of a damage law.
     damage_commit<DamageLaw>, true: |law: &L, b, k, site, state| {
         // SAFETY: k < n.
         let intact = unsafe { intact(b, k) };
         give!(b, k, out_damage = law.grow(site, &intact, state))
     };
 
-    /// `commit` of a wear law.
+    /// The function `commit` of a wear law.
     wear_commit<WearLaw>, true: |law: &L, b, k, site, state| {
         give!(b, k, out_volume = law.volume(site, state))
     };
 
-    /// `commit` of a transport law.
+    /// The function `commit` of a transport law.
     transport_commit<TransportLaw>, true: |law: &L, b, k, site, state| {
         let conductance = law.conductance(site, state);
         give!(

@@ -3,20 +3,20 @@
 use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::view::RunView;
-use fretwork_scene::methods::{Demands, Service};
+use fretwork_scene::methods::{SolverRequirements, SolverSupport};
 
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Missed {
-    /// Their number.
+pub struct UnconvergedSteps {
+    /// Number of these steps.
     pub steps: u64,
-    /// The first of them.
+    /// Number of the first of these steps.
     pub first: u64,
-    /// Largest error of them.
+    /// Largest error in these steps.
     pub error: f64,
 }
 
-impl Missed {
+impl UnconvergedSteps {
     /// Counts a step by its number.
     pub fn add(&mut self, report: &Report, step: u64) {
         if report.converged {
@@ -29,16 +29,16 @@ impl Missed {
         self.error = self.error.max(report.error);
     }
 
-    /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if
-    /// all steps converged.
+    /// Returns advice to the user after `of` steps; proposes only solvers that the laws permit.
+    /// `None` if all steps converged.
     pub fn warning(&self, run: &dyn RunView, of: u64) -> Option<String> {
         let options = run.solver_in_force();
         let seen = self.seen(of, options.tolerance)?;
-        let demands = Demands::of(run);
+        let requirements = SolverRequirements::of(run);
         let others = [Method::Auto, Method::Newton, Method::Interior].into_iter();
         let others = others
             .filter(|m| *m != options.method)
-            .filter(|m| !matches!(demands.service(*m), Service::Refuses(_)));
+            .filter(|m| !matches!(requirements.support(*m), SolverSupport::Refuses(_)));
         let others: Vec<String> = others.map(|m| format!("{m:?}")).collect();
         let other = if others.is_empty() {
             String::new()
@@ -58,8 +58,8 @@ impl Missed {
         ))
     }
 
-    /// Description of the missed steps among `of`, and the first thing to change. `None` if all
-    /// steps converged.
+    /// Returns a description of the missed steps among `of`, and the first setting to change.
+    /// `None` if all steps converged.
     pub(super) fn seen(&self, of: u64, tolerance: f64) -> Option<String> {
         (self.steps > 0).then(|| {
             format!(

@@ -1,17 +1,18 @@
-//! Places in the order of an axis: which of them may lie near another place, without a look at all.
+//! Points sorted along one axis, to find the points that may lie near another one without comparing
+//! all pairs.
 
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Places along the axis on which they extend the farthest.
-pub(super) struct Sorted {
+/// Points sorted along the axis in which they extend the farthest.
+pub(super) struct SortedCentres {
     axis: usize,
     period: Option<f64>,
-    /// Coordinates in the period, in increasing order, with their places in the list.
+    /// Coordinates in the period, in increasing order, with the indices of the points.
     along: Vec<(f64, u32)>,
 }
 
-impl Sorted {
+impl SortedCentres {
     pub fn new<S: Space>(places: &[S::Vector], periodic: &Periodic) -> Self {
         let extent = |axis: usize| {
             let all = places.iter().map(|x| x[axis]);
@@ -34,11 +35,11 @@ impl Sorted {
         }
     }
 
-    /// All places that may lie within a distance of one, in the order of the list; some lie
-    /// farther.
+    /// Returns all points that may lie within a distance (m) of a point, in the order of the list;
+    /// some lie farther.
     pub fn near<V: VectorLike>(&self, at: &V, distance: f64, out: &mut Vec<u32>) {
         out.clear();
-        // Rounding of coordinates must not lose one.
+        // Rounding of coordinates must not lose a point.
         let distance = distance * (1.0 + 1e-9) + 1e-12 * at[self.axis].abs();
         let images = match self.period {
             Some(period) if 2.0 * distance >= period => {
@@ -71,8 +72,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// With a period and without, for narrow and wide searches: none within the distance is
-    /// missing, and the order is that of the list.
+    /// Narrow and wide searches, with and without a period, miss no point within the distance and
+    /// keep the order of the list.
     #[test]
     fn none_within_the_distance_is_missing() {
         let places: Vec<_> = (0..200u32)
@@ -85,7 +86,7 @@ mod tests {
             let periodic = Periodic {
                 period: [period, None, None],
             };
-            let sorted = Sorted::new::<Dim2>(&places, &periodic);
+            let sorted = SortedCentres::new::<Dim2>(&places, &periodic);
             let mut found = Vec::new();
             for (at, distance) in places.iter().flat_map(|x| [(x, 0.01), (x, 0.4), (x, 2.0)]) {
                 sorted.near(at, distance, &mut found);

@@ -1,8 +1,8 @@
-//! Cost of the plugin interface: the same law in a loop and behind the interface, and its share of
-//! a fretting step.
+//! Cost of the plugin interface: one law in a loop and behind the interface, and its share of a
+//! fretting step.
 //!
-//! `cargo bench --bench border`. In a loop, the damage law of Monerie, Acary and Cangemi runs in a
-//! loop over the columns; called as a run calls it, the same loop runs behind the C interface. One
+//! `cargo bench --bench plugin_calls`. First the damage law of Monerie, Acary and Cangemi runs in a
+//! loop over the columns; then the loop runs behind the C interface, called as a run calls it. One
 //! thread.
 
 use fretwork::laws::{Call, Kind};
@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-/// Least of several means (ns).
+/// Smallest of several means (ns).
 fn least(mut work: impl FnMut(), repeats: usize) -> f64 {
     (0..9)
         .map(|_| {
@@ -42,8 +42,8 @@ fn main() {
         opening_broken: parameters[3],
     };
     println!(
-        "{:>8} {:>16} {:>16} {:>14}",
-        "contacts", "compiled ns/c", "called ns/c", "border ns/call"
+        "{:>8} {:>16} {:>16} {:>17}",
+        "contacts", "compiled ns/c", "called ns/c", "interface ns/call"
     );
     let mut call = 0.0;
     for n in [1usize, 10, 100, 1000, 10_000, 100_000] {
@@ -94,7 +94,7 @@ fn main() {
         batch.out_damage = out.as_mut_ptr();
         let loaded = least(
             || {
-                // SAFETY: the columns are arrays of n.
+                // SAFETY: the columns are arrays of n numbers.
                 unsafe { plugin.call(Call::Commit, black_box(&batch)) }
                     .unwrap_or_else(|e| panic!("{e}"));
             },
@@ -104,7 +104,7 @@ fn main() {
             call = loaded - compiled;
         }
         println!(
-            "{n:>8} {:>16.2} {:>16.2} {:>14.0}",
+            "{n:>8} {:>16.2} {:>16.2} {:>17.0}",
             compiled / n as f64,
             loaded / n as f64,
             loaded - compiled
@@ -113,7 +113,7 @@ fn main() {
     share(call);
 }
 
-/// The calls of a step of the fretting case, each at the price of the border, over the step.
+/// Fraction of a fretting step that its calls of laws spend in the interface.
 fn share(call: f64) {
     let file = format!(
         "{}/cases/wheel_rail_fretting.ron",

@@ -7,7 +7,7 @@
 )]
 use fretwork_law::abi::*;
 use fretwork_law::{
-    ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Variable, WearLaw, border,
+    ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Variable, WearLaw, ffi,
     parameters,
 };
 use std::ffi::{CStr, c_char};
@@ -15,7 +15,7 @@ use std::mem::offset_of;
 use std::ptr::null;
 
 parameters! {
-    /// Does what a test asks for.
+    /// A law that does what a test requests.
     pub struct Toy {
         mode: "" = 0.0, 0.0, 9.0, "0 plain, 1 not a number, 2 panics, 3 refused";
     }
@@ -72,7 +72,7 @@ fn zero() -> FwBatch {
     batch
 }
 
-/// Calls with a message of `capacity` bytes; gives status, contact, text.
+/// Calls a function with a message of `capacity` bytes; returns status, contact and text.
 fn call(capacity: usize, body: impl FnOnce(*mut FwMessage) -> i32) -> (i32, i64, String) {
     let mut text = vec![1 as c_char; capacity];
     let mut message = FwMessage {
@@ -84,7 +84,7 @@ fn call(capacity: usize, body: impl FnOnce(*mut FwMessage) -> i32) -> (i32, i64,
     let status = body(&mut message);
     let said = match status {
         STATUS_OK => String::new(),
-        // SAFETY: the border ends every message.
+        // SAFETY: every message ends in a zero byte.
         _ => unsafe { CStr::from_ptr(text.as_ptr()) }
             .to_str()
             .expect("UTF-8")
@@ -101,11 +101,11 @@ fn null_columns_read_as_zero_and_outputs_may_be_null() {
     (batch.gap, batch.parameters) = (gap.as_ptr(), mode.as_ptr());
     batch.out_friction = mu.as_mut_ptr();
     // SAFETY: columns have two values or are null.
-    let answer = call(80, |m| unsafe { border::contact_prepare::<Toy>(&batch, m) });
+    let answer = call(80, |m| unsafe { ffi::contact_prepare::<Toy>(&batch, m) });
     assert_eq!((answer.0, mu), (STATUS_OK, [1.0, 2.0]));
 }
 
-/// An older host: what lies beyond its size is not read, whatever the bytes there are.
+/// With an older host, what is beyond its size is not read, whatever the bytes are.
 #[test]
 fn nothing_is_read_beyond_the_size() {
     let (gap, wild, mode, mut mu) = ([1.0], [7.0], [0.0], [9.0]);
@@ -116,7 +116,7 @@ fn nothing_is_read_beyond_the_size() {
     batch.out_friction = mu.as_mut_ptr();
     batch.size = offset_of!(FwBatch, damage) + 4;
     // SAFETY: columns have one value or are null.
-    let run = |b: &FwBatch| call(80, |m| unsafe { border::contact_prepare::<Toy>(b, m) }).0;
+    let run = |b: &FwBatch| call(80, |m| unsafe { ffi::contact_prepare::<Toy>(b, m) }).0;
     assert_eq!(run(&batch), STATUS_OK);
     assert_eq!(mu, [9.0], "the output lies beyond the size");
     batch.size = size_of::<FwBatch>() + 64;
@@ -126,8 +126,8 @@ fn nothing_is_read_beyond_the_size() {
     batch.size = size_of::<FwBatch>();
     batch.parameters = null();
     assert_eq!(run(&batch), STATUS_ERROR);
-    // SAFETY: null is what is tested.
-    let none = call(80, |m| unsafe { border::contact_prepare::<Toy>(null(), m) });
+    // SAFETY: the null pointer is what is tested.
+    let none = call(80, |m| unsafe { ffi::contact_prepare::<Toy>(null(), m) });
     assert_eq!(none.0, STATUS_ERROR);
 }
 
@@ -142,7 +142,7 @@ fn state_moves_in_a_commit_and_faults_name_the_contact() {
         (batch.state, batch.state_next) = (columns.as_ptr(), next.as_ptr());
         batch.out_damage = damage.as_mut_ptr();
         // SAFETY: columns have three values or are null.
-        call(60, |m| unsafe { border::damage_commit::<Toy>(&batch, m) })
+        call(60, |m| unsafe { ffi::damage_commit::<Toy>(&batch, m) })
     };
     assert_eq!(run(0.0).0, STATUS_OK);
     let nan = run(1.0);
@@ -160,7 +160,7 @@ fn infinite_state_is_a_fault() {
     let mut batch = zero();
     (batch.n, batch.parameters) = (1, &raw const mode);
     // SAFETY: columns are null.
-    let answer = call(200, |m| unsafe { border::wear_commit::<Toy>(&batch, m) });
+    let answer = call(200, |m| unsafe { ffi::wear_commit::<Toy>(&batch, m) });
     assert_eq!((answer.0, answer.1), (STATUS_ERROR, 0));
     assert!(answer.2.contains("`slid`"), "{}", answer.2);
 }
@@ -169,9 +169,9 @@ fn infinite_state_is_a_fault() {
 fn a_refusal_is_cut_between_characters() {
     let mode = 3.0;
     let run = |capacity| {
-        // SAFETY: one value, one parameter.
+        // SAFETY: there is one value for the one parameter.
         call(capacity, |m| unsafe {
-            border::validate::<Toy>(&raw const mode, m)
+            ffi::validate::<Toy>(&raw const mode, m)
         })
     };
     assert_eq!(

@@ -4,22 +4,22 @@
 //! contact law returns at run time: a constant law is called once, any other is tried on a bench
 //! with trial contacts.
 
-use super::bench::{Bench, Motion, State};
+use super::bench::{Bench, BenchMotion, BenchState};
 use super::error::LawError;
-use super::interface::{BondRule, Interface, Loaded};
+use super::interface::{BondRule, Interface, LoadedLaw};
 use super::kind::Kind;
 
 /// Whether a law requires a feature, from never to always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Requirement {
-    /// It never does.
+    /// The law never requires it.
     #[default]
     Never,
-    /// It did not in the trials, but the law decides at run time.
-    Unseen,
-    /// It did in some of the trials.
+    /// The law did not require it in the trials, but decides at run time.
+    NotObserved,
+    /// The law required it in some of the trials.
     Sometimes,
-    /// It does in every closed contact.
+    /// The law requires it in every closed contact.
     Always,
 }
 
@@ -32,7 +32,7 @@ impl Requirement {
             (true, true) => Self::Always,
             (true, false) => Self::Sometimes,
             _ if constant => Self::Never,
-            _ => Self::Unseen,
+            _ => Self::NotObserved,
         }
     }
 }
@@ -44,7 +44,7 @@ pub struct LawRequirements {
     pub friction: Requirement,
     /// Rolling or spinning friction.
     pub rotation: Requirement,
-    /// Shear cohesion; `Unseen` for laws with bonds, which the trials do not cover.
+    /// Shear cohesion; `NotObserved` for laws with bonds, which the trials do not cover.
     pub cohesion: Requirement,
 }
 
@@ -53,10 +53,14 @@ impl Interface {
     ///
     /// # Errors
     /// A law's error in a trial.
-    pub fn demand(&self, dimension: u32, radii: &[f64]) -> Result<LawRequirements, LawError> {
+    pub fn solver_requirements(
+        &self,
+        dimension: u32,
+        radii: &[f64],
+    ) -> Result<LawRequirements, LawError> {
         let bonds = self.opens() && (self.bonds != BondRule::Never || self.healing.is_some());
         let acting = self.clone().with_bonds(self.bonds, None)?;
-        let tried = |l: &Loaded| {
+        let tried = |l: &LoadedLaw| {
             let bonds = self.acts_on_bonds(l);
             !bonds && [Kind::CONTACT, Kind::COHESION].contains(&l.plugin.kind)
         };
@@ -79,7 +83,7 @@ impl Interface {
             friction: Requirement::of(&rubs, constant),
             rotation: Requirement::of(&moment_steps, constant),
             cohesion: Requirement::of(&grips, simple).max(if bonds {
-                Requirement::Unseen
+                Requirement::NotObserved
             } else {
                 Requirement::Never
             }),
@@ -92,24 +96,24 @@ const STEP: f64 = 1e-4;
 
 /// Returns trial contacts: new and old, intact and damaged, compressed and not, at low and high
 /// sliding speeds.
-fn trials(bench: &Bench, radius: f64) -> (Vec<State>, Vec<Motion>) {
+fn trials(bench: &Bench, radius: f64) -> (Vec<BenchState>, Vec<BenchMotion>) {
     let (mut states, mut motions) = (Vec::new(), Vec::new());
     for pressure in [0.0, 1e3, 1e6, 1e9] {
         for slide in [0.0, 1e-6, 1e-3, 1.0] {
             for age in [0.0, 1.0] {
                 for damage in [0.0, 1.0] {
-                    states.push(State {
+                    states.push(BenchState {
                         time: age,
                         compression_time: if pressure > 0.0 { age } else { 0.0 },
                         damage,
                         ..bench.fresh()
                     });
                     let gap = if pressure > 0.0 { 0.0 } else { 1e-3 * radius };
-                    motions.push(Motion {
+                    motions.push(BenchMotion {
                         opening: [0.0, slide * STEP, 0.0],
                         gap,
                         pressure,
-                        ..Motion::default()
+                        ..BenchMotion::default()
                     });
                 }
             }

@@ -6,7 +6,7 @@
 
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
-use crate::layer::{Balance, Layer};
+use crate::layer::{Balance, LayerBalance};
 use fretwork_core::contact::ContactDissipation;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub(super) type Energies = [f64; MECHANISMS.len()];
 
 /// Kinds of pairs of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum PairKind {
     /// Two grains.
     Grains,
     /// The first of the two first bodies, and a grain.
@@ -29,7 +29,7 @@ pub(super) enum Place {
     Others,
 }
 
-impl Place {
+impl PairKind {
     /// All.
     pub const ALL: [Self; 5] = [
         Self::Grains,
@@ -39,7 +39,7 @@ impl Place {
         Self::Others,
     ];
 
-    /// Its name, with those of the first bodies.
+    /// Returns the name, which contains those of the first bodies.
     pub fn name(self, between: &(String, String)) -> String {
         match self {
             Self::Grains => "grain_grain".to_owned(),
@@ -66,24 +66,24 @@ impl Place {
 /// Energies since the start of the account.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Dissipation {
-    /// Per bin, since the last sample.
+    /// Energies per bin, since the last sample.
     pub pending: Vec<Energies>,
-    /// Per bin, in total.
+    /// Energies per bin, in total.
     pub bins: Vec<Energies>,
-    /// By place, in the order of [`Place::ALL`].
-    pub places: [Energies; Place::ALL.len()],
+    /// Energies per kind of pair, in the order of [`PairKind::ALL`].
+    pub places: [Energies; PairKind::ALL.len()],
     /// Work of the sliding on the layer, the integral of Q V dt (J).
     pub work: f64,
     /// The integral of P |V| dt (J).
     pub load: f64,
     /// Observer of dissipated and stored energy and of the work of all driven bodies, with its
     /// balance at the start of the account and now.
-    ledger: Option<(Layer, Balance, Balance)>,
+    ledger: Option<(LayerBalance, Balance, Balance)>,
     grain: Vec<bool>,
 }
 
 impl Dissipation {
-    /// An account that has not started.
+    /// Creates an account that has not started.
     pub fn new(bins: usize, grain: Vec<bool>) -> Self {
         Self {
             pending: vec![Energies::default(); bins],
@@ -98,7 +98,7 @@ impl Dissipation {
 
     /// Starts the account from the current state.
     pub fn begin(&mut self, run: &dyn RunView) {
-        let layer = Layer::new(run);
+        let layer = LayerBalance::new(run);
         let balance = layer.balance(run);
         self.ledger = Some((layer, balance, balance));
     }
@@ -108,8 +108,8 @@ impl Dissipation {
         self.ledger.is_some()
     }
 
-    /// Friction coefficient from the ledger: dissipated and stored energy, less the work of the
-    /// driven bodies other than by sliding, over the integral of P |V| dt.
+    /// Returns the friction coefficient from the ledger: dissipated and stored energy, less the
+    /// work of the driven bodies other than by sliding, over the integral of P |V| dt.
     pub fn friction(&self) -> Option<f64> {
         let (_, start, end) = self.ledger.as_ref()?;
         let other = end.other - start.other - self.work;
@@ -154,7 +154,7 @@ impl Dissipation {
     }
 
     fn add(&mut self, bodies: [u32; 2], ends: [u32; 2], bin: usize, energies: Energies) {
-        let place = Place::of(bodies, ends, &self.grain) as usize;
+        let place = PairKind::of(bodies, ends, &self.grain) as usize;
         for (k, energy) in energies.into_iter().enumerate() {
             self.places[place][k] += energy;
             self.pending[bin - 1][k] += energy;
@@ -162,13 +162,13 @@ impl Dissipation {
         }
     }
 
-    /// Energies per bin since the last sample; resets them.
+    /// Returns the energies per bin since the last sample, and resets them.
     pub fn take(&mut self) -> Vec<Energies> {
         let none = vec![Energies::default(); self.pending.len()];
         std::mem::replace(&mut self.pending, none)
     }
 
-    /// Total energy.
+    /// Returns the total energy.
     pub fn total(&self) -> f64 {
         self.places.iter().flatten().sum()
     }
