@@ -85,8 +85,9 @@ impl AnySimulation {
         &mut self,
         time: f64,
         after: &mut dyn FnMut(&dyn RunView, &StepReport) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, StepError> {
-        in_dimension!(self, |s| s.run_until(time, |s, report| after(s, report)))
+    ) -> Result<(), StepError> {
+        let ended = in_dimension!(self, |s| s.run_until(time, |s, report| after(s, report)));
+        ended.map(|_| ())
     }
 
     /// Converts to the simulation in dimension `S`.
