@@ -165,7 +165,7 @@ const MODULES: [&str; 21] = [
     "out_of_memory",
     "huge_pages",
     "threads",
-    "code",
+    "encoding",
     "program",
     "unit",
     "lanes",
