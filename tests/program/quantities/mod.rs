@@ -2,6 +2,7 @@
 //! in one file appears everywhere, no other source names a quantity, and the page on outputs lists
 //! them all.
 
+mod experiments;
 mod named;
 mod page;
 

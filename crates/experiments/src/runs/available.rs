@@ -1,12 +1,13 @@
 //! Outputs of a case, determined before anything runs.
 
 use super::output::{OutputName, listed};
+use crate::Program;
 use fretwork_observe::quantity::{Catalogue, Findings, Role, renamed, unit};
 use fretwork_observe::standard;
 use fretwork_observe::statistics::Column;
-use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 use fretwork_scene::measures::MeasureSpec;
+use fretwork_scene::{Built, LoadedCase};
 use serde_json::Value;
 
 /// The outputs of a case.
@@ -21,12 +22,15 @@ pub struct AvailableQuantities {
 }
 
 impl AvailableQuantities {
-    /// Determines the outputs of a case and its scene.
-    pub fn of(case: &Case, built: &Built) -> Self {
+    /// Determines the outputs of a case and its scene, by the observers of the program's runs.
+    pub fn of(loaded: &LoadedCase, built: &Built, program: &Program) -> Self {
+        let run = built.simulation.view();
+        let observers = (program.observers)(loaded, run);
+        let measures = measure_names(&loaded.case).into_iter();
         Self {
-            found: standard::declared(case, built.simulation.view()),
-            columns: columns(case, built),
-            measures: case.measures.iter().map(|m| m.name().to_owned()).collect(),
+            found: standard::declared_by(&observers, run),
+            columns: observers.columns(),
+            measures: measures.map(str::to_owned).collect(),
         }
     }
 
@@ -148,9 +152,4 @@ fn within(path: &str, group: &str) -> bool {
 /// Returns the names of the measures of a case.
 pub fn measure_names(case: &Case) -> Vec<&str> {
     case.measures.iter().map(MeasureSpec::name).collect()
-}
-
-/// Returns the columns of the statistics of a case.
-pub fn columns(case: &Case, built: &Built) -> Vec<Column> {
-    standard::observers(case, built.simulation.view(), 0.0).columns()
 }

@@ -141,7 +141,7 @@ impl Plan {
                 let (scene, random) = build(&base, place.program)?;
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
-                let (outputs, units) = outputs(read, &base, &scene)?;
+                let (outputs, units) = outputs(read, &base, &scene, place.program)?;
                 StudyFacts {
                     units,
                     fingerprint,
@@ -347,8 +347,9 @@ fn outputs(
     read: &StudyFile,
     base: &LoadedCase,
     scene: &Built,
+    program: &Program,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
-    let available = AvailableQuantities::of(&base.case, scene);
+    let available = AvailableQuantities::of(base, scene, program);
     let asked = &read.spec.outputs;
     let mut all: Vec<OutputName> = Vec::new();
     if asked.is_empty() {
