@@ -126,12 +126,12 @@ const FIELDS: [Field; 10] = [
     Field {
         name: "jumps",
         doc: "checked jumps",
-        schema: Schema::Part(&JUMP),
+        schema: Schema::ListOfParts(&JUMP),
     },
     Field {
         name: "points",
         doc: "states after the computed cycles",
-        schema: Schema::Part(&POINT),
+        schema: Schema::ListOfParts(&POINT),
     },
 ];
 

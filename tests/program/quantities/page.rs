@@ -42,7 +42,12 @@ fn add(loaded: &LoadedCase, built: &Built, all: &mut Vec<Declared>) {
             .iter()
             .any(|g| path.starts_with(g))
     };
-    let now = found.all().iter().map(|q| {
+    // A list without entries stands for what its entries will be.
+    let values = found
+        .all()
+        .iter()
+        .filter(|q| !found.expects_below(&q.name()));
+    let now = values.map(|q| {
         let run = q.role == Role::Diagnostic || q.topic == Topic::Run;
         (q.pattern(), spelled(q.unit), q.doc.clone(), run)
     });

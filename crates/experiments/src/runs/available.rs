@@ -130,15 +130,15 @@ impl AvailableQuantities {
             // The value is known after a run only; its schema is declared.
             if within(name, &own) && (q.value.is_null() || q.value.is_array()) {
                 return match self.found.expects(name) {
-                    Some(false) => unknown(),
-                    Some(true) | None => Ok(()),
+                    true => Ok(()),
+                    false => unknown(),
                 };
             }
         }
         // The list has other entries at the start than at the end.
         match self.found.expects(name) {
-            Some(true) => Ok(()),
-            _ => unknown(),
+            true => Ok(()),
+            false => unknown(),
         }
     }
 }
