@@ -9,6 +9,9 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
+/// The group of the numbers of measures.
+const MEASURES: &str = "measures";
+
 /// Quantities in the order in which they were added, and warnings. A quantity that is added again
 /// replaces the value of the first.
 #[derive(Clone, Default)]
@@ -108,22 +111,31 @@ impl Findings {
         self.put(path.to_vec(), value.into(), unit, doc.into())
     }
 
-    /// Adds a number of a measure of the case, with its unit.
+    /// Adds a number of a measure of the case, with its unit. Without a value, or without one yet,
+    /// it is only declared.
     pub fn measure(
         &mut self,
         name: &str,
-        value: f64,
+        value: impl Into<Option<f64>>,
         unit: Unit,
         doc: impl Into<String>,
-    ) -> &mut Quantity {
+    ) {
+        let Some(value) = value.into() else {
+            return self.to_come.push(Expected {
+                path: format!("{MEASURES}.{name}"),
+                unit,
+                doc: doc.into(),
+                role: Role::Secondary,
+            });
+        };
         let symbol = unit.heading(self.dimension);
         if !symbol.is_empty() {
             let doc = "unit of the measure of this name";
             let said = self.entry("measure_units", name, symbol, super::unit::WORD, doc);
             said.role = Role::Detail;
         }
-        let measure = self.entry("measures", name, value, unit, doc);
-        measure.about(Topic::Measures).secondary(name)
+        let measure = self.entry(MEASURES, name, value, unit, doc);
+        measure.about(Topic::Measures).secondary(name);
     }
 
     /// Adds a result in words.
@@ -266,7 +278,7 @@ impl Findings {
         }
     }
 
-    /// Returns the fields of results that are not available yet.
+    /// Returns fields of results, and numbers of measures, that are not available yet.
     pub fn expected(&self) -> &[Expected] {
         &self.to_come
     }
@@ -382,7 +394,7 @@ impl Findings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::unit::{MASS, SECOND};
+    use super::super::unit::{MASS, MASS_FLOW, SECOND};
     use super::super::{parts, values};
     use super::*;
     use serde::Serialize;
@@ -411,7 +423,12 @@ mod tests {
     fn what_has_no_value_yet_has_its_path_and_unit() {
         let mut found = Findings::new(2);
         found.parts::<Group>("group", &None::<Group>, "a group");
-        for (path, unit) in [("group.entries.3.mass", "kg/m"), ("group.window.1", "s")] {
+        found.measure("flow", None::<f64>, MASS_FLOW, "a flow");
+        for (path, unit) in [
+            ("group.entries.3.mass", "kg/m"),
+            ("group.window.1", "s"),
+            ("measures.flow", "kg/(m s)"),
+        ] {
             assert_eq!(found.unit_of(path), Some(unit), "{path}");
             assert!(found.expects(path), "{path}");
         }
@@ -421,7 +438,7 @@ mod tests {
                 "{group}"
             );
         }
-        for none in ["group.entries.mass", "group.window.1.mass"] {
+        for none in ["group.entries.mass", "group.window.1.mass", "measures.flw"] {
             assert!(!found.expects(none) && !found.expects_below(none), "{none}");
         }
         // A list that is there has the paths of its entries, and an empty one those to come.
@@ -434,5 +451,6 @@ mod tests {
         assert_eq!(found.number("now.entries.0.mass"), Some(2.0));
         assert_eq!(found.unit_of("now.entries.7.mass"), Some("kg/m"));
         assert_eq!(found.unit_of("empty.entries.0.mass"), Some("kg/m"));
+        assert_eq!(found.number("measures.flow"), None);
     }
 }
