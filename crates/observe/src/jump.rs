@@ -138,8 +138,11 @@ const FIELDS: [Field; 10] = [
 /// Marks the results that cases without jumps do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
-    let none = found.add("jump", (), WORD, "jumps over cycles; null without");
-    none.lacks("the case has no jumps over cycles (`jump`)");
+    let none = None::<JumpSummary>;
+    found.fields("jump", &none, &FIELDS, "jumps over cycles; null without");
+    found.edit("jump", |q| {
+        q.lacks("the case has no jumps over cycles (`jump`)");
+    });
 }
 
 /// Returns the sentence for the terminal.
