@@ -5,6 +5,7 @@
 mod experiments;
 mod named;
 mod page;
+mod wrong_names;
 
 use crate::resume::common::Folder;
 use fretwork::record::observer::{Event, EventTable};
