@@ -81,6 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let program = Program {
         search: shipped::search_path(),
         plugins: Vec::new(),
+        observers: record::run_observers,
         check_names: record::check_names,
     };
     let out = folder.join("results");

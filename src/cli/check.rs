@@ -9,7 +9,7 @@ mod load;
 mod springs;
 
 use super::output::answer;
-use super::{CaseArgs, Failure};
+use super::{CaseArgs, Failure, observers};
 use crate::bodies::Dof;
 use crate::experiments::runs::trial::Trial;
 use crate::geometry::space::ball_volume;
@@ -39,7 +39,7 @@ pub struct CheckArgs {
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     let built = loaded.build(&args.case.plugins.search()?)?;
-    check_names(&loaded, &built)?;
+    check_names(&loaded, &observers::all(&loaded, built.simulation.view()))?;
     let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
     for (label, text) in lines(&loaded, &built, !args.no_timing) {
         let _ = write!(out, "\n{}", line_of(&label, &text));

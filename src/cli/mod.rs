@@ -12,6 +12,7 @@ mod experiment;
 mod fit;
 mod law;
 mod number;
+mod observers;
 mod output;
 mod progress;
 mod report;
@@ -21,6 +22,7 @@ mod study;
 mod trade;
 
 pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
+pub use self::observers::{Added, add as add_observers};
 pub use self::report::make as make_report;
 pub use self::run::{default_folder, place as place_of};
 pub use fretwork_view::{ReportError, compare as compare_runs};
@@ -174,6 +176,7 @@ impl PluginArgs {
         Ok(Program {
             search: self.search()?,
             plugins: self.words(),
+            observers: observers::all,
             check_names,
         })
     }

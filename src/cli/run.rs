@@ -2,7 +2,7 @@
 
 use super::output::{answer_json, inform};
 use super::progress::Display;
-use super::{CaseArgs, Failure, again};
+use super::{CaseArgs, Failure, again, observers};
 use crate::interrupt;
 use crate::record::checkpoint::FolderState;
 use crate::record::{self, Run, RunError, RunOptions, Summary};
@@ -182,7 +182,8 @@ fn run_case(
     let mut built = built;
     let origins = std::mem::take(&mut built.origins);
     let mut display = Display::new(args.json);
-    let mut run = Run::new(loaded, built, options);
+    let added = observers::added(loaded, built.simulation.view());
+    let mut run = Run::new(loaded, built, options).observe_all(added);
     if let Some(stop) = stop {
         run = run.resume(stop);
     }

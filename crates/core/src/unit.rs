@@ -58,6 +58,10 @@ pub const CURRENT: Unit = Unit::by_depth("A", "A/m");
 pub const CONDUCTANCE: Unit = Unit::by_depth("W/K", "W/(m K)");
 /// Electric conductances.
 pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
+/// Moments of forces.
+pub const MOMENT: Unit = Unit::by_depth("N m", "N m/m");
+/// Heat over a difference of temperature.
+pub const HEAT_CAPACITY: Unit = Unit::by_depth("J/K", "J/(K m)");
 /// Moments of inertia.
 pub const INERTIA: Unit = Unit::by_depth("kg m^2", "kg m");
 

@@ -21,7 +21,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
 /// The case is refused.
 pub fn build(loaded: &LoadedCase, program: &Program) -> Result<(Built, bool), Error> {
     let scene = loaded.build(&program.search)?;
-    (program.check_names)(loaded, &scene)?;
+    let observers = (program.observers)(loaded, scene.simulation.view());
+    (program.check_names)(loaded, &observers)?;
     let random = seed_matters(loaded, &scene, &program.search)?;
     Ok((scene, random))
 }

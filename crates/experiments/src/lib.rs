@@ -42,7 +42,9 @@ pub mod trade;
 pub use case::{build, load};
 pub use error::Error;
 
-use fretwork_scene::{Built, InputError, LoadedCase};
+use fretwork_core::view::RunView;
+use fretwork_observe::Observers;
+use fretwork_scene::{InputError, LoadedCase};
 
 /// Parts of the program that experiments need for its runs.
 #[derive(Clone, Debug)]
@@ -51,6 +53,8 @@ pub struct Program {
     pub search: fretwork_core::laws::SearchPath,
     /// Arguments of each run for the same plugins.
     pub plugins: Vec<String>,
-    /// Refuses a case whose run has two columns or two files of the same name.
-    pub check_names: fn(&LoadedCase, &Built) -> Result<(), InputError>,
+    /// Observers of the runs of a case: what they report is what experiments compare.
+    pub observers: fn(&LoadedCase, &dyn RunView) -> Observers,
+    /// Refuses a case whose run has two columns or two files of the same name, by its observers.
+    pub check_names: fn(&LoadedCase, &Observers) -> Result<(), InputError>,
 }

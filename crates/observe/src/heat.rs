@@ -256,21 +256,18 @@ impl Observer for HeatObserver {
         found.measure("temperature_max", self.state.highest, KELVIN, doc);
         let doc = "residual of the account of heat over the largest heat";
         found.measure("heat_residual_relative", self.state.off, ONE, doc);
-        for (name, unit, doc) in [
-            (
-                "temperature_mean",
+        if end.simulation.grain_flags().contains(&true) {
+            let doc = "mean temperature of the grains at the end";
+            found.measure(
+                "temperature_mean_end",
+                last("temperature_mean"),
                 KELVIN,
-                "mean temperature of the grains at the end",
-            ),
-            (
-                "resistance",
-                RESISTANCE,
-                "resistance of the circuit at the end",
-            ),
-        ] {
-            if let Some(value) = last(name) {
-                found.measure(&format!("{name}_end"), value, unit, doc);
-            }
+                doc,
+            );
+        }
+        if self.circuit {
+            let doc = "resistance of the circuit at the end";
+            found.measure("resistance_end", last("resistance"), RESISTANCE, doc);
         }
         if let Some(checks) = checks(end.simulation, self.state.off, &self.state.shares) {
             found.begin(Topic::Run, Role::Diagnostic);

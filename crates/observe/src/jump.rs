@@ -126,20 +126,23 @@ const FIELDS: [Field; 10] = [
     Field {
         name: "jumps",
         doc: "checked jumps",
-        schema: Schema::Part(&JUMP),
+        schema: Schema::ListOfParts(&JUMP),
     },
     Field {
         name: "points",
         doc: "states after the computed cycles",
-        schema: Schema::Part(&POINT),
+        schema: Schema::ListOfParts(&POINT),
     },
 ];
 
 /// Marks the results that cases without jumps do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
-    let none = found.add("jump", (), WORD, "jumps over cycles; null without");
-    none.lacks("the case has no jumps over cycles (`jump`)");
+    let none = None::<JumpSummary>;
+    found.fields("jump", &none, &FIELDS, "jumps over cycles; null without");
+    found.edit("jump", |q| {
+        q.lacks("the case has no jumps over cycles (`jump`)");
+    });
 }
 
 /// Returns the sentence for the terminal.

@@ -3,7 +3,7 @@
 use super::figures;
 use super::output::Output;
 use super::quantity::unit::{METRE, VOLUME, WORD};
-use super::quantity::{Findings, Role, Topic, quantity};
+use super::quantity::{Findings, Role, Topic, quantity, values};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::view::{RunView, ScarView};
@@ -31,7 +31,7 @@ crate::described! {
         /// Depth at its middle.
         pub middle: f64 => METRE,
         /// Depth of the deepest slice on the left and on the right of the middle.
-        pub sides: [f64; 2] => METRE,
+        pub sides: [f64; 2] = values(METRE),
         /// Depth at which the surface is worn through.
         pub thickness: f64 => METRE,
     }

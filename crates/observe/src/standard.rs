@@ -79,7 +79,11 @@ pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
 /// Returns the results of a run of a case as far as they are known before its first step: values
 /// are those of the start, and results that a case cannot have give the reason.
 pub fn declared(case: &Case, run: &dyn RunView) -> Findings {
-    let observers = observers(case, run, 0.0);
+    declared_by(&observers(case, run, 0.0), run)
+}
+
+/// What a run with these observers will say, as far as it is known before its first step.
+pub fn declared_by(observers: &Observers, run: &dyn RunView) -> Findings {
     let end = RunEnd {
         simulation: run,
         table: &Table::new(observers.columns(), run.dimension()),

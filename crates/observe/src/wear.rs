@@ -6,7 +6,7 @@ use super::figures::history;
 use super::first_bodies::{self, BodyWear};
 use super::output::Output;
 use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WORD};
-use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
+use super::quantity::{Findings, Role, Topic, Wording, number, parts, quantity};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
@@ -44,7 +44,7 @@ crate::described! {
         /// a friction test.
         pub load_path: Option<f64> => LOAD_PATH,
         /// Wear of the first bodies that lost material.
-        pub bodies: Vec<BodyWear> = part::<BodyWear>(),
+        pub bodies: Vec<BodyWear> = parts::<BodyWear>(),
     }
 }
 

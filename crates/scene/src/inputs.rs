@@ -189,7 +189,7 @@ impl Walk<'_> {
         self.out.push(Input {
             path: parts.join("."),
             value,
-            unit: key_units::of(&at.named, self.dimension),
+            unit: key_units::of(&at.named, self.dimension as usize),
             from,
         });
     }

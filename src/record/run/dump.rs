@@ -2,6 +2,7 @@
 
 use super::{Recorder, RunError, unwritable};
 use crate::record::fclib;
+use crate::record::quantity::unit::MOMENTUM;
 use crate::step::StepReport;
 
 impl Recorder<'_> {
@@ -21,16 +22,12 @@ impl Recorder<'_> {
         std::fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
         let (case, s) = (&self.loaded.case, &self.simulation);
         let title = format!("{}, step {step}", case.name);
-        let per = if s.dimension() == 2 {
-            " per m of depth"
-        } else {
-            ""
-        };
+        let impulse = MOMENTUM.symbol(s.dimension());
         let description = format!(
             "u: velocities of the candidate of a contact relative to its antagonist, (n, t) or (n, t1, t2), n \
              towards the candidate (m/s); u_n includes the step's shift (an open gap over h, the correction \
              of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
-             normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
+             normal diagonal of W is 1; r/{scale:e} is in {impulse}. Step {:e} s, theta {}, time {:e} s; solved \
              in the run by {} to an error of {:.1e}, {}.",
             s.options().scheme.h,
             s.options().scheme.theta,

@@ -150,6 +150,13 @@ impl<'a> Run<'a> {
         self
     }
 
+    /// Adds observers, as [`Run::observe`] adds one.
+    #[must_use]
+    pub fn observe_all(mut self, observers: Observers) -> Self {
+        self.observers.append(observers);
+        self
+    }
+
     /// Resumes a run of the case, with equal observers and processes, from the state at which it
     /// [`stopped`]. The results are bit-identical to those of an uninterrupted run.
     #[must_use]

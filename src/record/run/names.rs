@@ -1,11 +1,11 @@
 //! Checks that the columns of the statistics, and the files in the folder of a run, have different
 //! names.
 
+use super::RunError;
 use super::clear::{FIGURES, OWN};
-use super::{RunError, run_observers};
+use crate::scene::LoadedCase;
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
-use crate::scene::{Built, LoadedCase};
 use fretwork_observe::Observers;
 use fretwork_store::folder_lock::RUN_LOCK;
 use std::collections::BTreeSet;
@@ -36,12 +36,12 @@ pub(super) fn check(loaded: &LoadedCase, observers: &Observers) -> Result<(), Ru
     }
 }
 
-/// Checks that no two columns or files of a run of a case have the same name.
+/// Checks that no two columns or files of a run of a case with these observers have the same name.
 ///
 /// # Errors
 /// The error reports the name, at the line of the case that gives it.
-pub fn check_names(loaded: &LoadedCase, built: &Built) -> Result<(), InputError> {
-    let twice = twice(&run_observers(loaded, built.simulation.view()));
+pub fn check_names(loaded: &LoadedCase, observers: &Observers) -> Result<(), InputError> {
+    let twice = twice(observers);
     let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
     error.map_or(Ok(()), Err)
 }

@@ -2,8 +2,10 @@
 //! in one file appears everywhere, no other source names a quantity, and the page on outputs lists
 //! them all.
 
+mod experiments;
 mod named;
 mod page;
+mod wrong_names;
 
 use crate::resume::common::Folder;
 use fretwork::record::observer::{Event, EventTable};

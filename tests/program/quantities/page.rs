@@ -1,11 +1,16 @@
 //! The tables of docs/outputs.md list what the shipped observers declare. With
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
-use fretwork::record::quantity::{Role, Topic};
+use fretwork::record::RunEnd;
+use fretwork::record::quantity::{Findings, Role, Topic};
+use fretwork::record::statistics::Table;
+use fretwork::record::summary::Uncertainty;
+use fretwork::scene::case::Case;
 use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// Cases that together have all observers.
 const CASES: [&str; 8] = [
@@ -42,7 +47,12 @@ fn add(loaded: &LoadedCase, built: &Built, all: &mut Vec<Declared>) {
             .iter()
             .any(|g| path.starts_with(g))
     };
-    let now = found.all().iter().map(|q| {
+    // A list without entries stands for what its entries will be.
+    let values = found
+        .all()
+        .iter()
+        .filter(|q| !found.expects_below(&q.name()));
+    let now = values.map(|q| {
         let run = q.role == Role::Diagnostic || q.topic == Topic::Run;
         (q.pattern(), spelled(q.unit), q.doc.clone(), run)
     });
@@ -80,54 +90,137 @@ pub fn declared() -> Vec<Declared> {
     first.into_values().collect()
 }
 
-/// Rows of a table of the statistics: name, unit and explanation of each column.
-type Columns = Vec<[String; 3]>;
+/// Rows of a table of the statistics or of measures: name, unit and explanation.
+type Rows = Vec<[String; 3]>;
 
-/// The columns of the statistics, by their observers. `NAME` stands for a measure, `BODY` for a
-/// first body and `PART` for a part by which it is held.
-fn columns() -> BTreeMap<String, Columns> {
-    let mut all: BTreeMap<String, Columns> = BTreeMap::new();
-    let cases = CASES.map(|case| (case, &[][..]));
-    for (case, sets) in cases.into_iter().chain(FOR_COLUMNS) {
-        let (LoadedCase { case, .. }, built) = built(case, sets);
-        let measures: Vec<&str> = case.measures.iter().map(|m| m.name()).collect();
+/// Names that a case chose.
+struct Chosen<'a> {
+    measures: Vec<&'a str>,
+    bodies: Vec<&'a str>,
+}
+
+/// What follows one of these names at the start of a text, after it or after `_`.
+fn after(text: &str, names: &[&str]) -> Option<String> {
+    let rest = names.iter().filter_map(|name| text.strip_prefix(name));
+    let mut rest = rest.filter(|rest| rest.is_empty() || rest.starts_with('_'));
+    rest.next().map(str::to_owned)
+}
+
+impl<'a> Chosen<'a> {
+    fn of(case: &'a Case) -> Self {
         let bodies = case.bodies.iter().map(|b| b.name.as_str());
         let bodies = bodies.chain(case.elastic.iter().map(|b| b.name.as_str()));
         let bodies = bodies.chain(case.half_spaces.iter().map(|b| b.name.as_str()));
-        let bodies: Vec<&str> = bodies.collect();
-        let after = |text: &str, names: &[&str]| {
-            let rest = names.iter().filter_map(|name| text.strip_prefix(name));
-            let mut rest = rest.filter(|rest| rest.is_empty() || rest.starts_with('_'));
-            rest.next().map(str::to_owned)
-        };
-        for observer in standard::observers(&case, built.simulation.view(), 1.0).iter() {
+        Self {
+            measures: case.measures.iter().map(|m| m.name()).collect(),
+            bodies: bodies.collect(),
+        }
+    }
+
+    /// The kind of an observer by its name, and whether it is a measure.
+    fn kind<'b>(&self, observer: &'b str) -> (&'b str, bool) {
+        let mut measures = self.measures.iter();
+        let measure = measures.find_map(|name| observer.strip_suffix(name));
+        (measure.map_or(observer, str::trim_end), measure.is_some())
+    }
+
+    /// The name of a column of a kind of observer.
+    fn column(&self, name: &str, (kind, is_measure): (&str, bool)) -> String {
+        match (after(name, &self.measures), after(name, &self.bodies)) {
+            (Some(rest), _) if is_measure => format!("NAME{rest}"),
+            (_, Some(rest)) if kind == "deformable bodies" => {
+                let (_, axis) = rest.rsplit_once('_').unwrap_or_default();
+                format!("BODY_PART_{axis}")
+            }
+            (_, Some(rest)) => format!("BODY{rest}"),
+            _ => name.to_owned(),
+        }
+    }
+
+    /// The path of a number of a measure; `None` of another number.
+    fn measure(&self, path: &str) -> Option<String> {
+        let name = path.strip_prefix("measures.")?;
+        Some(match after(name, &self.measures) {
+            Some(rest) => format!("measures.NAME{}", self.without_bodies(&rest)),
+            None => path.to_owned(),
+        })
+    }
+
+    /// A text with `BODY` for the names of bodies in the places of a third body.
+    fn without_bodies(&self, text: &str) -> String {
+        let mut text = text.to_owned();
+        for one in &self.bodies {
+            for other in &self.bodies {
+                text = text.replace(&format!("{one}_{other}"), "BODY_BODY");
+            }
+            text = text.replace(&format!("{one}_grain"), "BODY_grain");
+        }
+        text
+    }
+}
+
+/// Cases that together have all columns and measures, with their `--set` arguments.
+fn all_cases() -> Vec<(LoadedCase, Built)> {
+    let cases = CASES.map(|case| (case, &[][..])).into_iter();
+    let cases = cases.chain(FOR_COLUMNS);
+    cases.map(|(case, sets)| built(case, sets)).collect()
+}
+
+fn add_row(rows: &mut Rows, name: String, unit: String, doc: &str) {
+    if rows.iter().all(|row| row[0] != name) {
+        rows.push([name, unit, doc.replace('|', "\\|")]);
+    }
+}
+
+/// The columns of the statistics, by their observers. `NAME` stands for a measure, `BODY` for a
+/// first body and `PART` for a part by which it is held.
+fn columns(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
+    let mut all: BTreeMap<String, Rows> = BTreeMap::new();
+    for (LoadedCase { case, .. }, built) in cases {
+        let chosen = Chosen::of(case);
+        for observer in standard::observers(case, built.simulation.view(), 1.0).iter() {
             let own = observer.name();
-            let measure = measures.iter().find_map(|name| own.strip_suffix(name));
-            let kind = measure.map_or(own.as_str(), str::trim_end);
-            let named = |name: &str| match (after(name, &measures), after(name, &bodies)) {
-                (Some(rest), _) if measure.is_some() => format!("NAME{rest}"),
-                (_, Some(rest)) if kind == "deformable bodies" => {
-                    let (_, axis) = rest.rsplit_once('_').unwrap_or_default();
-                    format!("BODY_PART_{axis}")
-                }
-                (_, Some(rest)) => format!("BODY{rest}"),
-                _ => name.to_owned(),
-            };
-            let list = all.entry(kind.to_owned()).or_default();
+            let kind = chosen.kind(&own);
+            let list = all.entry(kind.0.to_owned()).or_default();
             for column in observer.columns() {
-                let name = named(&column.name);
-                if list.iter().all(|row| row[0] != name) {
-                    let doc = column.doc.replace('|', "\\|");
-                    list.push([
-                        name,
-                        units(column.unit.heading(3), column.unit.heading(2)),
-                        doc,
-                    ]);
-                }
+                let unit = units(column.unit.heading(3), column.unit.heading(2));
+                add_row(list, chosen.column(&column.name, kind), unit, column.doc);
             }
         }
     }
     all.retain(|_, list| !list.is_empty());
+    all
+}
+
+/// The numbers of measures, by their observers.
+fn measures(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
+    let mut all: BTreeMap<String, Rows> = BTreeMap::new();
+    for (LoadedCase { case, .. }, built) in cases {
+        let (chosen, run) = (Chosen::of(case), built.simulation.view());
+        let observers = standard::observers(case, run, 1.0);
+        let end = RunEnd {
+            simulation: run,
+            table: &Table::new(observers.columns(), run.dimension()),
+            title: "",
+            uncertainty: &Uncertainty::default(),
+            wall: Duration::ZERO,
+        };
+        for observer in observers.iter() {
+            let mut found = Findings::new(run.dimension());
+            observer.report(&end, &mut found);
+            let own = observer.name();
+            let list = all.entry(chosen.kind(&own).0.to_owned()).or_default();
+            let now = found.all().iter().map(|q| (q.name(), q.unit, &q.doc));
+            let later = found.expected().iter();
+            let later = later.map(|e| (e.path.clone(), e.unit, &e.doc));
+            for (path, unit, doc) in now.chain(later) {
+                if let Some(path) = chosen.measure(&path) {
+                    let unit = units(unit.symbol(3), unit.symbol(2));
+                    add_row(list, path, unit, &chosen.without_bodies(doc));
+                }
+            }
+        }
+    }
     all
 }
 
@@ -139,10 +232,21 @@ fn units(space: &str, plane: &str) -> String {
     }
 }
 
-fn table_of_columns(columns: &Columns) -> String {
+fn table_of_columns(columns: &Rows) -> String {
     let mut out = String::from("| column | unit | meaning |\n|---|---|---|\n");
     for [name, unit, doc] in columns {
         out += &format!("| `{name}` | {unit} | {doc} |\n");
+    }
+    out
+}
+
+fn table_of_measures(cases: &[(LoadedCase, Built)]) -> String {
+    let mut out = String::from("| of | path | unit | meaning |\n|---|---|---|---|\n");
+    for (kind, mut rows) in measures(cases) {
+        rows.sort();
+        for [path, unit, doc] in rows {
+            out += &format!("| {kind} | `{path}` | {unit} | {doc} |\n");
+        }
     }
     out
 }
@@ -164,9 +268,11 @@ fn the_page_lists_every_quantity_with_its_unit() {
     let mut made = page.clone();
     let quantities = [("results", false), ("run", true)];
     let quantities = quantities.map(|(name, of_run)| (name.to_owned(), table(of_run)));
-    let columns = columns().into_iter();
+    let cases = all_cases();
+    let columns = columns(&cases).into_iter();
     let columns = columns.map(|(of, list)| (format!("columns: {of}"), table_of_columns(&list)));
-    for (name, table) in quantities.into_iter().chain(columns) {
+    let measures = ("measures".to_owned(), table_of_measures(&cases));
+    for (name, table) in quantities.into_iter().chain([measures]).chain(columns) {
         let begin = format!("<!-- {name} -->\n");
         let end = format!("<!-- end of {name} -->");
         let place = |mark: &str| {

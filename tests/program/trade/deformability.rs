@@ -136,6 +136,46 @@ fn each_form_is_the_case_with_more_that_deforms() {
     );
 }
 
+/// The former words `--knob rung` run the forms of a case, and the program reports the present ones.
+#[test]
+fn the_former_name_runs_and_is_reported() {
+    let folder = Folder::new("rung");
+    let text = SHEAR
+        .replace("count: 25", "count: 6")
+        .replace("end: 0.06", "end: 0.035");
+    let (case, out) = (folder.file("shear.ron", &text), folder.out());
+    let output = call(&[
+        &case,
+        "--knob",
+        "rung",
+        "--output",
+        "statistics.kinetic:max=10%",
+        "--seeds",
+        "1",
+        "--out",
+        &out,
+        "--json",
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    for reported in [
+        "--knob was renamed: write --setting",
+        "--setting rung was renamed: write --setting deformability",
+    ] {
+        assert!(said.contains(reported), "{said}");
+    }
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for form in [
+        "deformability grains",
+        "the case's own (deformability compliant)",
+        "deformability rigid",
+    ] {
+        let level = named(&found, form);
+        assert!(level["failed"].is_null(), "{level}");
+        number(&level, "/outputs/statistics.kinetic:max/value/mean");
+    }
+}
+
 /// Under a load at which disks pass through each other, the report marks the rows of runs with
 /// their own warnings.
 #[test]

@@ -2,6 +2,7 @@
 
 use super::range::Range;
 use fretwork_elastic::patch::Solid;
+use fretwork_observe::quantity::unit::FORCE;
 use fretwork_scene::material::{Material, MaterialLibrary};
 use fretwork_scene::quantity::{hardness_in_pascal, quantity};
 use serde::Deserialize;
@@ -91,9 +92,10 @@ impl Question {
                 "load: give the normal load, such as 75 kN, or 13 MN/m for a line contact".into(),
             );
         }
-        let force = quantity(&self.load, "N");
-        let per_length = force.is_err() && quantity(&self.load, "N/m").is_ok();
-        let unit = if per_length { "N/m" } else { "N" };
+        let [per_metre, force] = [2, 3].map(|dimension| FORCE.symbol(dimension));
+        let per_length =
+            quantity(&self.load, force).is_err() && quantity(&self.load, per_metre).is_ok();
+        let unit = if per_length { per_metre } else { force };
         Ok((positive("load", &self.load, unit)?, per_length))
     }
 

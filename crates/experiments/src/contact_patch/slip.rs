@@ -5,6 +5,7 @@ use super::question::{Question, number, positive};
 use super::range::Range;
 use super::{Contact, Friction, Theory};
 use fretwork_elastic::patch::{Creep, PartialSlip, stuck_strip};
+use fretwork_observe::quantity::unit::FORCE;
 use serde::Serialize;
 
 /// Partial and gross slip of bodies that do not roll.
@@ -42,7 +43,7 @@ impl Tangential {
         }
         let (load, mu) = (contact.load, friction.coefficient);
         let solids = contact.solids();
-        let unit = if contact.is_line() { "N/m" } else { "N" };
+        let unit = FORCE.symbol(if contact.is_line() { 2 } else { 3 });
         let force = question.force.as_ref();
         let force = force.map(|t| number("force", t, unit)).transpose()?;
         let moved = question.displacement.as_ref();

@@ -1,8 +1,12 @@
 //! The answer as lines of text.
 
 use super::{Answer, Range};
+use fretwork_observe::quantity::unit::{FORCE, Unit, VOLUME};
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
+
+/// Energy per length rolled; for a line contact also per length of the line.
+const T_GAMMA: Unit = Unit::by_depth("J/m", "J/m2");
 
 /// Formats a number with its interval, in the unit of its value.
 fn ranged(range: &Range, unit: &str) -> String {
@@ -34,8 +38,8 @@ fn percent(range: &Range) -> String {
 impl Answer {
     /// The answer as text.
     pub fn text(&self) -> String {
-        let line = self.shape == "line";
-        let (force, energy) = if line { ("N/m", "J/m2") } else { ("N", "J/m") };
+        let dimension = if self.shape == "line" { 2 } else { 3 };
+        let (force, energy) = (FORCE.symbol(dimension), T_GAMMA.symbol(dimension));
         let title = format!(
             "contact patch of {} on {}: {}, {}",
             self.bodies[0],
@@ -109,8 +113,8 @@ impl Answer {
             );
         }
         self.slip_lines(force, energy, &mut add);
-        self.wear_lines(line, &mut add);
-        self.carried_lines(line, &mut add);
+        self.wear_lines(dimension, &mut add);
+        self.carried_lines(dimension, &mut add);
         self.window_lines(&mut add);
         for warning in &self.warnings {
             let (heading, text) = warning.split_once(": ").unwrap_or(("WARNING", warning));
@@ -173,7 +177,7 @@ impl Answer {
         }
     }
 
-    fn wear_lines(&self, line: bool, add: &mut impl FnMut(&str, String)) {
+    fn wear_lines(&self, dimension: usize, add: &mut impl FnMut(&str, String)) {
         let Some(wear) = &self.wear else {
             return;
         };
@@ -189,7 +193,7 @@ impl Answer {
             );
         }
         for body in &wear.archard {
-            let unit = if line { "m3/m" } else { "m3" };
+            let unit = VOLUME.symbol(dimension);
             let mut text = format!(
                 "k {} 1/Pa, {} a metre rolled",
                 ranged(&body.coefficient, ""),
@@ -209,8 +213,8 @@ impl Answer {
         }
     }
 
-    fn carried_lines(&self, line: bool, add: &mut impl FnMut(&str, String)) {
-        let unit = if line { "m3/m" } else { "m3" };
+    fn carried_lines(&self, dimension: usize, add: &mut impl FnMut(&str, String)) {
+        let unit = VOLUME.symbol(dimension);
         for body in self.wear.iter().flat_map(|w| &w.window) {
             add(
                 "wear, window",
@@ -233,7 +237,7 @@ impl Answer {
                 "{} under {}: {} in two dimensions; at its edges the pressure is {} % lower and the gap {} wider",
                 quantity(w.width, "m"),
                 quantity(w.pressure, "Pa"),
-                quantity(w.load, "N/m"),
+                quantity(w.load, FORCE.symbol(2)),
                 number(100.0 * w.pressure_drop, 2),
                 quantity(w.gap, "m")
             ),

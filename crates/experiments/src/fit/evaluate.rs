@@ -6,7 +6,7 @@ use super::model::Model;
 use super::spec::{FitFile, TestSpec};
 use crate::changes::Changes;
 use crate::factor::Factor;
-use crate::runs::available::{AvailableQuantities, columns};
+use crate::runs::available::AvailableQuantities;
 use crate::runs::launcher::{Launcher, Run, WaitLimits};
 use crate::runs::output::OutputName;
 use crate::runs::pool::each;
@@ -92,7 +92,8 @@ impl Tests {
                     model,
                     ..
                 } => {
-                    let columns = columns(&loaded.case, &scene);
+                    let observers = (program.observers)(&loaded, scene.simulation.view());
+                    let columns = observers.columns();
                     let names: Vec<String> = columns.into_iter().map(|c| c.name).collect();
                     let made = Model::new(model, &names)
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
@@ -107,7 +108,7 @@ impl Tests {
                     ..
                 } => {
                     let quantity = OutputName::parse(output).map_err(|why| at(".output", why))?;
-                    AvailableQuantities::of(&loaded.case, &scene)
+                    AvailableQuantities::of(&loaded, &scene, program)
                         .check(&quantity)
                         .map_err(|why| at(".output", why))?;
                     let single = Measurement {

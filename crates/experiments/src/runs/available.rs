@@ -1,13 +1,12 @@
 //! Outputs of a case, determined before anything runs.
 
 use super::output::{OutputName, listed};
-use fretwork_observe::quantity::{Catalogue, Findings, Role, renamed, unit};
+use crate::Program;
+use fretwork_observe::quantity::{Catalogue, Findings, Quantity, Role, renamed, unit};
 use fretwork_observe::standard;
 use fretwork_observe::statistics::Column;
-use fretwork_scene::Built;
-use fretwork_scene::case::Case;
-use fretwork_scene::measures::MeasureSpec;
-use serde_json::Value;
+use fretwork_scene::{Built, LoadedCase};
+use std::collections::HashSet;
 
 /// The outputs of a case.
 #[derive(Clone, Debug)]
@@ -16,17 +15,16 @@ pub struct AvailableQuantities {
     found: Findings,
     /// Columns of the statistics.
     columns: Vec<Column>,
-    /// Names of its measures.
-    measures: Vec<String>,
 }
 
 impl AvailableQuantities {
-    /// Determines the outputs of a case and its scene.
-    pub fn of(case: &Case, built: &Built) -> Self {
+    /// Determines the outputs of a case and its scene, by the observers of the program's runs.
+    pub fn of(loaded: &LoadedCase, built: &Built, program: &Program) -> Self {
+        let run = built.simulation.view();
+        let observers = (program.observers)(loaded, run);
         Self {
-            found: standard::declared(case, built.simulation.view()),
-            columns: columns(case, built),
-            measures: case.measures.iter().map(|m| m.name().to_owned()).collect(),
+            found: standard::declared_by(&observers, run),
+            columns: observers.columns(),
         }
     }
 
@@ -73,12 +71,25 @@ impl AvailableQuantities {
         unit.unwrap_or_default().to_owned()
     }
 
-    /// The names of the outputs in the summary.
+    /// Returns the names of the outputs in the summary.
     fn names(&self) -> Vec<String> {
         let mut names = Catalogue::new(&self.found).comparable();
-        names.retain(|n| self.lack(n).is_none());
-        names.extend(self.measures.iter().map(|m| format!("measures.{m}")));
+        let later = self.found.expected().iter();
+        let later = later.filter(|e| e.role < Role::Diagnostic && e.unit != unit::WORD);
+        names.extend(later.map(|e| e.path.clone()));
+        let mut seen = HashSet::new();
+        names.retain(|n| !n.contains('*') && self.lack(n).is_none() && seen.insert(n.clone()));
         names
+    }
+
+    /// Returns the first output of each kind in a list.
+    fn names_in_lists(&self) -> Vec<String> {
+        let now = self.found.all().iter().map(|q| (q.pattern(), q.unit));
+        let later = self.found.expected().iter();
+        let later = later.map(|e| (e.path.clone(), e.unit));
+        let numbers = now.chain(later).filter(|(_, unit)| *unit != unit::WORD);
+        let lists = numbers.filter(|(path, _)| path.contains('*') && self.lack(path).is_none());
+        lists.map(|(path, _)| path.replace('*', "0")).collect()
     }
 
     /// Checks that runs of the case have an output.
@@ -91,51 +102,36 @@ impl AvailableQuantities {
             return if names.iter().any(|c| c == column) {
                 Ok(())
             } else {
-                Err(output.unknown(&names, "statistics.", column))
+                Err(output.unknown(&names, &[], "statistics.", column))
             };
         }
         let name = output.name.as_str();
         if let Some(now) = renamed(name) {
             return Err(format!("`{name}` is called `{now}` now"));
         }
-        let unknown = || Err(output.unknown(&self.names(), "", name));
         if let Some(why) = self.lack(name) {
             return Err(format!(
                 "{why}, so there is nothing to compare; {}",
                 listed(&self.names(), "")
             ));
         }
-        let measures: Vec<&str> = self.measures.iter().map(String::as_str).collect();
-        if output.measured(&measures) {
+        // The value is known after a run only; its schema is declared.
+        if self.found.expects(name) {
             return Ok(());
         }
-        for q in self.found.all() {
-            let own = q.name();
-            if own == name {
-                return match &q.value {
-                    Value::Array(_) | Value::Object(_) => Err(output.is_group()),
-                    // A group without content yet, or a word.
-                    Value::Null if q.unit == unit::WORD => Err(output.is_group()),
-                    _ if q.unit == unit::WORD => unknown(),
-                    _ => Ok(()),
-                };
-            }
-            if within(&own, name) {
-                return Err(output.is_group());
-            }
-            // The value is known after a run only; its schema is declared.
-            if within(name, &own) && (q.value.is_null() || q.value.is_array()) {
-                return match self.found.expects(name) {
-                    Some(false) => unknown(),
-                    Some(true) | None => Ok(()),
-                };
-            }
+        let own = self.found.quantity(name);
+        let is_group = |q: &Quantity| q.value.is_array() || q.value.is_object();
+        let is_below = |q: &Quantity| q.name() != name && within(&q.name(), name);
+        if own.is_some_and(is_group)
+            || self.found.all().iter().any(is_below)
+            || self.found.expects_below(name)
+        {
+            return Err(output.is_group());
         }
-        // The list has other entries at the start than at the end.
-        match self.found.expects(name) {
-            Some(true) => Ok(()),
-            _ => unknown(),
+        if own.is_some_and(|q| q.unit != unit::WORD) {
+            return Ok(());
         }
+        Err(output.unknown(&self.names(), &self.names_in_lists(), "", name))
     }
 }
 
@@ -143,14 +139,4 @@ impl AvailableQuantities {
 fn within(path: &str, group: &str) -> bool {
     let rest = path.strip_prefix(group);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-}
-
-/// Returns the names of the measures of a case.
-pub fn measure_names(case: &Case) -> Vec<&str> {
-    case.measures.iter().map(MeasureSpec::name).collect()
-}
-
-/// Returns the columns of the statistics of a case.
-pub fn columns(case: &Case, built: &Built) -> Vec<Column> {
-    standard::observers(case, built.simulation.view(), 0.0).columns()
 }

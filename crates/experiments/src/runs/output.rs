@@ -99,21 +99,6 @@ impl OutputName {
         }
     }
 
-    /// Returns whether it is a result of one of these measures, known at the end of a run.
-    pub(super) fn measured(&self, measures: &[&str]) -> bool {
-        let NumberLocation::Summary(path) = &self.place else {
-            return false;
-        };
-        let [group, name] = path.as_slice() else {
-            return false;
-        };
-        let begins = |m: &&str| {
-            let rest = name.strip_prefix(*m);
-            rest.is_some_and(|r| r.is_empty() || r.starts_with('_'))
-        };
-        group == "measures" && measures.iter().any(begins)
-    }
-
     /// Returns the error message for the name of a group.
     pub(super) fn is_group(&self) -> String {
         format!(
@@ -123,13 +108,20 @@ impl OutputName {
     }
 
     /// Returns the error message for an output that a case does not have, with the nearest existing
-    /// one.
-    pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
-        let close = nearest(wanted, names.iter().map(String::as_str))
+    /// one, of those that are listed and others.
+    pub(super) fn unknown(
+        &self,
+        names: &[String],
+        others: &[String],
+        prefix: &str,
+        wanted: &str,
+    ) -> String {
+        let all = || names.iter().chain(others).map(String::as_str);
+        let close = nearest(wanted, all())
             .or_else(|| {
                 // Only the last component is compared, since parents may have been omitted.
-                let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
-                names.iter().find(last).map(String::as_str)
+                let last = |n: &&str| n.rsplit('.').next() == wanted.rsplit('.').next();
+                all().find(last)
             })
             .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
         format!(
@@ -209,13 +201,11 @@ mod tests {
         let names = ["friction_coefficient", "wear.Qs"].map(str::to_owned);
         for (wanted, near) in [("frction_coefficient", 0), ("Qs", 1)] {
             let output = OutputName::parse(wanted).unwrap();
-            let said = output.unknown(&names, "", wanted);
+            let said = output.unknown(&names, &[], "", wanted);
             assert!(
                 said.contains(&format!("did you mean `{}`?", names[near])),
                 "{said}"
             );
         }
-        let output = OutputName::parse("measures.bulk_mu").unwrap();
-        assert!(output.measured(&["bulk"]) && !output.measured(&["bul"]));
     }
 }

@@ -4,7 +4,7 @@ use super::design::{Setting, settings};
 use super::spec::{DesignSpec, StudyFile};
 use crate::changes::Changes;
 use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
-use crate::runs::available::{AvailableQuantities, measure_names};
+use crate::runs::available::AvailableQuantities;
 use crate::runs::launcher::{Launcher, Run};
 use crate::runs::output::OutputName;
 use crate::{Error, Program, build, load};
@@ -58,8 +58,6 @@ pub struct Plan {
     pub regimes: Vec<String>,
     /// Design of the study.
     pub design: DesignSpec,
-    /// Names of the measures of the case.
-    pub measures: Vec<String>,
     /// Launcher of the runs.
     pub launcher: Launcher,
     /// The case with the changes of all runs.
@@ -141,7 +139,7 @@ impl Plan {
                 let (scene, random) = build(&base, place.program)?;
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
-                let (outputs, units) = outputs(read, &base, &scene)?;
+                let (outputs, units) = outputs(read, &base, &scene, place.program)?;
                 StudyFacts {
                     units,
                     fingerprint,
@@ -153,7 +151,6 @@ impl Plan {
         let first = base.case.seed;
         launcher.perturb_unless(known.random, first);
         let outputs = known.outputs.iter().map(|name| OutputName::parse(name));
-        let measures = measure_names(&base.case);
         Ok(Self {
             title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),
             file: read.path.clone(),
@@ -170,7 +167,6 @@ impl Plan {
             random: known.random,
             outputs: outputs.collect::<Result<_, _>>().map_err(Error::Usage)?,
             output_units: known.units.clone(),
-            measures: measures.into_iter().map(str::to_owned).collect(),
             launcher,
             base,
             known,
@@ -347,8 +343,9 @@ fn outputs(
     read: &StudyFile,
     base: &LoadedCase,
     scene: &Built,
+    program: &Program,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
-    let available = AvailableQuantities::of(&base.case, scene);
+    let available = AvailableQuantities::of(base, scene, program);
     let asked = &read.spec.outputs;
     let mut all: Vec<OutputName> = Vec::new();
     if asked.is_empty() {

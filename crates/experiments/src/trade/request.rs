@@ -66,7 +66,7 @@ impl Request {
         let started = Instant::now();
         let loaded = load(&self.case, &self.sets)?;
         let (scene, random) = build(&loaded, program)?;
-        let first = SceneFacts::of(&loaded, &scene);
+        let first = SceneFacts::of(&loaded, &scene, program);
         let outputs = refuse::outputs(self, &first.available)?;
         let parameters = parameters::parameters(self, &loaded, &program.search, &first.solving)?;
         if parameters.is_empty() {
@@ -154,13 +154,13 @@ struct SceneFacts {
 }
 
 impl SceneFacts {
-    fn of(loaded: &LoadedCase, built: &Built) -> Self {
+    fn of(loaded: &LoadedCase, built: &Built, program: &Program) -> Self {
         let requirements = SolverRequirements::of(built.simulation.view());
         let serves = |m: &Method| {
             *m == loaded.case.solver.method || requirements.support(*m) == SolverSupport::Serves
         };
         Self {
-            available: AvailableQuantities::of(&loaded.case, built),
+            available: AvailableQuantities::of(loaded, built, program),
             solving: Solving {
                 methods: Method::ALL.iter().copied().filter(serves).collect(),
                 tolerance: built.simulation.options().solver.tolerance,

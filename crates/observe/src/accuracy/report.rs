@@ -4,7 +4,7 @@ use super::AccuracyControl;
 use crate::error_estimate::Change;
 use crate::observer::Observer;
 use crate::quantity::unit::{ONE, SECOND, WORD};
-use crate::quantity::{Findings, Role, Topic, number, part, quantity};
+use crate::quantity::{Findings, Role, Topic, number, part, parts, quantity, values};
 use crate::statistics::Column;
 use crate::warning::Warning;
 use fretwork_core::view::RunView;
@@ -36,19 +36,19 @@ crate::described! {
         /// The result.
         pub of: String => WORD,
         /// Largest, mean and smallest step.
-        pub steps: [f64; 3] => SECOND,
+        pub steps: [f64; 3] = values(SECOND),
         /// Share of the time that was made in steps longer than that of the case.
         pub grown: f64 => ONE,
         /// Number of such steps that were made again as shorter ones, since something moved.
         pub repeated: u64 => ONE,
         /// Coarsest and smallest tolerance.
-        pub tolerances: [f64; 2] => ONE,
+        pub tolerances: [f64; 2] = values(ONE),
         /// Stretches repeated, and those that failed.
-        pub stretches: [u64; 2] => ONE,
+        pub stretches: [u64; 2] = values(ONE),
         /// Cost of repeated stretches over that of the run, in solver iterations times contacts.
         pub cost_share: f64 => ONE,
         /// Changes of the settings.
-        pub changes: Vec<SettingChange> = part::<SettingChange>(),
+        pub changes: Vec<SettingChange> = parts::<SettingChange>(),
         /// Requests of laws for a smaller step.
         pub requests: u64 => ONE,
         /// Relative change of the result with a smaller step, with the last settings; null where it

@@ -1,7 +1,7 @@
 //! Results of a biaxial test for the summary.
 
 use crate::quantity::unit::{ONE, PASCAL, RADIAN, WORD};
-use crate::quantity::{Findings, Role, Topic};
+use crate::quantity::{Findings, Role, Topic, values};
 use crate::statistics::Table;
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ crate::described! {
         /// Pressure on the walls when the test starts.
         pub pressure_start: f64 => PASCAL,
         /// Largest |p_walls - p_contacts| / p_walls at the start of the test, and during it.
-        pub pressure_mismatch: [f64; 2] => ONE,
+        pub pressure_mismatch: [f64; 2] = values(ONE),
         /// Largest q/p: mean q over mean p in 0.5 % of axial strain.
         pub peak_ratio: f64 => ONE,
         /// Friction angle at the peak, asin(q/p).

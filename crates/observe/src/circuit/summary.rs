@@ -1,7 +1,7 @@
 //! Summary of the tribological circuit at the end of a run.
 
 use crate::quantity::unit::{MASS, ONE, SECOND, WORD};
-use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part};
+use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part, parts, values};
 use crate::steady::MeanFlow;
 use crate::warning::Warning;
 use crate::wear::NO_CIRCUIT;
@@ -80,7 +80,7 @@ crate::described! {
         /// Start of the account.
         pub start: f64 => SECOND,
         /// Window of the mean flows.
-        pub window: [f64; 2] => SECOND,
+        pub window: [f64; 2] = values(SECOND),
         /// Grains and their mass in each place at the end.
         pub contents: MassByPlace = CONTENTS,
         /// Cumulative flows since the start.
@@ -92,7 +92,7 @@ crate::described! {
         /// Mean flows.
         pub rates: Rates = part::<Rates>(),
         /// First bodies.
-        pub bases: Vec<Base> = part::<Base>(),
+        pub bases: Vec<Base> = parts::<Base>(),
         /// Number of debris pieces that came loose.
         pub pieces: u64 => ONE,
         /// Number of grains of the largest piece.

@@ -3,8 +3,8 @@
 use super::Increments;
 use super::change::{Change, RatioPair};
 use super::{ErrorEstimate, FINER, StretchRepeats};
-use crate::quantity::part;
 use crate::quantity::unit::{ONE, WORD};
+use crate::quantity::{part, values};
 use fretwork_core::energy::Energy;
 use serde::Serialize;
 
@@ -69,7 +69,7 @@ crate::described! {
         /// Steps that were repeated at each.
         pub steps: u32 => ONE,
         /// Steps done before each place.
-        pub at: Vec<u64> => ONE,
+        pub at: Vec<u64> = values(ONE),
         /// Places at which a repeated step failed.
         pub failed: u32 => ONE,
         /// Places left out because repeats were dearer than planned.

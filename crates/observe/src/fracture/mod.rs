@@ -7,7 +7,6 @@ pub use summary::{
     FractureSummary, InterfaceBonds, Reference, UNRESOLVED_BREAK_SHARE, UNRESOLVED_ENERGY_ERROR,
 };
 
-use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::contact::Break;
@@ -237,7 +236,7 @@ impl Observer for Fracture {
         if interfaces.is_empty() {
             found.begin(Topic::Damage, Role::Detail);
             let doc = "energy that broken bonds released, over what their laws declare; null without bonds";
-            found.add("fracture", (), WORD, doc);
+            found.parts::<FractureSummary>("fracture", &None::<FractureSummary>, doc);
             return;
         }
         FractureSummary::new(interfaces, self.jumps, run.options()).report(found);

@@ -1,7 +1,7 @@
 //! Energy of broken bonds, and whether the step resolves bonds.
 
 use crate::quantity::unit::{ENERGY, METRE, ONE, WORD};
-use crate::quantity::{Findings, Role, Topic, number, part};
+use crate::quantity::{Findings, Role, Topic, number, parts, values};
 use crate::warning::Warning;
 use fretwork_core::contact::SlideStatistics;
 use fretwork_core::step::Coupling;
@@ -83,7 +83,7 @@ crate::described! {
         /// Largest change of the opening of an intact bond in a step over the critical opening.
         pub slide_largest: Option<f64> => ONE,
         /// Time step times the frequency of a bond at the contacts at the end: median and largest.
-        pub step_times_frequency: Option<[f64; 2]> => ONE,
+        pub step_times_frequency: Option<[f64; 2]> = values(ONE),
     }
 }
 
@@ -96,7 +96,7 @@ crate::described! {
         /// where they are `comparable`; null without any.
         pub released_over_declared: Option<f64> => ONE,
         /// The interfaces that made bonds.
-        pub interfaces: Vec<InterfaceBonds> = part::<InterfaceBonds>(),
+        pub interfaces: Vec<InterfaceBonds> = parts::<InterfaceBonds>(),
         /// Whether cycles were skipped: damage then grows by more than what the energies of a step
         /// say, and nothing is compared.
         pub jumps: bool => WORD,

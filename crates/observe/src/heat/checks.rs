@@ -1,7 +1,7 @@
 //! Checks of the heat of a run: an account that does not close, half-spaces that are not deep
 //! enough, and contacts that heat a body outside the range of its half-spaces.
 
-use crate::quantity::part;
+use crate::quantity::parts;
 use crate::quantity::unit::{METRE, ONE, WORD};
 use crate::run_state::LEDGER_TOLERANCE;
 use crate::warning::Warning;
@@ -27,7 +27,7 @@ crate::described! {
         #[serde(skip)]
         pub residual_relative: f64,
         /// The first bodies with half-spaces.
-        pub half_spaces: Vec<HalfSpaceCheck> = part::<HalfSpaceCheck>(),
+        pub half_spaces: Vec<HalfSpaceCheck> = parts::<HalfSpaceCheck>(),
     }
 }
 

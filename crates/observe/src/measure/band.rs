@@ -117,9 +117,8 @@ impl Observer for Band {
         // A band grows, so its last state is reported.
         for column in Observer::columns(self) {
             let last = end.table.column(&column.name).last().copied();
-            if let Some(value) = last.filter(|v| v.is_finite()) {
-                found.measure(&column.name, value, column.unit, column.doc);
-            }
+            let value = last.filter(|v| v.is_finite());
+            found.measure(&column.name, value, column.unit, column.doc);
         }
     }
 

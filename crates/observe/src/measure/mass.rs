@@ -41,10 +41,9 @@ impl Observer for Mass {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let points = since(end.table, &self.name, self.start);
-        if let Some(rate) = line(points.iter().copied()) {
-            let doc = "change of the mass above a level, a line through its course";
-            found.measure(&format!("{}_rate", self.name), rate, MASS_FLOW, doc);
-        }
+        let rate = line(points.iter().copied());
+        let doc = "change of the mass above a level, a line through its course";
+        found.measure(&format!("{}_rate", self.name), rate, MASS_FLOW, doc);
     }
 
     fn file_names(&self) -> Vec<String> {

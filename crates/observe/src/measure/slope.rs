@@ -67,9 +67,8 @@ impl Observer for Slope {
     }
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
-        if let Some(mean) = mean(&since(end.table, &self.name, self.start)) {
-            found.measure(&self.name, mean, RADIAN, "mean angle of the free surface");
-        }
+        let mean = mean(&since(end.table, &self.name, self.start));
+        found.measure(&self.name, mean, RADIAN, "mean angle of the free surface");
     }
 
     fn file_names(&self) -> Vec<String> {

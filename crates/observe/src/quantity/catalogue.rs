@@ -130,7 +130,8 @@ fn at_path<'a>(summary: &'a Value, path: &str) -> Option<&'a Value> {
     })
 }
 
-fn matches(pattern: &str, path: &str) -> bool {
+/// Whether a path is of a pattern, in which `*` stands for every place of a list.
+pub(super) fn matches(pattern: &str, path: &str) -> bool {
     let (mut a, mut b) = (pattern.split('.'), path.split('.'));
     loop {
         match (a.next(), b.next()) {

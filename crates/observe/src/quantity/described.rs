@@ -14,15 +14,30 @@ pub struct Field {
     pub schema: Schema,
 }
 
-/// Schema of the values of a field. Lists and maps have the schema of their entries.
+/// Schema of the values of a field. Maps have the schema of their entries.
 #[derive(Clone, Copy, Debug)]
 pub enum Schema {
-    /// Values of a unit.
+    /// A value of a unit.
     Values(Unit),
-    /// Results with fields.
+    /// A list of values of a unit.
+    ListOfValues(Unit),
+    /// A result with fields.
     Part(&'static [Field]),
+    /// A list of results with fields.
+    ListOfParts(&'static [Field]),
     /// Values that are not reported.
     Hidden,
+}
+
+impl Schema {
+    /// Returns the schema of the entries of a list.
+    pub(super) const fn of_entries(self) -> Self {
+        match self {
+            Self::ListOfValues(unit) => Self::Values(unit),
+            Self::ListOfParts(fields) => Self::Part(fields),
+            other => other,
+        }
+    }
 }
 
 /// A result with described fields, see [`described!`](crate::described).
@@ -31,9 +46,19 @@ pub trait Described: Serialize + Clone + Send + Sync + 'static {
     const FIELDS: &'static [Field];
 }
 
-/// Returns the schema of a field that is itself a described result, or a list of such results.
+/// Returns the schema of a field that is itself a described result.
 pub const fn part<T: Described>() -> Schema {
     Schema::Part(T::FIELDS)
+}
+
+/// Returns the schema of a field that is a list of described results.
+pub const fn parts<T: Described>() -> Schema {
+    Schema::ListOfParts(T::FIELDS)
+}
+
+/// Returns the schema of a field that is a list of values of a unit.
+pub const fn values(unit: Unit) -> Schema {
+    Schema::ListOfValues(unit)
 }
 
 /// A field of values.

@@ -1,5 +1,6 @@
 //! List of the results of the observers of a run.
 
+use super::catalogue::matches;
 use super::{Described, Estimate, Field, PathStep, Quantity, Role, Schema, Topic, Unit, Wording};
 use crate::warning::Warning;
 use serde_json::Value;
@@ -7,6 +8,9 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
+
+/// The group of the numbers of measures.
+const MEASURES: &str = "measures";
 
 /// Quantities in the order in which they were added, and warnings. A quantity that is added again
 /// replaces the value of the first.
@@ -37,13 +41,6 @@ fn plain(doc: &str) -> String {
     }
 }
 
-/// The keys of a path without places in lists.
-fn keys(path: &str) -> Vec<String> {
-    let keys = path.split('.');
-    let keys = keys.filter(|k| *k != "*" && k.parse::<usize>().is_err());
-    keys.map(str::to_owned).collect()
-}
-
 /// A field of a result that is not available yet.
 #[derive(Clone, Debug)]
 pub struct Expected {
@@ -53,6 +50,8 @@ pub struct Expected {
     pub unit: Unit,
     /// Explanation.
     pub doc: String,
+    /// Prominence.
+    pub role: Role,
 }
 
 impl fmt::Debug for Findings {
@@ -112,22 +111,31 @@ impl Findings {
         self.put(path.to_vec(), value.into(), unit, doc.into())
     }
 
-    /// Adds a number of a measure of the case, with its unit.
+    /// Adds a number of a measure of the case, with its unit. Without a value, or without one yet,
+    /// it is only declared.
     pub fn measure(
         &mut self,
         name: &str,
-        value: f64,
+        value: impl Into<Option<f64>>,
         unit: Unit,
         doc: impl Into<String>,
-    ) -> &mut Quantity {
+    ) {
+        let Some(value) = value.into() else {
+            return self.to_come.push(Expected {
+                path: format!("{MEASURES}.{name}"),
+                unit,
+                doc: doc.into(),
+                role: Role::Secondary,
+            });
+        };
         let symbol = unit.heading(self.dimension);
         if !symbol.is_empty() {
             let doc = "unit of the measure of this name";
             let said = self.entry("measure_units", name, symbol, super::unit::WORD, doc);
             said.role = Role::Detail;
         }
-        let measure = self.entry("measures", name, value, unit, doc);
-        measure.about(Topic::Measures).secondary(name)
+        let measure = self.entry(MEASURES, name, value, unit, doc);
+        measure.about(Topic::Measures).secondary(name);
     }
 
     /// Adds a result in words.
@@ -208,12 +216,17 @@ impl Findings {
         match (value, schema) {
             (Value::Array(list), _) if !list.is_empty() => {
                 for (k, value) in list.into_iter().enumerate() {
-                    self.walk(below(PathStep::Place(k)), value, schema, doc);
+                    self.walk(below(PathStep::Place(k)), value, schema.of_entries(), doc);
                 }
             }
             (Value::Object(mut map), Schema::Part(fields)) => {
                 for field in fields {
                     if let Some(value) = map.remove(field.name) {
+                        let one = match field.schema {
+                            Schema::Values(unit) => unit != super::unit::WORD,
+                            schema => matches!(schema, Schema::Part(_)),
+                        };
+                        debug_assert!(!(one && value.is_array()), "{} is a list", field.name);
                         let path = below(PathStep::Key(field.name.to_owned()));
                         self.walk(path, value, field.schema, field.doc);
                     }
@@ -228,58 +241,71 @@ impl Findings {
             }
             (leaf, schema) => {
                 let unit = match schema {
-                    Schema::Values(unit) => unit,
-                    Schema::Part(_) | Schema::Hidden => super::unit::WORD,
+                    Schema::Values(unit) | Schema::ListOfValues(unit) => unit,
+                    Schema::Part(_) | Schema::ListOfParts(_) | Schema::Hidden => super::unit::WORD,
                 };
-                let doc = plain(doc);
-                let list = if leaf.is_array() { ".*" } else { "" };
-                let name = self.put(path, leaf, unit, doc).pattern() + list;
-                if let Schema::Part(fields) = schema {
-                    self.expect(&name, fields);
+                // A list of results by itself has the schema of one of them.
+                let schema = match (schema, &leaf) {
+                    (Schema::Part(fields), Value::Array(_)) => Schema::ListOfParts(fields),
+                    _ => schema,
+                };
+                let name = self.put(path, leaf, unit, plain(doc)).pattern();
+                if !matches!(schema, Schema::Values(_)) {
+                    self.expect(&name, schema, doc);
                 }
             }
         }
     }
 
-    /// Records the fields of a result that is not available yet.
-    fn expect(&mut self, name: &str, fields: &'static [Field]) {
-        for field in fields {
-            let name = format!("{name}.{}", field.name);
-            match field.schema {
-                Schema::Values(unit) => self.to_come.push(Expected {
-                    path: name,
-                    unit,
-                    doc: plain(field.doc),
-                }),
-                Schema::Part(fields) => self.expect(&name, fields),
-                Schema::Hidden => {}
+    /// Records what a path will have that is not available yet.
+    fn expect(&mut self, path: &str, schema: Schema, doc: &str) {
+        match schema {
+            Schema::Values(unit) => self.to_come.push(Expected {
+                path: path.to_owned(),
+                unit,
+                doc: plain(doc),
+                role: self.role,
+            }),
+            Schema::Part(fields) => {
+                for field in fields {
+                    self.expect(&format!("{path}.{}", field.name), field.schema, field.doc);
+                }
             }
+            Schema::ListOfValues(_) | Schema::ListOfParts(_) => {
+                self.expect(&format!("{path}.*"), schema.of_entries(), doc);
+            }
+            Schema::Hidden => {}
         }
     }
 
-    /// Returns the fields of results that are not available yet.
+    /// Returns fields of results, and numbers of measures, that are not available yet.
     pub fn expected(&self) -> &[Expected] {
         &self.to_come
     }
 
-    /// Returns whether a result that is not available yet will have a field of this path; `None`
-    /// where its group is unknown.
-    pub fn expects(&self, path: &str) -> Option<bool> {
-        let wanted = keys(path);
-        let known: Vec<Vec<String>> = self.to_come.iter().map(|e| keys(&e.path)).collect();
-        let mut group = known.iter().filter(|k| k.first() == wanted.first());
-        group.next()?;
-        Some(known.contains(&wanted))
+    /// Returns whether there will be a number of this path that is not available yet.
+    pub fn expects(&self, path: &str) -> bool {
+        let mut numbers = self.to_come.iter().filter(|e| e.unit != super::unit::WORD);
+        numbers.any(|e| matches(&e.path, path))
+    }
+
+    /// Returns whether there will be values below this path that are not available yet.
+    pub fn expects_below(&self, path: &str) -> bool {
+        let length = path.split('.').count();
+        let above = |e: &Expected| {
+            let parts: Vec<&str> = e.path.split('.').collect();
+            parts.len() > length && matches(&parts[..length].join("."), path)
+        };
+        self.to_come.iter().any(above)
     }
 
     /// Returns the SI unit of a number by its path, `1` for pure numbers, also for a number that is
     /// not available yet or in a longer list; `None` where the path is unknown.
     pub fn unit_of(&self, path: &str) -> Option<&'static str> {
-        let wanted = keys(path);
         let own = self.list.iter().find(|q| q.name() == path);
-        let alike = || self.list.iter().find(|q| keys(&q.name()) == wanted);
+        let alike = || self.list.iter().find(|q| matches(&q.pattern(), path));
         let unit = own.or_else(alike).map(|q| q.unit);
-        let later = || self.to_come.iter().find(|e| keys(&e.path) == wanted);
+        let later = || self.to_come.iter().find(|e| matches(&e.path, path));
         let unit = unit
             .or_else(|| later().map(|e| e.unit))?
             .symbol(self.dimension);
@@ -363,5 +389,68 @@ impl Findings {
         }
         self.to_come.extend(other.to_come.iter().cloned());
         self.warn(other.warnings.iter().cloned());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unit::{MASS, MASS_FLOW, SECOND};
+    use super::super::{parts, values};
+    use super::*;
+    use serde::Serialize;
+
+    crate::described! {
+        /// An entry.
+        #[derive(Clone, Debug, Serialize)]
+        struct Entry {
+            /// Its mass.
+            mass: f64 => MASS,
+        }
+    }
+
+    crate::described! {
+        /// A group.
+        #[derive(Clone, Debug, Serialize)]
+        struct Group {
+            /// Entries.
+            entries: Vec<Entry> = parts::<Entry>(),
+            /// Start and end.
+            window: [f64; 2] = values(SECOND),
+        }
+    }
+
+    #[test]
+    fn what_has_no_value_yet_has_its_path_and_unit() {
+        let mut found = Findings::new(2);
+        found.parts::<Group>("group", &None::<Group>, "a group");
+        found.measure("flow", None::<f64>, MASS_FLOW, "a flow");
+        for (path, unit) in [
+            ("group.entries.3.mass", "kg/m"),
+            ("group.window.1", "s"),
+            ("measures.flow", "kg/(m s)"),
+        ] {
+            assert_eq!(found.unit_of(path), Some(unit), "{path}");
+            assert!(found.expects(path), "{path}");
+        }
+        for group in ["group", "group.entries", "group.entries.3", "group.window"] {
+            assert!(
+                found.expects_below(group) && !found.expects(group),
+                "{group}"
+            );
+        }
+        for none in ["group.entries.mass", "group.window.1.mass", "measures.flw"] {
+            assert!(!found.expects(none) && !found.expects_below(none), "{none}");
+        }
+        // A list that is there has the paths of its entries, and an empty one those to come.
+        let group = |entries: Vec<Entry>| Group {
+            entries,
+            window: [0.0, 1.0],
+        };
+        found.part("now", &group(vec![Entry { mass: 2.0 }]), "");
+        found.part("empty", &group(Vec::new()), "");
+        assert_eq!(found.number("now.entries.0.mass"), Some(2.0));
+        assert_eq!(found.unit_of("now.entries.7.mass"), Some("kg/m"));
+        assert_eq!(found.unit_of("empty.entries.0.mass"), Some("kg/m"));
+        assert_eq!(found.number("measures.flow"), None);
     }
 }

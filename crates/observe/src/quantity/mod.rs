@@ -11,7 +11,7 @@ mod format;
 mod nested;
 
 pub use catalogue::{Catalogue, Entry, find, renamed};
-pub use described::{Described, Field, Schema, field, part};
+pub use described::{Described, Field, Schema, field, part, parts, values};
 pub use estimate::Estimate;
 pub use findings::{Expected, Findings};
 pub use format::{number, quantity};

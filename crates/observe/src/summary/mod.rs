@@ -11,7 +11,7 @@ pub use self::estimate::{Estimate, Uncertainty};
 pub use self::time_spent::TimeSpent;
 
 use crate::quantity::unit::{ONE, SECOND, WORD};
-use crate::quantity::{Field, Findings, Role, Topic, field, part, quantity};
+use crate::quantity::{Field, Findings, Role, Topic, field, part, parts, quantity, values};
 use crate::warning::{self, Warning};
 use fretwork_scene::wear_coefficient::WearCoefficient;
 use serde::{Serialize, Serializer};
@@ -32,7 +32,7 @@ crate::described! {
         pub path: String => WORD,
         /// Libraries that it links to and that are not the system's: path and SHA-256.
         #[serde(skip_serializing_if = "Vec::is_empty")]
-        pub links: Vec<String> => WORD,
+        pub links: Vec<String> = values(WORD),
         /// Whether it passes certification with the parameters of this run.
         pub certified: bool => WORD,
     }
@@ -58,9 +58,9 @@ crate::described! {
         /// Whether all checks passed.
         pub trustworthy: bool => WORD,
         /// Reasons why it is not trustworthy, as sentences, worst first.
-        pub reasons: Vec<String> => WORD,
+        pub reasons: Vec<String> = values(WORD),
         /// The reasons, followed by notes.
-        pub warnings: Vec<String> => WORD,
+        pub warnings: Vec<String> = values(WORD),
         /// Identity of the run (case, materials, laws and scene), by which the results file
         /// recognises its summary.
         pub identity: String => WORD,
@@ -73,10 +73,10 @@ crate::described! {
         /// What the wall time was spent on.
         pub time_spent: TimeSpent = part::<TimeSpent>(),
         /// Laws.
-        pub plugins: Vec<PluginStamp> = part::<PluginStamp>(),
+        pub plugins: Vec<PluginStamp> = parts::<PluginStamp>(),
         /// Wear coefficients that follow from the hardness of materials; left out without any.
         #[serde(skip_serializing_if = "Vec::is_empty")]
-        pub wear_coefficients: Vec<WearCoefficient> = crate::quantity::Schema::Part(&COEFFICIENT),
+        pub wear_coefficients: Vec<WearCoefficient> = crate::quantity::Schema::ListOfParts(&COEFFICIENT),
         /// Threads.
         pub threads: usize => ONE,
         /// Seed.

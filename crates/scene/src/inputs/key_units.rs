@@ -1,5 +1,7 @@
 //! Units of the keys of a case, by the names on their path.
 
+use fretwork_core::unit::{AREA, CURRENT, FORCE, HEAT_CAPACITY, INERTIA, MASS, MOMENT, POWER};
+
 /// Keys that have the same unit on any path.
 const ANYWHERE: [(&str, &str); 29] = [
     ("step", "s"),
@@ -51,7 +53,7 @@ const OF_SHAPES: [(&str, &str); 12] = [
 
 /// Returns the SI unit of the key at a path of names, with the names of variants between them;
 /// empty for pure numbers, texts, and parameters of laws, whose unit is that of their law.
-pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
+pub(super) fn of(named: &[String], dimension: usize) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
     let Some(last) = named.last().map(String::as_str) else {
         return "";
@@ -63,15 +65,13 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
         return heat(last, named, dimension);
     }
     // A variant that contains its value directly, `bonds: At(0.024)`, is itself the last name.
-    match (last, dimension) {
-        ("mass", 2) => return "kg/m",
-        ("mass", _) => return "kg",
-        ("inertia", 2) => return "kg m",
-        ("inertia", _) => return "kg m^2",
-        ("x" | "y" | "z", _) if has("periodic") => return "m",
-        ("At", _) if has("bonds") => return "s",
-        ("Seconds", _) if has("checkpoint") => return "s",
-        ("Time" | "After", _) if has("until") => return "s",
+    match last {
+        "mass" => return MASS.symbol(dimension),
+        "inertia" => return INERTIA.symbol(dimension),
+        "x" | "y" | "z" if has("periodic") => return "m",
+        "At" if has("bonds") => return "s",
+        "Seconds" if has("checkpoint") => return "s",
+        "Time" | "After" if has("until") => return "s",
         _ => {}
     }
     let drive = drive(named, dimension);
@@ -103,29 +103,26 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
 }
 
 /// Returns the units of the keys of heat.
-fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
+fn heat(last: &str, named: &[String], dimension: usize) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
-    match (last, dimension) {
-        ("initial" | "temperature" | "ambient", _) => "K",
-        ("coefficient", _) => "W/(m^2 K)",
-        ("area", 2) | ("depth" | "spacing" | "over", _) => "m",
-        ("area", _) => "m^2",
-        ("power", 2) => "W/m",
-        ("power", _) => "W",
-        ("capacity", 2) => "J/(K m)",
-        ("capacity", _) => "J/K",
-        ("start", _) => "s",
-        ("flash", _) => "Pa",
-        ("Voltage" | "limit", _) => "V",
-        ("current", 2) => "A/m",
-        ("current", _) => "A",
+    match last {
+        "initial" | "temperature" | "ambient" => "K",
+        "coefficient" => "W/(m^2 K)",
+        "area" => AREA.symbol(dimension),
+        "depth" | "spacing" | "over" => "m",
+        "power" => POWER.symbol(dimension),
+        "capacity" => HEAT_CAPACITY.symbol(dimension),
+        "start" => "s",
+        "flash" => "Pa",
+        "Voltage" | "limit" => "V",
+        "current" => CURRENT.symbol(dimension),
         _ if has("grains") => "K",
         _ => "",
     }
 }
 
 /// Returns the unit of a function of time that drives a degree of freedom, or gravity.
-fn drive(named: &[String], dimension: u32) -> &'static str {
+fn drive(named: &[String], dimension: usize) -> &'static str {
     let last_of = |names: &[&str]| named.iter().rposition(|n| names.contains(&n.as_str()));
     if let Some(k) = last_of(&["Turned", "Scaled", "Axes"]) {
         return match named[k].as_str() {
@@ -138,15 +135,13 @@ fn drive(named: &[String], dimension: u32) -> &'static str {
         return "";
     };
     let turns = last_of(&["rx", "ry", "rz"]).is_some();
-    match (named[k].as_str(), turns, dimension) {
-        ("Displacement", false, _) => "m",
-        ("Displacement", true, _) => "rad",
-        ("Velocity", false, _) => "m/s",
-        ("Velocity", true, _) => "rad/s",
-        ("Force", false, 2) => "N/m",
-        ("Force", false, _) => "N",
-        ("Force", true, 2) => "N m/m",
-        ("Force", true, _) => "N m",
+    match (named[k].as_str(), turns) {
+        ("Displacement", false) => "m",
+        ("Displacement", true) => "rad",
+        ("Velocity", false) => "m/s",
+        ("Velocity", true) => "rad/s",
+        ("Force", false) => FORCE.symbol(dimension),
+        ("Force", true) => MOMENT.symbol(dimension),
         _ => "Pa",
     }
 }

@@ -7,6 +7,33 @@ use crate::steady::{BLOCKS, MeanFlow, of_blocks};
 
 const PER_SECOND: Unit = Unit::of("1/s");
 
+const HALF_WIDTH: &str = "half-width of the 95 % interval of the mean, by blocks of time";
+
+/// Name, unit and explanation of each number of plane shear.
+pub(super) const RESULTS: [(&str, Unit, &str); 13] = [
+    ("rate", PER_SECOND, "mean shear rate"),
+    ("p", PASCAL, "mean normal stress"),
+    ("mu", ONE, "friction of the mean stresses"),
+    ("phi", ONE, "mean solid fraction"),
+    ("I", ONE, "inertial number of the mean rate and stress"),
+    (
+        "p_kinetic",
+        PASCAL,
+        "part of the normal stress that motion carries",
+    ),
+    (
+        "tau_kinetic",
+        PASCAL,
+        "part of the shear stress that motion carries",
+    ),
+    ("strain_before", ONE, "shear strain before the means"),
+    ("strain", ONE, "shear strain during the means"),
+    ("p_half_width", PASCAL, HALF_WIDTH),
+    ("mu_half_width", ONE, HALF_WIDTH),
+    ("phi_half_width", ONE, HALF_WIDTH),
+    ("I_half_width", ONE, HALF_WIDTH),
+];
+
 /// Means from a time on. Signs of rate and shear stress are those of the columns.
 #[derive(Clone, Debug)]
 pub(super) struct Means {
@@ -92,54 +119,24 @@ impl Means {
         })
     }
 
-    /// Returns name, value, unit and explanation of each mean.
-    pub fn values(&self) -> Vec<(&'static str, f64, Unit, &'static str)> {
-        let mut out = vec![
-            ("rate", self.rate, PER_SECOND, "mean shear rate"),
-            ("p", self.p, PASCAL, "mean normal stress"),
-            ("mu", self.mu, ONE, "friction of the mean stresses"),
-            ("phi", self.phi, ONE, "mean solid fraction"),
-            (
-                "I",
-                self.inertial,
-                ONE,
-                "inertial number of the mean rate and stress",
-            ),
-            (
-                "p_kinetic",
-                self.kinetic[0],
-                PASCAL,
-                "part of the normal stress that motion carries",
-            ),
-            (
-                "tau_kinetic",
-                self.kinetic[1],
-                PASCAL,
-                "part of the shear stress that motion carries",
-            ),
-            (
-                "strain_before",
-                self.strain[0],
-                ONE,
-                "shear strain before the means",
-            ),
-            (
-                "strain",
-                self.strain[1],
-                ONE,
-                "shear strain during the means",
-            ),
-        ];
-        if let Some([p, mu, phi, inertial]) = &self.blocks {
-            let doc = "half-width of the 95 % interval of the mean, by blocks of time";
-            out.extend([
-                ("p_half_width", p.half_width, PASCAL, doc),
-                ("mu_half_width", mu.half_width, ONE, doc),
-                ("phi_half_width", phi.half_width, ONE, doc),
-                ("I_half_width", inertial.half_width, ONE, doc),
-            ]);
-        }
-        out
+    /// Returns the values of [`RESULTS`]; `None` where there are too few rows for an interval.
+    pub fn values(&self) -> [Option<f64>; RESULTS.len()] {
+        let half_width = |k: usize| self.blocks.as_ref().map(|flows| flows[k].half_width);
+        [
+            Some(self.rate),
+            Some(self.p),
+            Some(self.mu),
+            Some(self.phi),
+            Some(self.inertial),
+            Some(self.kinetic[0]),
+            Some(self.kinetic[1]),
+            Some(self.strain[0]),
+            Some(self.strain[1]),
+            half_width(0),
+            half_width(1),
+            half_width(2),
+            half_width(3),
+        ]
     }
 
     /// Returns a description of the reliability of the means.
@@ -200,8 +197,8 @@ mod tests {
         let inertial = |rate: f64, p: f64| rate * (4.0 / p).sqrt();
         let means = Means::new(&time, &columns, &kinetic, 1.0, inertial).unwrap();
         let value = |name: &str| {
-            let all = means.values();
-            all.iter().find(|v| v.0 == name).unwrap().1
+            let place = RESULTS.iter().position(|result| result.0 == name).unwrap();
+            means.values()[place].unwrap()
         };
         assert!((value("p") - 250.0).abs() < 1e-9 && (value("mu") - 0.32).abs() < 1e-12);
         assert!((value("I") - 2.0 * (4.0f64 / 250.0).sqrt()).abs() < 1e-12);

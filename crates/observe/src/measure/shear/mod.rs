@@ -24,7 +24,7 @@ use crate::quantity::Findings;
 use crate::statistics::{Column, Table};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
-use means::Means;
+use means::{Means, RESULTS};
 use std::f64::consts::PI;
 use sums::{ShearedLayer, Sums};
 
@@ -162,15 +162,13 @@ impl Observer for Shear {
     }
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
-        let Some(means) = self.means(end.table) else {
-            return;
-        };
-        found.finding(
-            &self.name,
-            means.describe(),
-            "means of plane shear, and what they are worth",
-        );
-        for (part, value, unit, doc) in means.values() {
+        let means = self.means(end.table);
+        if let Some(means) = &means {
+            let doc = "means of plane shear, and what they are worth";
+            found.finding(&self.name, means.describe(), doc);
+        }
+        let values = means.map_or([None; RESULTS.len()], |means| means.values());
+        for ((part, unit, doc), value) in RESULTS.into_iter().zip(values) {
             found.measure(&self.column(part), value, unit, doc);
         }
     }

@@ -333,89 +333,82 @@ impl Observer for ThirdBody {
             .into_iter()
             .zip(columns(self.dimension, self.heated));
         for (column, (part, ..)) in means.filter(|(_, c)| is_averaged(c.0)) {
-            let values = since(end.table, &column.name, self.spec.start);
-            if let Some(value) = mean(&values) {
-                let doc = format!("{}; mean over the run", column.doc);
-                found.measure(&self.column(part), value, column.unit, doc);
-            }
+            let value = mean(&since(end.table, &column.name, self.spec.start));
+            let doc = format!("{}; mean over the run", column.doc);
+            found.measure(&self.column(part), value, column.unit, doc);
         }
-        let mut add = |part: &str, value: f64, unit: Unit, doc: String| {
+        let mut add = |part: &str, value: Option<f64>, unit: Unit, doc: String| {
             found.measure(&self.column(part), value, unit, doc);
         };
         let doc = "flow regime: 0 none, 1 Couette, 2 agglomerated, 3 plug with wall slip, 4 mixed";
-        add("regime", regime as i32 as f64, ONE, doc.to_owned());
-        if let Some(flow) = &flow {
-            for (part, value, doc) in [
-                (
-                    "interior_shear",
-                    flow.interior,
-                    "velocity difference within the layer over the sliding",
-                ),
-                (
-                    "straightness",
-                    flow.straight,
-                    "straightness of the velocity profile",
-                ),
-                (
-                    "slip_first_share",
-                    flow.slip_first,
-                    "slip at the first body over the sliding",
-                ),
-                (
-                    "slip_second_share",
-                    flow.slip_second,
-                    "slip at the second body over the sliding",
-                ),
-            ] {
-                add(part, value, ONE, doc.to_owned());
-            }
+        add("regime", Some(regime as i32 as f64), ONE, doc.to_owned());
+        let flow = flow.as_ref();
+        for (part, value, doc) in [
+            (
+                "interior_shear",
+                flow.map(|f| f.interior),
+                "velocity difference within the layer over the sliding",
+            ),
+            (
+                "straightness",
+                flow.map(|f| f.straight),
+                "straightness of the velocity profile",
+            ),
+            (
+                "slip_first_share",
+                flow.map(|f| f.slip_first),
+                "slip at the first body over the sliding",
+            ),
+            (
+                "slip_second_share",
+                flow.map(|f| f.slip_second),
+                "slip at the second body over the sliding",
+            ),
+        ] {
+            add(part, value, ONE, doc.to_owned());
         }
         let total = self.spent.total();
         add(
             "dissipated",
-            total,
+            Some(total),
             ENERGY,
             "energy dissipated in the layer and at its faces".to_owned(),
         );
         for (k, mechanism) in MECHANISMS.iter().enumerate() {
             let sum: f64 = self.spent.places.iter().map(|p| p[k]).sum();
             let doc = format!("energy dissipated by {mechanism}");
-            add(&format!("dissipated_{mechanism}"), sum, ENERGY, doc);
+            let part = format!("dissipated_{mechanism}");
+            add(&part, Some(sum), ENERGY, doc);
         }
         let load = self.spent.load;
-        if let Some(mu) = self.spent.friction() {
-            // This is the energy stored by the grains and their bonds, less that supplied by the
-            // bodies other than by sliding.
-            for (part, value, doc) in [
-                (
-                    "mu_from_forces",
-                    self.spent.work / load,
-                    "friction from forces",
-                ),
-                ("mu_from_dissipation", mu, "friction from the energy ledger"),
-                (
-                    "mu_kept",
-                    mu - total / load,
-                    "part of the friction that is stored, not dissipated",
-                ),
-            ] {
-                add(part, value, ONE, doc.to_owned());
-            }
+        let mu = self.spent.friction();
+        // What is kept is the energy stored by the grains and their bonds, less that supplied by
+        // the bodies other than by sliding.
+        for (part, value, doc) in [
+            (
+                "mu_from_forces",
+                mu.map(|_| self.spent.work / load),
+                "friction from forces",
+            ),
+            ("mu_from_dissipation", mu, "friction from the energy ledger"),
+            (
+                "mu_kept",
+                mu.map(|mu| mu - total / load),
+                "part of the friction that is stored, not dissipated",
+            ),
+        ] {
+            add(part, value, ONE, doc.to_owned());
         }
         for (place, energies) in PairKind::ALL.iter().zip(&self.spent.places) {
             let sum: f64 = energies.iter().sum();
-            if *energies == dissipation::Energies::default() {
-                continue;
-            }
+            let any = *energies != dissipation::Energies::default();
             let name = place.name(&self.spec.between);
-            if total != 0.0 {
-                let doc = format!("share of the dissipation at {name}");
-                add(&format!("share_{name}"), sum / total, ONE, doc);
-            }
-            if load > 0.0 {
-                let doc = format!("part of the friction that is dissipated at {name}");
-                add(&format!("mu_{name}"), sum / load, ONE, doc);
-            }
+            let share = (any && total != 0.0).then(|| sum / total);
+            let doc = format!("share of the dissipation at {name}");
+            add(&format!("share_{name}"), share, ONE, doc);
+            let part = (any && load > 0.0).then(|| sum / load);
+            let doc = format!("part of the friction that is dissipated at {name}");
+            add(&format!("mu_{name}"), part, ONE, doc);
         }
     }
 
