@@ -9,7 +9,7 @@ crate::described! {
     /// Wear of a first body.
     #[derive(Clone, Debug, PartialEq, Serialize)]
     pub struct BodyWear {
-        /// Its name.
+        /// Name of the body.
         pub body: String => WORD,
         /// Volume worn off the body.
         pub volume: f64 => VOLUME,

@@ -78,7 +78,7 @@ const JUMP: [Field; 4] = [
     field(
         "error",
         ONE,
-        "its error, relative to what it added and to the scar at the end",
+        "error of the jump, relative to what it added and to the scar at the end",
     ),
     field(
         "work_change",

@@ -184,6 +184,11 @@ fn a_trade_compares_the_number_of_an_observer() {
         let expected = height(1.0, 9.81);
         assert!((highest - expected).abs() < 2e-4, "{highest} {expected}");
     }
+    assert_eq!(found["outputs"][0]["unit"], "m");
+    let table = std::fs::read_to_string(folder.join("out/trade.csv")).unwrap();
+    for heading in ["summit.highest [m]", "summit.highest_error,", "seconds [s]"] {
+        assert!(table.contains(heading), "{heading} in {table}");
+    }
 }
 
 /// What the Python package reads, without its compiled part: results are read by Python alone.

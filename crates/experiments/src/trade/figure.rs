@@ -66,12 +66,12 @@ struct Panel<'a> {
 fn panel(trade: &Trade, found: &Comparison, o: usize) -> Chart {
     let output = &trade.outputs[o];
     let (ErrorTarget::Relative(wanted) | ErrorTarget::Absolute(wanted)) = output.wanted;
-    let (factor, unit) = match output.wanted {
-        ErrorTarget::Relative(_) => (100.0, "%"),
-        ErrorTarget::Absolute(_) => (1.0, ""),
+    let factor = match output.wanted {
+        ErrorTarget::Relative(_) => 100.0,
+        ErrorTarget::Absolute(_) => 1.0,
     };
     let name = output.name().replace('_', " ");
-    let y = Axis::new(format!("error of {name}"), unit).log();
+    let y = Axis::new(format!("error of {name}"), output.error_unit()).log();
     let x = Axis::new("processor time of a run", "s").log();
     let mut chart = Chart::new(format!("{}: {name}", trade.title), x, y);
     chart.subtitle = Some(subtitle(trade, output, found, o));

@@ -50,7 +50,7 @@ fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool)
                 ErrorTarget::Absolute(w) => ("absolute", w),
             };
             json!({
-                "name": o.name(), "wanted": wanted, "error": kind, "exact": o.exact,
+                "name": o.name(), "unit": o.unit, "wanted": wanted, "error": kind, "exact": o.exact,
                 "reference": own.as_ref().map(|x| x.value),
                 "reference_error_at_most": own.as_ref().map(|x| number(x.at_most)),
                 "reference_error_from": own.as_ref().map(|x| x.why.clone()),
@@ -121,31 +121,36 @@ fn settings(trade: &Trade, found: &Comparison) -> Table {
             "not_trustworthy",
             text(&|r| r.not_trustworthy().unwrap_or_default()),
         ),
-        Column::real("seconds", "", of(&|r| Some(r.seconds))),
-        Column::real("visits", "", of(&|r| Some(r.visits))),
-        Column::real("faster", "", of(&|r| r.faster.map(|f| f.0))),
-        Column::real("faster_low", "", of(&|r| ends(r).map(|e| e.0))),
-        Column::real("faster_high", "", of(&|r| ends(r).map(|e| e.1))),
+        Column::real("seconds", "s", of(&|r| Some(r.seconds))),
+        Column::real("visits", "1", of(&|r| Some(r.visits))),
+        Column::real("faster", "1", of(&|r| r.faster.map(|f| f.0))),
+        Column::real("faster_low", "1", of(&|r| ends(r).map(|e| e.0))),
+        Column::real("faster_high", "1", of(&|r| ends(r).map(|e| e.1))),
     ];
     for (k, parameter) in trade.parameters.iter().enumerate() {
         let label = |r: &Row| parameter.levels[r.setting.0[k]].label.clone();
         columns.push(Column::text(&parameter.name, text(&label)));
     }
     for (o, output) in trade.outputs.iter().enumerate() {
-        let of = |name: &str, f: &dyn Fn(&OutputError) -> Option<f64>| {
+        let of = |name: &str, unit: &str, f: &dyn Fn(&OutputError) -> Option<f64>| {
             let name = format!("{}{name}", output.name());
-            Column::real(name, "", of(&|r| r.errors[o].as_ref().and_then(f)))
+            Column::real(name, unit, of(&|r| r.errors[o].as_ref().and_then(f)))
+        };
+        let own = output.unit.as_str();
+        let error = match output.wanted {
+            ErrorTarget::Relative(_) => "1",
+            ErrorTarget::Absolute(_) => own,
         };
         columns.extend([
-            of("", &|e| Some(e.value.mean)),
-            of("_scatter", &|e| e.value.scatter),
-            of("_error", &|e| Some(e.error.mean)),
-            of("_half_width", &|e| e.error.half_width),
-            of("_at_most", &|e| Some(e.at_most)),
-            of("_at_most_with_reference", &|e| Some(e.bound)),
+            of("", own, &|e| Some(e.value.mean)),
+            of("_scatter", own, &|e| e.value.scatter),
+            of("_error", error, &|e| Some(e.error.mean)),
+            of("_half_width", error, &|e| e.error.half_width),
+            of("_at_most", error, &|e| Some(e.at_most)),
+            of("_at_most_with_reference", error, &|e| Some(e.bound)),
             Column {
                 kind: ColumnType::Whole,
-                ..of("_frontier", &|e| flag(e.on_frontier))
+                ..of("_frontier", "1", &|e| flag(e.on_frontier))
             },
         ]);
     }

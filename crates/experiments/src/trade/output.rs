@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::runs::output::OutputName;
+use crate::runs::unit::heading;
 use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
 
 /// The wanted error.
@@ -23,6 +24,9 @@ pub struct Output {
     /// Exact value, for example from a closed form; if absent, errors are measured against the
     /// reference.
     pub exact: Option<f64>,
+    /// SI unit of the number, `1` for pure numbers; empty until the case is known, or if only its
+    /// runs give it.
+    pub unit: String,
 }
 
 impl Output {
@@ -74,12 +78,22 @@ impl Output {
                 ErrorTarget::Absolute(value)
             },
             exact,
+            unit: String::new(),
         })
     }
 
     /// Returns the name of the output.
     pub fn name(&self) -> &str {
         &self.quantity.name
+    }
+
+    /// Returns the unit of its errors, `%` of the reference's value where they are relative; empty
+    /// for pure numbers.
+    pub fn error_unit(&self) -> &str {
+        match self.wanted {
+            ErrorTarget::Relative(_) => "%",
+            ErrorTarget::Absolute(_) => heading(&self.unit),
+        }
     }
 
     /// Creates the error for an argument that names an output which is refused.

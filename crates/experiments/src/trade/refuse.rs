@@ -39,6 +39,9 @@ pub fn outputs(request: &Request, available: &AvailableQuantities) -> Result<Vec
             .check(&output.quantity)
             .map_err(|why| output.refused(&why))?;
     }
+    for output in &mut outputs {
+        output.unit = available.unit(&output.quantity);
+    }
     for text in &request.exact {
         let wrong = |why: &str| {
             Error::Usage(format!(

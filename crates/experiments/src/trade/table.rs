@@ -2,7 +2,7 @@
 
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row, ShownError, share};
-use super::output::{ErrorTarget, Output};
+use super::output::Output;
 use super::plan::{Findings, Trade};
 use super::verdict::{amount, three};
 use crate::duration::seconds;
@@ -115,9 +115,9 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
         "setting", "cpu s", "faster", "visits"
     );
     for o in &trade.outputs {
-        let unit = match o.wanted {
-            ErrorTarget::Relative(_) => " (%)",
-            ErrorTarget::Absolute(_) => "",
+        let unit = match o.error_unit() {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
         };
         let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name()));
     }

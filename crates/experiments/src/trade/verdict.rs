@@ -38,7 +38,9 @@ fn limit(output: &Output) -> f64 {
 pub fn amount(x: f64, output: &Output) -> String {
     match output.wanted {
         ErrorTarget::Relative(_) => format!("{} %", share(x)),
-        ErrorTarget::Absolute(_) => format!("{x:.1e}"),
+        ErrorTarget::Absolute(_) => format!("{x:.1e} {}", output.error_unit())
+            .trim_end()
+            .to_owned(),
     }
 }
 

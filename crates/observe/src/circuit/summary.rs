@@ -35,7 +35,7 @@ crate::described! {
     /// A first body that grains can belong to.
     #[derive(Clone, Debug, Serialize)]
     pub struct Base {
-        /// Its name.
+        /// Name of the base.
         pub name: String => WORD,
         /// Number of grains attached to it at the end.
         pub grains: usize => ONE,

@@ -37,7 +37,7 @@ crate::described! {
     pub struct HalfSpaceCheck {
         /// Name of the body.
         pub body: String => WORD,
-        /// Their depth.
+        /// Depth of the half-spaces.
         pub depth: f64 => METRE,
         /// Distance sqrt(D t) that heat has come in thermal time.
         pub reach: f64 => METRE,
