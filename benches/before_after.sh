@@ -4,9 +4,10 @@
 #   benches/before_after.sh REV [PAIRS [ARGUMENTS OF THE BENCH]]
 #   benches/before_after.sh main 7 fretting --threads 1 2
 #
-# Builds the bench of REV in a worktree (target/before_after/tree, kept for the next time; the first build takes minutes) and
-# runs it and that of this tree in turn, PAIRS times (5), the order changing each time. Prints for each stage
-# the ratio of times, this tree over REV: the median of the pairs, the least and the largest; "cpu" is processor time.
+# Builds the bench of REV in a worktree (target/before_after/tree, kept for the next time; the first
+# build takes minutes) and runs it and that of this tree in turn, PAIRS times (5), the order
+# changing each time. Prints for each stage the ratio of times, this tree over REV: the median of
+# the pairs, the least and the largest; "cpu" is processor time.
 set -eu
 cd "$(dirname "$0")/.."
 [ $# -ge 1 ] || { sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 2; }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the documentation as a searchable book: target/book/index.html. Installs mdBook into target/tools the first time.
+# Builds the documentation as a searchable book: target/book/index.html. Installs mdBook into
+# target/tools the first time.
 set -eu
 cd "$(dirname "$0")/.."
 mdbook=$(command -v mdbook || true)

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# Explicit, midpoint and implicit coupling of damage on rigid disks under fretting at h, h/2, h/4 and h/8: half a cycle, three seeds. Prints a line a run:
-# coupling, step, seed, damage ratio, fracture energy (J/m), energy released by broken bonds over what their laws take, friction
-# coefficient, steps that were not coupled, seconds of processor time; then the means over the seeds, with their standard errors.
-# Usage: docs/coupling.sh [FOLDER], from the root of the repository, after `cargo build --release`; needs python3; half an hour on one core.
-# SEEDS, STEPS, COUPLINGS and SETS (further `--set`s) may be given in the environment.
+# Explicit, midpoint and implicit coupling of damage on rigid disks under fretting at h, h/2, h/4
+# and h/8: half a cycle, three seeds. Prints a line a run: coupling, step, seed, damage ratio,
+# fracture energy (J/m), energy released by broken bonds over what their laws take, friction
+# coefficient, steps that were not coupled, seconds of processor time; then the means over the
+# seeds, with their standard errors.
+# Usage: docs/coupling.sh [FOLDER], from the root of the repository, after `cargo build --release`;
+# needs python3; half an hour on one core. SEEDS, STEPS, COUPLINGS and SETS (further `--set`s) may
+# be given in the environment.
 set -eu
 out="${1:-results/coupling}"
 program="${FRETWORK:-target/release/fretwork}"

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Whether the error that runs estimate of themselves covers what finer settings really change: six cases, two seeds each, as they are, with
-# a quarter of the step, and with a hundredth of the tolerance. Prints a line a case, setting and result: the change that the repeated steps
-# show, the half-width that the run reports, the actual change (means over the seeds, %), and whether the half-width covers it; changes
-# below 0.2 % count as covered.
-# Usage: docs/estimate.sh [FOLDER], from the root of the repository, after `cargo build --release`; needs python3; twenty minutes on two
-# cores, most of them for the tight tolerance of the first case. Runs that are in the folder already are not made again.
+# Whether the error that runs estimate of themselves covers what finer settings really change: six
+# cases, two seeds each, as they are, with a quarter of the step, and with a hundredth of the
+# tolerance. Prints a line a case, setting and result: the change that the repeated steps show, the
+# half-width that the run reports, the actual change (means over the seeds, %), and whether the
+# half-width covers it; changes below 0.2 % count as covered.
+# Usage: docs/estimate.sh [FOLDER], from the root of the repository, after `cargo build --release`;
+# needs python3; twenty minutes on two cores, most of them for the tight tolerance of the first
+# case. Runs that are in the folder already are not made again.
 set -eu
 out="${1:-results/estimate}"
 program="${FRETWORK:-target/release/fretwork}"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Four cohesive-damage pairs on the fretting case; prints the table of four_laws.md. Takes about five minutes on one core.
+# Four cohesive-damage pairs on the fretting case; prints the table of four_laws.md. Takes about
+# five minutes on one core.
 # docs/four_laws.sh [FOLDER]
 set -e
 out=${1:-results/four_laws}

@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
-# How the results of the shipped cases depend on numerical settings: each case as it is, and with one setting changed at a time: a quarter of the step
-# with a hundredth of the tolerance (fine), a tenth of the inertia where it is scaled (inertia), twice the alert distance (alert), twice the window
-# where it is periodic (window), half of Young's moduli where contacts are springs (soft: physics). Cases with broken bonds also with damage coupled
-# at the start of a step (explicit, explicit-fine). docs/accuracy.sh has wheel_rail_fretting and wheel_rail_rigid. Scars have no sample: their
-# seed k lengthens the step by k times a relative 1e-10, and shows how far friction of single cycles amplifies rounding.
-# Prints a line a run, case, setting, seed, seconds of processor time, results, and at the end the table of changes.
-# Usage: docs/sensitivity.sh [FOLDER [CASE...]], from the root of the repository, after `cargo build --release`; needs python3; runs that are in FOLDER
-# are not made again: take another FOLDER when a case has changed. SEEDS="3 4" takes other seeds than each case's own, SETTINGS="base fine" only these settings.
+# How the results of the shipped cases depend on numerical settings: each case as it is, and with
+# one setting changed at a time: a quarter of the step with a hundredth of the tolerance (fine), a
+# tenth of the inertia where it is scaled (inertia), twice the alert distance (alert), twice the
+# window where it is periodic (window), half of Young's moduli where contacts are springs (soft:
+# physics). Cases with broken bonds also with damage coupled at the start of a step (explicit,
+# explicit-fine). docs/accuracy.sh has wheel_rail_fretting and wheel_rail_rigid. Scars have no
+# sample: their seed k lengthens the step by k times a relative 1e-10, and shows how far friction of
+# single cycles amplifies rounding. Prints a line a run, case, setting, seed, seconds of processor
+# time, results, and at the end the table of changes.
+# Usage: docs/sensitivity.sh [FOLDER [CASE...]], from the root of the repository, after `cargo build
+# --release`; needs python3; runs that are in FOLDER are not made again: take another FOLDER when a
+# case has changed. SEEDS="3 4" takes other seeds than each case's own, SETTINGS="base fine" only
+# these settings.
 set -eu
 out="${1:-results/sensitivity}"
 shift || true
@@ -14,7 +19,8 @@ wanted="$*"
 program="${FRETWORK:-target/release/fretwork}"
 mkdir -p "$out"
 
-# case_is NAME SEEDS OUTPUTS OPTIONS...: begins a case; outputs are those of `fretwork trade`, and ratios of two.
+# case_is NAME SEEDS OUTPUTS OPTIONS...: begins a case; outputs are those of `fretwork trade`, and
+# ratios of two.
 case_is() {
     case="$1" seeds="${SEEDS:-$2}" outputs="$3"
     shift 3
@@ -77,7 +83,8 @@ window_of_disks() {
         --set "bodies.bottom.shapes=$(wall 50)" --set "bodies.top.shapes=$(wall 50)"
 }
 
-# half_moduli NAME:MODULUS:MODULUS...: options for contacts with half of these Young's moduli, in Pa.
+# half_moduli NAME:MODULUS:MODULUS...: options for contacts with half of these Young's moduli, in
+# Pa.
 half_moduli() {
     local each name one other at=parameters.contact
     for each in "$@"; do

@@ -13,7 +13,8 @@ import tempfile
 
 PROGRAM = pathlib.Path("target/release/fretwork")
 
-# By name: the case, its changes with the planted values, the curve as columns, the abscissae, the noise, the headings.
+# By name: the case, its changes with the planted values, the curve as columns, the abscissae, the
+# noise, the headings.
 PLANTS = {
     "bond_opening": dict(
         case="cases/verification/bond_mode_1.ron",
@@ -33,7 +34,8 @@ PLANTS = {
     "fretting_loop": dict(
         case="fits/cases/fretting_loop.ron",
         sets=["time.step=1.25e-6", "output.every=16", "interfaces.dry.parameters.contact.ratio=0.7", "interfaces.dry.parameters.contact.mu=0.6"],
-        # The second cycle by its path; the measured loop is told in um and N, in the order in which it is run through.
+        # The second cycle by its path; the measured loop is told in um and N, in the order in which
+        # it is run through.
         loop=True, x=lambda r: 1e6 * r["delta"], y=lambda r: r["Q"], at=[0.25 + 0.5 * k for k in range(39)], noise=15.0,
         headings=("displacement [um]", "force [N/m]", "uncertainty [N/m]"), truth={"ratio": 0.7, "friction": 0.6},
     ),

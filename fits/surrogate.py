@@ -51,7 +51,8 @@ if __name__ == "__main__":
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 60
     first = 12
     search = egobox.Egor([list(limits) for limits in PARAMETERS.values()], n_doe=first, seed=1)
-    # The root: sums of squares range over decades, which a Gaussian process with one length scale does not follow.
+    # The root: sums of squares range over decades, which a Gaussian process with one length scale
+    # does not follow.
     found = search.minimize(lambda points: np.sqrt(sums_of_squares(points)), max_iters=runs - first)
     result = getattr(found, "result", found)
     mu_0, a, ln_b = result.x_opt

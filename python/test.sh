@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds the wheel as `pip install .` does, installs it with its test extras into a clean virtual environment, and tests it there:
-# tests, examples in docstrings, and types. Words after it are for pytest: python/test.sh -k results
+# Builds the wheel as `pip install .` does, installs it with its test extras into a clean virtual
+# environment, and tests it there: tests, examples in docstrings, and types. Words after it are for
+# pytest: python/test.sh -k results
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 python="${PYTHON:-python3}"

@@ -248,7 +248,8 @@ def check_h5(path, live):
         print(f"h5py {h5py.__version__}: {next(iter(lengths.values()))} rows of {len(lengths)} statistics, states {views}, laws {laws}")
 
 
-# Arrays of the files that ParaView opens, and their numbers of components: what its filters, such as Glyph, take.
+# Arrays of the files that ParaView opens, and their numbers of components: what its filters, such
+# as Glyph, take.
 ARRAYS = {
     "grains": ("Point", {"id": 1, "radius": 1, "velocity": 3, "spin": 1}),
     "contacts": ("Cell", {"body_1": 1, "body_2": 1, "status": 1, "force": 3, "normal": 3, "force_normal": 1}),

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more; with names of cases only these are run.
-# Each study is stored in OUT (results/frontiers) and continues where it stopped.
+# Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more; with
+# names of cases only these are run. Each study is stored in OUT (results/frontiers) and continues
+# where it stopped.
 # BUDGET: limit of the wall time of a study (60m).
 # docs/dev/frontiers.sh [CASE...]
 set -e

@@ -27,7 +27,8 @@ from ._sections import Section
 from ._simulation import Simulation, StepReport
 from ._study import read_study
 
-# The compiled part is the program here: its file identifies the built-in laws, and laws are tried out in another process of it.
+# The compiled part is the program here: its file identifies the built-in laws, and laws are tried
+# out in another process of it.
 _fretwork.declare(
     _fretwork.__file__, [_sys.executable, "-m", "fretwork"] if _sys.executable else []
 )

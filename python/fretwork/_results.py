@@ -109,7 +109,8 @@ class Results:
             headings = file.readline().rstrip("\n").split(",")
             # The last line of a run that goes on may be cut.
             rows = [line for line in file if line.endswith("\n")]
-        # Numbers are written with as many digits as their bits need, and are read back to the same bits.
+        # Numbers are written with as many digits as their bits need, and are read back to the same
+        # bits.
         values = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(headings)))
         units = {}
         for heading in headings:

@@ -14,7 +14,8 @@ from law_examples import SHIPPED  # noqa: E402
 CASES = Path(__file__).parents[2] / "cases" / "verification"
 TESTS = Path(__file__).parent
 
-#: Scenes: the file, what is set in it, the laws that are replaced, and columns that must not be zero throughout.
+#: Scenes: the file, what is set in it, the laws that are replaced, and columns that must not be
+#: zero throughout.
 SCENES = {
     "friction and wear": (
         "worn_slide_3d",

@@ -1,4 +1,5 @@
-// Opens reports in a headless Chromium and uses them as a reader does. Usage: node check.mjs FOLDER, which holds node_modules and runs.
+// Opens reports in a headless Chromium and uses them as a reader does. Usage: node check.mjs
+// FOLDER, which holds node_modules and runs.
 import { createRequire } from "node:module";
 import { statSync } from "node:fs";
 import { resolve } from "node:path";
@@ -26,7 +27,8 @@ const open = async (path, options = {}) => {
   return { page, errors, asked, close: () => context.close() };
 };
 
-// Pixels of the canvas of the viewer: how many have a colour, how many are not background, and a sum that tells pictures apart.
+// Pixels of the canvas of the viewer: how many have a colour, how many are not background, and a
+// sum that tells pictures apart.
 const pixels = (page) => page.evaluate(() => {
   const canvas = document.querySelector("#viewer canvas");
   const copy = document.createElement("canvas");
@@ -110,7 +112,8 @@ const viewer = async (name, { errors, asked, page }, more = {}) => {
     const now = await pixels(page);
     check(`${name}: colours by ${option}`, now.sum !== plain.sum && (await text(page, "#viewer .legend")).includes(option.split(" (")[0]), await text(page, "#viewer .legend"));
   }
-  // Pointer: zoom by wheel once the picture is in focus, move or turn by dragging, read a value under the pointer.
+  // Pointer: zoom by wheel once the picture is in focus, move or turn by dragging, read a value
+  // under the pointer.
   await canvas.focus();
   const box = await canvas.boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height / 2];

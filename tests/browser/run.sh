@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Opens reports in a headless Chromium and uses them: tests/browser/check.mjs. Needs chromium, node and the npm package playwright-core;
-# installs what is missing where it may (root and apt-get), else says that it is skipped. Screenshots are left in target/browser.
+# Opens reports in a headless Chromium and uses them: tests/browser/check.mjs. Needs chromium, node
+# and the npm package playwright-core; installs what is missing where it may (root and apt-get),
+# else says that it is skipped. Screenshots are left in target/browser.
 set -eu
 cd "$(dirname "$0")/../.."
 place=target/browser
@@ -39,7 +40,8 @@ run() {
     shift 2
     "$fretwork" run "$case" --out "$runs/$name" "$@" >"$runs/$name.log" 2>&1 || { cat "$runs/$name.log"; exit 1; }
 }
-# Grains with bonds in the plane; grains in space, balls and polyhedra; a body that deforms; a run that was killed.
+# Grains with bonds in the plane; grains in space, balls and polyhedra; a body that deforms; a run
+# that was killed.
 run bonded tests/program/report/bonded.ron
 run again tests/program/report/bonded.ron --set interfaces.layer.parameters.contact.mu=0.2
 run solid cases/verification/voronoi_plate_3d.ron

@@ -1,4 +1,5 @@
-/* A linear bond that softens linearly, and the same with one promise broken: -DWRONG_... chooses. */
+/* A linear bond that softens linearly, and the same with one promise broken: -DWRONG_...
+ * chooses. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -37,7 +38,8 @@ static double *work;
 static size_t room;
 #endif
 #if defined(WRONG_NOTHING_SET_UP_ONCE)
-/* No promise is broken: what is set up at the first call and never changes is no one's hidden state. */
+/* No promise is broken: what is set up at the first call and never changes is no one's hidden
+ * state. */
 static double first[64];
 static int ready;
 #endif
@@ -134,7 +136,8 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
         memory = u;
 #endif
 #if defined(WRONG_DEGRADATION)
-        /* Right on its own curve, where D follows from u, and wrong for a damage that comes from elsewhere. */
+        /* Right on its own curve, where D follows from u, and wrong for a damage that comes from
+         * elsewhere. */
         double first = p[STRENGTH] / p[K], end = 2.0 * p[ENERGY] / p[STRENGTH], d = b->damage[k];
         double least = u <= first ? 0.0 : u >= end ? 1.0 : end * (u - first) / (u * (end - first));
         if (u < 0.7 * first && d > least) s *= 1.0 - 0.5 * d;

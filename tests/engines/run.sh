@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
-# The same study through `fretwork study run`, Slurm, HyperQueue, Snakemake and a list of commands: all must give the same table.
-# Usage: tests/engines/run.sh, from the root of the repository, after `cargo build --release`. On Debian or Ubuntu as root it installs what is
-# missing: Slurm and munge by apt-get, Snakemake, HyperQueue and pandas with pip in a virtual environment below target/. It starts a Slurm of one machine
-# (munged, slurmctld, slurmd) with its files in target/engines and stops it at the end.
-# HyperQueue's package has its server and worker but no command `hq`: tasks of the exported file are submitted through its Python interface
-# (hyperqueue_tasks.py); with `hq` in the PATH the file itself is submitted.
+# The same study through `fretwork study run`, Slurm, HyperQueue, Snakemake and a list of commands:
+# all must give the same table.
+# Usage: tests/engines/run.sh, from the root of the repository, after `cargo build --release`. On
+# Debian or Ubuntu as root it installs what is missing: Slurm and munge by apt-get, Snakemake,
+# HyperQueue and pandas with pip in a virtual environment below target/. It starts a Slurm of one
+# machine (munged, slurmctld, slurmd) with its files in target/engines and stops it at the end.
+# HyperQueue's package has its server and worker but no command `hq`: tasks of the exported file are
+# submitted through its Python interface (hyperqueue_tasks.py); with `hq` in the PATH the file
+# itself is submitted.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 here="$PWD/tests/engines"
@@ -31,7 +34,8 @@ cleanup() {
 }
 trap cleanup EXIT
 
-# A case that takes a tenth of a second, over two values of friction with one that always fails: failures are results too.
+# A case that takes a tenth of a second, over two values of friction with one that always fails:
+# failures are results too.
 cp "$here"/heap.ron "$here"/heap_study.ron "$work/"
 study="$work/heap_study.ron"
 export_to() {

@@ -88,8 +88,8 @@ crate::described! {
         /// another solution.
         #[serde(default)]
         pub not_searched_steps: u64 => ONE,
-        /// Steps among `not_searched_steps` in which that contact was one of a grain that first bodies
-        /// squeeze.
+        /// Steps among `not_searched_steps` in which that contact was one of a grain that first
+        /// bodies squeeze.
         #[serde(default)]
         pub pinched_steps: u64 => ONE,
         /// Steps in which damage and opening did not reach the coupling's tolerance.

@@ -1,4 +1,5 @@
-// What the viewer looks at: a window in the plane, or an orbit in space. Lengths are in the units of the scene's box.
+// What the viewer looks at: a window in the plane, or an orbit in space. Lengths are in the units
+// of the scene's box.
 {
   const multiply = (a, b) => {
     const out = new Float32Array(16);

@@ -21,7 +21,8 @@
     return (FW.isDark() ? DARK : LIGHT)[(series.place ?? k) % LIGHT.length];
   };
 
-  // Ticks of a logarithmic axis: whole multiples of powers of ten, with labels at the powers, and over few of them at 2 and 5 times these.
+  // Ticks of a logarithmic axis: whole multiples of powers of ten, with labels at the powers, and
+  // over few of them at 2 and 5 times these.
   const multiples = (min, max) => {
     const ticks = [];
     for (let k = Math.floor(Math.log10(min)); k <= Math.log10(max); k++) for (let m = 1; m < 10; m++) ticks.push([m, Number(`${m}e${k}`)]);
@@ -148,7 +149,8 @@
     return FW.element("div", { class: "legend" }, ...parts, ...(field.arrows.length ? [`arrows: ${field.arrow_label}`] : []));
   };
 
-  // The point under the cursor: the nearest along the axis where points follow it, else the nearest of all, if it is near.
+  // The point under the cursor: the nearest along the axis where points follow it, else the nearest
+  // of all, if it is near.
   const nearest = (u, s) => {
     const { left, top } = u.cursor;
     if (left < 0 || !u.series[s].show) return null;
@@ -188,8 +190,9 @@
     return [a - pad, b + pad];
   };
 
-  // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range}, series: [{label, x, y, low, high, second, line, dashed,
-  // markers, colour, place}], gradient, field, link: name of the charts that share their zoom}, with numbers in the units of the axes
+  // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range}, series:
+  // [{label, x, y, low, high, second, line, dashed, markers, colour, place}], gradient, field,
+  // link: name of the charts that share their zoom}, with numbers in the units of the axes
   FW.chart = (host, spec) => {
     const plot = FW.element("div", { class: "plot", tabindex: 0, role: "img" });
     host.append(plot);

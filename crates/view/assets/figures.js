@@ -1,4 +1,5 @@
-// The figures of a page: the charts that were described, and one of any column of the statistics over any other.
+// The figures of a page: the charts that were described, and one of any column of the statistics
+// over any other.
 {
   const { element } = FW;
   const heading = (host, title, note) => host.append(element("figcaption", {}, element("h3", {}, title), element("p", {}, note)));

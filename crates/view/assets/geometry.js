@@ -119,7 +119,8 @@
       }
       for (let i = 1; i < points.length; i++) edges.add(points[i - 1], points[i], 0, edge);
       if (side[c] === 1) { for (let i = 2; i + 1 < points.length; i++) solid.triangle(points[0], points[i - 1], points[i], fill); continue; }
-      // The solid is on the right of the outline: down to a straight line of an open one, along each normal of a closed one.
+      // The solid is on the right of the outline: down to a straight line of an open one, along
+      // each normal of a closed one.
       const depth = scene.depth / scene.size;
       const normal = (p, q) => { const [dx, dy] = [q[0] - p[0], q[1] - p[1]], n = Math.hypot(dx, dy) || 1; return [(depth * dy) / n, (-depth * dx) / n, 0]; };
       const whole = normal(points[0], points[points.length - 1]);

@@ -1,4 +1,5 @@
-// WebGL2: balls as quads (disks in the plane, ray-cast spheres in space), triangles, and lines with a width.
+// WebGL2: balls as quads (disks in the plane, ray-cast spheres in space), triangles, and lines with
+// a width.
 {
   const BALL_V = `#version 300 es
 layout(location=0) in vec2 corner; layout(location=1) in vec3 at; layout(location=2) in float radius; layout(location=3) in vec4 colour;

@@ -1,4 +1,5 @@
-// States of the scene: unpacked when they are first shown; the box of the first one gives the units of drawing.
+// States of the scene: unpacked when they are first shown; the box of the first one gives the units
+// of drawing.
 {
   FW.Scene = class {
     constructor(head) {

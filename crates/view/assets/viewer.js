@@ -157,7 +157,8 @@
     await scene.open();
     const viewer = new Viewer(scene, document.getElementById("viewer"));
     await viewer.show(scene.count - 1);
-    // Where pictures are drawn by the processor, reading one back takes long: after everything else.
+    // Where pictures are drawn by the processor, reading one back takes long: after everything
+    // else.
     const idle = window.requestIdleCallback || ((call) => setTimeout(call, 500));
     idle(() => { if (viewer.now === scene.count - 1) viewer.picture(); });
     FW.redraw = () => viewer.draw();

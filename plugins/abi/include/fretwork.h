@@ -1,35 +1,38 @@
 /* fretwork.h - the C interface between Fretwork and its law plugins, version 1.1.
  *
- * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion, damage,
- * wear, transport; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
- * table. The rules:
- *  - the host owns all memory; nothing is allocated on one side and freed on the other; what the table
- *    points to must live as long as the program;
- *  - calls are batches over n contacts, columns of n doubles; a column that a call does not use is null;
+ * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion,
+ * damage, wear, transport; NAME with '-' written '_') which exports one function,
+ * fretwork_plugin(), returning a static table. The rules:
+ *  - the host owns all memory; nothing is allocated on one side and freed on the other; what the
+ *    table points to must live as long as the program;
+ *  - calls are batches over n contacts, columns of n doubles; a column that a call does not use is
+ *    null;
  *  - calls are pure: no globals, any thread, any order, same input same bits;
- *  - a call returns FW_OK, or another status with a message in message->text and, if one contact caused
- *    it, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with the
- *    message; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the case (2).
+ *  - a call returns FW_OK, or another status with a message in message->text and, if one contact
+ *    caused it, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with
+ *    the message; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the
+ *    case (2).
  *
  * When calls are made, for every interface law of a scene:
  *  - once, when the case is read: validate;
- *  - when a contact of a law with internal variables is first detected: initialise, if there is one (state
- *    and state_next then have the schema's initial values);
+ *  - when a contact of a law with internal variables is first detected: initialise, if there is one
+ *    (state and state_next then have the schema's initial values);
  *  - at the start of every step, after detection of gaps and normals: prepare of the contact law,
  *    then of the cohesion law; with implicit coupling again after every solve of the step;
- *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0, which
- *    gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the damage law;
- *    commit of the contact law if it has internal variables; commit of the wear law; commit of the
- *    transport law, whose conductances the heat of this step flows through. With implicit
- *    coupling energy, prepare and the two commits are also called for trials, whose results the host
- *    discards: a law must not depend on this.
+ *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0,
+ *    which gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the
+ *    damage law; commit of the contact law if it has internal variables; commit of the wear law;
+ *    commit of the transport law, whose conductances the heat of this step flows through. With
+ *    implicit coupling energy, prepare and the two commits are also called for trials, whose
+ *    results the host discards: a law must not depend on this.
  * A cohesion law with FW_FLAG_OPENING is called for intact bonds; without it, for every contact.
  *
- * Compatibility: a host and a plugin of one major version work together for any minor versions. Within a
- * major version every struct begins with its size and grows at its end only, no field changes its meaning,
- * and fw_field is frozen. Each side reads only the fields covered by the other's size: a plugin checks
- * batch->size before it uses a column that 1.0 did not have; a host treats functions missing at the end of
- * the table as null. A change that breaks this increments the major version, which the loader then refuses.
+ * Compatibility: a host and a plugin of one major version work together for any minor versions.
+ * Within a major version every struct begins with its size and grows at its end only, no field
+ * changes its meaning, and fw_field is frozen. Each side reads only the fields covered by the
+ * other's size: a plugin checks batch->size before it uses a column that 1.0 did not have; a host
+ * treats functions missing at the end of the table as null. A change that breaks this increments
+ * the major version, which the loader then refuses.
  *
  * SI units everywhere. A test of the crate fretwork-abi compares this file with the Rust structs.
  */
@@ -70,26 +73,29 @@ extern "C" {
 #define FW_FLAG_2D_ONLY (UINT64_C(1) << 0)
 /* Flag: the law is written for three-dimensional scenes only. */
 #define FW_FLAG_3D_ONLY (UINT64_C(1) << 1)
-/* Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression. Below zero
- * opening the law continues linearly (a negative traction), from which the host finds the zero; the host
- * drops the compression. Such a bond fills the gap at which it formed. One without the flag also acts in
- * compression until the gap closes. */
+/* Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression.
+ * Below zero opening the law continues linearly (a negative traction), from which the host finds
+ * the zero; the host drops the compression. Such a bond fills the gap at which it formed. One
+ * without the flag also acts in compression until the gap closes. */
 #define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
-/* Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage law. */
+/* Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage
+ * law. */
 #define FW_FLAG_OPENING (UINT64_C(1) << 3)
 /* Flag (contact): prepare depends on the parameters only, so the host may call it once for one
  * contact and use the result for all. */
 #define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
-/* Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its bonds. */
+/* Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its
+ * bonds. */
 #define FW_FLAG_MOMENT (UINT64_C(1) << 5)
 /* Flag (cohesion): commit writes out_damage, so the law breaks without a damage law. */
 #define FW_FLAG_BREAKS (UINT64_C(1) << 6)
 /* Flag (cohesion): bonds may form in contact during a run, again after they broke. */
 #define FW_FLAG_FORMS (UINT64_C(1) << 7)
-/* Flag (contact): the contact is a unilateral spring; prepare fills the out_contact_* columns. Since 1.1. */
+/* Flag (contact): the contact is a unilateral spring; prepare fills the out_contact_* columns.
+ * Since 1.1. */
 #define FW_FLAG_COMPLIANT (UINT64_C(1) << 8)
-/* Flag: the law reads temperatures, so the case must compute heat; the columns are then not null. Transport laws have them
- * without the flag. Since 1.1. */
+/* Flag: the law reads temperatures, so the case must compute heat; the columns are then not null.
+ * Transport laws have them without the flag. Since 1.1. */
 #define FW_FLAG_TEMPERATURE (UINT64_C(1) << 9)
 
 /* Describes one parameter or one internal variable. Frozen within a major version. */
@@ -207,8 +213,8 @@ typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);
 /* A call over a batch. May be null if the kind does not need it. */
 typedef int32_t (*fw_call)(const fw_batch *batch, fw_message *message);
 
-/* The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading at a
- * fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if it declares none. */
+/* The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading at
+ * a fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if it declares none. */
 typedef double (*fw_fracture)(const double *parameters, double angle);
 
 /* The table of a plugin: returned by its entry function, static for the life of the program. */

@@ -12,7 +12,8 @@ from collections.abc import Callable
 
 _LARGEST = 1.7976931348623157e308
 
-#: Returned in place of an answer, it asks the host for a smaller time step (a case with `accuracy` then halves the step).
+#: Returned in place of an answer, it asks the host for a smaller time step (a case with `accuracy`
+#: then halves the step).
 SMALLER_STEP: float = struct.unpack("<d", struct.pack("<Q", 0x7FF8_F2E7_0511_57E9))[0]
 
 
@@ -75,7 +76,8 @@ def intact_stiffness(energy_intact: float, intact_n: float, intact_t1: float, in
     return 0.0
 
 
-#: Inputs that are computed from columns, by name: a law has them as arguments like the columns themselves.
+#: Inputs that are computed from columns, by name: a law has them as arguments like the columns
+#: themselves.
 DERIVED: dict[str, Callable[..., float]] = {
     f.__name__: f
     for f in (

@@ -19,7 +19,8 @@ from .results import Attraction, Conductance, Friction, Spring, Traction
 class Function:
     """A function that the author of a law writes for one contact."""
 
-    #: name by which further functions are given, ``@my_law.energy``; that of the first function says what it returns
+    #: name by which further functions are given, ``@my_law.energy``; that of the first function
+    #: says what it returns
     name: str
     #: function of the plugin table that calls it
     slot: str

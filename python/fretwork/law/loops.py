@@ -26,7 +26,8 @@ class Answer:
 
     spec: Function
     function: FunctionType
-    #: the columns it writes, with the places of their values in what it returns; a place of `None` is the value itself
+    #: the columns it writes, with the places of their values in what it returns; a place of `None`
+    #: is the value itself
     columns: list[tuple[str, tuple[int, ...]]] = field(default_factory=list)
     #: places of the new internal variables, in their order
     state: list[tuple[int, ...]] = field(default_factory=list)

@@ -134,7 +134,8 @@ class Compiler:
         law = any(not isinstance(d, (int, float)) for d in (*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()))
         defaults = None if law else function.__defaults__
         rebuilt = FunctionType(positional, world, function.__name__, defaults, cells)
-        # The names of modules reach the symbols; `__main__` and an imported file give the same code.
+        # The names of modules reach the symbols; `__main__` and an imported file give the same
+        # code.
         rebuilt.__module__ = "law"
         return rebuilt
 
@@ -205,7 +206,8 @@ class Compiler:
             for function in module.functions:
                 if not function.is_declaration and not function.name.startswith("fretwork_"):
                     function.linkage = llvm.Linkage.internal
-            # Places for numba's own Python objects, which nothing here uses; their names count compilations.
+            # Places for numba's own Python objects, which nothing here uses; their names count
+            # compilations.
             for variable in module.global_variables:
                 if not variable.is_declaration:
                     variable.linkage = llvm.Linkage.internal

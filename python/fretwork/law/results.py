@@ -45,7 +45,8 @@ class Spring(NamedTuple):
     contact_stiffness_n: float
     #: normal damping (N s/m)
     contact_damping_n: float = 0.0
-    #: tangential force at the start of the step (N): `spring_t1` as it is given, unless the law changes it
+    #: tangential force at the start of the step (N): `spring_t1` as it is given, unless the law
+    #: changes it
     contact_force_t1: float = 0.0
     #: the same along t2: `spring_t2`
     contact_force_t2: float = 0.0

@@ -89,7 +89,8 @@ def signature(function: FunctionType) -> dict[str, Any]:
     return found
 
 
-#: Statements that have no meaning in a function compiled for one contact, with what to write in their place.
+#: Statements that have no meaning in a function compiled for one contact, with what to write in
+#: their place.
 _REFUSED: dict[type[ast.AST], str] = {
     ast.Raise: "a compiled law cannot raise; return a number, or `SMALLER_STEP` to ask for a smaller time step",
     ast.Assert: "a compiled law cannot assert; give the parameter a range, or add a condition on parameters with `require`",

@@ -136,7 +136,8 @@ fn each_form_is_the_case_with_more_that_deforms() {
     );
 }
 
-/// The former words `--knob rung` run the forms of a case, and the program reports the present ones.
+/// The former words `--knob rung` run the forms of a case, and the program reports the present
+/// ones.
 #[test]
 fn the_former_name_runs_and_is_reported() {
     let folder = Folder::new("rung");

@@ -1,5 +1,5 @@
-! The plugin interface of Fretwork, version 1, for Fortran: the same as fretwork.h, where every field is
-! described. Made from the header; gfortran -std=f2018.
+! The plugin interface of Fretwork, version 1, for Fortran: the same as fretwork.h, where every
+! field is described. Made from the header; gfortran -std=f2018.
 module fretwork
   use, intrinsic :: iso_c_binding
   implicit none

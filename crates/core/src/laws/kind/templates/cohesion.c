@@ -6,11 +6,12 @@ static const fw_field parameters[] = {
 };
 
 @FAIL@
-/* (1) Remaining stiffness fraction at damage D: traction = left(D) k x and psi = left(D) k x^2/2 must agree, and with
- * `degradation` in the table, left = (1 - D)^m. */
+/* (1) Remaining stiffness fraction at damage D: traction = left(D) k x and psi = left(D) k x^2/2
+ * must agree, and with `degradation` in the table, left = (1 - D)^m. */
 static double left(double damage) { return 1.0 - damage; }
 
-/* (2) Energy stored by the undamaged bond (J/m^2); a normal opening contributes only if positive. */
+/* (2) Energy stored by the undamaged bond (J/m^2); a normal opening contributes only if
+ * positive. */
 static double stored(const double *p, double n, double t) {
     n = fmax(n, 0.0);
     return 0.5 * (p[K_N] * n * n + p[K_T] * t * t);

@@ -2,7 +2,8 @@
   integer, parameter :: count = 2, longest = 100
 @STORE@
 
-  ! (1) Remaining stiffness fraction "left" at damage D: traction = left k x, psi = left k x^2/2; with `degradation` m, (1 - D)^m.
+  ! (1) Remaining stiffness fraction "left" at damage D: traction = left k x, psi = left k x^2/2;
+  ! with `degradation` m, (1 - D)^m.
   pure function left(damage)
     real(c_double), intent(in) :: damage
     real(c_double) :: left

@@ -6,8 +6,8 @@ static const fw_field parameters[] = {
 };
 
 @FAIL@
-/* (1) D at the end of the step, where t0 (Pa) is the traction that the undamaged bond would carry at the opening u
- * (m), so that psi = (1 - D)^m psi_0. Here: a line from the strength to zero. */
+/* (1) D at the end of the step, where t0 (Pa) is the traction that the undamaged bond would carry
+ * at the opening u (m), so that psi = (1 - D)^m psi_0. Here: a line from the strength to zero. */
 static double damage(const double *p, double t0, double u, double m) {
     double first = p[STRENGTH] * u / t0, last = 2.0 * p[ENERGY] / p[STRENGTH];
     if (t0 <= p[STRENGTH]) return 0.0;

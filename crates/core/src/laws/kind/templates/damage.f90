@@ -2,7 +2,8 @@
   integer, parameter :: count = 2, longest = 100
 @STORE@
 
-  ! (1) D for the traction t0 (Pa) of the undamaged bond at the opening u (m); psi = (1 - D)^m psi_0.
+  ! (1) D for the traction t0 (Pa) of the undamaged bond at the opening u (m); psi = (1 - D)^m
+  ! psi_0.
   pure function damage(p, t0, u, m) result(d)
     real(c_double), intent(in) :: p(:), t0, u, m
     real(c_double) :: d, first, last

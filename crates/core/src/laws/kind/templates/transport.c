@@ -9,7 +9,8 @@ static const fw_field parameters[] = {
 /* (1) Normal force (N) from the normal impulse over the step (N s). */
 static double force(double impulse, double h) { return fmax(impulse / h, 0.0); }
 
-/* (2) Thermal (W/K) or electrical (S) conductance under a normal force (N), at the temperature of the contact (K). */
+/* (2) Thermal (W/K) or electrical (S) conductance under a normal force (N), at the temperature of
+ * the contact (K). */
 static double conductance(const double *p, int which, double force, double temperature) {
     (void)temperature;
     return p[which] * force;
