@@ -46,13 +46,13 @@ pub struct TradeArgs {
     /// are not chaotic
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     seeds: u16,
-    /// Time budget of the study: 90s, 10m, 2h
+    /// Time budget of the trade: 90s, 10m, 2h
     #[arg(long, value_name = "TIME", default_value = "10m", value_parser = duration)]
     budget: Duration,
     /// Parallel runs; they disturb each other's timing, so 1 times best
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Folder of the results, in which an interrupted study also continues; by default
+    /// Folder of the results, in which an interrupted trade also continues; by default
     /// results/trade/<case>
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -62,7 +62,7 @@ pub struct TradeArgs {
     /// Largest energy residual, relative to the largest energy, of an accepted run
     #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = not_negative)]
     residual: f64,
-    /// Show no progress; print the study as JSON
+    /// Show no progress; print the trade as JSON
     #[arg(long)]
     json: bool,
 }

@@ -79,7 +79,10 @@ fn wrong_input_is_answered_with_the_nearest_name() {
             "one run of the case as it is takes",
         ),
         (&["--vary", "seed=1,2"], "for more seeds give --seeds"),
-        (&["--vary", "output.every=1,2"], "a study sets this itself"),
+        (
+            &["--vary", "output.every=1,2"],
+            "the command sets this itself",
+        ),
         (
             &[
                 "--output",

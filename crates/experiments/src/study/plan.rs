@@ -354,7 +354,7 @@ fn outputs(
             usual.iter().map(|name| OutputName::parse(name)).collect();
         all = parsed.map_err(Error::Usage)?;
         if all.is_empty() {
-            let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
+            let text = "the case has no main result to compare; name an output, such as outputs: [\"energy.kinetic\"]";
             return Err(read.source.error_at("outputs", text).into());
         }
     }

@@ -21,7 +21,7 @@ pub(super) fn listed(loaded: &LoadedCase, tolerance: f64, argument: &str) -> Res
     };
     if key.trim() == "seed" || recorded(key.trim()) {
         return Err(Error::Usage(format!(
-            "--vary {}: a study sets this itself, or it changes the output files and not the computation; for more seeds give --seeds",
+            "--vary {}: the command sets this itself, or it changes the output files and not the computation; for more seeds give --seeds",
             key.trim()
         )));
     }

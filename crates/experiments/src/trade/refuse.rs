@@ -25,7 +25,7 @@ pub fn outputs(request: &Request, available: &AvailableQuantities) -> Result<Vec
     };
     if outputs.is_empty() {
         return Err(Error::Usage(
-            "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
+            "the case has no main result to compare; name an output, such as --output energy.kinetic=1%".into(),
         ));
     }
     for (k, output) in outputs.iter().enumerate() {
