@@ -126,6 +126,24 @@ class Results:
         return table
 
     @property
+    def events(self) -> dict[str, xr.Dataset]:
+        """Tables of events by their names, also those of observers: ``(event,)``, with the columns of ``/events/NAME``. A column with
+        any number of values for each event, such as ``grains`` of ``debris``, has a dimension of its own name with ``_value``."""
+        xarray, np = need("xarray", "results", "tables of events"), need("numpy", "results", "arrays")
+        result: dict[str, xr.Dataset] = {}
+        with self.open() as file:
+            for table, columns in file.get("events", {}).items():
+                values = {name: np.asarray(data[:]) for name, data in columns.items()}
+                sizes = [len(v) for v in values.values()]
+                # All columns but a list have one value for each event.
+                rows = max(sizes, key=sizes.count, default=0)
+                fields = {
+                    name: ("event" if len(v) == rows else f"{name}_value", v, _attributes(columns[name])) for name, v in values.items()
+                }
+                result[table] = xarray.Dataset(fields, attrs=self._said(file))
+        return result
+
+    @property
     def grains(self) -> xr.Dataset:
         """Balls and other parts of grains and first bodies over time: ``(time, grain)``, vectors ``(time, grain, axis)``, with the
         fields of ``results.h5``."""

@@ -44,6 +44,23 @@ def test_fields_over_time_have_units(results):
     assert bodies.force.attrs["units"] == "N/m"
 
 
+def test_tables_of_events_have_units(results, tmp_path):
+    assert results.events == {}
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "results.h5", "w") as file:
+        file.attrs.update({"case": "pieces", "units": "SI"})
+        columns = {"time": ([0.1, 0.2], "s", "when"), "size": ([2.0, 1.0], "1", "grains in it"), "grains": ([7.0, 8.0, 9.0], "1", "which")}
+        for name, (values, unit, doc) in columns.items():
+            data = file.create_dataset(f"events/debris/{name}", data=values)
+            data.attrs.update({"unit": unit, "doc": doc})
+    events = Results(tmp_path).events
+    assert list(events) == ["debris"]
+    debris = events["debris"]
+    assert debris.time.dims == ("event",) and debris.time.values.tolist() == [0.1, 0.2]
+    assert debris.time.attrs == {"units": "s", "long_name": "when"}
+    assert debris.grains.dims == ("grains_value",) and debris.grains.values.tolist() == [7.0, 8.0, 9.0]
+
+
 def test_the_summary_and_the_case(results, shear):
     assert results.summary["steps"] == 50 and results.case == shear.text
     assert results.trustworthy == results.summary["trustworthy"] and isinstance(results.warnings, list)
