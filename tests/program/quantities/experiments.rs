@@ -145,7 +145,7 @@ fn a_fit_aims_at_the_number_of_an_observer() {
     };
     let text = format!(
         r#"(tests: [{}, {}],
-            parameters: [(name: "speed", key: "grains.0.grains.0.velocity.2", low: 0.5, high: 1.5)],
+            parameters: [(name: "speed", key: "grains.0.grains.0.velocity.2", low: 0.5, high: 1.5, unit: "m/s")],
             search: (points: 5, generations: 3), seeds: (1, 1), half_step: false)"#,
         test("earth", 9.81),
         test("heavier", 15.0)
@@ -155,6 +155,18 @@ fn a_fit_aims_at_the_number_of_an_observer() {
     let found = json(&folder.join("out/fit.json"));
     let speed = found["parameters"][0]["value"].as_f64().unwrap();
     assert!((speed - 1.2).abs() < 5e-3, "{found}");
+    let table = |name: &str| std::fs::read_to_string(folder.join("out").join(name)).unwrap();
+    let points = table("evaluations.csv");
+    let headings = "evaluation,stage,speed [m/s],seeds,chi_squared,reason";
+    assert_eq!(points.lines().next(), Some(headings));
+    let curves = table("curves.csv");
+    let headings = "test,x,measured,sigma,fitted,scatter,x_unit,unit";
+    assert_eq!(curves.lines().next(), Some(headings));
+    assert_eq!(curves.lines().count(), 3);
+    assert!(
+        curves.lines().skip(1).all(|row| row.ends_with(",,m")),
+        "{curves}"
+    );
 }
 
 #[test]
@@ -186,7 +198,12 @@ fn a_trade_compares_the_number_of_an_observer() {
     }
     assert_eq!(found["outputs"][0]["unit"], "m");
     let table = std::fs::read_to_string(folder.join("out/trade.csv")).unwrap();
-    for heading in ["summit.highest [m]", "summit.highest_error,", "seconds [s]"] {
+    for heading in [
+        "summit.highest [m]",
+        "summit.highest_scatter [m]",
+        "summit.highest_error,",
+        "seconds [s]",
+    ] {
         assert!(table.contains(heading), "{heading} in {table}");
     }
 }

@@ -1,7 +1,7 @@
 //! Values of all tests at points of the parameters, from runs of their cases over seeds, several at
 //! a time.
 
-use super::measured;
+use super::measured::{self, unit};
 use super::model::Model;
 use super::spec::{FitFile, TestSpec};
 use crate::changes::Changes;
@@ -37,6 +37,15 @@ enum Simulated {
     Value(OutputName),
 }
 
+/// Units of the values of a test, `1` for pure numbers; empty where they are unknown.
+#[derive(Debug)]
+pub struct TestUnits {
+    /// Unit of the abscissae, in the heading of the measured ones; empty for a single value.
+    pub x: String,
+    /// Unit of the values: that in the heading of the measured ones, or that of the output.
+    pub value: String,
+}
+
 /// A point of the parameters with one seed of all tests: simulated values at all measured
 /// positions, or the reason why there are none.
 pub type Sample = Result<Vec<f64>, String>;
@@ -49,6 +58,8 @@ type RunCurve = Result<(Vec<f64>, Vec<f64>), String>;
 pub struct Tests {
     /// Measured values.
     pub target: Target,
+    /// Units of each test.
+    pub units: Vec<TestUnits>,
     /// The region of the parameters.
     pub bounds: Bounds,
     /// Whether the seed of any case changes its scene.
@@ -73,6 +84,7 @@ impl Tests {
         let bounds = bounds(read)?;
         let middle = bounds.values(&vec![0.5; bounds.len()]);
         let (mut tests, mut measurements, mut random) = (Vec::new(), Vec::new(), false);
+        let mut units = Vec::new();
         for (k, test) in spec.tests.iter().enumerate() {
             let at = |key: &str, why: String| read.source.error_at(&format!("tests.{k}{key}"), why);
             let (name, case, set) = test.common();
@@ -97,8 +109,12 @@ impl Tests {
                     let names: Vec<String> = columns.into_iter().map(|c| c.name).collect();
                     let made = Model::new(model, &names)
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
-                    let (curve, reach) =
-                        measured::curve(name, from, &read.beside(&from.file), model.along)?;
+                    let file = read.beside(&from.file);
+                    let (curve, reach) = measured::curve(name, from, &file, model.along)?;
+                    units.push(TestUnits {
+                        x: unit(&file, &from.x),
+                        value: unit(&file, &from.y),
+                    });
                     (Simulated::Curve(Box::new(made.reaching(reach))), curve)
                 }
                 TestSpec::Value {
@@ -108,9 +124,14 @@ impl Tests {
                     ..
                 } => {
                     let quantity = OutputName::parse(output).map_err(|why| at(".output", why))?;
-                    AvailableQuantities::of(&loaded, &scene, program)
+                    let available = AvailableQuantities::of(&loaded, &scene, program);
+                    available
                         .check(&quantity)
                         .map_err(|why| at(".output", why))?;
+                    units.push(TestUnits {
+                        x: String::new(),
+                        value: available.unit(&quantity),
+                    });
                     let single = Measurement {
                         name: name.to_owned(),
                         x: vec![0.0],
@@ -135,6 +156,7 @@ impl Tests {
                 true => target.balanced(),
                 false => target,
             },
+            units,
             bounds,
             random,
             specimen_scatters: spec.specimen_scatters,
@@ -226,6 +248,11 @@ impl Tests {
         let test = &self.tests[test];
         let own = sets_of(&self.factors, &test.changes, values).unwrap_or_default();
         [test.launcher.sets.clone(), own].concat()
+    }
+
+    /// The unit that the fit's file gives to a parameter; empty where it gives none.
+    pub fn unit_of_parameter(&self, parameter: usize) -> &str {
+        &self.factors[parameter].unit
     }
 
     /// The case of a test.

@@ -113,7 +113,7 @@ fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     for (k, p) in tests.bounds.parameters().iter().enumerate() {
         columns.push(Column::real(
             &p.name,
-            "",
+            tests.unit_of_parameter(k),
             all.iter().map(|e| Some(e.values[k])),
         ));
     }
@@ -124,31 +124,37 @@ fn evaluations(tests: &Tests, found: &SearchResult) -> Table {
     });
     columns.extend([
         Column::whole("seeds", seeds),
-        Column::real("chi_squared", "", all.iter().map(|e| e.chi_squared)),
+        Column::real("chi_squared", "1", all.iter().map(|e| e.chi_squared)),
         Column::text("reason", reasons),
     ]);
     Table { columns }
 }
 
-/// Returns measured and fitted values in columns.
+/// Returns measured and fitted values in columns. The units of the tests differ, so those of each
+/// row are in columns of their own.
 fn curves(tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Table {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let target = &tests.target;
     let count = target.measured().len();
-    let names = target.tests().iter();
-    let names = names.flat_map(|t| vec![t.name.clone(); t.x.len()]);
+    let of_rows = |of: &dyn Fn(usize) -> String| -> Vec<String> {
+        let all = target.tests().iter().enumerate();
+        all.flat_map(|(t, test)| vec![of(t); test.x.len()])
+            .collect()
+    };
     let x = target.tests().iter().flat_map(|t| &t.x);
     let known = |values: &[f64]| -> Vec<Option<f64>> {
         (0..count).map(|k| values.get(k).copied()).collect()
     };
     Table {
         columns: vec![
-            Column::text("test", names),
+            Column::text("test", of_rows(&|t| target.tests()[t].name.clone())),
             Column::real("x", "", x.map(|x| Some(*x))),
             Column::real("measured", "", known(&target.measured())),
             Column::real("sigma", "", known(&target.sigma())),
             Column::real("fitted", "", known(&mean)),
             Column::real("scatter", "", known(&deviation.unwrap_or_default())),
+            Column::text("x_unit", of_rows(&|t| tests.units[t].x.clone())),
+            Column::text("unit", of_rows(&|t| tests.units[t].value.clone())),
         ],
     }
 }

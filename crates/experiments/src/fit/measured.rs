@@ -16,6 +16,13 @@ pub fn heading(path: &Path, column: &str) -> String {
     own.unwrap_or_else(|| column.to_owned())
 }
 
+/// Returns the unit in the heading of a column, `MPa` in `stress [MPa]`; empty if there is none.
+pub fn unit(path: &Path, column: &str) -> String {
+    let heading = heading(path, column);
+    let unit = heading.split_once(" [").map_or("", |(_, unit)| unit);
+    unit.trim_end().trim_end_matches(']').to_owned()
+}
+
 /// Reads a measured curve, and its largest distance from 0, which determines the distance of
 /// branches.
 ///
@@ -98,6 +105,10 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         assert_eq!(heading(&path, "tau"), "tau [MPa]");
         assert_eq!(heading(&path, "s"), "s");
+        assert_eq!(
+            (unit(&path, "tau"), unit(&path, "s")),
+            ("MPa".to_owned(), String::new())
+        );
         let spec = |y: &str, sigma| MeasuredSpec {
             file: path.clone(),
             x: "u".into(),

@@ -32,7 +32,7 @@ pub enum ColumnType {
 pub struct Column {
     /// Name of the column.
     pub name: String,
-    /// SI unit, `1` for pure numbers; empty for texts.
+    /// SI unit, `1` for pure numbers; empty for texts and where it is unknown.
     pub unit: String,
     /// Type of the cells.
     pub kind: ColumnType,
@@ -41,7 +41,8 @@ pub struct Column {
 }
 
 impl Column {
-    /// Creates a column of numbers in a unit; `None` is unknown.
+    /// Creates a column of numbers of a unit, which is `1` for pure numbers and empty where it is
+    /// unknown; `None` is an unknown value.
     pub fn real(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -50,20 +51,17 @@ impl Column {
         let cell = |x: Option<f64>| x.map_or(Cell::Unknown, Cell::Number);
         Self {
             name: name.into(),
-            unit: match unit.into() {
-                none if none.is_empty() => "1".to_owned(),
-                unit => unit,
-            },
+            unit: unit.into(),
             kind: ColumnType::Real,
             cells: values.into_iter().map(cell).collect(),
         }
     }
 
-    /// Creates a column of whole numbers; `None` is unknown.
+    /// Creates a column of whole numbers without unit; `None` is unknown.
     pub fn whole(name: impl Into<String>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
         Self {
             kind: ColumnType::Whole,
-            ..Self::real(name, "", values)
+            ..Self::real(name, "1", values)
         }
     }
 
