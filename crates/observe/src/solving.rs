@@ -1,11 +1,32 @@
 //! Solver statistics of a run.
 
 use super::choice::SolverStats;
-use super::quantity::part;
 use super::quantity::unit::{ENERGY, ONE, WORD};
+use super::quantity::{Findings, Role, Topic, part};
 use fretwork_core::solve::error::ErrorParts;
 use fretwork_core::step::Agreement;
 use serde::{Deserialize, Serialize};
+
+/// Adds the numbers of steps that were and were not written as FCLIB problems.
+pub fn report_problems(written: u64, skipped: u64, found: &mut Findings) {
+    found.begin(Topic::Run, Role::Diagnostic);
+    let doc = "steps written as FCLIB problems";
+    let problems = found.add("solver.fclib_written", written, ONE, doc);
+    if written + skipped > 0 {
+        let skipped = match skipped {
+            0 => String::new(),
+            n => format!(
+                "; {n} not, since they have bonds, cohesion or friction against rotation, which FCLIB cannot represent"
+            ),
+        };
+        problems.sentence(
+            "problems",
+            format!("{written} steps written in fclib/{skipped}"),
+        );
+    }
+    let doc = "steps that FCLIB cannot represent";
+    found.add("solver.fclib_skipped", skipped, ONE, doc);
+}
 
 crate::described! {
     /// Parts of the error over the steps of a run, each weighted by the heat of slip of its step:

@@ -15,6 +15,7 @@ use super::observer::{Observers, RunEnd};
 use super::quantity::Findings;
 use super::run_state::{DrivenBodies, Phases, RunState};
 use super::scars::Scars;
+use super::solving::report_problems;
 use super::statistics::Table;
 use super::strain::LocalShear;
 use super::summary::{RunFacts, Summary, Uncertainty};
@@ -92,6 +93,7 @@ pub fn declared_by(observers: &Observers, run: &dyn RunView) -> Findings {
         wall: Duration::ZERO,
     };
     let mut found = observers.report(&end);
+    report_problems(0, 0, &mut found);
     Uncertainty::default().report(&mut found);
     report_accuracy(None, &mut found);
     let facts = RunFacts {

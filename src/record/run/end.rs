@@ -7,12 +7,11 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::FrameKind;
 pub(super) use crate::record::checkpoint::SUMMARY_FILE;
 use crate::record::output::Output;
-use crate::record::quantity::unit::ONE;
-use crate::record::quantity::{Findings, Role, Topic};
 use crate::record::summary::Uncertainty;
 use fretwork_observe::RunEnd;
 use fretwork_observe::accuracy::report_accuracy;
 use fretwork_observe::chart::{Figure, TableColumns};
+use fretwork_observe::solving::report_problems;
 use fretwork_observe::statistics::Table;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -28,7 +27,8 @@ impl Recorder<'_> {
         run.wall_seconds = wall.as_secs_f64();
         run.cpu_seconds = (self.elapsed_before_resume.1 + self.processor.elapsed()).as_secs_f64();
         let mut found = self.observers.report(&self.end(wall));
-        self.report_problems(&mut found);
+        let (written, skipped) = self.problems;
+        report_problems(written, skipped, &mut found);
         let driven = self.simulation.bodies().driven.iter();
         let driven = driven
             .map(|d| self.simulation.kinetic_energy(d.body as usize))
@@ -49,28 +49,6 @@ impl Recorder<'_> {
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         write_atomic(&self.out.join(SUMMARY_FILE), &(text + "\n"))?;
         files
-    }
-
-    /// Adds the numbers of steps that were and were not written as FCLIB problems.
-    fn report_problems(&self, found: &mut Findings) {
-        let (written, skipped) = self.problems;
-        found.begin(Topic::Run, Role::Diagnostic);
-        let doc = "steps written as FCLIB problems";
-        let problems = found.add("solver.fclib_written", written, ONE, doc);
-        if written + skipped > 0 {
-            let skipped = match skipped {
-                0 => String::new(),
-                n => format!(
-                    "; {n} not, since they have bonds, cohesion or friction against rotation, which FCLIB cannot represent"
-                ),
-            };
-            problems.sentence(
-                "problems",
-                format!("{written} steps written in fclib/{skipped}"),
-            );
-        }
-        let doc = "steps that FCLIB cannot represent";
-        found.add("solver.fclib_skipped", skipped, ONE, doc);
     }
 
     /// The ended run, for observers.
