@@ -34,7 +34,7 @@ pub struct RunEnd<'a> {
 /// A table of events in `results.h5`, `/events/NAME`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventTable {
-    /// Name of the table.
+    /// Name of the table, which differs from those of all other observers.
     pub name: &'static str,
     /// Columns, with one value per event.
     pub columns: Vec<Column>,

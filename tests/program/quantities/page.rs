@@ -192,6 +192,22 @@ fn columns(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
     all
 }
 
+/// The columns of the tables of events, by the tables.
+fn events(cases: &[(LoadedCase, Built)]) -> BTreeMap<&'static str, Rows> {
+    let mut all: BTreeMap<&str, Rows> = BTreeMap::new();
+    for (LoadedCase { case, .. }, built) in cases {
+        let observers = standard::observers(case, built.simulation.view(), 1.0);
+        for table in observers.event_tables() {
+            let list = all.entry(table.name).or_default();
+            for column in table.columns.into_iter().chain(table.list) {
+                let unit = units(column.unit.heading(3), column.unit.heading(2));
+                add_row(list, column.name, unit, column.doc);
+            }
+        }
+    }
+    all
+}
+
 /// The numbers of measures, by their observers.
 fn measures(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
     let mut all: BTreeMap<String, Rows> = BTreeMap::new();
@@ -272,7 +288,10 @@ fn the_page_lists_every_quantity_with_its_unit() {
     let columns = columns(&cases).into_iter();
     let columns = columns.map(|(of, list)| (format!("columns: {of}"), table_of_columns(&list)));
     let measures = ("measures".to_owned(), table_of_measures(&cases));
-    for (name, table) in quantities.into_iter().chain([measures]).chain(columns) {
+    let events = events(&cases).into_iter();
+    let events = events.map(|(of, list)| (format!("events: {of}"), table_of_columns(&list)));
+    let tables = quantities.into_iter().chain([measures]);
+    for (name, table) in tables.chain(columns).chain(events) {
         let begin = format!("<!-- {name} -->\n");
         let end = format!("<!-- end of {name} -->");
         let place = |mark: &str| {

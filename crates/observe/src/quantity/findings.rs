@@ -177,6 +177,9 @@ impl Findings {
     /// Adds all fields of a described result below a path (at the root where it is empty), and
     /// keeps it for [`Findings::get`]. `doc` is the explanation where there are no values, such as
     /// for an empty list.
+    ///
+    /// # Panics
+    /// The result has a field without unit and explanation, or a list where one value is described.
     pub fn part<T: Described>(&mut self, path: &str, result: &T, doc: &str) {
         self.keep(result.clone());
         self.fields(path, result, T::FIELDS, doc);
@@ -184,6 +187,9 @@ impl Findings {
 
     /// Adds all fields of a list of described results, or of an optional one, which is null where
     /// there is none.
+    ///
+    /// # Panics
+    /// The panics are those of [`Findings::part`].
     pub fn parts<T: Described>(
         &mut self,
         path: &str,
@@ -194,6 +200,9 @@ impl Findings {
     }
 
     /// Adds a result whose fields are described separately.
+    ///
+    /// # Panics
+    /// The panics are those of [`Findings::part`].
     pub fn fields(
         &mut self,
         path: &str,
@@ -226,13 +235,13 @@ impl Findings {
                             Schema::Values(unit) => unit != super::unit::WORD,
                             schema => matches!(schema, Schema::Part(_)),
                         };
-                        debug_assert!(!(one && value.is_array()), "{} is a list", field.name);
+                        assert!(!(one && value.is_array()), "{} is a list", field.name);
                         let path = below(PathStep::Key(field.name.to_owned()));
                         self.walk(path, value, field.schema, field.doc);
                     }
                 }
                 let left: Vec<&String> = map.keys().collect();
-                debug_assert!(left.is_empty(), "no unit and no explanation of {left:?}");
+                assert!(left.is_empty(), "no unit and no explanation of {left:?}");
             }
             (Value::Object(map), Schema::Values(_)) if !map.is_empty() => {
                 for (key, value) in map {
