@@ -11,8 +11,10 @@ pub type Added = fn(&LoadedCase, &dyn RunView) -> Observers;
 static ADDED: OnceLock<Added> = OnceLock::new();
 
 /// Declares what a program of one's own with this command line adds to each run: what that reports
-/// is found in studies, fits and trades too, whose runs the program makes. Only the first
-/// declaration counts.
+/// is found in studies, fits and trades too, whose runs the program makes.
+///
+/// # Panics
+/// Observers were added before: a program adds all of them in one call.
 ///
 /// ```no_run
 /// use fretwork::record::{Observer, Observers};
@@ -37,7 +39,10 @@ static ADDED: OnceLock<Added> = OnceLock::new();
 /// }
 /// ```
 pub fn add(added: Added) {
-    let _ = ADDED.set(added);
+    assert!(
+        ADDED.set(added).is_ok(),
+        "observers were added before; add all of them in one call of `add_observers`"
+    );
 }
 
 /// What the program adds to a run of a case.

@@ -55,6 +55,7 @@ pub struct Program {
     pub plugins: Vec<String>,
     /// Observers of the runs of a case: what they report is what experiments compare.
     pub observers: fn(&LoadedCase, &dyn RunView) -> Observers,
-    /// Refuses a case whose run has two columns or two files of the same name, by its observers.
+    /// Refuses a case whose run has two columns, files or tables of events of the same name, by its
+    /// observers.
     pub check_names: fn(&LoadedCase, &Observers) -> Result<(), InputError>,
 }

@@ -42,8 +42,8 @@ pub enum RunError {
     /// The case is wrong.
     #[error(transparent)]
     Input(Box<InputError>),
-    /// Two columns of the statistics or two files have one name, but no line of the case gives this
-    /// name.
+    /// Two columns of the statistics, two files or two tables of events have one name, but no line
+    /// of the case gives this name.
     #[error(
         "two {} are named `{name}`; give a measure or an observer another name",
         plural(what)

@@ -220,8 +220,7 @@ pub fn stopped(
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
-/// Returns the observers that a run of a case has, for a program that steps without a run. Its
-/// processes must be [installed](processes::install) before.
+/// Returns the observers that a run of a case has, for a program that steps without a run.
 pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))

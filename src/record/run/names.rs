@@ -1,5 +1,5 @@
-//! Checks that the columns of the statistics, and the files in the folder of a run, have different
-//! names.
+//! Checks that the columns of the statistics, the files in the folder of a run, and its tables of
+//! events have different names.
 
 use super::RunError;
 use super::clear::{FIGURES, OWN};
@@ -19,10 +19,13 @@ const OTHERS: [&str; 5] = [
     RUN_LOCK,
 ];
 
+/// A table of events, whose name no case gives.
+const TABLE: &str = "table of events";
+
 /// Kind of two items with the same name, and the name.
 type Twice = (&'static str, String);
 
-/// Rejects equal names of two columns or of two files of the case and its observers.
+/// Rejects equal names of two columns, files or tables of events of the case and its observers.
 ///
 /// # Errors
 /// The error reports the name, at the line of the case that gives it.
@@ -36,18 +39,25 @@ pub(super) fn check(loaded: &LoadedCase, observers: &Observers) -> Result<(), Ru
     }
 }
 
-/// Checks that no two columns or files of a run of a case with these observers have the same name.
+/// Checks that no two columns, files or tables of events of a run of a case with these observers
+/// have the same name.
 ///
 /// # Errors
-/// The error reports the name, at the line of the case that gives it.
+/// The error reports the name, at the line of the case that gives it; without a line if an observer
+/// of the library's user does.
 pub fn check_names(loaded: &LoadedCase, observers: &Observers) -> Result<(), InputError> {
-    let twice = twice(observers);
-    let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
-    error.map_or(Ok(()), Err)
+    match check(loaded, observers) {
+        Ok(()) => Ok(()),
+        Err(RunError::Input(error)) => Err(*error),
+        Err(error) => {
+            let case = loaded.path.display();
+            Err(InputError::about(case, error.to_string()))
+        }
+    }
 }
 
-/// Finds two columns or two files of the same name. Names of files that differ only in case are the
-/// same file on some systems.
+/// Finds two columns, two files or two tables of events of the same name. Names of files that
+/// differ only in case are the same file on some systems.
 fn twice(observers: &Observers) -> Option<Twice> {
     let mut columns = BTreeSet::new();
     for column in observers.columns() {
@@ -62,19 +72,22 @@ fn twice(observers: &Observers) -> Option<Twice> {
             return Some(("file in the folder of the results", name));
         }
     }
-    None
+    let mut tables = BTreeSet::new();
+    let mut names = observers.event_tables().into_iter().map(|table| table.name);
+    let name = names.find(|name| !tables.insert(*name))?;
+    Some((TABLE, name.to_owned()))
 }
 
 /// Returns the error at the line of the case that gives a name; `None` if the name belongs to an
 /// observer of the library's user.
 fn at_line(loaded: &LoadedCase, what: &str, name: &str) -> Option<InputError> {
     let message = format!("another {what} is named `{name}`; take another name here");
-    let path = path(&loaded.case, name)?;
+    let path = path(&loaded.case, name).filter(|_| what != TABLE)?;
     Some(loaded.source.locate(ValidationError::new(path, message)))
 }
 
 /// Returns the path in the case of the name from which that of a column or a file is made: the
-/// longest one that is contained in it, with measures before bodies.
+/// longest one that it has as whole parts, with measures before bodies.
 fn path(case: &Case, made: &str) -> Option<String> {
     let measures = case.measures.iter().map(|m| m.name());
     let elastic = case.elastic.iter().map(|b| b.name.as_str());
@@ -86,11 +99,6 @@ fn path(case: &Case, made: &str) -> Option<String> {
         ("elastic", elastic.collect()),
         ("measures", measures.collect()),
     ];
-    let plain = |text: &str| {
-        text.to_lowercase()
-            .replace(|c: char| !c.is_alphanumeric(), "_")
-    };
-    let made = plain(made);
     let named = lists.iter().flat_map(|(list, names)| {
         let path = move |k: usize| format!("{list}.{k}.name");
         names
@@ -98,8 +106,37 @@ fn path(case: &Case, made: &str) -> Option<String> {
             .enumerate()
             .map(move |(k, name)| (name.len(), path(k), *name))
     });
-    let named = named.filter(|(_, _, name)| !name.is_empty() && made.contains(&plain(name)));
+    let named = named.filter(|(_, _, name)| has(made, name));
     named
         .max_by_key(|(length, ..)| *length)
         .map(|(_, path, _)| path)
+}
+
+/// Whether a name of a column or a file has another name as whole parts: `top` is one of `top_fx`,
+/// and none of `stop_fx`.
+fn has(made: &str, name: &str) -> bool {
+    let parts = |text: &str| {
+        let text = text.to_lowercase();
+        format!("_{}_", text.replace(|c: char| !c.is_alphanumeric(), "_"))
+    };
+    !name.is_empty() && parts(made).contains(&parts(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::has;
+
+    #[test]
+    fn a_name_is_made_of_whole_parts() {
+        for (made, name) in [
+            ("top_fx", "top"),
+            ("scar_Left wheel.csv", "left wheel"),
+            ("width", "width"),
+        ] {
+            assert!(has(made, name), "{made} {name}");
+        }
+        for (made, name) in [("stop_fx", "top"), ("summit", "sum"), ("width", "")] {
+            assert!(!has(made, name), "{made} {name}");
+        }
+    }
 }

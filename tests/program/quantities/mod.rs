@@ -12,7 +12,9 @@ use fretwork::record::observer::{Event, EventTable};
 use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
 use fretwork::record::statistics::Column;
-use fretwork::record::{Observer, Observers, Run, RunEnd, RunOptions, RunView, Summary};
+use fretwork::record::{
+    Observer, Observers, Run, RunEnd, RunOptions, RunView, Summary, check_names, run_observers,
+};
 use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork::step::StepReport;
@@ -190,6 +192,30 @@ fn events_without_a_table_are_refused() {
     let run = Run::new(&loaded, built, &options).observe(Stray);
     let error = run.execute(&mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(error.to_string().contains("the table `strays`"), "{error}");
+}
+
+/// Two tables of one name would be one group of the results file. Nothing of the case names them,
+/// so the error has no line.
+#[test]
+fn two_tables_of_events_of_one_name_are_refused() {
+    #[derive(Debug)]
+    struct Again;
+    impl Observer for Again {
+        fn name(&self) -> String {
+            "again".to_owned()
+        }
+        fn event_tables(&self) -> Vec<EventTable> {
+            Summit::default().event_tables()
+        }
+    }
+    let (loaded, built) = cradle();
+    let mut observers = run_observers(&loaded, built.simulation.view());
+    observers.push(Box::new(Summit::default()));
+    check_names(&loaded, &observers).unwrap();
+    observers.push(Box::new(Again));
+    let error = check_names(&loaded, &observers).unwrap_err();
+    let said = "two tables of events are named `summits`";
+    assert!(error.line == 0 && error.message.contains(said), "{error}");
 }
 
 /// Values are matched to columns by their order, so their number is checked in every row.
