@@ -44,6 +44,13 @@ struct FrictionTestState {
 }
 
 impl FrictionTest {
+    /// Files of its figures.
+    pub const FIGURES: [&str; 3] = [
+        "fretting_loops.png",
+        "friction_coefficient.png",
+        "friction_history.png",
+    ];
+
     /// Creates a test of a body with these cycles, from the current state on.
     pub fn new(body: SlidingBody, cycles: Cycles, run: &dyn RunView) -> Self {
         Self {
@@ -170,6 +177,10 @@ impl Observer for FrictionTest {
         let cycles = &self.state.cycles;
         let fretting = fretting::FrettingOutcome::new(&cycles.list).filter(|_| cycles.oscillates());
         friction_report::report(cycles, fretting, found);
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        Self::FIGURES.map(str::to_owned).to_vec()
     }
 
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {

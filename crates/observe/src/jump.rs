@@ -15,6 +15,11 @@ use fretwork_core::view::RunView;
 #[derive(Clone, Copy, Debug)]
 pub struct CycleJumps;
 
+impl CycleJumps {
+    /// Files of its figures.
+    pub const FIGURES: [&str; 1] = ["jump.png"];
+}
+
 impl Observer for CycleJumps {
     fn name(&self) -> String {
         "cycle jumps".to_owned()
@@ -47,6 +52,10 @@ impl Observer for CycleJumps {
         });
         found.warn(warnings(&jump));
         found.keep(jump);
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        Self::FIGURES.map(str::to_owned).to_vec()
     }
 
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {

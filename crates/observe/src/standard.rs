@@ -10,7 +10,7 @@ use super::friction::Cycles;
 use super::friction_test::FrictionTest;
 use super::heat::HeatObserver;
 use super::jump::CycleJumps;
-use super::measure::measures;
+use super::measure::{ThirdBody, measures};
 use super::observer::{Observers, RunEnd};
 use super::quantity::Findings;
 use super::run_state::{DrivenBodies, Phases, RunState};
@@ -75,6 +75,24 @@ pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
     }
     all.append(measures(&case.measures, case.inertia_scaling, run));
     all
+}
+
+/// Returns the files of the figures of observers that only some cases have. A run removes them from
+/// its folder also where its case has no such observer, since they are those of another case.
+pub fn figures_of_some_cases() -> impl Iterator<Item = &'static str> {
+    let figures = FrictionTest::FIGURES.into_iter();
+    let figures = figures.chain(Biaxial::FIGURES).chain(CycleJumps::FIGURES);
+    figures.chain(CircuitAccount::FIGURES)
+}
+
+/// Returns the names of the pictures of observers that only some cases have, which a run removes as
+/// the figures of [`figures_of_some_cases`].
+pub fn pictures_of_some_cases() -> [&'static str; 3] {
+    [
+        LocalShear::PICTURE,
+        CircuitAccount::PICTURE,
+        ThirdBody::PICTURE,
+    ]
 }
 
 /// Returns the results of a run of a case as far as they are known before its first step: values

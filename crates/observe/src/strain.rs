@@ -95,6 +95,9 @@ pub struct LocalShear {
 }
 
 impl LocalShear {
+    /// Name of its pictures.
+    pub const PICTURE: &str = "shear";
+
     /// Creates the observer from the current state, with the shear that has the darkest colour.
     pub fn new(run: &dyn RunView, top: f64) -> Self {
         Self {
@@ -129,13 +132,17 @@ impl Observer for LocalShear {
 
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
-            name: "shear",
+            name: Self::PICTURE,
             shows: PictureContent::Values {
                 values: self.strain.shear(run),
                 label: "local shear",
                 top: self.top,
             },
         }]
+    }
+
+    fn picture_names(&self) -> Vec<&'static str> {
+        vec![Self::PICTURE]
     }
 
     fn save(&self) -> Result<Vec<u8>, EncodingError> {

@@ -288,6 +288,10 @@ impl Observer for Wear {
         summary.report(self.wears, found);
     }
 
+    fn file_names(&self) -> Vec<String> {
+        vec!["worn_volume.png".to_owned()]
+    }
+
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let own = end.simulation.scars().into_iter();
         let own = own.map(|scar| (scar.name, format!("{}_worn", scar.name)));

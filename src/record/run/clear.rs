@@ -1,30 +1,16 @@
-//! Removal of an older run's files that the new run would not overwrite: pictures, problems and
-//! figures of the program, and the pictures and files that observers name (`picture_names`,
-//! `file_names`). No other files are removed.
+//! Removal of an older run's files that the new run would not overwrite: the report, pictures of
+//! the scene, problems, the pictures and files that observers name (`picture_names`, `file_names`),
+//! and those of observers that only some cases have. No other files are removed.
 
 use super::{RunError, unwritable};
 use fretwork_observe::Observers;
 use fretwork_observe::chart::Figure;
 use fretwork_observe::output::REPORT;
+use fretwork_observe::standard::{figures_of_some_cases, pictures_of_some_cases};
 use std::path::Path;
 
-/// Name prefixes of pictures: `frames/NAME_STEP.png`.
-const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
-
-/// Names of the report, and of the figures at the end of a run that no observer names.
-pub(super) const FIGURES: [&str; 11] = [
-    REPORT,
-    "damage_ratio.png",
-    "fretting_loops.png",
-    "friction_coefficient.png",
-    "friction_history.png",
-    "force_displacement.png",
-    "energy.png",
-    "circuit.png",
-    "jump.png",
-    "worn_volume.png",
-    "biaxial.png",
-];
+/// Name prefixes of pictures of the scene, `frames/NAME_STEP.png`, which no observer names.
+const PICTURES: [&str; 2] = ["frame", "bonds"];
 
 /// Files of the program in the folder of a run that exist when older files are removed; they do not
 /// belong to an observer.
@@ -38,11 +24,12 @@ pub(super) const OWN: [&str; 7] = [
     "summary.json",
 ];
 
-/// Removes pictures, problems and figures of an older run from its folder, and the pictures and
-/// files whose names observers of the new run declare as their own.
+/// Removes the report, pictures, problems and figures of an older run from its folder, and the
+/// pictures and files whose names observers of the new run declare as their own.
 pub(super) fn clear(folder: &Path, observers: &Observers) -> Result<(), RunError> {
     let (mut pictures, files) = (observers.picture_names(), observers.file_names());
     pictures.extend(PICTURES);
+    pictures.extend(pictures_of_some_cases());
     let picture = |name: &str| {
         pictures
             .iter()
@@ -54,7 +41,8 @@ pub(super) fn clear(folder: &Path, observers: &Observers) -> Result<(), RunError
     })?;
     remove(folder, &|name| {
         let of_observers = files.iter().any(|f| f == name) && !OWN.contains(&name);
-        FIGURES.contains(&name) || of_observers
+        let of_another_case = figures_of_some_cases().any(|f| f == name);
+        name == REPORT || of_observers || of_another_case
     })
 }
 

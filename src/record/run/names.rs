@@ -2,11 +2,12 @@
 //! events have different names.
 
 use super::RunError;
-use super::clear::{FIGURES, OWN};
+use super::clear::OWN;
 use crate::scene::LoadedCase;
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
 use fretwork_observe::Observers;
+use fretwork_observe::output::REPORT;
 use fretwork_store::folder_lock::RUN_LOCK;
 use std::collections::BTreeSet;
 
@@ -65,7 +66,7 @@ fn twice(observers: &Observers) -> Option<Twice> {
             return Some(("column of statistics.csv", name));
         }
     }
-    let own = OWN.iter().chain(&OTHERS).chain(&FIGURES);
+    let own = OWN.iter().chain(&OTHERS).chain(&[REPORT]);
     let mut files: BTreeSet<String> = own.map(|name| (*name).to_owned()).collect();
     for file in observers.file_names() {
         if let Some(name) = files.replace(file.to_lowercase()) {

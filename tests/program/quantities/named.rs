@@ -1,4 +1,8 @@
 //! No source that presents results names a quantity, so adding one changes only its observer.
+//!
+//! Compared are whole string literals, also as names of files, with the paths of the results that
+//! the shipped observers declare, and with their last words where these are long enough not to
+//! occur for other reasons. What describes the run itself, such as its wall time, may be named.
 
 use super::page::declared;
 use std::collections::BTreeSet;
@@ -19,21 +23,29 @@ fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         match path.extension().and_then(|e| e.to_str()) {
             _ if path.is_dir() => sources(&path, out),
+            _ if path.to_string_lossy().ends_with("tests.rs") => {}
             Some("rs" | "py") => out.push(path),
             _ => {}
         }
     }
 }
 
-/// Strings in the code of a source, without comments and tests.
+/// Strings in the code of a source, without comments and its tests at the end, and without the
+/// extension of a file.
 fn literals(text: &str) -> BTreeSet<&str> {
-    let code = text.split("#[cfg(test)]").next().unwrap_or(text);
+    let code = text.split("#[cfg(test)]\nmod tests {").next();
+    let code = code.unwrap_or(text);
     let lines = code.lines().filter(|l| {
         let line = l.trim_start();
         !line.starts_with("//") && !line.starts_with('#')
     });
     lines
         .flat_map(|l| l.split('"').skip(1).step_by(2))
+        .map(|l| {
+            l.strip_suffix(".png")
+                .or(l.strip_suffix(".csv"))
+                .unwrap_or(l)
+        })
         .collect()
 }
 
@@ -72,4 +84,11 @@ fn what_shows_results_names_no_quantity() {
         }
     }
     assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn code_after_a_module_of_tests_is_compared() {
+    let text = "#[cfg(test)]\nmod tests;\nlet a = \"one\";\nlet b = \"two.png\";\n// \"three\"\n\
+                #[cfg(test)]\nmod tests {\n\"four\"\n}";
+    assert_eq!(literals(text), BTreeSet::from(["one", "two"]));
 }

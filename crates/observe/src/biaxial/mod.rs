@@ -72,6 +72,9 @@ pub struct BiaxialState {
 }
 
 impl Biaxial {
+    /// Files of its figures.
+    pub const FIGURES: [&str; 1] = ["biaxial.png"];
+
     /// Finds the walls, whose names and shapes were checked by [`fretwork_scene::biaxial`].
     pub fn new(spec: &BiaxialSpec, run: &dyn RunView) -> Option<Self> {
         let axial = axis_of(run, &spec.axial.0)?;
@@ -230,6 +233,10 @@ impl Observer for Biaxial {
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
         BiaxialOutcome::new(end.table, self.start, mass).report(found);
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        Self::FIGURES.map(str::to_owned).to_vec()
     }
 
     fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {

@@ -167,6 +167,12 @@ fn circuit(run: &dyn RunView) -> Option<&GrainCircuit> {
 }
 
 impl CircuitAccount {
+    /// Name of its pictures.
+    pub const PICTURE: &str = "circuit";
+
+    /// Files of its figures.
+    pub const FIGURES: [&str; 1] = ["circuit.png"];
+
     /// Starts the account of a circuit at a time (s).
     pub fn new(start: f64) -> Self {
         Self {
@@ -362,9 +368,13 @@ impl Observer for CircuitAccount {
             return Vec::new();
         }
         vec![Picture {
-            name: "circuit",
+            name: Self::PICTURE,
             shows: PictureContent::Paints(paints),
         }]
+    }
+
+    fn picture_names(&self) -> Vec<&'static str> {
+        vec![Self::PICTURE]
     }
 
     /// Grains that detached from first bodies are a source in addition to the wear law.
@@ -393,6 +403,10 @@ impl Observer for CircuitAccount {
         }
         circuit.report(found);
         show_flows(found);
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        Self::FIGURES.map(str::to_owned).to_vec()
     }
 
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {

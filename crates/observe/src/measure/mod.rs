@@ -1,5 +1,6 @@
 //! Measured quantities of a case, sampled whenever a row of the statistics is written.
 
+mod ball;
 mod band;
 mod mass;
 mod profile;
@@ -7,6 +8,7 @@ mod shear;
 mod slope;
 mod third_body;
 
+pub(crate) use self::third_body::ThirdBody;
 use super::observer::{Observer, Observers};
 use super::statistics::Table;
 use fretwork_core::geometry::space::{VectorLike, ball_volume};
@@ -83,9 +85,7 @@ fn measure(spec: MeasureSpec, inertia_scaling: f64, run: &dyn RunView) -> Box<dy
             above,
             strain: None,
         }),
-        MeasureSpec::ThirdBody(spec) => {
-            Box::new(third_body::ThirdBody::new(spec, inertia_scaling, run))
-        }
+        MeasureSpec::ThirdBody(spec) => Box::new(ThirdBody::new(spec, inertia_scaling, run)),
         MeasureSpec::Shear {
             name,
             low,

@@ -71,6 +71,10 @@ impl Observer for DrivenBodies {
         row
     }
 
+    fn file_names(&self) -> Vec<String> {
+        vec!["force_displacement.png".to_owned()]
+    }
+
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let test = self
             .test

@@ -374,6 +374,12 @@ impl Observer for RunState {
         self.put(&self.counts, None, found);
     }
 
+    fn file_names(&self) -> Vec<String> {
+        ["damage_ratio.png", "energy.png"]
+            .map(str::to_owned)
+            .to_vec()
+    }
+
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let entries = end.simulation.energies().entries();
         let entries = entries.into_iter().map(|(name, ..)| name);

@@ -1,7 +1,7 @@
 //! Sums over steps for the measures of plane shear: momentum that contacts transmit across the
 //! layers, momentum that grains carry by their motion, shear rate and solid fraction.
 
-use super::below;
+use crate::measure::ball::volume_below;
 use crate::measure::{Grain, grains, line};
 use fretwork_core::geometry::space::ball_volume;
 use fretwork_core::view::RunView;
@@ -109,8 +109,8 @@ impl ShearedLayer {
             .iter()
             .filter(|g| g.at[up] + g.radius > self.low && g.at[up] - g.radius < self.high)
             .map(|g| {
-                below(up + 1, g.radius, self.high - g.at[up])
-                    - below(up + 1, g.radius, self.low - g.at[up])
+                volume_below(up + 1, g.radius, self.high - g.at[up])
+                    - volume_below(up + 1, g.radius, self.low - g.at[up])
             })
             .sum();
         Sums {

@@ -6,7 +6,7 @@
 
 use super::gap::Gap;
 use crate::measure::Grain;
-use crate::measure::shear::below;
+use crate::measure::ball::volume_below;
 use fretwork_core::geometry::space::ball_volume;
 use fretwork_core::view::RunView;
 
@@ -16,7 +16,7 @@ pub(super) fn share(run: &dyn RunView, gap: &Gap, grain: &Grain, take: impl FnMu
     match grain.piece.filter(|_| run.dimension() == 2) {
         None => {
             let (r, whole) = (grain.radius, ball_volume(run.dimension(), grain.radius));
-            let cut = |d: f64| below(run.dimension(), r, d - depth) / whole;
+            let cut = |d: f64| volume_below(run.dimension(), r, d - depth) / whole;
             gap.share(depth - r, depth + r, cut, take);
         }
         Some((piece, _)) => {

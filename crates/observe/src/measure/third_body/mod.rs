@@ -38,7 +38,7 @@ pub struct ThirdBody {
     dimension: usize,
     spec: ThirdBodySpec,
     faces: Option<Faces>,
-    spent: Dissipation,
+    dissipation: Dissipation,
     /// Number of broken bonds of each body.
     lost: Vec<f64>,
     history: History,
@@ -164,11 +164,14 @@ fn is_averaged(part: &str) -> bool {
 }
 
 impl ThirdBody {
+    /// Name of its pictures.
+    pub const PICTURE: &str = "chains";
+
     pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64, run: &dyn RunView) -> Self {
         let (dimension, heated) = (run.dimension(), run.heat().is_some());
         Self {
             dimension,
-            spent: Dissipation::new(spec.bins, Vec::new()),
+            dissipation: Dissipation::new(spec.bins, Vec::new()),
             seen: spec.start,
             spec,
             faces: None,
@@ -261,9 +264,9 @@ impl Observer for ThirdBody {
         if let Some(faces) = &mut self.faces {
             faces.look(run, self.spec.extent, &grains(run));
         }
-        self.spent = Dissipation::new(self.spec.bins, run.grain_flags());
+        self.dissipation = Dissipation::new(self.spec.bins, run.grain_flags());
         if self.faces.is_some() && self.due(run) {
-            self.spent.begin(run);
+            self.dissipation.begin(run);
         }
         self.lost = vec![0.0; run.bodies().len()];
         self.seen = self.seen.max(run.time());
@@ -278,11 +281,11 @@ impl Observer for ThirdBody {
             self.lost[body as usize] += 1.0;
         }
         let Some(faces) = &self.faces else { return };
-        if self.spent.counts() {
-            self.spent
+        if self.dissipation.counts() {
+            self.dissipation
                 .follow(run, faces, &faces.gap(run), self.spec.along);
         } else if self.due(run) {
-            self.spent.begin(run);
+            self.dissipation.begin(run);
             self.seen = run.time();
         }
     }
@@ -302,12 +305,12 @@ impl Observer for ThirdBody {
         faces.look(run, self.spec.extent, &all);
         let mut now = LayerSnapshot::new(run, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
-        if self.spent.counts() && run.time() > self.seen {
+        if self.dissipation.counts() && run.time() > self.seen {
             // The sign of the resistance is that against the sliding, also if the sliding
             // reciprocates.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
-            for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
+            for (cell, energy) in now.cells[1..].iter_mut().zip(self.dissipation.take()) {
                 cell.energy = energy;
             }
             self.history.add(Block {
@@ -367,7 +370,7 @@ impl Observer for ThirdBody {
         ] {
             add(part, value, ONE, doc.to_owned());
         }
-        let total = self.spent.total();
+        let total = self.dissipation.total();
         add(
             "dissipated",
             Some(total),
@@ -375,19 +378,19 @@ impl Observer for ThirdBody {
             "energy dissipated in the layer and at its faces".to_owned(),
         );
         for (k, mechanism) in MECHANISMS.iter().enumerate() {
-            let sum: f64 = self.spent.places.iter().map(|p| p[k]).sum();
+            let sum: f64 = self.dissipation.places.iter().map(|p| p[k]).sum();
             let doc = format!("energy dissipated by {mechanism}");
             let part = format!("dissipated_{mechanism}");
             add(&part, Some(sum), ENERGY, doc);
         }
-        let load = self.spent.load;
-        let mu = self.spent.friction();
+        let load = self.dissipation.load;
+        let mu = self.dissipation.friction();
         // What is kept is the energy stored by the grains and their bonds, less that supplied by
         // the bodies other than by sliding.
         for (part, value, doc) in [
             (
                 "mu_from_forces",
-                mu.map(|_| self.spent.work / load),
+                mu.map(|_| self.dissipation.work / load),
                 "friction from forces",
             ),
             ("mu_from_dissipation", mu, "friction from the energy ledger"),
@@ -399,7 +402,7 @@ impl Observer for ThirdBody {
         ] {
             add(part, value, ONE, doc.to_owned());
         }
-        for (place, energies) in PairKind::ALL.iter().zip(&self.spent.places) {
+        for (place, energies) in PairKind::ALL.iter().zip(&self.dissipation.places) {
             let sum: f64 = energies.iter().sum();
             let any = *energies != dissipation::Energies::default();
             let name = place.name(&self.spec.between);
@@ -414,9 +417,13 @@ impl Observer for ThirdBody {
 
     fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         vec![Picture {
-            name: "chains",
+            name: Self::PICTURE,
             shows: PictureContent::Chains(snapshot::links(run)),
         }]
+    }
+
+    fn picture_names(&self) -> Vec<&'static str> {
+        vec![Self::PICTURE]
     }
 
     fn save(&self) -> Result<Vec<u8>, EncodingError> {
@@ -447,7 +454,7 @@ impl Observer for ThirdBody {
             ),
             text(
                 "_energy",
-                tables::energies(&self.spent, &self.spec.between, self.dimension),
+                tables::energies(&self.dissipation, &self.spec.between, self.dimension),
             ),
             text(
                 "_clusters",

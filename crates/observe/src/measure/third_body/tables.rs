@@ -91,7 +91,7 @@ pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated
 
 /// Returns the energies by pair of bodies and by bin, each with its fraction of the total.
 pub(super) fn energies(
-    spent: &Dissipation,
+    dissipation: &Dissipation,
     between: &(String, String),
     dimension: usize,
 ) -> String {
@@ -105,7 +105,7 @@ pub(super) fn energies(
     );
     header.push("share".to_owned());
     let mut lines = vec![header];
-    let total = spent.total();
+    let total = dissipation.total();
     let mut add = |name: String, energies: &[f64]| {
         let sum: f64 = energies.iter().sum();
         let share = if total == 0.0 { 0.0 } else { sum / total };
@@ -118,10 +118,10 @@ pub(super) fn energies(
         );
         lines.push(line);
     };
-    for (place, energies) in PairKind::ALL.iter().zip(&spent.places) {
+    for (place, energies) in PairKind::ALL.iter().zip(&dissipation.places) {
         add(place.name(between), energies);
     }
-    for (k, energies) in spent.bins.iter().enumerate() {
+    for (k, energies) in dissipation.bins.iter().enumerate() {
         add(format!("bin_{}", k + 1), energies);
     }
     joined(&lines)
