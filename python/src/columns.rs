@@ -2,9 +2,10 @@
 
 use crate::array::Array;
 use crate::simulation::Simulation;
-use fretwork::RunView;
 use fretwork::bodies::Bodies;
 use fretwork::geometry::space::Space;
+use fretwork::in_dimension;
+use fretwork::{AnySimulation, RunView};
 use pyo3::prelude::*;
 use std::any::Any;
 
@@ -58,7 +59,11 @@ impl Column {
 }
 
 /// Returns an array that shows a column, whose memory has an owner.
-pub(crate) fn show<S: Space>(bodies: &Bodies<S>, column: Column, owner: Py<Simulation>) -> Array {
+pub(crate) fn show(run: &AnySimulation, column: Column, owner: Py<Simulation>) -> Array {
+    in_dimension!(run, |s| show_in(&s.state.bodies, column, owner))
+}
+
+fn show_in<S: Space>(bodies: &Bodies<S>, column: Column, owner: Py<Simulation>) -> Array {
     match column {
         Column::Id => Array::shown::<_, u64>(&bodies.id, 0, owner),
         Column::Position => Array::shown::<_, f64>(&bodies.position, S::D, owner),
@@ -87,7 +92,11 @@ pub(crate) fn copy(run: &dyn RunView, column: Column) -> Array {
 }
 
 /// Takes the memory of a column out, and leaves a copy in its place.
-pub(crate) fn take<S: Space>(bodies: &mut Bodies<S>, column: Column) -> Box<dyn Any + Send> {
+pub(crate) fn take(run: &mut AnySimulation, column: Column) -> Box<dyn Any + Send> {
+    in_dimension!(run, |s| take_in(&mut s.state.bodies, column))
+}
+
+fn take_in<S: Space>(bodies: &mut Bodies<S>, column: Column) -> Box<dyn Any + Send> {
     fn swap<T: Clone + Send + 'static>(column: &mut Vec<T>) -> Box<dyn Any + Send> {
         let copy = column.clone();
         Box::new(std::mem::replace(column, copy))

@@ -7,7 +7,6 @@ use crate::errors;
 use crate::search::search_path;
 use crate::stepper::{Moment, Stepper};
 use crate::workers::Workers;
-use fretwork::in_dimension;
 use fretwork::step::StepError;
 use fretwork::{FieldInfo, FieldKind, FieldValues, GrainFields, RunView};
 use pyo3::prelude::*;
@@ -122,8 +121,7 @@ impl Simulation {
     /// Lets arrays keep the values that they show.
     fn before_change(&self, py: Python<'_>, held: &mut Held) -> PyResult<()> {
         for (column, array) in self.held_by_python(py) {
-            let simulation = &mut held.own()?.simulation;
-            let memory = in_dimension!(simulation, |s| columns::take(&mut s.state.bodies, column));
+            let memory = columns::take(&mut held.own()?.simulation, column);
             array.get().hand_over(memory);
         }
         Ok(())
@@ -314,10 +312,8 @@ impl Simulation {
                     return Bound::new(py, copy).map(Some);
                 };
                 let owner = this.clone().unbind();
-                let bodies = in_dimension!(&stepper.simulation, |s| {
-                    columns::show(&s.state.bodies, column, owner)
-                });
-                let array = Bound::new(py, bodies)?;
+                let shown = columns::show(&stepper.simulation, column, owner);
+                let array = Bound::new(py, shown)?;
                 alive.push((column, array.clone()));
                 array
             }

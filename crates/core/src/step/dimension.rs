@@ -25,7 +25,7 @@ fn by_dimension<S: Space, R>(
     }
 }
 
-fn touching<S: Space>(s: &mut Simulation<S>) {
+fn detect_touching<S: Space>(s: &mut Simulation<S>) {
     let scene = CollisionScene::new(&s.shapes, &s.state.bodies, &s.table);
     detect(&mut s.state.network, &scene, [0.0; 2], false);
 }
@@ -45,12 +45,12 @@ fn step_in_space(simulation: &mut Simulation<Dim3>) -> Result<StepReport, StepEr
 
 #[inline(never)]
 fn detect_in_plane(simulation: &mut Simulation<Dim2>) {
-    touching(simulation);
+    detect_touching(simulation);
 }
 
 #[inline(never)]
 fn detect_in_space(simulation: &mut Simulation<Dim3>) {
-    touching(simulation);
+    detect_touching(simulation);
 }
 
 impl<S: Space> Simulation<S> {

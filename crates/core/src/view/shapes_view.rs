@@ -8,6 +8,7 @@ use crate::contact::detect;
 use crate::geometry::convex::Core;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use std::fmt::Write;
 
 /// The shapes of the bodies of a run, and its dynamical systems.
 ///
@@ -50,6 +51,13 @@ pub trait ShapesView {
     /// Returns a scar along x: positions (m), tributary lengths (m; areas in 3D, m^2) and depths
     /// (m), in 3D averaged over equal x.
     fn scar_profile(&self, scar: usize) -> Vec<[f64; 3]>;
+
+    /// Writes the shapes of all bodies as text that differs between shapes that differ, so that
+    /// scenes can be compared.
+    ///
+    /// # Errors
+    /// Writing to `out` fails.
+    fn describe_shapes(&self, out: &mut dyn Write) -> std::fmt::Result;
 
     /// Number of dynamical systems.
     fn system_count(&self) -> usize;
@@ -183,6 +191,10 @@ impl<S: Space> ShapesView for Simulation<S> {
     }
     fn scar_profile(&self, scar: usize) -> Vec<[f64; 3]> {
         self.state.scars[scar].along()
+    }
+
+    fn describe_shapes(&self, out: &mut dyn Write) -> std::fmt::Result {
+        write!(out, "{:?}", self.shapes)
     }
 
     fn system_count(&self) -> usize {
