@@ -7,7 +7,7 @@ pub mod run;
 pub use crate::RunView;
 pub use fretwork_observe::picture::{Paint, Picture, PictureContent};
 pub use fretwork_observe::{
-    biaxial, choice, circuit, coordination, encoding, first_bodies, fretting, friction,
+    biaxial, choice, circuit, coordination, cycle, encoding, first_bodies, fretting, friction,
     friction_report, heat, jump, layer, loops, measure, mesh_fields, observer, output, placement,
     quantity, scars, scatter, series, solving, statistics, steady, strain, stress, summary,
     tractions, warning,

@@ -14,7 +14,7 @@ mod counting;
 
 use counting::held;
 use fretwork::record::checkpoint::Frame;
-use fretwork::record::friction::Cycle;
+use fretwork::record::cycle::Cycle;
 use fretwork::record::results::PreviousResults;
 use fretwork::record::{RunOptions, run};
 use fretwork::scene::load_text;

@@ -1,60 +1,10 @@
 //! Evaluation of all cycles of a fretting test: sliding regime, and wear against dissipated energy.
 
-use super::friction::Cycle;
+use super::cycle::{Cycle, SlipRegime};
 use super::quantity::part;
 use super::quantity::unit::{ENERGY, VOLUME, WEAR_PER_ENERGY, WORD};
 use fretwork_math::statistics::interval;
-use serde::{Deserialize, Serialize};
-
-/// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
-/// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
-/// "Quantification of fretting damage", Wear 200 (1996) 186.
-pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
-
-/// How a contact slides.
-///
-/// # Examples
-/// ```
-/// use fretwork_observe::fretting::SlipRegime;
-///
-/// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
-/// let (q, delta) = (30.0, 5e-6);
-/// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
-/// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SlipRegime {
-    /// Partial slip: part of the contact sticks in every cycle.
-    #[default]
-    Partial,
-    /// Some cycles have partial slip, some gross slip.
-    Mixed,
-    /// Gross slip: the whole contact slides in every cycle.
-    Gross,
-}
-
-impl SlipRegime {
-    /// Returns the regime of one cycle by its energy ratio.
-    pub fn of(energy_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION_ENERGY_RATIO {
-            Self::Partial
-        } else {
-            Self::Gross
-        }
-    }
-
-    /// Returns the name of the regime.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Partial => "partial slip",
-            Self::Mixed => "mixed",
-            Self::Gross => "gross slip",
-        }
-    }
-}
+use serde::Serialize;
 
 crate::described! {
     /// A ratio of sums over cycles with its 95 % confidence interval.

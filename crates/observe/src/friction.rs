@@ -1,10 +1,9 @@
 //! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from
 //! dissipation.
 
-use super::fretting::SlipRegime;
+use super::cycle::{Cycle, SlipRegime};
 use super::layer::Balance;
 use super::loops::Loop;
-use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
 use super::scatter::{self, Scatter};
 use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
@@ -23,55 +22,6 @@ pub struct Sample {
     pub slide: f64,
     /// Work of the tangential drive over the step (J).
     pub work: f64,
-}
-
-crate::described! {
-    /// One cycle, or the evaluated part of the run if there are no cycles.
-    #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-    pub struct Cycle {
-        /// Number, from 1.
-        pub cycle: u32 => ONE,
-        /// Whether it was completed.
-        pub complete: bool => WORD,
-        /// Work of the tangential force over the cycle, E_d.
-        pub work: f64 => ENERGY,
-        /// Mean normal force.
-        pub normal_force: f64 => FORCE,
-        /// Largest tangential force.
-        pub tangential_amplitude: f64 => FORCE,
-        /// Length of the sliding path.
-        pub path: f64 => METRE,
-        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from
-        /// forces; 0 if the body was not pressed.
-        pub friction_coefficient: f64 => ONE,
-        /// From the energy ledger: (dissipation + change of stored energy - other work of the
-        /// driven bodies) over the integral of P |d delta|.
-        pub friction_from_dissipation: f64 => ONE,
-        /// Bonds broken in the cycle.
-        pub broken: u64 => ONE,
-        /// Damage ratio at the end of the cycle.
-        pub damage_ratio: f64 => ONE,
-        /// A = E_d / (4 Q delta).
-        pub energy_ratio: f64 => ONE,
-        /// Half the stroke, delta*.
-        pub amplitude: f64 => METRE,
-        /// Half of the loop's width at Q = 0, the sliding amplitude.
-        pub sliding: f64 => METRE,
-        /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
-        pub stick_ratio: f64 => ONE,
-        /// Mean of |Q|/P at the reversals of the motion.
-        pub reversal_ratio: f64 => ONE,
-        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal;
-        /// 0 before the first reversal.
-        pub plateau_ratio: f64 => ONE,
-        /// Partial or gross slip, from the energy ratio.
-        pub regime: SlipRegime => WORD,
-        /// Volume worn off first bodies.
-        pub wear_volume: f64 => VOLUME,
-        /// Number of further cycles that it represents by a jump: wear and damage are of all of
-        /// them, the rest is of one.
-        pub jumped: u32 => ONE,
-    }
 }
 
 /// Observer of the cycles of a friction test.
@@ -104,13 +54,6 @@ pub struct FrictionTotals {
     pub broken: u64,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub worn: f64,
-}
-
-impl Cycle {
-    /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.
-    pub fn peak_ratio(&self) -> Option<f64> {
-        (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
-    }
 }
 
 impl Cycles {

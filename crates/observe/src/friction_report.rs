@@ -1,7 +1,8 @@
 //! Results of a friction test at its end.
 
+use super::cycle::Cycle;
 use super::fretting;
-use super::friction::{Cycle, Cycles};
+use super::friction::Cycles;
 use super::quantity::unit::{ENERGY, ONE};
 use super::quantity::{Findings, Role, Topic, number, quantity};
 use super::scatter::Scatter;

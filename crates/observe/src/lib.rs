@@ -14,6 +14,7 @@ pub mod chart;
 pub mod choice;
 pub mod circuit;
 pub mod coordination;
+pub mod cycle;
 pub mod deformable;
 pub mod error_estimate;
 mod figures;

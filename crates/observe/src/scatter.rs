@@ -4,7 +4,7 @@
 //! Cycles are used as batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). If they
 //! show a trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
 
-use super::friction::Cycle;
+use super::cycle::Cycle;
 use super::steady::{self, MeanFlow};
 
 /// Smallest number of cycles for an interval.

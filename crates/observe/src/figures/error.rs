@@ -59,7 +59,7 @@ pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
 mod tests {
     use super::*;
     use crate::chart::Axis;
-    use crate::friction::Cycle;
+    use crate::cycle::Cycle;
 
     fn known() -> Estimate {
         Estimate {

@@ -9,7 +9,8 @@ pub(crate) mod scars;
 
 use self::error::{error_bar, estimated};
 use crate::chart::{Axis, Chart, Part, Series, Style, Value};
-use crate::friction::{Cycle, Cycles};
+use crate::cycle::Cycle;
+use crate::friction::Cycles;
 use crate::output::Output;
 use crate::summary::Estimate;
 use fretwork_core::bodies::{Dof, TimeFunction};

@@ -1,6 +1,6 @@
 //! List of the results of the observers of a run.
 
-use super::catalogue::matches;
+use super::path::matches;
 use super::{Described, Estimate, Field, PathStep, Quantity, Role, Schema, Topic, Unit, Wording};
 use crate::warning::Warning;
 use serde_json::Value;

@@ -9,13 +9,15 @@ mod estimate;
 mod findings;
 mod format;
 mod nested;
+mod path;
 
-pub use catalogue::{Catalogue, Entry, find, renamed};
+pub use catalogue::{Catalogue, Entry};
 pub use described::{Described, Field, Schema, field, part, parts, values};
 pub use estimate::Estimate;
 pub use findings::{Expected, Findings};
 pub use format::{number, quantity};
 pub use fretwork_core::unit::{self, Unit};
+pub use path::{find, renamed};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,7 +1,8 @@
 use super::*;
+use crate::cycle::{Cycle, SlipRegime};
 use crate::first_bodies::BodyWear;
-use crate::fretting::{self, SlipRegime};
-use crate::friction::{Cycle, Cycles};
+use crate::fretting;
+use crate::friction::Cycles;
 use crate::friction_report;
 use crate::quantity::unit::{ENERGY, METRE, ONE};
 use crate::summary::Uncertainty;

@@ -1,0 +1,110 @@
+//! A cycle of a friction test, and how its contact slides.
+
+use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
+use serde::{Deserialize, Serialize};
+
+/// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
+/// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
+/// "Quantification of fretting damage", Wear 200 (1996) 186.
+pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
+
+/// How a contact slides.
+///
+/// # Examples
+/// ```
+/// use fretwork_observe::cycle::SlipRegime;
+///
+/// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
+/// let (q, delta) = (30.0, 5e-6);
+/// let dissipated: f64 = 2.0 * q * 2.0 * delta;
+/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
+/// // A thin loop: most of the displacement is elastic.
+/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SlipRegime {
+    /// Partial slip: part of the contact sticks in every cycle.
+    #[default]
+    Partial,
+    /// Some cycles have partial slip, some gross slip.
+    Mixed,
+    /// Gross slip: the whole contact slides in every cycle.
+    Gross,
+}
+
+impl SlipRegime {
+    /// Returns the regime of one cycle by its energy ratio.
+    pub fn of(energy_ratio: f64) -> Self {
+        if energy_ratio < TRANSITION_ENERGY_RATIO {
+            Self::Partial
+        } else {
+            Self::Gross
+        }
+    }
+
+    /// Returns the name of the regime.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Partial => "partial slip",
+            Self::Mixed => "mixed",
+            Self::Gross => "gross slip",
+        }
+    }
+}
+
+crate::described! {
+    /// One cycle, or the evaluated part of the run if there are no cycles.
+    #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+    pub struct Cycle {
+        /// Number, from 1.
+        pub cycle: u32 => ONE,
+        /// Whether it was completed.
+        pub complete: bool => WORD,
+        /// Work of the tangential force over the cycle, E_d.
+        pub work: f64 => ENERGY,
+        /// Mean normal force.
+        pub normal_force: f64 => FORCE,
+        /// Largest tangential force.
+        pub tangential_amplitude: f64 => FORCE,
+        /// Length of the sliding path.
+        pub path: f64 => METRE,
+        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from
+        /// forces; 0 if the body was not pressed.
+        pub friction_coefficient: f64 => ONE,
+        /// From the energy ledger: (dissipation + change of stored energy - other work of the
+        /// driven bodies) over the integral of P |d delta|.
+        pub friction_from_dissipation: f64 => ONE,
+        /// Bonds broken in the cycle.
+        pub broken: u64 => ONE,
+        /// Damage ratio at the end of the cycle.
+        pub damage_ratio: f64 => ONE,
+        /// A = E_d / (4 Q delta).
+        pub energy_ratio: f64 => ONE,
+        /// Half the stroke, delta*.
+        pub amplitude: f64 => METRE,
+        /// Half of the loop's width at Q = 0, the sliding amplitude.
+        pub sliding: f64 => METRE,
+        /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
+        pub stick_ratio: f64 => ONE,
+        /// Mean of |Q|/P at the reversals of the motion.
+        pub reversal_ratio: f64 => ONE,
+        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal;
+        /// 0 before the first reversal.
+        pub plateau_ratio: f64 => ONE,
+        /// Partial or gross slip, from the energy ratio.
+        pub regime: SlipRegime => WORD,
+        /// Volume worn off first bodies.
+        pub wear_volume: f64 => VOLUME,
+        /// Number of further cycles that it represents by a jump: wear and damage are of all of
+        /// them, the rest is of one.
+        pub jumped: u32 => ONE,
+    }
+}
+
+impl Cycle {
+    /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.
+    pub fn peak_ratio(&self) -> Option<f64> {
+        (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
+    }
+}
