@@ -75,19 +75,20 @@ fn ask_before_the_end() {
     };
     // SAFETY: the call only writes to the record.
     let known = unsafe { libc::getrlimit(libc::RLIMIT_CPU, &raw mut limit) } == 0;
-    if known && let Some(earlier) = before(limit.rlim_cur, limit.rlim_max) {
+    if known && let Some(earlier) = earlier_soft_limit(limit.rlim_cur, limit.rlim_max) {
         limit.rlim_cur = earlier;
         // SAFETY: the call only reads the record. If it fails, the limit is unchanged.
         unsafe { libc::setrlimit(libc::RLIMIT_CPU, &raw const limit) };
     }
 }
 
-/// Returns the soft limit of processor time (s), if it is not already lower than the hard limit. It
-/// is a tenth of the time before the hard limit, at least one second and at most ten.
+/// Returns a new soft limit of processor time (s) for the present limits: earlier than the hard one
+/// by a tenth of it, by at least one second and at most ten. `None` where there is no hard limit,
+/// it is below 2 s, or the soft limit is already lower.
 #[cfg(unix)]
-fn before(asks: libc::rlim_t, ends: libc::rlim_t) -> Option<libc::rlim_t> {
-    let limited = ends != libc::RLIM_INFINITY && asks == ends && ends >= 2;
-    limited.then(|| ends - (ends / 10).clamp(1, 10))
+fn earlier_soft_limit(soft: libc::rlim_t, hard: libc::rlim_t) -> Option<libc::rlim_t> {
+    let limited = hard != libc::RLIM_INFINITY && soft == hard && hard >= 2;
+    limited.then(|| hard - (hard / 10).clamp(1, 10))
 }
 
 /// Records a signal; called by the signal handler.
@@ -130,11 +131,14 @@ mod tests {
     #[test]
     fn the_signal_comes_before_the_end() {
         for (ends, asks) in [(2, 1), (10, 9), (60, 54), (100, 90), (3600, 3590)] {
-            assert_eq!(before(ends, ends), Some(asks));
+            assert_eq!(earlier_soft_limit(ends, ends), Some(asks));
             // A lower soft limit that was set earlier is kept.
-            assert_eq!(before(ends - 1, ends), None);
+            assert_eq!(earlier_soft_limit(ends - 1, ends), None);
         }
-        assert_eq!(before(1, 1), None);
-        assert_eq!(before(libc::RLIM_INFINITY, libc::RLIM_INFINITY), None);
+        assert_eq!(earlier_soft_limit(1, 1), None);
+        assert_eq!(
+            earlier_soft_limit(libc::RLIM_INFINITY, libc::RLIM_INFINITY),
+            None
+        );
     }
 }

@@ -42,9 +42,9 @@ pub const VOLUME: Unit = Unit::by_depth("m^3", "m^3/m");
 pub const AREA: Unit = Unit::by_depth("m^2", "m");
 /// Force times path.
 pub const LOAD_PATH: Unit = Unit::by_depth("N m", "N");
-/// Worn volume per load and sliding path.
+/// Worn volume per load and sliding path, for coefficients of Archard's law.
 pub const WEAR_RATE: Unit = Unit::of("m^3/(N m)");
-/// Worn volume per energy.
+/// Worn volume per dissipated energy, for slopes of wear against the energy of friction.
 pub const WEAR_PER_ENERGY: Unit = Unit::of("m^3/J");
 /// Momenta.
 pub const MOMENTUM: Unit = Unit::by_depth("N s", "N s/m");

@@ -6,7 +6,7 @@ use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
 
 /// Energy per length rolled; for a line contact also per length of the line.
-const T_GAMMA: Unit = Unit::by_depth("J/m", "J/m2");
+const T_GAMMA: Unit = Unit::by_depth("J/m", "J/m^2");
 
 /// Formats a number with its interval, in the unit of its value.
 fn ranged(range: &Range, unit: &str) -> String {

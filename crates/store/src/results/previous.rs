@@ -173,7 +173,8 @@ impl PreviousResults {
 }
 
 impl Results {
-    /// Rows of a stopped run are copied up to its checkpoint.
+    /// Copies the given rows of a stopped run, those up to its checkpoint, and continues the views
+    /// and meshes after them. Does nothing if no results are written.
     ///
     /// # Errors
     /// The file cannot be written, or the rows are missing.

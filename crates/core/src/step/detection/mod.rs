@@ -29,8 +29,9 @@ pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[BodyVelo
 }
 
 fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[BodyVelocity<S>]) {
-    // In a step that spans several steps, the prediction is skipped: bodies that would fall without
-    // contacts are held by those at hand. The velocities after the solve show whether this is so.
+    // In a step that spans several steps of the case, the prediction is skipped: bodies that would
+    // fall without contacts are held by those at hand. The velocities after the solve show whether
+    // this is so.
     if s.options.grown > 0 {
         return;
     }
