@@ -8,17 +8,17 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 const STACK: usize = 8 << 20;
 
 /// Largest number of threads, that of the command line.
-const MOST: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 /// A thread pool. Results do not depend on its number of threads.
 pub(crate) struct Workers(ThreadPool);
 
 impl Workers {
     pub(crate) fn new(threads: usize) -> PyResult<Self> {
-        if !(1..=MOST).contains(&threads) {
+        if !(1..=MAX_THREADS).contains(&threads) {
             return Err(wrong(
                 format!("threads={threads}"),
-                format!("take 1 to {MOST}"),
+                format!("take 1 to {MAX_THREADS}"),
             ));
         }
         let made = ThreadPoolBuilder::new()

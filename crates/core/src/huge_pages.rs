@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 
 /// Size from which allocations request huge pages (bytes): any block of this size contains a whole
 /// page of the usual 2 MiB.
-const LARGE: usize = 4 << 20;
+const MIN_HUGE_BYTES: usize = 4 << 20;
 
 /// The system's allocator, which on Linux requests transparent huge pages (`madvise`,
 /// `MADV_HUGEPAGE`) for large allocations. Where the kernel does not provide them, it is the plain
@@ -32,7 +32,7 @@ fn advise(start: *mut u8, size: usize) {
     }
     /// A multiple of the page size of any usual machine, which `madvise` asks for.
     const PAGE: usize = 64 << 10;
-    if start.is_null() || size < LARGE {
+    if start.is_null() || size < MIN_HUGE_BYTES {
         return;
     }
     let skipped = start.align_offset(PAGE);
@@ -97,11 +97,11 @@ mod tests {
     fn contents_survive() {
         let layout = |size| Layout::from_size_align(size, 64).expect("a layout");
         let sizes = [
-            LARGE / 2,
-            3 * LARGE + 12345,
-            9 * LARGE,
-            LARGE + 1,
-            LARGE / 3,
+            MIN_HUGE_BYTES / 2,
+            3 * MIN_HUGE_BYTES + 12345,
+            9 * MIN_HUGE_BYTES,
+            MIN_HUGE_BYTES + 1,
+            MIN_HUGE_BYTES / 3,
         ];
         // SAFETY: each block is used within its size, and with its layout.
         unsafe {
@@ -115,13 +115,13 @@ mod tests {
                 block.add(two[1] - 1).write(0);
             }
             HugePages.dealloc(block, layout(sizes[sizes.len() - 1]));
-            let zeros = HugePages.alloc_zeroed(layout(5 * LARGE));
+            let zeros = HugePages.alloc_zeroed(layout(5 * MIN_HUGE_BYTES));
             assert!(
-                (0..5 * LARGE)
+                (0..5 * MIN_HUGE_BYTES)
                     .step_by(1000)
                     .all(|k| zeros.add(k).read() == 0)
             );
-            HugePages.dealloc(zeros, layout(5 * LARGE));
+            HugePages.dealloc(zeros, layout(5 * MIN_HUGE_BYTES));
         }
     }
 

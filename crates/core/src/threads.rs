@@ -14,18 +14,18 @@ const MIN_WORK: u64 = 170_000;
 /// Smallest number of items of a task in [`fill`].
 const MIN_ITEMS: usize = 256;
 
-static LEAST: AtomicU64 = AtomicU64::new(MIN_WORK);
+static MIN_WORK_IN_FORCE: AtomicU64 = AtomicU64::new(MIN_WORK);
 
 /// Sets the least work (ns) that is divided, for the whole process; `None` restores the default.
 /// Results do not depend on it: tests set zero, so that small scenes run on several threads too.
 pub fn divide_loops_from(nanoseconds: Option<u64>) {
-    LEAST.store(nanoseconds.unwrap_or(MIN_WORK), Ordering::Relaxed);
+    MIN_WORK_IN_FORCE.store(nanoseconds.unwrap_or(MIN_WORK), Ordering::Relaxed);
 }
 
 /// Returns the size of the chunks of a loop whose results do not depend on it; it is reduced if all
 /// loops are divided ([`divide_loops_from`] zero).
 pub fn chunk_size(size: usize) -> usize {
-    match LEAST.load(Ordering::Relaxed) {
+    match MIN_WORK_IN_FORCE.load(Ordering::Relaxed) {
         0 => size.div_ceil(16),
         _ => size,
     }
@@ -36,7 +36,7 @@ pub fn chunk_size(size: usize) -> usize {
 #[inline]
 pub fn worth_dividing(parallel: bool, items: usize, each: f64) -> bool {
     parallel
-        && items as f64 * each >= LEAST.load(Ordering::Relaxed) as f64
+        && items as f64 * each >= MIN_WORK_IN_FORCE.load(Ordering::Relaxed) as f64
         && rayon::current_num_threads() > 1
 }
 

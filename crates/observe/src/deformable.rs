@@ -48,12 +48,12 @@ pub struct Deformable {
 /// Strain and rotation (rad) above which a body in small strain gets a warning. The relative error
 /// of its stress is about half of the strain, here one per cent, and the error of the direction of
 /// its forces is the rotation, here two per cent.
-const LARGE: f64 = 0.02;
+const MAX_SMALL_STRAIN: f64 = 0.02;
 /// Strain and rotation (rad) above which deformable grains get a warning: most of their strain is
 /// at contacts. The error of the force of a disk between two plates is less than 1.5 per cent up to
 /// this strain (`tests/physics/elastic/soft_strain.rs`); rotations are relative to the frame of the
 /// grain.
-const LARGE_IN_GRAINS: f64 = 0.1;
+const MAX_SMALL_STRAIN_OF_GRAINS: f64 = 0.1;
 
 crate::described! {
     /// Largest strain of a body in small strain.
@@ -73,13 +73,13 @@ impl SmallStrain {
     pub fn warning(&self) -> Option<String> {
         let (limit, who, what, remedy) = match &self.body {
             Some(name) => (
-                LARGE,
+                MAX_SMALL_STRAIN,
                 format!("the body `{name}` is"),
                 "its elements strain",
                 "give it `strain: Corotational` for large rotations, or `strain: NeoHookean` for large strains",
             ),
             None => (
-                LARGE_IN_GRAINS,
+                MAX_SMALL_STRAIN_OF_GRAINS,
                 "grains that deform are".to_owned(),
                 "elements of one strain",
                 "load them less, or give their material a larger `young`",

@@ -26,16 +26,16 @@ const OF_CYCLES: f64 = 0.3;
 /// Number of elements that is added in the error of the heat of rolling.
 const OF_ROLLING: f64 = 0.6;
 /// Smallest number of contacts with one body that form a contact of surfaces.
-const FEWEST: usize = 4;
+const MIN_CONTACTS: usize = 4;
 /// Share of the largest load of a contact above which a contact counts: some methods leave small
 /// forces on points that do not touch.
 const TRACE: f64 = 1e-3;
 /// Share of the load of a body that a counterpart must carry for the two to form a contact of
 /// surfaces.
-const MOST: f64 = 0.5;
+const MIN_LOAD_SHARE: f64 = 0.5;
 /// Number of elements across a contact below which the error of cycles is a lower bound: with four
 /// elements the estimate is 29 % for an error of 63 %.
-const FEW: f64 = 8.0;
+const MIN_RESOLVED_ELEMENTS: f64 = 8.0;
 /// Errors of the heat above which a note, and a serious warning, are given.
 const LIMITS: [f64; 2] = [0.05, 0.2];
 
@@ -135,13 +135,16 @@ impl Resolution {
     /// Returns whether the error is a lower bound: in cycles, where few elements do not resolve the
     /// strips.
     fn is_least(&self) -> bool {
-        !self.rolls && self.across < FEW && self.heat_error > 0.0 && self.heat_error < 1.0
+        !self.rolls
+            && self.across < MIN_RESOLVED_ELEMENTS
+            && self.heat_error > 0.0
+            && self.heat_error < 1.0
     }
 
     /// Returns a sentence on the numbers of elements and their effect on the heat, for the summary.
     pub fn line(&self) -> String {
         let error = 100.0 * self.heat_error;
-        let about = if self.across < FEW {
+        let about = if self.across < MIN_RESOLVED_ELEMENTS {
             "more than"
         } else {
             "about"
@@ -272,7 +275,7 @@ impl Strip {
         });
         let sum = |list: &[LoadedPoint]| list.iter().map(|c| c.load).sum::<f64>();
         let (other, most) = lists.max_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b)))?;
-        if sum(&most) < MOST * total {
+        if sum(&most) < MIN_LOAD_SHARE * total {
             return None;
         }
         let strip = Self::across(run.dimension(), most)?;
@@ -286,7 +289,7 @@ impl Strip {
     fn across(dimension: usize, mut most: Vec<LoadedPoint>) -> Option<Self> {
         let largest = most.iter().map(|c| c.load).fold(0.0, f64::max);
         most.retain(|c| c.load >= TRACE * largest);
-        if most.len() < FEWEST {
+        if most.len() < MIN_CONTACTS {
             return None;
         }
         let count = most.len() as f64;

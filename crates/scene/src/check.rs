@@ -13,7 +13,7 @@ use fretwork_core::step::control::Until;
 use fretwork_core::view::{ContactView, RunControl};
 
 /// Largest number of materials, and of interfaces, of a case.
-const MOST: usize = 10_000;
+const MAX_LIST: usize = 10_000;
 
 /// Checks the numbers of a case.
 ///
@@ -48,9 +48,9 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
         ("materials", case.materials.len()),
         ("interfaces", case.interfaces.len()),
     ] {
-        if count > MOST {
+        if count > MAX_LIST {
             let message = format!(
-                "{count} {list} are too many, at most {MOST}: every pair of materials has a place in a table; merge those that are alike"
+                "{count} {list} are too many, at most {MAX_LIST}: every pair of materials has a place in a table; merge those that are alike"
             );
             return Err(ValidationError::new(list, message));
         }

@@ -12,7 +12,7 @@ use std::thread::{Builder, JoinHandle};
 /// A picture to be drawn.
 #[derive(Debug)]
 pub(super) struct Picture {
-    pub shows: DrawnContent,
+    pub content: DrawnContent,
     pub path: PathBuf,
     /// Text of the band above the picture.
     pub notice: Option<String>,
@@ -34,7 +34,7 @@ pub(super) fn draw_figure(figure: &Figure, path: &Path) -> Result<(), RunError> 
 
 impl Picture {
     fn draw(&self) -> Result<(), DrawError> {
-        noted(self.notice.clone(), || match &self.shows {
+        noted(self.notice.clone(), || match &self.content {
             DrawnContent::Scene(frame) => frame.draw(&self.path),
             DrawnContent::Charts(charts) => draw_panels(charts, 2, &self.path),
         })

@@ -36,11 +36,11 @@ impl Recorder<'_> {
         pictures.extend(own.into_iter().map(|p| (p.name, p.shows)));
         let (notice, title) = (self.notice(), &self.loaded.case.name);
         let simulation = self.simulation.view();
-        let shown = pictures.into_iter().filter_map(|(name, shows)| {
-            let PictureContent::Charts(mut charts) = shows else {
+        let shown = pictures.into_iter().filter_map(|(name, content)| {
+            let PictureContent::Charts(mut charts) = content else {
                 let frame = self
                     .camera
-                    .frame(simulation, &shows, title, caption.clone())?;
+                    .frame(simulation, &content, title, caption.clone())?;
                 return Some((name, drawing::DrawnContent::Scene(Box::new(frame))));
             };
             let heading = [std::slice::from_ref(title), &caption].concat();
@@ -48,8 +48,8 @@ impl Recorder<'_> {
             charts.iter_mut().for_each(|c| c.head(&heading));
             Some((name, drawing::DrawnContent::Charts(charts)))
         });
-        let pictures = shown.map(|(name, shows)| Picture {
-            shows,
+        let pictures = shown.map(|(name, content)| Picture {
+            content,
             path: self.picture_path(name, step),
             notice: notice.clone(),
         });

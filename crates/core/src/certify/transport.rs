@@ -70,7 +70,7 @@ fn symmetry(rig: &mut Rig) -> Result<CheckResult, LawError> {
 }
 
 /// Largest pressure (Pa) and temperature (K).
-const MOST: [f64; 2] = [1e9, 3000.0];
+const MAX_PRESSURE_AND_TEMPERATURE: [f64; 2] = [1e9, 3000.0];
 
 /// Names of the quantities along which conductances must be continuous.
 const PATHS: [&str; 5] = ["load", "gap", "damage", "temperature", "slip"];
@@ -83,13 +83,15 @@ fn on_path(path: &str, x: f64) -> (BenchMotion, f64) {
     };
     let mut damage = 1.0;
     match path {
-        "load" => motion.pressure = MOST[0] * x,
+        "load" => motion.pressure = MAX_PRESSURE_AND_TEMPERATURE[0] * x,
         "gap" => {
             motion.gap = 0.1 * RADIUS * (x - 0.5);
             motion.pressure = PRESSURE * (1.0 - 2.0 * x).max(0.0);
         }
         "damage" => damage = x,
-        "temperature" => motion.temperatures = [1.0 + MOST[1] * x, ROOM_TEMPERATURE],
+        "temperature" => {
+            motion.temperatures = [1.0 + MAX_PRESSURE_AND_TEMPERATURE[1] * x, ROOM_TEMPERATURE]
+        }
         _ => motion.opening[1] = 1e-3 * x,
     }
     (motion, damage)

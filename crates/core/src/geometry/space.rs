@@ -443,9 +443,9 @@ impl Space for Dim3 {
 #[inline]
 fn from_scaled_axis(angle: &Vector3<f64>) -> nalgebra::UnitQuaternion<f64> {
     /// Squared half angle below which the next terms are below round-off.
-    const SMALL: f64 = 1e-6;
+    const MAX_SERIES_ARGUMENT: f64 = 1e-6;
     let squared = 0.25 * angle.norm_squared();
-    if squared >= SMALL {
+    if squared >= MAX_SERIES_ARGUMENT {
         return nalgebra::UnitQuaternion::from_scaled_axis(*angle);
     }
     let cosine = 1.0 - squared * (0.5 - squared / 24.0);

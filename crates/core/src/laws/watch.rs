@@ -80,9 +80,13 @@ pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
 
-/// Indices of calls that are not in [`Call`](super::function::Call).
+// Indices of the calls that are not in `Call`, after those that are.
+
+/// Index of the call that validates parameters.
 pub(super) const VALIDATE: usize = 4;
+/// Index of the call that loads a library.
 pub(super) const LOADING: usize = 5;
+/// Index of the call that returns the fracture energy.
 pub(super) const FRACTURE_ENERGY: usize = 6;
 
 /// Marks the start of a call, by its index in `CALLS`.

@@ -27,7 +27,8 @@ use std::ops::RangeInclusive;
 /// Number of contacts from which the start is checked before the first iteration, at about the cost
 /// of one iteration. In smaller problems a search for undetermined impulses takes place in every
 /// step ([`super::sticking`]), and an iteration is often exact.
-const CHECKED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
+const CHECKED_FIRST: RangeInclusive<usize> =
+    sticking::MAX_SMALL_SET + 1..=sticking::MAX_SEARCHED_SET;
 
 /// Share of the tolerance up to which the initial impulses are kept. Iterations in one order may
 /// not contract: rounding errors in a body at rest would otherwise grow from step to step, up to

@@ -15,7 +15,7 @@ use crate::threads::{map_chunks_mut, map_with_memory, worth_dividing};
 /// Maximum number of colours, of blocks and within a part.
 const COLOURS: usize = 32;
 /// Maximum number of contacts of a small problem.
-const SMALL: usize = 32_768;
+const MAX_SMALL_PROBLEM: usize = 32_768;
 /// Number of contacts of a part, and of a block of a small problem.
 const PART: usize = 512;
 /// Maximum number of parts of a block.
@@ -26,10 +26,11 @@ const BLOCKS: usize = 128;
 /// separately.
 const HUB: u32 = 16;
 
-/// Number of contacts of a task, and approximate time to read the bodies of a contact and to colour
-/// it (ns).
+/// Number of contacts of a task.
 const CHUNK: usize = 4096;
+/// Approximate time to read the bodies of a contact (ns).
 const READ: f64 = 4.0;
+/// Approximate time to colour a contact (ns).
 const COLOUR: f64 = 15.0;
 
 /// Colouring state of a body: the last visitor, and the colours in use.
@@ -125,7 +126,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Sc
         order: Vec::with_capacity(bodies.len()),
         schedule: Schedule::default(),
     };
-    if bodies.len() <= SMALL {
+    if bodies.len() <= MAX_SMALL_PROBLEM {
         let (mut seen, mut groups) = (sorting.seen, ColourGroups::default());
         groups.add(bodies, movable, &mut seen, 0..bodies.len(), 1);
         return (groups.order, Schedule::of_groups(groups.ends).cut(PART));

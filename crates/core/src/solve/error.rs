@@ -160,7 +160,7 @@ pub(super) const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
 /// Number of contacts of a set up to which the sum of absolute powers of the residuals has the
 /// bound of their sum. In larger sets the bound grows in proportion to the number, which a packing
 /// in two or three dimensions does not reach.
-const FEW: f64 = 20.0;
+const MAX_ABSOLUTE_POWER_SET: f64 = 20.0;
 
 /// Error of [`Norm::Power`] over that of [`Norm::Balance`] where nothing slips: 0.5 corresponds to
 /// 1e-6.
@@ -355,7 +355,8 @@ impl Sums {
     }
 
     /// Returns the error of single tractions on dynamical systems, relative to the largest of each
-    /// system; 0 where it is below [`FINEST`].
+    /// system; 0 where it is at most [`FINEST`], or where the residuals of these contacts are
+    /// within the rounding of velocities.
     fn traction_error(&self, scale: &Scale) -> f64 {
         let [error, residual] = self.traction;
         if residual <= scale.noise || error <= FINEST {
@@ -383,7 +384,7 @@ impl Sums {
 
     /// Returns the third part of the error in the norm Balance.
     pub(super) fn rocking(&self, scale: &Scale) -> f64 {
-        let allowed = (scale.contacts as f64 / FEW).max(1.0);
+        let allowed = (scale.contacts as f64 / MAX_ABSOLUTE_POWER_SET).max(1.0);
         over(self.unbalanced, allowed * scale.work.max(scale.energy)).powi(2)
     }
 
@@ -402,8 +403,8 @@ fn over(x: f64, scale: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The error of unbalanced work is its squared share of the work; above [`FEW`] contacts its
-    /// bound grows in proportion to their number.
+    /// The error of unbalanced work is its squared share of the work; above
+    /// [`MAX_ABSOLUTE_POWER_SET`] contacts its bound grows in proportion to their number.
     #[test]
     fn more_contacts_may_rock_more() {
         let sums = Sums {
@@ -414,15 +415,15 @@ mod tests {
             let scale = Scale {
                 work: 3.0,
                 energy: 2.0,
-                contacts: (times * FEW) as usize,
+                contacts: (times * MAX_ABSOLUTE_POWER_SET) as usize,
                 ..Scale::default()
             };
             assert!((sums.rocking(&scale) - error).abs() < 1e-15, "{times}");
         }
     }
 
-    /// The power of residuals is compared with that of slip. Where nothing slips, a squared share
-    /// of 1e-3 of the work counts as much as a share of 0.5 of slip.
+    /// The power of residuals is compared with that of slip. Where nothing or little slips, a power
+    /// of 1e-3 of the work gives 0.5, the default tolerance: its square times [`AT_REST`].
     #[test]
     fn the_power_of_residuals_is_compared_with_slip() {
         let scale = Scale {

@@ -53,7 +53,7 @@ fn measure_systems<S: Space>(problem: &mut Problem<S>, first: usize, sums: &mut 
 /// tolerance.
 const BALANCED: f64 = 1e-6;
 /// Number of contacts up to which powers of either sign matter, see [`super::error`].
-const FEW: usize = 500;
+const MAX_CONTACTS_WITH_SIGNS: usize = 500;
 
 /// Computes the reference values of the error from its sums.
 pub(super) fn scale<S: Space>(
@@ -82,7 +82,7 @@ pub(super) fn scale<S: Space>(
     }
     // Compliance of contacts is small compared with the motion of bodies, except where bodies hold
     // each other: only then is this pass needed.
-    let few = problem.contacts() <= FEW;
+    let few = problem.contacts() <= MAX_CONTACTS_WITH_SIGNS;
     let unbalanced = if few {
         sums.unbalanced
     } else {

@@ -29,7 +29,7 @@ pub struct NodalSystem<S: Space> {
 
 /// Smallest number of nodes of a large system, in which sweeps update loaded points only. The
 /// columns of smaller systems all fit in a cache.
-const LARGE: usize = 64;
+const MIN_LARGE_SYSTEM: usize = 64;
 
 /// Compliance of the nodes, by columns as in [`Compliance`]: each update of a contact reads the
 /// responses of all nodes to an impulse on one node consecutively.
@@ -79,7 +79,7 @@ impl<S: Space> NodalSystem<S> {
 
     fn with(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: ComplianceColumns<S>) -> Self {
         let mut system = Self {
-            loaded: (nodes.len() >= LARGE).then(LoadedPoints::new),
+            loaded: (nodes.len() >= MIN_LARGE_SYSTEM).then(LoadedPoints::new),
             points: Points::new(nodes.len()),
             velocity: Vec::with_capacity(S::D * nodes.len()),
             nodes,

@@ -16,7 +16,7 @@ use crate::lanes::{Batch, LaneVector};
 const KNOWN: f64 = 1e-6;
 /// Smallest share of the work of all contacts that is used as the work of a set: a grain that
 /// sticks to a wall carries no load, and its small residuals are no error.
-const LEAST: f64 = 1e-4;
+const MIN_WORK_SHARE: f64 = 1e-4;
 
 /// Returns the error of the worst set, given the sums over all contacts; 0 where all contacts are
 /// in one set.
@@ -68,7 +68,7 @@ fn of_sets<S: Space>(
             all = apart(problem, sets, None);
         }
     }
-    let least = LEAST * scale.work.max(scale.energy);
+    let least = MIN_WORK_SHARE * scale.work.max(scale.energy);
     let known = (0..sets.len()).filter(|k| !sets.with_systems(*k));
     let errors = known.map(|k| {
         let (sums, scale) = &all[k];

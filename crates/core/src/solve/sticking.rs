@@ -14,12 +14,12 @@
 //! those of a solution in which all contacts stick, if there is one, have the least energy. Of the
 //! two solutions the one with less energy is used; there may be others, which neither method finds.
 //!
-//! Sets of up to [`SMALL`] contacts are solved again in each such step; sets of up to [`MOST`] only
-//! in some steps, after steps without a result ([`super::search`]); sets of [`LARGE`] contacts
-//! where controlled bodies squeeze a body that begins to slide, or that slides and touched nothing
-//! before. Larger sets are not solved again, nor are sets with bonds, compliances or dynamical
-//! systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved
-//! again, it is reported ([`Problem::is_not_searched`]).
+//! Sets of up to [`MAX_SMALL_SET`] contacts are solved again in each such step; sets of up to
+//! [`MAX_SEARCHED_SET`] only in some steps, after steps without a result ([`super::search`]); sets
+//! of [`LARGE_SETS`] contacts where controlled bodies squeeze a body that begins to slide, or that
+//! slides and touched nothing before. Larger sets are not solved again, nor are sets with bonds,
+//! compliances or dynamical systems. Where a loaded contact begins to slide in a set of rigid
+//! contacts that is not solved again, it is reported ([`Problem::is_not_searched`]).
 
 use super::connected::ConnectedSets;
 use super::context::{AutoState, SolveContext};
@@ -36,16 +36,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// Number of contacts of a set up to which a second solution is searched in each step in which a
-/// contact begins to slide, and number up to which it is searched in some of these steps. A second
-/// solve has a cost, and in a large flowing set some contacts begin to slide in every step.
-pub(super) const SMALL: usize = 64;
-pub(super) const MOST: usize = 256;
-/// Number of contacts of a set up to which a second solution is searched where controlled bodies
-/// release a body that they might hold.
-const LARGE: RangeInclusive<usize> = MOST + 1..=16_384;
-/// Iterations of the gradient method, and sweeps from its result: minimum number, and number per
-/// contact of the set.
+/// contact begins to slide. A second solve has a cost, and in a large flowing set some contacts
+/// begin to slide in every step.
+pub(super) const MAX_SMALL_SET: usize = 64;
+/// Number of contacts of a set up to which a second solution is searched in some of these steps.
+pub(super) const MAX_SEARCHED_SET: usize = 256;
+/// Numbers of contacts of a set, 257 to 16,384, with which a second solution is searched only where
+/// controlled bodies release a body that they might hold.
+const LARGE_SETS: RangeInclusive<usize> = MAX_SEARCHED_SET + 1..=16_384;
+/// Smallest number of iterations of the gradient method, and of sweeps from its result.
 const ITERATIONS: u32 = 300;
+/// Number of these iterations per contact of the set.
 const OF_CONTACT: u32 = 10;
 /// Ratio of the tolerance of a set to that of the step, so that all sets together are within the
 /// tolerance.
@@ -66,6 +67,8 @@ const LOADED: f64 = 1e-3;
 /// Difference of the energies of two solutions, relative to the work of the step, from which the
 /// lower one is used; errors of the solutions are smaller.
 const LOWER: f64 = 1e-6;
+/// Difference of these energies from which two solutions, of which one holds a contact that slides
+/// in the other, are reported as several.
 const DIFFERS: f64 = 1e-3;
 /// Lower bound where a loaded contact slides in one solution and holds in the other: one slipping
 /// grain of many has little energy.
@@ -254,7 +257,7 @@ impl<S: Space> Problem<S> {
             .map(|set| {
                 let count = sets.contacts(set);
                 !sets.with_systems(set)
-                    && count > SMALL
+                    && count > MAX_SMALL_SET
                     && is_undetermined(S::D * count, freedoms[set])
                     && !search.was_searched(sets.first(set))
             })
@@ -337,7 +340,7 @@ impl<S: Space> SolveContext<'_, S> {
         let is_small = |set: &usize| {
             let count = sets.contacts(*set);
             !sets.with_systems(*set)
-                && ((2..=MOST).contains(&count) || large.contains(set))
+                && ((2..=MAX_SEARCHED_SET).contains(&count) || large.contains(set))
                 && is_undetermined(S::D * count, freedoms[*set])
         };
         let mut place = vec![NONE; sets.len()];
@@ -361,10 +364,10 @@ impl<S: Space> SolveContext<'_, S> {
         small
     }
 
-    /// Returns the sets of [`LARGE`] contacts in which a body squeezed by controlled bodies
+    /// Returns the sets of [`LARGE_SETS`] contacts in which a body squeezed by controlled bodies
     /// begins to slide, or slides and was not squeezed before.
     fn letting_go(&self, problem: &Problem<S>, sets: &ConnectedSets) -> BTreeSet<usize> {
-        let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
+        let is_large = |set: usize| LARGE_SETS.contains(&sets.contacts(set));
         let several = &sets.of_several_controlled;
         let begins = |k: &usize| {
             let form = &self.forms[*k];
@@ -391,7 +394,7 @@ impl<S: Space> SolveContext<'_, S> {
             .map(|k| status(problem, *k, form(k), least))
             .collect();
         let some = |what: ContactStatus| all.contains(&what);
-        let begins = some(ContactStatus::StartsSliding) && (due || of.len() <= SMALL);
+        let begins = some(ContactStatus::StartsSliding) && (due || of.len() <= MAX_SMALL_SET);
         begins
             || due
                 && (some(ContactStatus::SlidesNew)
@@ -478,7 +481,7 @@ impl<S: Space> SolveContext<'_, S> {
         let did = self.statuses(alone, least);
         self.start_anew(alone);
         let tolerance = 0.3 * self.options.tolerance;
-        let of_contacts = OF_CONTACT * self.forms.len().min(MOST) as u32;
+        let of_contacts = OF_CONTACT * self.forms.len().min(MAX_SEARCHED_SET) as u32;
         let most = ITERATIONS.max(of_contacts);
         let mut other = self.improve(alone, Method::Pcpg, tolerance, most);
         let is_lower = |problem: &Problem<S>, by: f64| {

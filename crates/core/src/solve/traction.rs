@@ -30,10 +30,10 @@ use crate::geometry::space::{MatrixLike, Space};
 /// contacts their tractions follow from the balance of the body, which the norms measure. With more
 /// contacts the tractions vary from point to point by the deformation. A block has four to eight
 /// corners on a surface.
-const MANY: u32 = 8;
+const MIN_SURFACE_CONTACTS: u32 = 8;
 /// Smallest ratio of the compliance of a node relative to its neighbours to its own compliance, for
 /// nodes that move together.
-const LEAST: f64 = 1e-3;
+const MIN_RELATIVE_COMPLIANCE: f64 = 1e-3;
 
 /// Errors of single tractions of the contacts of a problem, valid until the contacts change.
 #[derive(Clone, Debug, Default)]
@@ -117,7 +117,10 @@ fn stiffness<S: Space>(
             touched[term.system as usize].push(term.node);
         }
     }
-    let many: Vec<bool> = contacts.iter().map(|n| *n >= MANY).collect();
+    let many: Vec<bool> = contacts
+        .iter()
+        .map(|n| *n >= MIN_SURFACE_CONTACTS)
+        .collect();
     if !many.contains(&true) {
         return (vec![0.0; rows.len()], many);
     }
@@ -139,7 +142,7 @@ fn stiffness<S: Space>(
             term.weight * term.weight * own[system][at]
         });
         let bodies = row.rigid_masses();
-        let bodies = bodies.filter(|(body, _)| of_bodies[*body as usize] < MANY);
+        let bodies = bodies.filter(|(body, _)| of_bodies[*body as usize] < MIN_SURFACE_CONTACTS);
         let sides = of_nodes.sum::<f64>() + bodies.map(|(_, inverse)| inverse).sum::<f64>();
         let w = row.compliance_beside(sides);
         if w > 0.0 { 1.0 / w } else { 0.0 }
@@ -159,7 +162,7 @@ fn against_neighbours<S: Space>(system: &NodalSystem<S>, nodes: &[u32], many: bo
             let alone = own.entry(k, k);
             let shared = neighbours.iter().map(|block| block.entry(k, k));
             let shared = shared.fold(0.0, f64::max);
-            (alone - shared).max(LEAST * alone)
+            (alone - shared).max(MIN_RELATIVE_COMPLIANCE * alone)
         };
         // A node that is held along an axis has no compliance there.
         let axes = (0..S::D).map(along).filter(|w| *w > 0.0);

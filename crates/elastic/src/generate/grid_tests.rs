@@ -13,10 +13,10 @@ const STEEL: Elasticity = Elasticity {
 };
 
 /// Upper bound of the number of points, which no grid here reaches.
-const MOST: usize = 100_000;
+const MAX_POINTS: usize = 100_000;
 
 fn coarsened(lines: &[Vec<f64>], from: &str, ratio: f64) -> BlockGrid {
-    let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, MOST);
+    let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, MAX_POINTS);
     grid.unwrap_or_else(|e| panic!("{from}: {e}"))
 }
 
@@ -297,30 +297,30 @@ fn grids_that_cannot_be_say_why() {
         let grid = BlockGrid::coarsened(lines, &Coarsening { from, ratio }, most);
         grid.unwrap_err()
     };
-    let said = error(&lines, "front", 1.0, MOST).to_string();
+    let said = error(&lines, "front", 1.0, MAX_POINTS).to_string();
     assert!(said.contains("`left`, `right`, `bottom`, `top`"), "{said}");
     for ratio in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let said = error(&lines, "top", ratio, MOST).to_string();
+        let said = error(&lines, "top", ratio, MAX_POINTS).to_string();
         assert!(said.contains("must be positive"), "{said}");
     }
     let even = [even(0.0, 1.0, 8), even(0.0, 1.0, 8)];
-    let said = error(&even, "left", 1.0, MOST);
+    let said = error(&even, "left", 1.0, MAX_POINTS);
     assert!(
         matches!(said, GridError::Nothing { axis: 'x', .. }),
         "{said}"
     );
     assert!(said.to_string().contains("1.250e-1 m") && said.to_string().contains("2.500e-1 m"));
     // With a ratio of 1/20 a row must be twenty times as high as columns are wide.
-    let said = error(&even, "left", 0.05, MOST);
+    let said = error(&even, "left", 0.05, MAX_POINTS);
     assert!(said.to_string().contains("1/0.05") && said.to_string().contains("5.000e0 m"));
     let one_row = [vec![0.0, 1.0, 2.0], vec![0.0, 1.0]];
-    let said = error(&one_row, "top", 1.0, MOST);
+    let said = error(&one_row, "top", 1.0, MAX_POINTS);
     assert!(
         matches!(said, GridError::OneRow { axis: 'y', .. }),
         "{said}"
     );
     let single = [vec![0.0, 1.0], vec![0.0, 1.0, 2.0]];
-    assert_eq!(error(&single, "top", 1.0, MOST), GridError::Single);
+    assert_eq!(error(&single, "top", 1.0, MAX_POINTS), GridError::Single);
     let points = coarsened(&lines, "top", 1.0).points();
     assert_eq!(
         error(&lines, "top", 1.0, points - 1),

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Difference of two positions along a ring below which they count as equal.
 const ROUNDING: f64 = 1e-9;
 /// Smallest number of points of a ring.
-const LEAST: usize = 6;
+const MIN_RING_POINTS: usize = 6;
 
 /// Returns the corners of a disk's polygon on the unit circle, anticlockwise: six for each of the
 /// elements along its radius.
@@ -55,7 +55,7 @@ pub fn polygon<S: Space>(
             along.places.clone()
         } else {
             let count = (outer.len() as f64 * share).round() as usize;
-            let count = count.max(LEAST).min(outer.len());
+            let count = count.max(MIN_RING_POINTS).min(outer.len());
             let places: Vec<f64> = (0..count).map(|k| k as f64 / count as f64).collect();
             let at = |s: &f64| *centre + (along.at(*s) - *centre) * share;
             points.extend(places.iter().map(at));

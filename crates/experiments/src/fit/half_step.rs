@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering;
 /// Share of the half-width of its interval by which a parameter may move: with a method of first
 /// order its error is then a quarter of the half-width, and an interval of 95 % contains the true
 /// value in 92 %.
-const SMALL: f64 = 0.125;
+const MAX_SHIFT: f64 = 0.125;
 
 /// Repeats the runs at the estimate with half their step; `None` if it was interrupted.
 ///
@@ -56,7 +56,7 @@ pub fn half_step(
             parameters.push(None);
             continue;
         };
-        if shift.mean.abs() > SMALL * widths[i] && !shift.may_be_zero() {
+        if shift.mean.abs() > MAX_SHIFT * widths[i] && !shift.may_be_zero() {
             beyond.push(i);
         }
         let half_width = shift.half_width.unwrap_or(f64::INFINITY);

@@ -43,7 +43,8 @@ impl Combination {
             return parts.join(", ");
         }
         // The form of the case is named where other forms are compared with it.
-        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == ParameterEffect::Form);
+        let forms =
+            (0..parameters.len()).filter(|&k| parameters[k].effect == ParameterEffect::Form);
         let forms: Vec<String> = forms.map(named).collect();
         match forms.is_empty() {
             true => "the case's own".to_owned(),

@@ -325,7 +325,7 @@ const NEAREST: f64 = 1.5;
 /// enough for the estimate, otherwise the next one.
 pub fn neighbour(parameter: &Varied) -> Option<usize> {
     let ordered = matches!(
-        parameter.sense,
+        parameter.effect,
         ParameterEffect::Step | ParameterEffect::Tolerance
     );
     let mut coarser = parameter.reference + 1..parameter.levels.len();
@@ -410,7 +410,7 @@ mod tests {
         parameter.levels.pop();
         assert_eq!(neighbour(&parameter), Some(1));
         assert_eq!(ratio(&parameter, 1).and_then(weight), None);
-        parameter.sense = ParameterEffect::Choice;
+        parameter.effect = ParameterEffect::Choice;
         assert_eq!(neighbour(&parameter), None);
     }
 }

@@ -59,7 +59,7 @@ impl Trade {
         let mut forms = Vec::new();
         for (k, parameter) in parameters.iter().enumerate() {
             let others = (0..parameter.levels.len()).filter(|l| *l != parameter.own);
-            for level in others.filter(|_| parameter.sense == ParameterEffect::Form) {
+            for level in others.filter(|_| parameter.effect == ParameterEffect::Form) {
                 forms.push((k, level, seconds(&own.with(k, level))? / base.max(1e-3)));
             }
         }
@@ -171,7 +171,7 @@ fn factor(forms: &[(usize, usize, f64)], setting: &Combination) -> f64 {
 
 /// Returns the ratio of the case's own step or tolerance to that of the setting; 1 if it is not
 /// varied.
-fn shrink(setting: &Combination, parameters: &[Varied], sense: ParameterEffect) -> f64 {
+fn shrink(setting: &Combination, parameters: &[Varied], effect: ParameterEffect) -> f64 {
     let of = |(k, level): (&Varied, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
         Some(number(*level)? / number(k.own)?)
@@ -179,6 +179,6 @@ fn shrink(setting: &Combination, parameters: &[Varied], sense: ParameterEffect) 
     let mut all = parameters
         .iter()
         .zip(&setting.0)
-        .filter(|(k, _)| k.sense == sense);
+        .filter(|(k, _)| k.effect == effect);
     all.find_map(of).unwrap_or(1.0)
 }

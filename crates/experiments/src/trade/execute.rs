@@ -70,10 +70,10 @@ impl Trade {
             let coarser = (0..self.parameters.len())
                 .filter(|&k| self.parameters[k].may_be_coarser())
                 .max_by_key(|&k| {
-                    let sense = self.parameters[k].sense;
+                    let effect = self.parameters[k].effect;
                     (
-                        sense == ParameterEffect::Tolerance,
-                        sense != ParameterEffect::Form,
+                        effect == ParameterEffect::Tolerance,
+                        effect != ParameterEffect::Form,
                         k,
                     )
                 });

@@ -223,7 +223,7 @@ fn named(parameters: &[Varied], setting: &Combination) -> String {
 }
 
 fn value(parameter: &Varied, level: &Level) -> String {
-    match (parameter.sense, level.number) {
+    match (parameter.effect, level.number) {
         (ParameterEffect::Step, Some(x)) => quantity(x, "s", 2),
         (ParameterEffect::Tolerance, Some(x)) => quantity(x, "", 1),
         _ => level.label.clone(),
@@ -247,8 +247,8 @@ mod tests {
     #[test]
     fn settings_are_named_by_their_values_whatever_the_case_has() {
         let level = |x: f64| Level::of(&[], &format!("{x:e}"));
-        let parameter = |name: &str, sense, own| {
-            Varied::new(name, sense, vec![level(5e-5), level(1e-4)], Some(own))
+        let parameter = |name: &str, effect, own| {
+            Varied::new(name, effect, vec![level(5e-5), level(1e-4)], Some(own))
         };
         for own in [0, 1] {
             let parameters = [

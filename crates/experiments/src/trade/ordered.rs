@@ -29,7 +29,7 @@ pub(super) fn number(key: &str, x: f64) -> Level {
 /// its level.
 fn ordered(
     name: &str,
-    sense: ParameterEffect,
+    effect: ParameterEffect,
     own: f64,
     mut values: Vec<f64>,
     level: impl Fn(f64) -> Level,
@@ -41,7 +41,7 @@ fn ordered(
     values.dedup_by(|a, b| same(*a, *b));
     let own = values.iter().position(|v| *v == own).unwrap_or(0);
     let levels = values.into_iter().map(level).collect();
-    Varied::new(name, sense, levels, Some(own))
+    Varied::new(name, effect, levels, Some(own))
 }
 
 pub(super) fn steps(case: &Case, values: Vec<f64>) -> Varied {

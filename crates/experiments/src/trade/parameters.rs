@@ -25,7 +25,7 @@ pub fn parameters(
     if !only_variants {
         all.extend(presets(loaded, solving, &request.presets, &request.vary)?);
     }
-    all.sort_by_key(|k| k.sense != ParameterEffect::Form);
+    all.sort_by_key(|k| k.effect != ParameterEffect::Form);
     for forms in all.iter_mut().filter(|k| k.name == "deformability") {
         let before = request.sets.clone();
         keep_accepted(forms, |sets| {
@@ -46,9 +46,9 @@ fn one_tolerance(parameters: &[Varied]) -> Result<(), Error> {
         sets.any(|set| set.split('=').next().is_some_and(|k| k.trim() == key))
     };
     let form = |k: &&Varied| {
-        k.sense == ParameterEffect::Form && (sets(k, "solver.tolerance") || sets(k, "solver"))
+        k.effect == ParameterEffect::Form && (sets(k, "solver.tolerance") || sets(k, "solver"))
     };
-    let varied = |k: &&Varied| k.sense != ParameterEffect::Form && sets(k, "solver.tolerance");
+    let varied = |k: &&Varied| k.effect != ParameterEffect::Form && sets(k, "solver.tolerance");
     let mut all = parameters.iter();
     let (Some(form), Some(varied)) = (parameters.iter().find(form), all.find(varied)) else {
         return Ok(());

@@ -149,9 +149,9 @@ impl Trade {
             let finest = self.parameters.iter_mut().filter(|k| k.may_be_coarser());
             let finest = finest.min_by_key(|k| {
                 (
-                    k.sense == ParameterEffect::Form,
+                    k.effect == ParameterEffect::Form,
                     k.reference,
-                    k.sense == ParameterEffect::Step,
+                    k.effect == ParameterEffect::Step,
                 )
             });
             let Some(finest) = finest else { break };

@@ -24,7 +24,7 @@ pub struct Varied {
     /// Name of the parameter.
     pub name: String,
     /// Effect on cost and error.
-    pub sense: ParameterEffect,
+    pub effect: ParameterEffect,
     /// Levels, at least one.
     pub levels: Vec<Level>,
     /// Index of the case's own level.
@@ -40,7 +40,7 @@ impl Varied {
     /// level is not given, a level without changes is added.
     pub fn new(
         name: &str,
-        sense: ParameterEffect,
+        effect: ParameterEffect,
         mut levels: Vec<Level>,
         own: Option<usize>,
     ) -> Self {
@@ -50,7 +50,7 @@ impl Varied {
         });
         Self {
             name: name.to_owned(),
-            sense,
+            effect,
             levels,
             own,
             reference: 0,
@@ -61,7 +61,7 @@ impl Varied {
     /// Returns whether its levels have an order, so that the reference may have a coarser one.
     pub fn is_ordered(&self) -> bool {
         matches!(
-            self.sense,
+            self.effect,
             ParameterEffect::Step | ParameterEffect::Tolerance | ParameterEffect::Form
         )
     }

@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 1e-13;
 /// Accuracy of a solution that is [completed](System::complete), relative to its largest value.
 const COMPLETED: f64 = 1e-6;
 /// Number of iterations of conjugate gradients after which the system is factorised.
-const MOST: usize = 150;
+const MAX_ITERATIONS: usize = 150;
 
 /// System (diag(own) + L) x = right, with the Laplacian L of the edges between unknowns.
 #[derive(Debug)]
@@ -116,7 +116,7 @@ impl System {
         let mut p = vec![Lanes::default(); x.len()];
         let mut ap = p.clone();
         let mut ratio = 0.0;
-        for iteration in 1..=MOST {
+        for iteration in 1..=MAX_ITERATIONS {
             let each = p.as_flattened_mut().iter_mut();
             let each = each.zip(r.as_flattened()).zip(inverse.as_flattened());
             for ((p, r), d) in each {

@@ -53,7 +53,7 @@ const STEP_LIMIT: f64 = 4.0 / 3.0;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AccuracyControl {
     share: f64,
-    of: StoredResult,
+    of: AccuracyTarget,
     effort: f64,
     seed: u64,
     /// Step (s), tolerance and position correction of the case.
@@ -82,7 +82,7 @@ pub struct AccuracyControl {
 
 /// The result, as stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum StoredResult {
+enum AccuracyTarget {
     Friction,
     FrictionEnergy,
     Damage,
@@ -90,7 +90,7 @@ enum StoredResult {
     Forces,
 }
 
-impl StoredResult {
+impl AccuracyTarget {
     /// Returns the result that a case requests.
     fn asked(of: AccurateResult, case: &Case, run: &dyn RunView) -> Self {
         match of {
@@ -143,9 +143,9 @@ impl AccuracyControl {
             run.options().solver.tolerance,
             run.options().correction,
         ];
-        let of = StoredResult::asked(spec.of, case, run);
+        let of = AccuracyTarget::asked(spec.of, case, run);
         let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
-        if of == StoredResult::Forces {
+        if of == AccuracyTarget::Forces {
             // The steps only grow, and forces of rigid packings scatter at any tolerance: the
             // tolerance is reduced only if the case gives a limit.
             step = 0;
@@ -198,7 +198,7 @@ impl AccuracyControl {
         }
         // The stretch must not extend beyond the end, where drives and tables have ended.
         let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
-        if self.of == StoredResult::Forces {
+        if self.of == AccuracyTarget::Forces {
             let count = self.count(run, [done, total], most);
             self.set(run, count);
             if self.repeats_for_forces(run) {

@@ -5,7 +5,7 @@ use crate::quantity::{Findings, Quantity, Role, Topic, Wording, number, quantity
 use std::fmt::Write as _;
 
 /// Largest number of plain values of a topic that are printed without `--verbose`.
-const MANY: usize = 8;
+const MAX_PLAIN_VALUES: usize = 8;
 
 impl Summary {
     /// The text: warnings first, then the results, with all details if `verbose`.
@@ -44,7 +44,7 @@ fn lines(all: &Findings, verbose: bool) -> Vec<(String, String)> {
     let mut folded = Vec::new();
     for q in &list {
         let count = list.iter().filter(|other| plain(other, q.topic)).count();
-        if plain(&q, q.topic) && !verbose && count > MANY {
+        if plain(&q, q.topic) && !verbose && count > MAX_PLAIN_VALUES {
             let group = q.name().split('.').next().unwrap_or_default().to_owned();
             if !folded.contains(&group) {
                 let text = format!("{count} values: --verbose, or `{group}` in summary.json");

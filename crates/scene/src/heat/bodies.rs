@@ -10,10 +10,11 @@ use fretwork_core::view::RunView;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Default growth of the spacing with depth, ratio of the first spacing to the diffusion length of
-/// a step, and ratio of the depth to that of the run.
+/// Default growth of the spacing with depth.
 const GROWTH: f64 = 1.2;
+/// Default ratio of the first spacing to the diffusion length of a step.
 const FIRST: f64 = 0.3;
+/// Default ratio of the depth to the diffusion length of the run.
 const DEEP: f64 = 6.0;
 
 /// Nodes of all bodies.

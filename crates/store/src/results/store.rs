@@ -3,8 +3,8 @@
 //!
 //! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is
 //! renamed over it. The named file is therefore always complete, and a flush takes one `fdatasync`.
-//! Beyond [`LARGE`] bytes copies would be too expensive, and the file grows in place by HDF5's
-//! single-writer protocol ([`super::growth`]), whose flush syncs once per dataset.
+//! Beyond [`MAX_COPIED_BYTES`] bytes copies would be too expensive, and the file grows in place by
+//! HDF5's single-writer protocol ([`super::growth`]), whose flush syncs once per dataset.
 //!
 //! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the
 //! HDF5 crate.
@@ -18,9 +18,9 @@ use hdf5::H5File;
 use std::path::{Path, PathBuf};
 
 /// Size from which a file grows in place, in bytes.
-const LARGE: u64 = 64 << 20;
-/// Environment variable that overrides [`LARGE`], for slow (remote) disks.
-const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
+const MAX_COPIED_BYTES: u64 = 64 << 20;
+/// Environment variable that overrides [`MAX_COPIED_BYTES`], for slow (remote) disks.
+const COPY_LIMIT_VARIABLE: &str = "FRETWORK_COPY_LIMIT";
 
 /// Limit on the bytes of buffered rows.
 const MAX_BUFFERED: usize = 8 << 20;
@@ -116,10 +116,10 @@ impl Store {
             slots: Vec::new(),
             attributes: Vec::new(),
             buffered: 0,
-            large: std::env::var(LARGE_FROM)
+            large: std::env::var(COPY_LIMIT_VARIABLE)
                 .ok()
                 .and_then(|n| n.parse().ok())
-                .unwrap_or(LARGE),
+                .unwrap_or(MAX_COPIED_BYTES),
             lock: None,
         })
     }

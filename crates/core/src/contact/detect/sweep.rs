@@ -157,7 +157,7 @@ const DETECTABLE: f64 = 0.5;
 /// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
 /// Smallest evaluated increment, as a fraction of the detectable penetration.
-const LEAST: f64 = 0.01;
+const MIN_INCREMENT: f64 = 0.01;
 /// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
 
@@ -276,7 +276,8 @@ impl<'a, S: Space> PairSweep<'a, S> {
         // No increment is longer than half of the penetration in which the pair is both beyond the
         // margin and detected.
         let remaining = DETECTABLE * (pair.detectable - margin).max(0.0);
-        let stride = (STRIDE * pair.half_thickness).min(remaining.max(LEAST * pair.detectable));
+        let stride =
+            (STRIDE * pair.half_thickness).min(remaining.max(MIN_INCREMENT * pair.detectable));
         let (mut before, mut s) = (0.0, 0.0);
         for _ in 0..MAX_INSTANTS {
             let left = (1.0 - s) * travel;

@@ -35,8 +35,9 @@ pub fn factorisations_before_newton(tolerance: f64) -> f64 {
 
 /// Cost of Gauss-Seidel without progress, in factorisations, after which Newton is tried at once.
 const STALLED: f64 = 10.0;
-/// Steps of Newton from the first sweeps, and from those of a round.
+/// Steps of Newton from the first sweeps.
 const FIRST_NEWTON: u32 = 40;
+/// Steps of Newton from the sweeps of a round.
 const ROUND_NEWTON: u32 = 80;
 /// Steps of the interior point.
 const INTERIOR: u32 = 80;

@@ -13,17 +13,18 @@ const NOT_OBEYED: f64 = 0.03;
 /// Number of iterations below which a step that reached its limit does not show whether its motions
 /// are possible.
 const MIN_ITERATIONS: u32 = 100;
-/// Smallest share of the work of the drives that goes into the residuals, and largest share that
-/// neither the residuals nor slip account for, where drives squeeze what does not yield.
+/// Smallest share of the work of the drives that goes into the residuals where drives squeeze what
+/// does not yield.
 const WASTED: f64 = 0.2;
+/// Largest share of this work for which neither the residuals nor slip account there.
 const UNEXPLAINED: f64 = 0.3;
 /// Share of the work of all drives from which a body is named, and share of the largest impulse on
 /// a body from which a contact transmits the squeezing.
 const NAMED: f64 = 0.05;
 /// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be
-/// rounding of their positions, and share of their displacement by which they may approach by
-/// rounding.
+/// rounding of their positions.
 const ROUNDING: f64 = 1e-9;
+/// Share of the displacement of two bodies by which they may approach by rounding.
 const GRAZING: f64 = 1e-6;
 
 /// Impossible motions over a run.

@@ -11,11 +11,11 @@ use std::time::Instant;
 /// Accepted difference between the attraction used and that over the gaps passed, relative to the
 /// load of the contact.
 const TOLERANCE: f64 = 1e-4;
-/// Largest number of solves of a step, and of those in which attractions are updated: a single
-/// contact takes up to eight, and among many contacts some may jump between gaps that hold and gaps
-/// that do not.
-const MOST: u32 = 40;
-const MAX_OF_ATTRACTION: u32 = 12;
+/// Largest number of solves of a step.
+const MAX_SOLVES: u32 = 40;
+/// Largest number of solves of a step in which attractions are updated: a single contact takes up
+/// to eight, and among many contacts some may jump between gaps that hold and gaps that do not.
+const MAX_ATTRACTION_UPDATES: u32 = 12;
 /// Number of iterations of a solve whose laws do not agree with its solution yet.
 const BRIEF: u32 = 100;
 
@@ -49,10 +49,10 @@ pub(super) fn solve_in_agreement<S: Space>(
         let solved = to_the_end || report.solver.converged;
         let clock = Instant::now();
         // After the last solve nothing is linearised again: its forms belong to the solution.
-        let again = agreement.solves < MOST;
+        let again = agreement.solves < MAX_SOLVES;
         let friction = sliding::compare_sliding(s, &mut sliding, again, info);
         let friction = friction.map_err(|e| s.law_error(e))?;
-        let tolerance = if agreement.solves < MAX_OF_ATTRACTION {
+        let tolerance = if agreement.solves < MAX_ATTRACTION_UPDATES {
             TOLERANCE
         } else {
             f64::INFINITY
@@ -67,7 +67,7 @@ pub(super) fn solve_in_agreement<S: Space>(
             }
             to_the_end = true;
         }
-        to_the_end |= agreement.solves + 1 >= MOST;
+        to_the_end |= agreement.solves + 1 >= MAX_SOLVES;
         let both = s
             .workspace
             .forms

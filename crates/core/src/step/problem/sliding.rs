@@ -30,7 +30,7 @@ const NEXT_TO_NOTHING: f64 = 1e-2;
 const TOLERANCE_OF_ALL: f64 = 1e-3;
 /// Number of solves after which falling laws may differ by more: a contact that jumps between stick
 /// and slip has no state in between.
-const MANY: u32 = 8;
+const MAX_FALLING_SOLVES: u32 = 8;
 /// Share of the velocity of linearisation below which Newton's step uses the logarithm of the
 /// velocity: the slope of rising laws decreases with velocity, so that their tangent leads to rest.
 const FAR_BELOW: f64 = 0.1;
@@ -146,7 +146,7 @@ impl FrictionMismatch {
         let falling: f64 = differs(false).map(|d| d.0).sum();
         let rising: f64 = differs(true).map(|d| d.0).sum();
         let share = |x: f64| if x > 0.0 { x / whole } else { 0.0 };
-        let many = iterations >= MANY;
+        let many = iterations >= MAX_FALLING_SOLVES;
         // Each rising law is compared separately, unless its load is negligible.
         let each = differs(true).all(|d| d.0 <= TOLERANCE * (d.1 + NEXT_TO_NOTHING * whole));
         let rises = each || many && share(rising) <= TOLERANCE_OF_ALL;

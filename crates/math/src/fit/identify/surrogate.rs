@@ -25,7 +25,7 @@ const SHRINK: f64 = 0.8;
 
 /// Error of the polynomial, in standard errors of the estimate, that is negligible compared with
 /// the measurement.
-const SMALL: f64 = 0.1;
+const NEGLIGIBLE_ERROR: f64 = 0.1;
 
 /// Probability that the upper limit of the noise is below the noise.
 const LUCK: f64 = 0.001;
@@ -103,7 +103,7 @@ impl Surrogate {
         let noise = found.iter().filter_map(limit).fold(f64::MAX, f64::min);
         // This is the deviation for an error of the estimate of one standard error, as a mean over
         // the values.
-        let enough = SMALL * SMALL * n as f64 / sigma.len() as f64;
+        let enough = NEGLIGIBLE_ERROR * NEGLIGIBLE_ERROR * n as f64 / sigma.len() as f64;
         let error = |s: &Self| {
             let excess = (s.spread - noise).max(0.0);
             (s.covariance[(0, 0)] * noise + excess).max(enough)

@@ -9,7 +9,7 @@ use fretwork_store::summary::NOT_REPRODUCIBLE;
 use serde_json::Value;
 
 /// Number of rows of a group that are shown; the rest is folded.
-const MANY: usize = 12;
+const MAX_UNFOLDED_ROWS: usize = 12;
 
 /// The results of a run.
 pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
@@ -68,7 +68,7 @@ fn table((title, rows): &ResultGroup) -> String {
     let table = format!(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table class=\"results\"><caption>{title}</caption>\n<tbody>\n{body}</tbody></table></div>\n"
     );
-    if rows.len() > MANY {
+    if rows.len() > MAX_UNFOLDED_ROWS {
         return format!(
             "<details><summary>{title}: {} values</summary>\n{table}</details>\n",
             rows.len()

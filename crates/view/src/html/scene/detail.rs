@@ -5,7 +5,7 @@ use crate::html::arrays::NumberType;
 /// If fewer states than this fit at a level of detail, a coarser level is chosen.
 const ENOUGH: [usize; 3] = [10, 8, 5];
 /// Number of states that are always shown, with fewer grains if necessary.
-const FEW: usize = 4;
+const MIN_SHOWN_STATES: usize = 4;
 
 /// Level of detail of the states of a page; the finest shows all that was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,10 @@ impl Detail {
     /// Returns the next coarser level if too few of `count` states of `size` bytes each fit into
     /// `bytes`.
     pub fn coarser(self, fit: usize, count: usize, size: usize, bytes: usize) -> Option<Self> {
-        let enough = ENOUGH.get(usize::from(self.level)).copied().unwrap_or(FEW);
+        let enough = ENOUGH
+            .get(usize::from(self.level))
+            .copied()
+            .unwrap_or(MIN_SHOWN_STATES);
         if fit >= enough.min(count) {
             return None;
         }
@@ -41,7 +44,9 @@ impl Detail {
             }),
             _ if self.every > 1 => None,
             _ => Some(Self {
-                every: (FEW.min(count) * size).div_ceil(bytes.max(1)).max(2),
+                every: (MIN_SHOWN_STATES.min(count) * size)
+                    .div_ceil(bytes.max(1))
+                    .max(2),
                 ..self
             }),
         }

@@ -17,14 +17,14 @@ pub type Pair = [f64; 2];
 /// Number of corners that are stored from step to step, including the edge of the contact.
 pub const KEPT: usize = 6;
 /// Number of corners within a step.
-const MOST: usize = 3 * KEPT + 4;
+const MAX_CORNERS: usize = 3 * KEPT + 4;
 /// Excess over the friction bound that is attributed to rounding, relative to the bound.
 const ROUNDING: f64 = 1e-12;
 
 /// Function u(s), linear between corners. The last corner is the edge of the contact, where u = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile {
-    corners: [(f64, Pair); MOST],
+    corners: [(f64, Pair); MAX_CORNERS],
     count: usize,
 }
 
@@ -62,7 +62,7 @@ impl Profile {
     /// Returns a contact of this overlap (m) without displacement.
     pub fn flat(edge: f64) -> Self {
         let mut out = Self {
-            corners: [(0.0, [0.0; 2]); MOST],
+            corners: [(0.0, [0.0; 2]); MAX_CORNERS],
             count: 0,
         };
         out.push(0.0, [0.0; 2]);
@@ -89,7 +89,7 @@ impl Profile {
     }
 
     fn push(&mut self, s: f64, u: Pair) {
-        if self.count < MOST {
+        if self.count < MAX_CORNERS {
             self.corners[self.count] = (s, u);
             self.count += 1;
         }
