@@ -1,8 +1,5 @@
 // Charts: uPlot with the colours of the page, axes with units, zoom that charts share, and keys.
 {
-  const LIGHT = ["#0072b2", "#c44e00", "#00805c", "#b0508a", "#2a8cc0", "#9a6a00", "#4a4a4a"];
-  const DARK = ["#5ab4f0", "#ff9d57", "#3fd0a0", "#e79bc8", "#8fd3f5", "#f0c050", "#c8c8c8"];
-  const ORDER = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [74, 186, 110], [165, 205, 50]];
   const dark = matchMedia("(prefers-color-scheme: dark)");
   let printing = false;
   const groups = new Map();
@@ -17,8 +14,9 @@
     // What is dark on paper is made lighter on a dark page.
     const shown = (rgb) => css(FW.isDark() ? rgb.map((c) => c + 0.45 * (255 - c)) : rgb);
     if (series.colour) return shown(series.colour);
-    if (gradient) return shown(FW.mix(ORDER, k / Math.max(1, count - 1)));
-    return (FW.isDark() ? DARK : LIGHT)[(series.place ?? k) % LIGHT.length];
+    const { light, dark, order } = FW.data.palette;
+    if (gradient) return shown(FW.mix(order, k / Math.max(1, count - 1)));
+    return css((FW.isDark() ? dark : light)[(series.place ?? k) % light.length]);
   };
 
   // Ticks of a logarithmic axis: whole multiples of powers of ten, with labels at the powers, and
@@ -179,18 +177,19 @@
     event.preventDefault();
   };
 
-  // Range of a scale around values, or as asked.
-  const ranged = ({ log, range, factor }, ends) => (u, min, max) => {
-    if (range) return range.map((v) => v * factor);
+  // Range of a scale: the one in the data of the page. Where series are hidden, or an axis was
+  // chosen in the browser, it is computed by the rules of `Axis::range` of the library.
+  const ranged = ({ log, range, fixed, factor }, ends) => (u, min, max) => {
+    if (range && (fixed || u.series.every((s) => !s || s.show !== false))) return range.map((v) => v * factor);
     const all = ends.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [min ?? Infinity, max ?? -Infinity]);
-    if (!(all[0] <= all[1])) return log ? [0.1, 1] : [0, 1];
-    const [a, b] = all;
-    if (log) return a > 0 ? [a / (b / a) ** 0.04 / 1.1, b * (b / a) ** 0.04 * 1.1] : [0.1, 1];
-    const pad = a === b ? (Math.abs(a) || 1) * 0.1 : 0.04 * (b - a);
-    return [a - pad, b + pad];
+    const known = all[0] <= all[1] && (!log || all[0] > 0) ? all : log ? [0.1, 10] : [0, 1];
+    const [a, b] = log ? known.map(Math.log10) : known;
+    const varies = b - a > 1e-9 * Math.max(Math.abs(a), Math.abs(b));
+    const pad = varies ? 0.04 * (b - a) : log || a === 0 ? 1 : 0.1 * Math.abs(a);
+    return [a - pad, b + pad].map((v) => (log ? 10 ** v : v));
   };
 
-  // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range}, series:
+  // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range, fixed}, series:
   // [{label, x, y, low, high, second, line, dashed, markers, colour, place}], gradient, field,
   // link: name of the charts that share their zoom}, with numbers in the units of the axes
   FW.chart = (host, spec) => {

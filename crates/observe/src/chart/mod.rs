@@ -1,12 +1,15 @@
 //! Figures as data: charts of curves with their axes. A figure is described once; one back end
-//! draws it as a PNG file, another in an HTML page, both from the result of [`Figure::resolve`].
+//! draws it as a PNG file, another in an HTML page, both from the result of [`Figure::resolve`],
+//! with the same colours and ranges ([`PALETTE`], [`Chart::ranges`]); ticks are chosen by each.
 
 mod axis;
 mod field;
+mod look;
 mod rows;
 
 pub use axis::{Axis, number, quantity, superscript};
 pub use field::{Colours, FieldMap, round_top};
+pub use look::{AxisRange, Colour, DARK_PALETTE, GRADIENT, PALETTE};
 pub use rows::{Columns, Part, Rows, TableColumns, Value};
 
 use serde::{Deserialize, Serialize};
@@ -257,8 +260,7 @@ impl Chart {
 
     /// Returns whether a point can be shown on both axes.
     pub fn shows(&self, p: &(f64, f64)) -> bool {
-        let on = |axis: &Axis, v: f64| v.is_finite() && (!axis.log || v > 0.0);
-        on(&self.x, p.0) && on(&self.y, p.1)
+        self.x.shows(p.0) && self.y.shows(p.1)
     }
 }
 

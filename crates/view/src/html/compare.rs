@@ -92,7 +92,7 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
     Page {
         title: "Runs side by side - Fretwork".to_owned(),
         body,
-        data: json!({"runs": columns, "figures": figures}),
+        data: json!({"runs": columns, "figures": figures, "palette": figures::palette()}),
         blobs: vec![("numbers".to_owned(), numbers.packed())],
         viewer: false,
     }

@@ -4,7 +4,10 @@
 use crate::html::arrays::{Arrays, NumberType};
 use crate::html::folder::RunFolder;
 use crate::html::statistics::Statistics;
-use fretwork_observe::chart::{Axis, Chart, Colours, FieldMap, Figure, Series, Style};
+use fretwork_observe::chart::{
+    Axis, AxisRange, Chart, Colours, DARK_PALETTE, FieldMap, Figure, GRADIENT, PALETTE, Series,
+    Style,
+};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
@@ -94,24 +97,16 @@ pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Ve
 /// A chart for the page.
 pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
     let chart = &chart.with_lines();
-    let points = || chart.series.iter().flat_map(|s| &s.points);
-    let xs = points()
-        .map(|p| p.0)
-        .chain(chart.x_range.into_iter().flat_map(<[f64; 2]>::from));
     let curves = chart.series.iter().enumerate();
-    let intervals = chart.series.iter().flat_map(|s| &s.intervals);
-    let ys = points()
-        .map(|p| p.1)
-        .chain(intervals.flat_map(|i| [i.0, i.1]))
-        .chain(chart.y_range.into_iter().flat_map(<[f64; 2]>::from));
+    let [x, y] = chart.ranges();
     json!({
         "figure": name,
         "title": chart.title,
         "note": note(chart),
-        "x": axis(&chart.x, xs, chart.x_range),
-        "y": axis(&chart.y, ys, chart.y_range),
+        "x": axis(&chart.x, &x, chart.x_range.is_some()),
+        "y": axis(&chart.y, &y, chart.y_range.is_some()),
         "gradient": chart.colour_by_order,
-        "series": curves.map(|(k, s)| series(k, s, numbers)).collect::<Vec<_>>(),
+        "series": curves.map(|(k, s)| series(chart.place_in_palette(k), s, numbers)).collect::<Vec<_>>(),
         "field": chart.field.as_ref().map(|f| field(f, numbers)),
     })
 }
@@ -125,16 +120,21 @@ fn note(chart: &Chart) -> String {
     }
 }
 
-fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)>) -> Value {
-    let finite = values.map(f64::abs).filter(|v| v.is_finite());
-    let (exponent, label) = axis.scaled(finite.fold(0.0, f64::max));
+/// An axis with its range; a `fixed` one keeps it whichever series are shown.
+fn axis(axis: &Axis, range: &AxisRange, fixed: bool) -> Value {
     json!({
-        "name": axis.name, "unit": axis.unit, "label": label, "factor": 10f64.powi(-exponent),
-        "log": axis.log, "whole": axis.whole, "range": range,
+        "name": axis.name, "unit": axis.unit, "label": range.label,
+        "factor": 10f64.powi(-range.exponent), "log": axis.log, "whole": axis.whole,
+        "range": range.ends, "fixed": fixed,
     })
 }
 
-fn series(index: usize, series: &Series, numbers: &mut Arrays) -> Value {
+/// Returns the colours of series for the scripts: on light and dark pages, and from first to last.
+pub(crate) fn palette() -> Value {
+    json!({"light": PALETTE, "dark": DARK_PALETTE, "order": GRADIENT})
+}
+
+fn series(place: usize, series: &Series, numbers: &mut Arrays) -> Value {
     let mut array = |of: fn(&(f64, f64)) -> f64, list: &[(f64, f64)]| match list.is_empty() {
         true => Value::Null,
         false => json!(numbers.number(&list.iter().map(of).collect::<Vec<_>>())),
@@ -149,7 +149,7 @@ fn series(index: usize, series: &Series, numbers: &mut Arrays) -> Value {
         "dashed": series.style == Style::Dashed,
         "markers": matches!(series.style, Style::Markers | Style::LineMarkers),
         "colour": series.colour,
-        "place": series.place.max(index),
+        "place": place,
     })
 }
 
@@ -171,10 +171,8 @@ fn field(field: &FieldMap, numbers: &mut Arrays) -> Value {
         Colours::Classes { of, .. } => (of.iter().map(|k| *k as f64).collect(), Value::Null),
         Colours::Values { values, scale } => {
             let top = field.top();
-            (
-                values.clone(),
-                axis(scale, [top].into_iter(), Some((0.0, top))),
-            )
+            let range = scale.range([top].into_iter(), Some((0.0, top)));
+            (values.clone(), axis(scale, &range, true))
         }
     };
     let classes = match &field.colours {

@@ -9,7 +9,7 @@
 
 mod arrays;
 mod compare;
-mod figures;
+pub(crate) mod figures;
 mod folder;
 mod laws;
 mod materials;

@@ -104,7 +104,7 @@ impl Sheet {
         Page {
             title: format!("{} - Fretwork", self.title),
             body,
-            data: json!({"runs": [], "figures": figures}),
+            data: json!({"runs": [], "figures": figures, "palette": figures::palette()}),
             blobs: vec![("numbers".to_owned(), numbers.packed())],
             ..Page::default()
         }

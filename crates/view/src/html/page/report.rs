@@ -81,7 +81,7 @@ fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics,
     let columns = figures::columns("", "", &statistics, &mut numbers);
     let mut list = figures::json(&figures::of_run(run, &statistics, gaps), &mut numbers);
     list.extend((statistics.columns.len() > 1).then(|| json!({"any": true})));
-    let data = json!({"runs": [columns], "figures": list});
+    let data = json!({"runs": [columns], "figures": list, "palette": figures::palette()});
     (statistics, data, numbers.packed())
 }
 

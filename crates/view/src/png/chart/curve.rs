@@ -1,30 +1,11 @@
 //! Curves in pixels: colours, thinning, lines and markers.
 
 use crate::png::canvas::{Canvas, Rgb, WHITE, along};
-use fretwork_observe::chart::Style;
+use fretwork_observe::chart::{GRADIENT, Style};
 
-/// Colours for readers with colour vision deficiency (Okabe and Ito).
-pub(crate) const PALETTE: [Rgb; 7] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [86, 160, 215],
-    [200, 140, 0],
-    [60, 60, 60],
-];
-
-/// Perceptual gradient (viridis without its yellow, which is invisible on white paper).
-const GRADIENT: [Rgb; 5] = [
-    [68, 1, 84],
-    [59, 82, 139],
-    [33, 145, 140],
-    [74, 186, 110],
-    [165, 205, 50],
-];
-
+/// Returns the colour at a share of the gradient.
 pub(crate) fn gradient(t: f64) -> Rgb {
-    along(&GRADIENT, t)
+    along(&GRADIENT.map(Rgb::from), t)
 }
 
 /// Keeps the first, lowest, highest and last point of each pass through a pixel column.

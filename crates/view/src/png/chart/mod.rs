@@ -9,10 +9,10 @@ mod tests;
 
 use crate::png::canvas::{Canvas, DrawError, INK, PAGE, Rgb, SOFT_INK, TEXT, wrapped};
 use crate::png::font::{Anchor, TextStyle as Text, text_width};
-use curve::{PALETTE, draw_series, gradient, thinned};
-use fretwork_observe::chart::{Chart, Series};
+use curve::{draw_series, gradient, thinned};
+use fretwork_observe::chart::{Chart, PALETTE, Series};
 use legend::Legend;
-pub(crate) use scale::AxisScale;
+pub(crate) use scale::{AxisScale, check_range};
 use std::path::Path;
 
 /// Width of a page of several charts in pixels: 318 per inch if it is printed 16 cm wide.
@@ -165,16 +165,13 @@ impl<'a> Layout<'a> {
     fn new(chart: &'a Chart, u: f32) -> Result<Self, DrawError> {
         let em = TEXT * u;
         let (wide, high) = (chart.size_px.0 as f32, chart.size_px.1 as f32);
-        let shown = || {
-            let points = chart.series.iter().flat_map(|s| &s.points);
-            points.filter(|p| chart.shows(p))
-        };
         let ticks_x = ((wide / em - 5.0) / 5.0) as usize;
         let ticks_y = ((high / em - 7.0) / 2.6) as usize;
-        let heights = shown().map(|p| p.1).chain(ends(chart));
-        let xs = shown().map(|p| p.0);
-        let x = AxisScale::fit(&chart.x, xs, chart.x_range, ticks_x.clamp(2, 8))?;
-        let y = AxisScale::fit(&chart.y, heights, chart.y_range, ticks_y.clamp(2, 8))?;
+        check_range(&chart.x, chart.x_range)?;
+        check_range(&chart.y, chart.y_range)?;
+        let [x, y] = chart.ranges();
+        let x = AxisScale::new(&chart.x, x, ticks_x.clamp(2, 8));
+        let y = AxisScale::new(&chart.y, y, ticks_y.clamp(2, 8));
         let widest = |scale: &AxisScale| {
             let widths = scale.ticks.iter().map(|t| text_width(&t.1, em));
             widths.fold(0.0, f32::max)
@@ -244,11 +241,11 @@ impl<'a> Layout<'a> {
     fn colour(&self, index: usize) -> Rgb {
         let series = &self.chart.series[index];
         match series.colour {
-            Some((r, g, b)) => [r, g, b],
+            Some(colour) => colour.into(),
             None if self.chart.colour_by_order => {
                 gradient(index as f64 / (self.chart.series.len().max(2) - 1) as f64)
             }
-            None => PALETTE[index.max(series.place) % PALETTE.len()],
+            None => PALETTE[self.chart.place_in_palette(index)].into(),
         }
     }
 
@@ -379,15 +376,6 @@ impl<'a> Layout<'a> {
             .min((high - half - 8.0 * u).max(half));
         page.text(y, [42.0 * u, at], &name);
     }
-}
-
-/// Returns the ends of the intervals that are shown.
-fn ends(chart: &Chart) -> impl Iterator<Item = f64> + '_ {
-    chart.series.iter().flat_map(|s| {
-        let with = s.points.iter().zip(&s.intervals);
-        with.filter(|(p, i)| chart.shows(p) && i.0.is_finite() && i.1.is_finite())
-            .flat_map(|(_, i)| [i.0, i.1])
-    })
 }
 
 /// Returns the lines of the heading with their sizes and whether they are bold, wrapped to a width,

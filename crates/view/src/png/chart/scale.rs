@@ -1,9 +1,9 @@
-//! Axis scales: ranges and round tick values fitted to the data.
+//! Axis scales: round tick values within a range.
 
 use crate::png::canvas::DrawError;
-use fretwork_observe::chart::{Axis, number, superscript};
+use fretwork_observe::chart::{Axis, AxisRange, number, superscript};
 
-/// A scale fitted to data: range, tick values and labels.
+/// Range of an axis with tick values and labels.
 #[derive(Clone, Debug)]
 pub(crate) struct AxisScale {
     /// Exponent of ten by which values are divided.
@@ -19,56 +19,34 @@ pub(crate) struct AxisScale {
     pub label: String,
 }
 
+/// Checks the range that is requested for an axis.
+///
+/// # Errors
+/// The axis cannot have the range.
+pub(crate) fn check_range(axis: &Axis, asked: Option<(f64, f64)>) -> Result<(), DrawError> {
+    match asked {
+        Some((from, to)) if !axis.reaches((from, to)) => Err(DrawError::Range {
+            axis: axis.name.clone(),
+            from,
+            to,
+            log: axis.log,
+        }),
+        _ => Ok(()),
+    }
+}
+
 impl AxisScale {
-    /// Fits a scale to values in the axis unit, or to a requested range.
-    pub fn fit(
-        axis: &Axis,
-        values: impl Iterator<Item = f64>,
-        asked: Option<(f64, f64)>,
-        ticks: usize,
-    ) -> Result<Self, DrawError> {
-        let usable = |v: f64| v.is_finite() && (!axis.log || v > 0.0);
-        let (mut low, mut high) = match asked {
-            Some((from, to)) if usable(from) && usable(to) && from < to => (from, to),
-            Some((from, to)) => {
-                return Err(DrawError::Range {
-                    axis: axis.name.clone(),
-                    from,
-                    to,
-                    log: axis.log,
-                });
-            }
-            None => values
-                .filter(|v| usable(*v))
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-                    (a.min(v), b.max(v))
-                }),
-        };
-        if low > high {
-            (low, high) = if axis.log { (0.1, 10.0) } else { (0.0, 1.0) };
-        }
-        let (exponent, label) = axis.scaled(low.abs().max(high.abs()));
+    /// Returns the scale of a range, with about a number of ticks.
+    pub fn new(axis: &Axis, range: AxisRange, ticks: usize) -> Self {
         let mut scale = Self {
-            exponent,
+            exponent: range.exponent,
             log: axis.log,
             range: (0.0, 1.0),
             ticks: Vec::new(),
             minor: Vec::new(),
-            label,
+            label: range.label,
         };
-        let (mut a, mut b) = (scale.shown(low), scale.shown(high));
-        if asked.is_none() {
-            let width = b - a;
-            // Constant data (up to rounding) get a range proportional to their value.
-            let pad = if width > 1e-9 * a.abs().max(b.abs()) {
-                0.04 * width
-            } else if axis.log || a == 0.0 {
-                1.0
-            } else {
-                0.1 * a.abs()
-            };
-            (a, b) = (a - pad, b + pad);
-        }
+        let (a, b) = (scale.shown(range.ends.0), scale.shown(range.ends.1));
         scale.range = (a, b);
         scale.ticks = if axis.log {
             decades(a, b, ticks)
@@ -77,7 +55,7 @@ impl AxisScale {
         } else {
             round_ticks(a, b, ticks)
         };
-        if axis.whole && exponent == 0 {
+        if axis.whole && scale.exponent == 0 {
             scale.ticks.retain(|t| (t.0 - t.0.round()).abs() < 1e-9);
             for (at, label) in &mut scale.ticks {
                 *label = number(at.round(), 0);
@@ -89,7 +67,7 @@ impl AxisScale {
                 decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
             scale.minor = all.filter(|v| (a..=b).contains(v)).collect();
         }
-        Ok(scale)
+        scale
     }
 
     /// Share of the range at which a displayed value lies.
@@ -151,13 +129,17 @@ fn decades(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
 mod tests {
     use super::*;
 
+    fn scale(axis: &Axis, values: &[f64], ticks: usize) -> AxisScale {
+        AxisScale::new(axis, axis.range(values.iter().copied(), None), ticks)
+    }
+
     #[test]
     fn ticks_are_round_and_signed() {
         let labels: Vec<_> = round_ticks(-1.1, 1.1, 5).into_iter().map(|t| t.1).collect();
         assert_eq!(labels, ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(round_ticks(0.0, 100.0, 5)[1].1, "20");
         let log = Axis::new("t", "s").log();
-        let scale = AxisScale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
+        let scale = scale(&log, &[1e-3, -1.0, 10.0], 6);
         assert_eq!(scale.ticks[0].1, "10⁻³");
     }
 
@@ -165,7 +147,7 @@ mod tests {
     fn whole_numbers_have_no_ticks_between_them() {
         let axis = Axis::new("cycle number N", "").whole();
         for (first, last) in [(1.0, 3.0), (1.0, 1.0), (1.0, 12.0), (1.0, 1000.0)] {
-            let scale = AxisScale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
+            let scale = scale(&axis, &[first, last], 8);
             assert!(!scale.ticks.is_empty() && scale.ticks.len() < 14);
             assert!(
                 scale.ticks.iter().all(|t| !t.1.contains('.')),
@@ -179,11 +161,11 @@ mod tests {
     fn constants_and_nothing_have_a_range() {
         let axis = Axis::new("φ", "");
         for values in [vec![], vec![0.0], vec![-3.0, -3.0], vec![f64::NAN]] {
-            let scale = AxisScale::fit(&axis, values.into_iter(), None, 5).unwrap();
+            let scale = scale(&axis, &values, 5);
             assert!(scale.range.0 < scale.range.1);
             assert!(scale.ticks.len() > 1);
         }
-        let error = AxisScale::fit(&axis, [].into_iter(), Some((2.0, 1.0)), 5).unwrap_err();
+        let error = check_range(&axis, Some((2.0, 1.0))).unwrap_err();
         assert!(error.to_string().contains("2 to 1 of axis 'φ'"), "{error}");
     }
 }

@@ -100,6 +100,54 @@ fn grid_lies_where_the_labels_are_written() {
 }
 
 #[test]
+fn a_page_has_the_colours_and_ranges_of_the_picture() {
+    let log = |chart: Chart| Chart {
+        x: chart.x.log(),
+        y: chart.y.log(),
+        ..chart
+    };
+    let with = |points: &[(f64, f64)]| chart().with(Series::new("a", points.to_vec()));
+    let intervals = Series::new("b", vec![(1e-6, 2.0), (3e-6, 1.0)]);
+    let mut fixed = with(&[(0.0, 1.0), (1.0, 2.0)]);
+    fixed.x_range = Some((0.2, 0.4));
+    let mut later = Series::new("later", vec![(0.0, 1.0)]);
+    later.place = 9;
+    let charts = [
+        with(&[]),
+        log(with(&[])),
+        with(&[(0.0, 0.0), (1.0, 0.0)]),
+        with(&[(1.0, 3.0), (1.0 + 1e-13, 3.0)]),
+        with(&[(0.0, 2e4), (1.0, f64::NAN), (2e-3, -3e5)]),
+        log(with(&[(0.0, 2e4), (1e-3, 7.0), (10.0, 3.0)])),
+        log(with(&[(1e-3, 7.0)])),
+        chart().with(intervals.intervals(vec![(0.5, 9.0), (f64::NAN, 1.0)])),
+        fixed,
+        with(&[(1.0, 1.0)]).with(later.clone()),
+        with(&[(1.0, 1.0)]).with(later.coloured(1, 2, 3)),
+    ];
+    let palette = crate::html::figures::palette();
+    for chart in charts {
+        let layout = Layout::new(&chart, 1.0).unwrap();
+        let page = crate::html::figures::chart("", &chart, &mut Default::default());
+        for (axis, scale) in [(&page["x"], &layout.x), (&page["y"], &layout.y)] {
+            assert_eq!(axis["label"], scale.label);
+            let range = [&axis["range"][0], &axis["range"][1]].map(|v| v.as_f64().unwrap());
+            assert_eq!(range.map(|v| scale.shown(v)), <[f64; 2]>::from(scale.range));
+            let factor = axis["factor"].as_f64().unwrap();
+            assert_eq!(factor, 10f64.powi(-scale.exponent));
+        }
+        for (k, series) in page["series"].as_array().unwrap().iter().enumerate() {
+            let own = &palette["light"][series["place"].as_u64().unwrap() as usize];
+            let colour = match &series["colour"] {
+                serde_json::Value::Null => own,
+                given => given,
+            };
+            assert_eq!(*colour, serde_json::json!(layout.colour(k)));
+        }
+    }
+}
+
+#[test]
 fn gaps_split_the_line() {
     let points = vec![(0.0, 0.0), (1.0, 1.0), (f64::NAN, 0.0), (2.0, 0.0)];
     let chart = chart().with(Series::new("a", points));

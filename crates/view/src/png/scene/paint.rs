@@ -1,6 +1,7 @@
 //! Colours of grains.
 
 use crate::png::canvas::{Canvas, DrawError, INK, Rgb, TEXT, along, mix};
+use crate::png::chart::{AxisScale, check_range};
 use crate::png::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
 use fretwork_observe::picture::Paint;
@@ -74,8 +75,9 @@ pub(crate) fn colour_bar(
 ) -> Result<(), DrawError> {
     let em = 0.9 * TEXT * u;
     let axis = Axis::new(scale.label.clone(), scale.unit.clone());
-    let fitted =
-        crate::png::chart::AxisScale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
+    let ends = Some((0.0, scale.top));
+    check_range(&axis, ends)?;
+    let fitted = AxisScale::new(&axis, axis.range([].into_iter(), ends), 3);
     let (length, thick) = ((length * u).round(), (22.0 * u).round());
     let (left, top) = ((left + 0.5 * em).round(), (middle - thick / 2.0).round());
     for i in 0..length as i32 {
