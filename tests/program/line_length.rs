@@ -67,7 +67,7 @@ impl Text {
             Some("py" | "pyi") => Self::Python,
             Some("h" | "c") => Self::Stars,
             Some("f90") => Self::Fortran,
-            None if path.parent()?.ends_with(".ci") => {
+            None if path.parent()?.file_name()? == ".ci" => {
                 let text = std::fs::read_to_string(path).ok()?;
                 let first = text.lines().next()?;
                 if first.contains("python") {
