@@ -131,7 +131,8 @@ mod tests {
             .file_metadata()
             .key_value_metadata()
             .unwrap();
-        assert_eq!(metadata[0].value.as_deref(), Some(r#"{"wear.Qs":"kg/s"}"#));
+        let units = r#"{"point":"1","wear.Qs":"kg/s"}"#;
+        assert_eq!(metadata[0].value.as_deref(), Some(units));
         let rows: Vec<Vec<(String, Field)>> = reader
             .get_row_iter(None)
             .unwrap()
