@@ -9,7 +9,7 @@ fn two_disks() -> AnySimulation {
     let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
     let mut s = Simulation::<Dim2>::of_disks(&disks).with_law(interface([]));
     s.options.scheme.h = 0.25;
-    s.state.bodies.velocity[1] = Vector2::new(-0.5, 2.0);
+    s.state.bodies.velocity[1] = Vector2::new(-0.5, 0.5);
     s.state.bodies.spin[1] = Vector1::new(3.0);
     let mut run = AnySimulation::from(s);
     run.step().unwrap();
