@@ -134,11 +134,12 @@ class Results:
         with self.open() as file:
             for table, columns in file.get("events", {}).items():
                 values = {name: np.asarray(data[:]) for name, data in columns.items()}
-                sizes = [len(v) for v in values.values()]
-                # All columns but a list have one value for each event.
-                rows = max(sizes, key=sizes.count, default=0)
+                listed = columns.attrs.get("list")
+                # A run that goes on may have written more of one column than of another.
+                rows = min((len(v) for name, v in values.items() if name != listed), default=0)
                 fields = {
-                    name: ("event" if len(v) == rows else f"{name}_value", v, _attributes(columns[name])) for name, v in values.items()
+                    name: (f"{name}_value", v, _attributes(columns[name])) if name == listed else ("event", v[:rows], _attributes(columns[name]))
+                    for name, v in values.items()
                 }
                 result[table] = xarray.Dataset(fields, attrs=self._said(file))
         return result

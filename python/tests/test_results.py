@@ -53,6 +53,7 @@ def test_tables_of_events_have_units(results, tmp_path):
         for name, (values, unit, doc) in columns.items():
             data = file.create_dataset(f"events/debris/{name}", data=values)
             data.attrs.update({"unit": unit, "doc": doc})
+        file["events/debris"].attrs["list"] = "grains"
     events = Results(tmp_path).events
     assert list(events) == ["debris"]
     debris = events["debris"]

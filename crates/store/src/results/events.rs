@@ -29,6 +29,9 @@ impl Events {
         let declared = tables.iter().map(|table| {
             let group = format!("/events/{}", table.name);
             store.group(&group)?;
+            if let Some(list) = &table.list {
+                store.text_attribute(&group, "list", &list.name)?;
+            }
             let mut grown = Vec::new();
             for c in table.columns.iter().chain(&table.list) {
                 let path = format!("{group}/{}", c.name);
