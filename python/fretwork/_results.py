@@ -36,9 +36,12 @@ def need(package: str, extra: str, what: str) -> Any:
 
 def _attributes(data: Any) -> dict[str, str]:
     """Unit and explanation of a dataset, in the words of the CF conventions."""
-    said = {name: data.attrs.get(name, "") for name in ("unit", "doc")}
-    said = {k: v.decode() if isinstance(v, bytes) else str(v) for k, v in said.items()}
-    return {"units": said["unit"] or "1", "long_name": said["doc"]}
+    return {"units": _text(data.attrs.get("unit", "")) or "1", "long_name": _text(data.attrs.get("doc", ""))}
+
+
+def _text(value: Any) -> str:
+    """A text of a file, which h5py gives as bytes or as str."""
+    return value.decode() if isinstance(value, bytes) else str(value)
 
 
 class Results:
@@ -94,7 +97,7 @@ class Results:
         """The text of the case as it was run."""
         with self.open() as file:
             text = file["case"][0]
-        return text.decode() if isinstance(text, bytes) else str(text)
+        return _text(text)
 
     @property
     def statistics(self) -> pd.DataFrame:
@@ -134,7 +137,7 @@ class Results:
         with self.open() as file:
             for table, columns in file.get("events", {}).items():
                 values = {name: np.asarray(data[:]) for name, data in columns.items()}
-                listed = columns.attrs.get("list")
+                listed = _text(columns.attrs.get("list", ""))
                 # A run that goes on may have written more of one column than of another.
                 rows = min((len(v) for name, v in values.items() if name != listed), default=0)
                 fields = {
@@ -229,8 +232,7 @@ class Results:
 
     @staticmethod
     def _said(file: h5py.File) -> dict[str, Any]:
-        said = {"title": file.attrs["case"], "units": file.attrs["units"]}
-        return {k: v.decode() if isinstance(v, bytes) else str(v) for k, v in said.items()}
+        return {"title": _text(file.attrs["case"]), "units": _text(file.attrs["units"])}
 
     @property
     def views(self) -> list[str]:
