@@ -29,8 +29,8 @@ macro_rules! in_dimension {
     };
 }
 
-// Where the dimension is forgotten is compiled here: a copy in another crate brings all methods of
-// the traits along, and with them the step.
+// Functions that make a trait object of a simulation are compiled in this crate only: a copy
+// inlined elsewhere would compile all methods of the trait again, and with them the step.
 impl AnySimulation {
     /// The simulation for reading.
     #[inline(never)]

@@ -3,7 +3,8 @@
 use super::Case;
 use crate::source::{InputError, Names, Source};
 
-// These are compiled here: the readers of all parts of a case are half the code of this crate.
+// These functions are compiled in this crate only: the deserializers of a case are half of its
+// code, and a generic call in another crate would compile them again.
 impl Case {
     /// Reads the case that a text is, see [`Source::parse`].
     ///
