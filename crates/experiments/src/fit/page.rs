@@ -187,15 +187,18 @@ pub fn answer(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Out
     out.trim_end().to_owned()
 }
 
-/// Returns the axes of a test: names of abscissae and values.
-fn axes(read: &FitFile, test: usize) -> (String, String) {
+/// Returns the axes of a test, of abscissae and of values. Those of a curve are called as its file
+/// heads the columns, with their units.
+fn axes(read: &FitFile, tests: &Tests, test: usize) -> [Axis; 2] {
     match &read.spec.tests[test] {
         TestSpec::Curve { measured, .. } => {
             let file = read.beside(&measured.file);
-            let of = |column: &str| heading(&file, column);
-            (of(&measured.x), of(&measured.y))
+            [&measured.x, &measured.y].map(|column| Axis::new(heading(&file, column), ""))
         }
-        TestSpec::Value { output, .. } => (String::new(), output.clone()),
+        TestSpec::Value { output, .. } => {
+            let unit = crate::runs::unit::heading(&tests.units[test].value);
+            [Axis::new("", ""), Axis::new(output, unit)]
+        }
     }
 }
 
@@ -355,7 +358,7 @@ fn search_blocks(found: &SearchResult) -> Vec<Block> {
 fn charts(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) -> Vec<Chart> {
     let all = points(tests, found, outcome).into_iter().enumerate();
     let chart = |(t, points): (usize, TestPoints)| {
-        let (x, y) = axes(read, t);
+        let [x, y] = axes(read, tests, t);
         let name = tests.target.tests()[t].name.clone();
         type Bar = (f64, f64, f64, f64, f64);
         let bars = |of: fn(&Bar) -> [f64; 2]| {
@@ -370,7 +373,7 @@ fn charts(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome
             .intervals(bars(|p| [p.1, p.2]));
         let fitted = Series::new("fitted", points.iter().map(|p| (p.0, p.3)).collect())
             .intervals(bars(|p| [p.3, p.4]));
-        let mut chart = Chart::new(name, Axis::new(x, ""), Axis::new(y, ""))
+        let mut chart = Chart::new(name, x, y)
             .note("Bars are two standard deviations: of the measurement, and of one run from seed to seed.");
         chart.subtitle = Some(format!(
             "{}: measured, and fitted (mean over seeds)",
