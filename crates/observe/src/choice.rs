@@ -17,12 +17,12 @@ crate::described! {
         pub newton_ended: u64 => ONE,
         /// Steps in which the interior point solver was tried.
         pub interior_tried: u64 => ONE,
-        /// Steps in which it converged.
+        /// Steps in which the interior point solver converged.
         pub interior_ended: u64 => ONE,
         /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the
         /// steps in which either solver was tried.
         pub hyperstaticity_mean: f64 => ONE,
-        /// Mean number of NLGS iterations before they were tried.
+        /// Mean number of NLGS iterations before either solver was tried.
         pub sweeps_before_mean: f64 => ONE,
         /// Steps in which NLGS converged after Newton would have been tried on other contact sets;
         /// on hyperstatic sets it is tried later.

@@ -10,7 +10,7 @@ crate::described! {
     /// A ratio of sums over cycles with its 95 % confidence interval.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct CycleRatio {
-        /// The ratio.
+        /// Worn volume over dissipated energy, of all cycles.
         pub value: f64 => WEAR_PER_ENERGY,
         /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
         pub half_width: Option<f64> => WEAR_PER_ENERGY,

@@ -72,7 +72,7 @@ crate::described! {
         /// Largest share of a step's attractions and loads by which attractions differ from those
         /// over the gaps passed.
         pub attraction_max: f64 => ONE,
-        /// Steps.
+        /// Number of steps over which these numbers are taken.
         pub steps: u64 => ONE,
     }
 }
@@ -130,7 +130,7 @@ crate::described! {
         pub overlap_after: f64 => ONE,
         /// Deepest overlap of rigid contacts at a detection, over the radius of the smaller grain.
         pub overlap_max: f64 => ONE,
-        /// Tolerance.
+        /// Tolerance of the error at the end of a step.
         pub tolerance: f64 => ONE,
         /// Formula of the error.
         pub error_formula: String => WORD,

@@ -14,11 +14,11 @@ crate::described! {
     /// A change of step or tolerance.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
     pub struct SettingChange {
-        /// When.
+        /// Time of the change.
         pub time: f64 => SECOND,
-        /// The step from then on.
+        /// Time step after the change.
         pub step: f64 => SECOND,
-        /// The tolerance from then on.
+        /// Tolerance after the change.
         pub tolerance: f64 => ONE,
         /// Relative change of the result with a smaller step, before; null where it was not known.
         pub step_effect: Option<Change> = part::<Change>(),
@@ -31,15 +31,16 @@ crate::described! {
     /// Accuracy of a run that chose its settings.
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
     pub struct AccuracyReport {
-        /// Share asked for.
+        /// Accuracy that the case asks for, as a share of the result.
         pub share: f64 => ONE,
-        /// The result.
+        /// Name of the result whose accuracy the case asks for.
         pub of: String => WORD,
         /// Largest, mean and smallest step.
         pub steps: [f64; 3] = values(SECOND),
         /// Share of the time that was made in steps longer than that of the case.
         pub grown: f64 => ONE,
-        /// Number of such steps that were made again as shorter ones, since something moved.
+        /// Steps longer than that of the case that were made again as shorter ones, since something
+        /// moved.
         pub repeated: u64 => ONE,
         /// Coarsest and smallest tolerance.
         pub tolerances: [f64; 2] = values(ONE),

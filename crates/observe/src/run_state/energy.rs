@@ -26,9 +26,11 @@ crate::described! {
         /// Angular momentum of the free rigid bodies that nothing outside gave them; zero in
         /// periodic scenes.
         pub angular: f64 => ANGULAR_MOMENTUM,
-        /// The linear one over the largest sum of the bodies' |m v| so far.
+        /// Linear momentum that nothing outside gave over the largest sum of the bodies' |m v| so
+        /// far.
         pub linear_relative: f64 => ONE,
-        /// The angular one over the largest sum of the bodies' |x × m v| + |I w| so far.
+        /// Angular momentum that nothing outside gave over the largest sum of the bodies'
+        /// |x × m v| + |I w| so far.
         pub angular_relative: f64 => ONE,
     }
 }

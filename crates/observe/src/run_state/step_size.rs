@@ -26,17 +26,21 @@ pub(super) const FIELDS: [Field; 19] = [
         ONE,
         "contacts first found with an overlap above 1 % of the reduced radius of their bodies",
     ),
-    field("deepest", ONE, "deepest of these overlaps over the radius"),
+    field(
+        "deepest",
+        ONE,
+        "deepest overlap of a contact that was found late, over the reduced radius",
+    ),
     first("first_late", "first contact that was found late"),
     field(
         "sunk",
         ONE,
-        "contacts first found as deep, of bodies that do not move as far in a step",
+        "contacts first found with an overlap above 1 % of the reduced radius, of bodies that do not move as far in a step",
     ),
     field(
         "deepest_sunk",
         ONE,
-        "deepest of these overlaps over the radius",
+        "deepest overlap of a contact that was found sunk, over the reduced radius",
     ),
     first("first_sunk", "first contact that was found sunk"),
     field(
@@ -56,19 +60,26 @@ pub(super) const FIELDS: [Field; 19] = [
         ONE,
         "steps in which a body moved farther than the neighbour list covers",
     ),
-    first("first_unwatched", "first such step"),
+    first(
+        "first_unwatched",
+        "first body that moved farther than the neighbour list covers",
+    ),
     field(
         "edges",
         ONE,
         "times that a sliding body was slowed by an edge that the error of the solver may have made",
     ),
-    field("highest_edge", METRE, "highest of these edges"),
+    field(
+        "highest_edge",
+        METRE,
+        "height of the highest edge that slowed a sliding body",
+    ),
     field(
         "pieces",
         ONE,
-        "convex pieces of the scene at the last of them",
+        "convex pieces of the scene when an edge slowed a body last",
     ),
-    first("first_edge", "first such edge"),
+    first("first_edge", "first edge that slowed a sliding body"),
     first("motion_lost", "first motion that was lost to round-off"),
     field(
         "foreseen",

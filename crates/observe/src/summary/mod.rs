@@ -72,14 +72,14 @@ crate::described! {
         pub cpu_seconds: f64 => SECOND,
         /// What the wall time was spent on.
         pub time_spent: TimeSpent = part::<TimeSpent>(),
-        /// Laws.
+        /// Loaded laws.
         pub plugins: Vec<PluginStamp> = parts::<PluginStamp>(),
         /// Wear coefficients that follow from the hardness of materials; left out without any.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         pub wear_coefficients: Vec<WearCoefficient> = crate::quantity::Schema::ListOfParts(&COEFFICIENT),
-        /// Threads.
+        /// Number of threads that the run used.
         pub threads: usize => ONE,
-        /// Seed.
+        /// Seed of the random numbers of the case.
         pub seed: u64 => ONE,
         /// Version of the program.
         pub version: String => WORD,

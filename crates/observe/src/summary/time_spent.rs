@@ -12,9 +12,9 @@ crate::described! {
     pub struct TimeSpent {
         /// Detection of contacts, in the steps.
         pub detection: f64 => SECOND,
-        /// Laws.
+        /// Evaluation of the laws.
         pub laws: f64 => SECOND,
-        /// The solver.
+        /// Solution of the contacts.
         pub solver: f64 => SECOND,
         /// Everything else in a step: motion, energy ledger, processes, and steps repeated to
         /// estimate an error.
