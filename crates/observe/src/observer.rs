@@ -7,7 +7,7 @@
 
 use super::output::Output;
 use super::picture::Picture;
-use super::quantity::{Findings, Role, Topic};
+use super::quantity::Findings;
 use super::statistics::{Column, Table};
 use super::summary::Uncertainty;
 use fretwork_core::encoding::EncodingError;
@@ -336,9 +336,10 @@ impl Observers {
     pub fn report(&self, end: &RunEnd<'_>) -> Findings {
         let mut found = Findings::new(end.simulation.dimension());
         for observer in &self.list {
-            found.begin(Topic::default(), Role::default());
+            found.begin_observer(&observer.name());
             observer.report(end, &mut found);
         }
+        found.begin_observer("");
         found
     }
 
@@ -346,9 +347,10 @@ impl Observers {
     pub fn report_so_far(&self, dimension: usize) -> Findings {
         let mut found = Findings::new(dimension);
         for observer in &self.list {
-            found.begin(Topic::default(), Role::default());
+            found.begin_observer(&observer.name());
             observer.report_so_far(&mut found);
         }
+        found.begin_observer("");
         found
     }
 

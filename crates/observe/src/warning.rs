@@ -37,10 +37,11 @@ impl Warning {
 }
 
 /// Categories in the order in which they are reported; those of other observers follow.
-const ORDER: [&str; 42] = [
+const ORDER: [&str; 43] = [
     "INTERRUPTED",
     "STOPPED",
     "NOT FINITE",
+    "REPORTED TWICE",
     "ENERGY DOES NOT ADD UP",
     "FRICTION GIVES ENERGY",
     "HEAT DOES NOT ADD UP",

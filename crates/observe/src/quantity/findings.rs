@@ -20,6 +20,10 @@ pub struct Findings {
     topic: Topic,
     role: Role,
     list: Vec<Quantity>,
+    /// Name of the observer that adds results; empty if there is none.
+    observer: String,
+    /// Names of the observers that added the quantities, in the order of the list.
+    observers: Vec<String>,
     places: HashMap<String, usize>,
     warnings: Vec<Warning>,
     /// Fields of results that are not available yet.
@@ -81,6 +85,14 @@ impl Findings {
     /// Sets the default topic and role of the quantities that are added next.
     pub fn begin(&mut self, topic: Topic, role: Role) {
         (self.topic, self.role) = (topic, role);
+    }
+
+    /// Sets the observer that adds results next, and the default topic and role; an empty name
+    /// stands for none. A path of two observers is a reason not to trust the run, since only the
+    /// value of the later one is left.
+    pub fn begin_observer(&mut self, name: &str) {
+        name.clone_into(&mut self.observer);
+        self.begin(Topic::default(), Role::default());
     }
 
     /// Adds a quantity by its path, in which whole numbers are indices in lists.
@@ -168,7 +180,16 @@ impl Findings {
         let place = *self.places.entry(quantity.name()).or_insert(next);
         if place == next {
             self.list.push(quantity);
+            self.observers.push(self.observer.clone());
         } else {
+            let (earlier, later) = (&self.observers[place], &self.observer);
+            if earlier != later && !earlier.is_empty() && !later.is_empty() {
+                let text = format!(
+                    "the observers `{earlier}` and `{later}` both report `{}`, and the value is that of `{later}`; give the result of one of them another path",
+                    quantity.name()
+                );
+                self.warnings.push(Warning::serious("REPORTED TWICE", text));
+            }
             self.list[place] = quantity;
         }
         &mut self.list[place]
@@ -425,6 +446,25 @@ mod tests {
             entries: Vec<Entry> = parts::<Entry>(),
             /// Start and end.
             window: [f64; 2] = values(SECOND),
+        }
+    }
+
+    #[test]
+    fn one_path_of_two_observers_is_no_result_to_trust() {
+        let mut found = Findings::new(2);
+        let mut report = |observer: &str, path: &str| {
+            found.begin_observer(observer);
+            found.add(path, 1.0, MASS, "a mass");
+            found.add(path, 2.0, MASS, "a mass");
+            found.warnings().len()
+        };
+        assert_eq!(report("wear", "wear.mass"), 0);
+        assert_eq!(report("mine", "mine.mass"), 0);
+        assert_eq!(report("mine", "wear.mass"), 1);
+        let warning = &found.warnings()[0];
+        assert!(warning.serious, "{warning}");
+        for name in ["`wear`", "`mine`", "`wear.mass`"] {
+            assert!(warning.text.contains(name), "{warning}");
         }
     }
 
