@@ -7,7 +7,7 @@
 //! ```
 
 use fretwork::bodies::{Dof, TimeFunction};
-use fretwork::experiments::Program;
+use fretwork::experiments::RunSetup;
 use fretwork::experiments::study::execute::{execute, missing};
 use fretwork::experiments::study::plan::{Location, Plan};
 use fretwork::experiments::study::rows::Rows;
@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::write(folder.join("study.ron"), STUDY)?;
 
     // The plan lists the runs; each factor is checked against the case before any run is made.
-    let program = Program {
+    let setup = RunSetup {
         search: shipped::search_path(),
         plugins: Vec::new(),
         observers: record::run_observers,
@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let place = Location {
         out: &out,
         cache: None,
-        program: &program,
+        setup: &setup,
     };
     let plan = Plan::new(&StudyFile::read(&folder.join("study.ron"))?, place)?;
     assert_eq!(plan.count(), 3);

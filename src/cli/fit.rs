@@ -43,11 +43,11 @@ pub struct FitArgs {
 
 pub fn fit(args: &FitArgs) -> Result<(), Failure> {
     let out = results(args.out.as_deref(), "fit", &args.fit);
-    let program = args.plugins.program()?;
+    let setup = args.plugins.run_setup()?;
     let read = FitFile::read(&args.fit)?;
     let _lock = OWNER.take(&out)?;
     let runs = args.cache.clone().unwrap_or_else(|| out.join("runs"));
-    let mut tests = Tests::new(&read, &runs, &program)?;
+    let mut tests = Tests::new(&read, &runs, &setup)?;
     tests.limit = args.limit;
     if !args.json {
         inform(&page::consists_of(&read, &tests));

@@ -28,7 +28,7 @@ pub use self::run::{default_folder, place as place_of};
 pub use fretwork_view::{ReportError, compare as compare_runs};
 
 use crate::certify::{CERTIFY_IN_CHILD, certify_requested};
-use crate::experiments::Program;
+use crate::experiments::RunSetup;
 use crate::laws::watch::{RescueOutcome, watch};
 use crate::laws::{LawError, SearchPath, child, library, loading};
 use crate::record::{RunError, check_names};
@@ -171,9 +171,9 @@ impl PluginArgs {
         words
     }
 
-    /// Returns what experiments need to call this program.
-    fn program(&self) -> Result<Program, Failure> {
-        Ok(Program {
+    /// Returns laws, plugins and observers of the runs of experiments.
+    fn run_setup(&self) -> Result<RunSetup, Failure> {
+        Ok(RunSetup {
             search: self.search()?,
             plugins: self.words(),
             observers: observers::all,

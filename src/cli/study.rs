@@ -162,7 +162,7 @@ impl StudyArgs {
         let place = Location {
             out: &self.out(),
             cache: self.cache.as_deref(),
-            program: &self.plugins.program()?,
+            setup: &self.plugins.run_setup()?,
         };
         Ok(Plan::new(&StudyFile::read(&self.study)?, place)?)
     }

@@ -106,10 +106,10 @@ impl TradeArgs {
 }
 
 pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
-    let program = args.case.plugins.program()?;
+    let setup = args.case.plugins.run_setup()?;
     let request = args.request();
     let stop = interrupt::watch();
-    let (mut trade, _lock) = request.begin(&program, stop)?;
+    let (mut trade, _lock) = request.begin(&setup, stop)?;
     if !args.json {
         let title = clean(&trade.title);
         inform(&format!("{}: {title}", request.case.display()));

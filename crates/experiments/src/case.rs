@@ -1,7 +1,7 @@
 //! The case of an experiment.
 
 use crate::runs::randomness::seed_matters;
-use crate::{Error, Program};
+use crate::{Error, RunSetup};
 use fretwork_scene::{Built, InputError, LoadedCase};
 use fretwork_store::results::state;
 use std::path::Path;
@@ -19,10 +19,10 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
 ///
 /// # Errors
 /// The case is refused.
-pub fn build(loaded: &LoadedCase, program: &Program) -> Result<(Built, bool), Error> {
-    let scene = loaded.build(&program.search)?;
-    let observers = (program.observers)(loaded, scene.simulation.view());
-    (program.check_names)(loaded, &observers)?;
-    let random = seed_matters(loaded, &scene, &program.search)?;
+pub fn build(loaded: &LoadedCase, setup: &RunSetup) -> Result<(Built, bool), Error> {
+    let scene = loaded.build(&setup.search)?;
+    let observers = (setup.observers)(loaded, scene.simulation.view());
+    (setup.check_names)(loaded, &observers)?;
+    let random = seed_matters(loaded, &scene, &setup.search)?;
     Ok((scene, random))
 }

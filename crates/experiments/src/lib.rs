@@ -46,9 +46,9 @@ use fretwork_core::view::RunView;
 use fretwork_observe::Observers;
 use fretwork_scene::{InputError, LoadedCase};
 
-/// Parts of the program that experiments need for its runs.
+/// Laws, plugins and observers of the runs of an experiment.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct RunSetup {
     /// Search path of laws.
     pub search: fretwork_core::laws::SearchPath,
     /// Arguments of each run for the same plugins.

@@ -11,7 +11,7 @@ use crate::runs::launcher::{Launcher, Run, WaitLimits};
 use crate::runs::output::OutputName;
 use crate::runs::pool::each;
 use crate::runs::stored::{Status, summary};
-use crate::{Error, Program, build, load};
+use crate::{Error, RunSetup, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_math::fit::bounds::{Bounds, Parameter};
 use fretwork_math::fit::residuals::{Curve, Measurement, Target};
@@ -78,7 +78,7 @@ impl Tests {
     ///
     /// # Errors
     /// Returns what is wrong with the fit, a case or a measurement.
-    pub fn new(read: &FitFile, folder: &Path, program: &Program) -> Result<Self, Error> {
+    pub fn new(read: &FitFile, folder: &Path, setup: &RunSetup) -> Result<Self, Error> {
         let spec = &read.spec;
         let factors: Vec<Factor> = spec.parameters.iter().map(|p| p.factor()).collect();
         let bounds = bounds(read)?;
@@ -91,11 +91,11 @@ impl Tests {
             let case = read.beside(case);
             let changes = Changes::parse(set, &spec.names()).map_err(|(_, why)| at(".set", why))?;
             let fixed = &changes.fixed;
-            let mut launcher = Launcher::new(&case, fixed, program, folder, spec.limits())?;
+            let mut launcher = Launcher::new(&case, fixed, setup, folder, spec.limits())?;
             launcher.threads = spec.threads;
             let sets = sets_of(&factors, &changes, &middle).map_err(Error::Usage)?;
             let loaded = load(&case, &[fixed.clone(), sets].concat())?;
-            let (scene, matters) = build(&loaded, program)?;
+            let (scene, matters) = build(&loaded, setup)?;
             random |= matters;
             launcher.perturb_unless(matters, loaded.case.seed);
             let (simulated, measurement) = match test {
@@ -104,7 +104,7 @@ impl Tests {
                     model,
                     ..
                 } => {
-                    let observers = (program.observers)(&loaded, scene.simulation.view());
+                    let observers = (setup.observers)(&loaded, scene.simulation.view());
                     let columns = observers.columns();
                     let names: Vec<String> = columns.into_iter().map(|c| c.name).collect();
                     let made = Model::new(model, &names)
@@ -124,7 +124,7 @@ impl Tests {
                     ..
                 } => {
                     let quantity = OutputName::parse(output).map_err(|why| at(".output", why))?;
-                    let available = AvailableQuantities::of(&loaded, &scene, program);
+                    let available = AvailableQuantities::of(&loaded, &scene, setup);
                     available
                         .check(&quantity)
                         .map_err(|why| at(".output", why))?;
@@ -164,7 +164,7 @@ impl Tests {
             tests,
             limit: None,
         };
-        tests.check_ends(read, &program.search)?;
+        tests.check_ends(read, &setup.search)?;
         Ok(tests)
     }
 

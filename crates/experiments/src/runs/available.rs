@@ -1,7 +1,7 @@
 //! Outputs of a case, determined before anything runs.
 
 use super::output::{OutputName, listed};
-use crate::Program;
+use crate::RunSetup;
 use fretwork_observe::quantity::{Catalogue, Findings, Quantity, Role, renamed, unit};
 use fretwork_observe::standard;
 use fretwork_observe::statistics::Column;
@@ -19,9 +19,9 @@ pub struct AvailableQuantities {
 
 impl AvailableQuantities {
     /// Determines the outputs of a case and its scene, by the observers of the program's runs.
-    pub fn of(loaded: &LoadedCase, built: &Built, program: &Program) -> Self {
+    pub fn of(loaded: &LoadedCase, built: &Built, setup: &RunSetup) -> Self {
         let run = built.simulation.view();
-        let observers = (program.observers)(loaded, run);
+        let observers = (setup.observers)(loaded, run);
         Self {
             found: standard::declared_by(&observers, run),
             columns: observers.columns(),

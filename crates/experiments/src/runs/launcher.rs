@@ -4,7 +4,7 @@
 use super::key::Keys;
 use super::perturbation::Perturbation;
 use super::stored::{FinishedRun, Limits, StoredRun, interrupted};
-use crate::{Error, Program, load};
+use crate::{Error, RunSetup, load};
 use fretwork_core::program;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -91,15 +91,15 @@ impl Launcher {
     pub fn new(
         case: &Path,
         sets: &[String],
-        program: &Program,
+        setup: &RunSetup,
         folder: &Path,
         limits: Limits,
     ) -> Result<Self, Error> {
         Ok(Self {
             case: case.to_owned(),
             sets: sets.to_vec(),
-            keys: Keys::new(&program.plugins)?,
-            plugins: program.plugins.clone(),
+            keys: Keys::new(&setup.plugins)?,
+            plugins: setup.plugins.clone(),
             folder: folder.to_owned(),
             limits,
             perturbation: None,

@@ -7,7 +7,7 @@ use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
 use crate::runs::available::AvailableQuantities;
 use crate::runs::launcher::{Launcher, Run};
 use crate::runs::output::OutputName;
-use crate::{Error, Program, build, load};
+use crate::{Error, RunSetup, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
 use fretwork_scene::{Built, InputError, LoadedCase};
@@ -93,8 +93,8 @@ pub struct Location<'a> {
     /// Folder of its runs, which other studies may share; by default `runs` in the folder of the
     /// results.
     pub cache: Option<&'a Path>,
-    /// The program that makes the runs.
-    pub program: &'a Program,
+    /// Laws, plugins and observers of the runs.
+    pub setup: &'a RunSetup,
 }
 
 impl Plan {
@@ -128,7 +128,7 @@ impl Plan {
         let own = place.out.join("runs");
         let folder = place.cache.unwrap_or(&own);
         let fixed = &changes.fixed;
-        let mut launcher = Launcher::new(&case, fixed, place.program, folder, spec.limits())?;
+        let mut launcher = Launcher::new(&case, fixed, place.setup, folder, spec.limits())?;
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
@@ -136,10 +136,10 @@ impl Plan {
         let known = match known.filter(|k| k.fingerprint == fingerprint) {
             Some(known) => known,
             None => {
-                let (scene, random) = build(&base, place.program)?;
+                let (scene, random) = build(&base, place.setup)?;
                 let first = sets_of(&settings[0], &derived[0]);
-                check_levels(read, &base, &factors, &first, &place.program.search)?;
-                let (outputs, units) = outputs(read, &base, &scene, place.program)?;
+                check_levels(read, &base, &factors, &first, &place.setup.search)?;
+                let (outputs, units) = outputs(read, &base, &scene, place.setup)?;
                 StudyFacts {
                     units,
                     fingerprint,
@@ -343,9 +343,9 @@ fn outputs(
     read: &StudyFile,
     base: &LoadedCase,
     scene: &Built,
-    program: &Program,
+    setup: &RunSetup,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
-    let available = AvailableQuantities::of(base, scene, program);
+    let available = AvailableQuantities::of(base, scene, setup);
     let asked = &read.spec.outputs;
     let mut all: Vec<OutputName> = Vec::new();
     if asked.is_empty() {

@@ -11,7 +11,7 @@ use super::{OWNER, parameters, refuse};
 use crate::runs::available::AvailableQuantities;
 use crate::runs::launcher::Launcher;
 use crate::runs::stored::Limits;
-use crate::{Error, Program, build, load};
+use crate::{Error, RunSetup, build, load};
 use fretwork_core::solve::local::solver::Method;
 use fretwork_scene::methods::{SolverRequirements, SolverSupport};
 use fretwork_scene::most_steps::most_steps;
@@ -58,17 +58,13 @@ impl Request {
     ///
     /// # Errors
     /// The case or an argument is invalid, the budget is below one run, or nothing can be run.
-    pub fn begin(
-        &self,
-        program: &Program,
-        stop: &AtomicBool,
-    ) -> Result<(Trade, FolderLock), Error> {
+    pub fn begin(&self, setup: &RunSetup, stop: &AtomicBool) -> Result<(Trade, FolderLock), Error> {
         let started = Instant::now();
         let loaded = load(&self.case, &self.sets)?;
-        let (scene, random) = build(&loaded, program)?;
-        let first = SceneFacts::of(&loaded, &scene, program);
+        let (scene, random) = build(&loaded, setup)?;
+        let first = SceneFacts::of(&loaded, &scene, setup);
         let outputs = refuse::outputs(self, &first.available)?;
-        let parameters = parameters::parameters(self, &loaded, &program.search, &first.solving)?;
+        let parameters = parameters::parameters(self, &loaded, &setup.search, &first.solving)?;
         if parameters.is_empty() {
             let text = "nothing to vary; name a --setting or --vary";
             return Err(Error::Usage(text.into()));
@@ -83,7 +79,7 @@ impl Request {
         }
         let lock = OWNER.take(&self.out)?;
         let sets = loaded.source.sets();
-        let mut launcher = Launcher::new(&loaded.path, sets, program, &runs, self.limits)?;
+        let mut launcher = Launcher::new(&loaded.path, sets, setup, &runs, self.limits)?;
         launcher.perturb_unless(random, loaded.case.seed);
         let mut trade = self.trade(&loaded, launcher, parameters, outputs, random, started);
         let own = trade.run_of(&Combination::own(&trade.parameters), loaded.case.seed);
@@ -154,13 +150,13 @@ struct SceneFacts {
 }
 
 impl SceneFacts {
-    fn of(loaded: &LoadedCase, built: &Built, program: &Program) -> Self {
+    fn of(loaded: &LoadedCase, built: &Built, setup: &RunSetup) -> Self {
         let requirements = SolverRequirements::of(built.simulation.view());
         let serves = |m: &Method| {
             *m == loaded.case.solver.method || requirements.support(*m) == SolverSupport::Serves
         };
         Self {
-            available: AvailableQuantities::of(loaded, built, program),
+            available: AvailableQuantities::of(loaded, built, setup),
             solving: Solving {
                 methods: Method::ALL.iter().copied().filter(serves).collect(),
                 tolerance: built.simulation.options().solver.tolerance,

@@ -88,8 +88,8 @@ impl Findings {
     }
 
     /// Sets the observer that adds results next, and the default topic and role; an empty name
-    /// stands for none. A path of two observers is a reason not to trust the run, since only the
-    /// value of the later one is left.
+    /// stands for none. A path to which two observers give values is a reason not to trust the run,
+    /// since only the later value is left.
     pub fn begin_observer(&mut self, name: &str) {
         name.clone_into(&mut self.observer);
         self.begin(Topic::default(), Role::default());
@@ -182,14 +182,17 @@ impl Findings {
             self.list.push(quantity);
             self.observers.push(self.observer.clone());
         } else {
+            // One observer may give the value that is not known to another.
+            let known = !self.list[place].value.is_null();
             let (earlier, later) = (&self.observers[place], &self.observer);
-            if earlier != later && !earlier.is_empty() && !later.is_empty() {
+            if known && earlier != later && !earlier.is_empty() && !later.is_empty() {
                 let text = format!(
                     "the observers `{earlier}` and `{later}` both report `{}`, and the value is that of `{later}`; give the result of one of them another path",
                     quantity.name()
                 );
                 self.warnings.push(Warning::serious("REPORTED TWICE", text));
             }
+            self.observers[place].clone_from(&self.observer);
             self.list[place] = quantity;
         }
         &mut self.list[place]
@@ -466,6 +469,21 @@ mod tests {
         for name in ["`wear`", "`mine`", "`wear.mass`"] {
             assert!(warning.text.contains(name), "{warning}");
         }
+    }
+
+    #[test]
+    fn one_observer_gives_the_value_that_another_does_not_know() {
+        let mut found = Findings::new(2);
+        for (observer, value) in [("wear", None), ("friction test", Some(1.0)), ("mine", None)] {
+            found.begin_observer(observer);
+            found.add("wear.load_path", value, MASS, "a path");
+        }
+        let warnings = found.warnings();
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(
+            warnings[0].text.contains("`friction test` and `mine`"),
+            "{warnings:?}"
+        );
     }
 
     #[test]
