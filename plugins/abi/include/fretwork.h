@@ -154,7 +154,7 @@ typedef struct fw_batch {
     const double *intact_t2; /* Tangential traction of the undamaged bond along t2 (Pa) (damage). */
     const double *slip; /* Slip distance over this step, h |u_t| (m) (wear). */
     const double *friction_work; /* Energy dissipated by friction over this step (J) (wear). */
-    const double *compressed; /* Time for which the contact has carried a compressive impulse without interruption (s). */
+    const double *pressed; /* Time for which the contact has carried a compressive impulse without interruption (s). */
     const double *rotation_n; /* Rotation of the bond about n, twist (rad); null without FW_FLAG_MOMENT and in 2D. */
     const double *rotation_t1; /* Rotation about t1, bending (rad). In 2D that about the axis out of the plane. */
     const double *rotation_t2; /* Rotation about t2, bending (rad). In 2D null. */

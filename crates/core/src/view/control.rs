@@ -54,8 +54,8 @@ pub trait RunControl: RunView + Send {
     /// The state cannot be serialised.
     fn save(&self) -> Result<Vec<u8>, EncodingError>;
     /// Continues from the state that [`RunControl::save`] wrote at the start of the bytes; returns
-    /// the bytes after it, or `None` if the state belongs to another case. See
-    /// [`Simulation::restore`].
+    /// the bytes after it, or `None` if the state belongs to another case, or if this simulation
+    /// has made steps. See [`Simulation::restore`].
     ///
     /// # Errors
     /// The bytes are not a state.
