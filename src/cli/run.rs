@@ -28,6 +28,10 @@ pub struct RunArgs {
     /// Continue from the last checkpoint in the folder; results equal those of an uninterrupted run
     #[arg(long)]
     resume: bool,
+    /// Replace the results in the folder, also those of another run, a longer one, or one that is
+    /// not at its end
+    #[arg(long, conflicts_with = "resume")]
+    force: bool,
     /// Exit with 1 also if the run finished but is not trustworthy (steps missed the tolerance, or
     /// a check failed)
     #[arg(long)]
@@ -186,6 +190,8 @@ fn run_case(
     let mut run = Run::new(loaded, built, options).observe_all(added);
     if let Some(stop) = stop {
         run = run.resume(stop);
+    } else if !args.force && !args.resume {
+        run = run.keeping();
     }
     let summary = run.execute(&mut |progress| {
         display.step(progress);
@@ -205,7 +211,10 @@ fn run_case(
         .map(Some)
         .map_err(|error| match place(loaded, &origins, &error) {
             Some(place) => Failure::Failed(format!("{error}; {place}")),
-            None => error.into(),
+            None => match error {
+                RunError::Occupied(found) => Failure::Usage(again::instead(&found, &shown)),
+                error => error.into(),
+            },
         })
 }
 

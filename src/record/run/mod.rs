@@ -28,7 +28,9 @@ use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
 use self::stamps::{density_of, stamps};
-use super::checkpoint::{CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find};
+use super::checkpoint::{
+    CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find, occupied,
+};
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
@@ -120,6 +122,7 @@ pub struct Run<'a> {
     stop: Option<ResumePoint>,
     observers: Observers,
     hurry: Option<&'a AtomicBool>,
+    keeping: bool,
 }
 
 impl<'a> Run<'a> {
@@ -132,7 +135,17 @@ impl<'a> Run<'a> {
             stop: None,
             observers: Observers::default(),
             hurry: None,
+            keeping: false,
         }
+    }
+
+    /// Refuses to replace results in the folder that this run would not give again: those of other
+    /// inputs, or of a longer run or one that is not at its end, see
+    /// [`occupied`]. Without it a run replaces what is there.
+    #[must_use]
+    pub fn keeping(mut self) -> Self {
+        self.keeping = true;
+        self
     }
 
     /// Omits the figures if the flag is set when the run ends, so that a stopped run ends sooner.
@@ -262,6 +275,9 @@ struct Recorder<'a> {
     total: u64,
     spread: u64,
     checkpoint_writer: CheckpointWriter,
+    /// The state shortly before the end, from which a longer run can continue; it is written with
+    /// the end.
+    last_state: Option<Vec<u8>>,
     /// Wall and processor time of the run before it was resumed; and the start of this part.
     elapsed_before_resume: (Duration, Duration),
     /// Slot in which the watch over plugins finds the files during a step.
@@ -299,7 +315,13 @@ impl<'a> Recorder<'a> {
             None => {
                 let made = std::fs::create_dir_all(&options.out);
                 made.map_err(|e| unwritable(&options.out, &e))?;
-                FolderLock::exclusive(&options.out, RUN_LOCK)?
+                let lock = FolderLock::exclusive(&options.out, RUN_LOCK)?;
+                if run.keeping
+                    && let Some(found) = occupied(&options.out, &identity)
+                {
+                    return Err(RunError::Occupied(Box::new(found)));
+                }
+                lock
             }
         };
         let frames = options.out.join("frames");
@@ -339,6 +361,7 @@ impl<'a> Recorder<'a> {
             total,
             spread: total,
             checkpoint_writer,
+            last_state: None,
             elapsed_before_resume: (Duration::ZERO, Duration::ZERO),
             emergency: EmergencySave::new(options.out.clone(), lock.clone()),
             clock: Instant::now(),
@@ -408,6 +431,8 @@ impl<'a> Recorder<'a> {
             }
             if self.checkpoint_writer.due(step) {
                 self.timed(|t| &mut t.files, Self::write_checkpoint)?;
+            } else if self.last_state.is_none() && self.near_end() {
+                self.last_state = Some(self.timed(|t| &mut t.files, Self::state)?);
             }
         }
         Ok(None)

@@ -282,6 +282,11 @@ impl AccuracyControl {
         u64::from(self.growth.last())
     }
 
+    /// Returns the largest number of steps of the case that a step may span.
+    pub fn longest(&self) -> u64 {
+        u64::from(self.growth.most())
+    }
+
     /// Whether the step of the case is complete.
     pub fn complete(&self, parts: &StepParts) -> bool {
         parts.done >= 1 << self.step.finest
