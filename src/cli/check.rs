@@ -5,6 +5,7 @@ mod bonds;
 mod deformable;
 mod features;
 mod heat;
+mod inputs;
 mod load;
 mod springs;
 
@@ -19,7 +20,7 @@ use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{SolverRequirements, SolverSupport};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Built, LoadedCase, load, sampling};
+use crate::scene::{Built, LoadedCase, law_inputs, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
@@ -34,6 +35,10 @@ pub struct CheckArgs {
     /// Leave out the estimate of the run time, for which steps are timed for half a second
     #[arg(long)]
     no_timing: bool,
+    /// Print the parameters of all laws: value, unit, and whether the case, a file, a material or
+    /// the law's default gives it
+    #[arg(long)]
+    inputs: bool,
 }
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
@@ -43,6 +48,11 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
     for (label, text) in lines(&loaded, &built, !args.no_timing) {
         let _ = write!(out, "\n{}", line_of(&label, &text));
+    }
+    if args.inputs {
+        for (label, text) in inputs::lines(built.simulation.view()) {
+            let _ = write!(out, "\n{}", line_of(&label, &text));
+        }
     }
     answer(&out)?;
     if !args.no_timing {
@@ -150,6 +160,9 @@ pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> 
             "COARSE DRIVE"
         };
         line(heading, drive.text);
+    }
+    for text in law_inputs::undecided(case, s) {
+        line("LAW DEFAULT", text);
     }
     let load = Load::of(case, simulation);
     groups(loaded, simulation, largest, &mut line);

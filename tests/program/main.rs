@@ -24,6 +24,7 @@ mod half_space_page;
 mod heat;
 mod holders;
 mod law_drive;
+mod law_inputs;
 mod law_new;
 mod layers;
 mod library_features;

@@ -21,6 +21,7 @@ mod holders;
 pub mod inputs;
 pub mod interfaces;
 pub mod jump;
+pub mod law_inputs;
 mod law_values;
 mod magnitudes;
 pub mod material;
