@@ -160,6 +160,7 @@ impl Case {
         for set in sets {
             CaseSpec::set(&mut source, set)?;
         }
+        CaseSpec::convert_units(&mut source)?;
         let case = CaseSpec::read(&source)?;
         check::numbers(&case).map_err(|f| source.locate(f))?;
         (self.loaded.source, self.loaded.case) = (source, case);

@@ -1,7 +1,7 @@
 //! Materials and parameters of interface laws: numbers with their units and sources.
 
 use super::shipped_materials;
-use super::source::{InputError, Source, ValidationError, nearest};
+use super::source::{InputError, Source, ValidationError, Wanted, nearest};
 use super::units::{self, UnitError};
 use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
 use serde::de::value::MapAccessDeserializer;
@@ -279,11 +279,22 @@ impl MaterialLibrary {
         self
     }
 
-    /// Reads the file `NAME.ron`.
+    /// Reads the file `NAME.ron`. A unit with a value, `value: 200 GPa`, stands beside it in the
+    /// text that is returned.
     ///
     /// # Errors
     /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
+        let mut source = self.find(name)?;
+        let units = source.replace_quantities(|place| match place.names.last() {
+            Some(name) if name == "value" => Wanted::Pair,
+            _ => Wanted::AsWritten,
+        });
+        units.map_err(Err)?;
+        Ok(source)
+    }
+
+    fn find(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
                 format!("{name}.ron (built in Rust)"),

@@ -10,6 +10,7 @@ mod file;
 mod names;
 mod nearest;
 pub mod numbers;
+mod quantities;
 mod repeated;
 mod respell;
 mod scan;
@@ -39,6 +40,7 @@ pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind, split_path};
 
+pub(crate) use quantities::{Place, Wanted};
 pub(crate) use schema::fields_at;
 use source_map::SourceMap;
 
@@ -152,7 +154,16 @@ impl Source {
                 return quoted.parse();
             }
         }
-        Err(source.explain(&error))
+        Err(source.explain(&error, &Source::kinds::<T>))
+    }
+
+    /// Returns the names of the variants of the enum at a path of `T`, if there is one.
+    fn kinds<T: DeserializeOwned>(&self, path: &[String]) -> Option<Vec<&'static str>> {
+        let root = self.tree.root.as_ref();
+        match schema::levels::<T>(&self.text, root, path).pop() {
+            Some(schema::Level::Enum(variants)) => Some(variants),
+            _ => None,
+        }
     }
 
     /// Parses the text as it is written.

@@ -42,7 +42,7 @@ fn ron_errors_stand_on_the_token() {
     );
     assert_eq!(
         refusal("Disk(radius", "Dsk(radius"),
-        "case.ron:11:65: error: unknown variant `Dsk` in Shape2; \
+        "case.ron:11:65: error: unknown variant `Dsk` for `bodies.wheel.shape`; \
          expected one of `Disk`, `Point`; did you mean `Disk`?"
     );
     assert_eq!(
