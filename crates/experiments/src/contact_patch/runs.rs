@@ -1,34 +1,93 @@
 //! Results of runs of a window, from their summaries: friction, and the wear of its first bodies.
 
 use super::range::Range;
+use super::setup::{self, Motion, Setup};
 use crate::runs::stored::numerical_error;
 use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::unit::{VOLUME, WEAR_RATE};
 use fretwork_observe::quantity::{Catalogue, Entry, Role, Topic, find};
+use fretwork_observe::summary::Course;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
+/// Path of the coefficient of sliding in a summary.
+const COEFFICIENT: &str = "friction_coefficient";
+
 /// A run of a window.
 pub(super) struct WindowRun {
-    /// Friction coefficient.
+    /// Its folder, as the question gives it.
+    pub folder: PathBuf,
+    /// SHA-256 of its inputs; `None` for runs that recorded none.
+    identity: Option<String>,
+    /// Coefficient of sliding.
     pub friction: f64,
     /// Half-width of its interval within the run.
     pub scatter: Option<f64>,
     /// Half-width of its error by step, tolerance and coupling.
     pub numerical: Option<f64>,
+    /// Reasons why the run is not trustworthy; `None` for a trustworthy run.
+    pub doubts: Option<Vec<String>>,
+    /// Case of the run; an error says why it is not known.
+    pub setup: Result<Setup, String>,
+    /// Mean normal force (N; 2D N/m).
+    pub normal_force: Option<f64>,
+    /// Motion of the moved body.
+    pub motion: Option<Motion>,
     /// First bodies with their specific wear rates (m³/(N m)).
     wear: Vec<(String, f64)>,
     /// Relative half-width of the error of wear by step, tolerance and coupling.
     wear_error: Option<f64>,
 }
 
-/// Reads the runs in these folders.
+/// Runs that differ from each other, and notes on those that were left out.
+#[derive(Default)]
+pub(super) struct Runs {
+    /// The runs.
+    pub list: Vec<WindowRun>,
+    /// Warnings.
+    pub notes: Vec<String>,
+}
+
+/// Reads the runs in these folders. A run that is given twice, and a run whose coefficient equals
+/// that of another to the last digit, which no seed can have changed, is counted once.
 ///
 /// # Errors
-/// Returns a sentence on the first folder without the summary of a complete run with a friction
-/// test.
-pub(super) fn read(folders: &[PathBuf]) -> Result<Vec<WindowRun>, String> {
-    folders.iter().map(|f| of(f)).collect()
+/// Returns a sentence on the first folder without the summary of a complete run with a coefficient
+/// of sliding.
+pub(super) fn read(folders: &[PathBuf]) -> Result<Runs, String> {
+    let mut out = Runs::default();
+    for folder in folders {
+        let run = of(folder)?;
+        let place = folder.canonicalize().ok();
+        let same = |other: &&WindowRun| match (&run.identity, &other.identity) {
+            (Some(one), Some(other)) => one == other,
+            _ => place.is_some() && place == other.folder.canonicalize().ok(),
+        };
+        let shown = folder.display();
+        if let Some(other) = out.list.iter().find(same) {
+            let what = match *folder == other.folder {
+                true => "is given twice".to_owned(),
+                false => format!(
+                    "is the run of {}, with all its inputs",
+                    other.folder.display()
+                ),
+            };
+            out.notes.push(format!(
+                "COUNTED ONCE: {shown} {what}; scatter needs runs with other seeds"
+            ));
+            continue;
+        }
+        let equal = |other: &&WindowRun| other.friction.to_bits() == run.friction.to_bits();
+        if let Some(other) = out.list.iter().find(equal) {
+            out.notes.push(format!(
+                "COUNTED ONCE: {shown} has the coefficient of {} to the last digit; their seed changes nothing in this case, and gives no scatter",
+                other.folder.display()
+            ));
+            continue;
+        }
+        out.list.push(run);
+    }
+    Ok(out)
 }
 
 fn of(folder: &Path) -> Result<WindowRun, String> {
@@ -47,22 +106,38 @@ fn of(folder: &Path) -> Result<WindowRun, String> {
             folder.display()
         ));
     }
-    WindowRun::of(&summary).ok_or_else(|| {
-        format!(
-            "friction of a run: {} has no friction coefficient; its case needs `friction`",
-            folder.display()
-        )
-    })
+    WindowRun::of(folder, &summary)
+        .map_err(|why| format!("friction of a run: {}: {why}", folder.display()))
+}
+
+/// Returns why a run has no coefficient of sliding, if it has none.
+fn without_sliding(summary: &Value) -> Option<String> {
+    let regime = find(summary, "fretting.regime").and_then(Value::as_str);
+    let cycles = summary["cycles"].as_array();
+    let last = || cycles?.last()?["regime"].as_str();
+    let known = summary[COEFFICIENT].is_number();
+    match regime.or_else(|| last().filter(|_| !known)) {
+        Some("partial") => Some(
+            "the run is in partial slip: it has no coefficient of sliding; displace it further, or give friction".into(),
+        ),
+        _ if known => None,
+        Some(regime) => Some(format!(
+            "the run is in the regime `{regime}`: it has no coefficient of sliding; displace it further, or give friction"
+        )),
+        None => Some("it has no friction coefficient; its case needs `friction`".into()),
+    }
 }
 
 impl WindowRun {
-    /// Reads the main result of friction, the specific wear rates in the list of bodies, and the
-    /// error of the worn volume. `None` without friction.
-    fn of(summary: &Value) -> Option<Self> {
+    /// Reads the coefficient of sliding, the specific wear rates in the list of bodies, and the
+    /// error of the worn volume.
+    fn of(folder: &Path, summary: &Value) -> Result<Self, String> {
+        if let Some(why) = without_sliding(summary) {
+            return Err(why);
+        }
         let catalogue = Catalogue::of(summary);
         let shown = catalogue.shown(summary, Role::Secondary);
-        let headline = |e: &Entry| e.role == Role::Headline && e.topic == Topic::Friction;
-        let (friction, value) = shown.iter().find(|(entry, _)| headline(entry))?;
+        let friction = catalogue.entry(COEFFICIENT);
         let wear = || shown.iter().filter(|(entry, _)| entry.topic == Topic::Wear);
         let rate = |(entry, value): &(&Entry, &Value)| {
             let (body, _) = entry
@@ -75,10 +150,21 @@ impl WindowRun {
         let volume = wear().find(|(entry, _)| entry.is_in(VOLUME) && entry.estimate.is_some());
         let worn = volume.and_then(|(entry, _)| entry.estimate.as_ref()?.value);
         let error = volume.and_then(|(entry, _)| numerical_error(&catalogue, &entry.path));
-        Some(Self {
-            friction: value.as_f64()?.abs(),
-            scatter: friction.estimate.as_ref().and_then(|e| e.scatter),
-            numerical: numerical_error(&catalogue, &friction.path),
+        let trusted = summary["trustworthy"] != false;
+        let setup = Setup::read(folder);
+        let start = setup.as_ref().map_or(0.0, |s| s.start);
+        Ok(Self {
+            folder: folder.to_owned(),
+            identity: summary["identity"].as_str().map(str::to_owned),
+            friction: summary[COEFFICIENT].as_f64().unwrap_or_default().abs(),
+            scatter: friction
+                .and_then(|f| f.estimate.as_ref())
+                .and_then(|e| e.scatter),
+            numerical: numerical_error(&catalogue, COEFFICIENT),
+            doubts: (!trusted).then(|| Course::of(summary).reasons),
+            normal_force: setup::normal_force(folder, summary, start),
+            motion: Motion::read(folder, summary, start),
+            setup,
             wear: wear().filter_map(rate).collect(),
             wear_error: error.zip(worn.filter(|v| *v > 0.0)).map(|(e, v)| e / v),
         })
@@ -119,4 +205,36 @@ pub(super) fn wear_rates(runs: &[WindowRun]) -> Vec<(String, Range)> {
         out.extend(all);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn only_what_slides_has_a_coefficient() {
+        let of = |mu: Value, regime: Value, cycle: &str| {
+            let fretting = match regime {
+                Value::Null => Value::Null,
+                regime => json!({"regime": regime}),
+            };
+            without_sliding(&json!({
+                COEFFICIENT: mu, "fretting": fretting, "cycles": [{"regime": cycle}],
+            }))
+        };
+        let says = |found: Option<String>, words: &str| found.is_some_and(|w| w.contains(words));
+        let partial = "in partial slip: it has no coefficient of sliding";
+        assert!(says(of(Value::Null, json!("partial"), "partial"), partial));
+        assert!(says(of(json!(0.008), json!("partial"), "partial"), partial));
+        assert!(says(of(Value::Null, Value::Null, "partial"), partial));
+        assert!(says(of(Value::Null, json!("mixed"), "gross"), "`mixed`"));
+        assert!(says(
+            without_sliding(&json!({})),
+            "its case needs `friction`"
+        ));
+        // The cycles of a motion in one direction have no regime of fretting.
+        assert_eq!(of(json!(0.3), Value::Null, "partial"), None);
+        assert_eq!(of(json!(0.3), json!("mixed"), "gross"), None);
+    }
 }
