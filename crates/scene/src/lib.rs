@@ -25,6 +25,7 @@ pub mod law_inputs;
 mod law_values;
 mod magnitudes;
 pub mod material;
+pub mod measured;
 pub mod measures;
 pub mod mesh_file;
 pub mod methods;

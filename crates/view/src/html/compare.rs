@@ -5,7 +5,8 @@ use crate::html::folder::RunFolder;
 use crate::html::page::{Page, difference_table, escape, footer, item, section, table, value};
 use crate::html::results::{self, ResultRow};
 use crate::html::statistics::Statistics;
-use crate::html::{ReportError, figures, write};
+use crate::html::{ReportError, Written, figures, pictures, write};
+use crate::measured::{self, MeasuredCurve};
 use fretwork_observe::chart::Figure;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -13,18 +14,34 @@ use std::path::{Path, PathBuf};
 /// Number of rows of the statistics of a run in the page.
 const ROWS: usize = 3000;
 
-/// Makes a page of several runs side by side; returns its size in bytes.
+/// Makes a page of several runs side by side, with measured curves in the figures of their kind,
+/// and these figures as PNG files beside it, `PAGE_NAME.png`.
 ///
 /// # Errors
-/// A folder holds no run, or the page cannot be written.
-pub fn compare(folders: &[PathBuf], to: &Path) -> Result<usize, ReportError> {
+/// A folder holds no run, a measured curve does not fit to them, or a file cannot be written.
+pub fn compare(
+    folders: &[PathBuf],
+    to: &Path,
+    measured: &[MeasuredCurve],
+) -> Result<Written, ReportError> {
     let runs: Vec<RunFolder> = folders
         .iter()
         .map(|f| RunFolder::open(f))
         .collect::<Result<_, _>>()?;
-    let html = page(&runs, &names(&runs));
+    let (html, figures) = page(&runs, &names(&runs), measured)?;
     write(to, &html)?;
-    Ok(html.len())
+    let stem = to
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    Ok(Written {
+        page: to.to_owned(),
+        bytes: html.len(),
+        pictures: pictures(&figures, |name| {
+            to.with_file_name(format!("{stem}_{name}.png"))
+        })?,
+    })
 }
 
 /// Returns the names of the folders, or their full paths if two have the same name.
@@ -41,7 +58,12 @@ fn names(runs: &[RunFolder]) -> Vec<String> {
     (0..runs.len()).map(name).collect()
 }
 
-fn page(runs: &[RunFolder], names: &[String]) -> String {
+/// Returns the page, and the figures of all runs drawn over each other.
+fn page(
+    runs: &[RunFolder],
+    names: &[String],
+    curves: &[MeasuredCurve],
+) -> Result<(String, Vec<Figure>), ReportError> {
     let mut gaps: Vec<Vec<String>> = runs.iter().map(|r| r.gaps.clone()).collect();
     let series: Vec<Statistics> = runs
         .iter()
@@ -76,7 +98,9 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
         .map(|(k, (s, name))| figures::columns(name, &format!("{k}:"), s, &mut numbers))
         .collect();
     let drawn: Vec<(&str, Vec<Figure>)> = names.into_iter().zip(described).collect();
-    let mut figures = figures::overlaid(&drawn, &mut numbers);
+    let mut overlaid = figures::overlaid(&drawn);
+    measured::add(&mut overlaid, curves).map_err(|reason| ReportError::Measured { reason })?;
+    let mut figures = figures::json(&overlaid, &mut numbers);
     figures.push(json!({"any": true}));
     let frames: String = (0..figures.len())
         .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
@@ -89,14 +113,14 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
     );
     body += "</main>\n";
     body += &footer("fretwork compare");
-    Page {
+    let page = Page {
         title: "Runs side by side - Fretwork".to_owned(),
         body,
         data: json!({"runs": columns, "figures": figures, "palette": figures::palette()}),
         blobs: vec![("numbers".to_owned(), numbers.packed())],
         viewer: false,
-    }
-    .html()
+    };
+    Ok((page.html(), overlaid))
 }
 
 fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> String {
