@@ -46,7 +46,7 @@ impl Setup {
     /// It is no case.
     pub(super) fn of(text: &str) -> Result<Self, String> {
         let source = Source::from_text("case", text);
-        let case: Case = source.parse().map_err(|e| e.to_string())?;
+        let case = Case::read(&source).map_err(|e| e.to_string())?;
         let bodies = case.bodies.iter().map(|b| &b.material);
         let half_spaces = case.half_spaces.iter().map(|b| &b.material);
         let elastic = case.elastic.iter().map(|b| &b.material);
