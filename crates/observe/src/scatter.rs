@@ -64,14 +64,14 @@ impl Scatter {
 }
 
 /// Returns the scatter of a value over the later half of the complete cycles, at least three;
-/// `None` if there are fewer.
-pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
+/// `None` if there are fewer, or if one of them has no value.
+pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> Option<f64>) -> Option<Scatter> {
     let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
     let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
     let late = &complete[complete.len() - count..];
     let (first, last) = (late.first()?.cycle, late.last()?.cycle);
-    let values: Vec<f64> = late.iter().map(|c| value(c)).collect();
-    Scatter::new(&values, format!("cycles {first} to {last}"))
+    let values: Option<Vec<f64>> = late.iter().map(|c| value(c)).collect();
+    Scatter::new(&values?, format!("cycles {first} to {last}"))
 }
 
 /// Returns the scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
@@ -89,7 +89,7 @@ mod tests {
         let cycle = |(k, v): (usize, &f64)| Cycle {
             cycle: k as u32 + 1,
             complete: true,
-            friction_coefficient: *v,
+            friction_coefficient: Some(*v),
             ..Cycle::default()
         };
         values.iter().enumerate().map(cycle).collect()

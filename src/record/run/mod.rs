@@ -27,7 +27,7 @@ use self::drawing::{Camera, Drawing};
 use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
-use self::stamps::{density_of, stamps};
+use self::stamps::stamps;
 use super::checkpoint::{
     CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find, occupied,
 };
@@ -44,6 +44,7 @@ use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
+use fretwork_observe::first_bodies::WearMaterials;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard;
 use fretwork_observe::{Observer, Observers};
@@ -236,12 +237,12 @@ pub fn stopped(
 /// Returns the observers that a run of a case has, for a program that steps without a run.
 pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
-    standard::observers(&loaded.case, s, density_of(loaded, any))
+    standard::observers(&loaded.case, s, &WearMaterials::of(loaded, any))
 }
 
 /// Returns the columns of the statistics that a run of a case has.
 pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
-    standard::observers(case, s, 0.0).columns()
+    standard::observers(case, s, &WearMaterials::default()).columns()
 }
 
 /// A run in progress.

@@ -18,7 +18,7 @@ pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report
 
 use crate::error_estimate::{Increments, RatioPair, RepeatedStretch, StretchRepeats, cost};
 use fretwork_core::bodies::Dof;
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::{RepeatError, StepError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};

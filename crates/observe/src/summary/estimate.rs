@@ -67,7 +67,7 @@ impl Uncertainty {
         // A cycle that represents several is not a sample like the others.
         let single = cycles.iter().all(|c| c.jumped == 0);
         let alike = friction.oscillates && complete > 0 && single;
-        if let Some(s) = scatter::over_cycles(cycles, |c| c.wear_volume).filter(|_| alike) {
+        if let Some(s) = scatter::over_cycles(cycles, |c| Some(c.wear_volume)).filter(|_| alike) {
             all.wear.scatter = s.half_width().map(|w| w * complete as f64);
             all.wear.method = Some(format!("wear of a cycle times {complete}: {}", s.method()));
         }

@@ -15,11 +15,8 @@ fn fretting() -> Summary {
     let cycle = |k: u32| Cycle {
         cycle: k,
         complete: true,
-        friction_coefficient: if k < 10 {
-            0.3
-        } else {
-            0.4 + 1e-3 * f64::from(k * 7 % 5)
-        },
+        friction_coefficient: (k >= 10).then(|| 0.4 + 1e-3 * f64::from(k * 7 % 5)),
+        energetic_coefficient: 0.4,
         friction_from_dissipation: 0.41,
         normal_force: 1e3,
         tangential_amplitude: 550.0,
@@ -50,6 +47,8 @@ fn fretting() -> Summary {
         depth_mean: Some(1e-7),
         depth_max: Some(3e-7),
         specific_rate: Some(volume / 10.0),
+        archard_coefficient: None,
+        hardness: None,
     };
     let wear = WearSummary {
         volume_first_bodies: 5e-14,
