@@ -39,7 +39,10 @@ fn a_pin_on_a_turning_disc_has_the_friction_and_wear_of_its_contact() {
         for (k, coefficient) in rates.iter().zip(coefficients) {
             assert!((coefficient / (k * hardness) - 1.0).abs() < 1e-9);
         }
-        assert!((rates.iter().sum::<f64>() / 1e-13 - 1.0).abs() < 5e-3, "{rates:?}");
+        assert!(
+            (rates.iter().sum::<f64>() / 1e-13 - 1.0).abs() < 5e-3,
+            "{rates:?}"
+        );
     }
 }
 
@@ -59,7 +62,10 @@ fn a_strip_between_two_blocks_has_the_load_of_both() {
             ("wear.load_path", 200.0 * 0.7 * 0.2),
         ] {
             let got = number(&found, name);
-            assert!((got / expected - 1.0).abs() < 0.02, "{sets:?}: {name} {got}");
+            assert!(
+                (got / expected - 1.0).abs() < 0.02,
+                "{sets:?}: {name} {got}"
+            );
         }
     }
 }
