@@ -95,7 +95,7 @@ fn warnings_come_first_then_friction_damage_wear_energies() {
         "wheel on rail",
         "friction coefficient",
         "energetic coefficient",
-        "peak Q/P",
+        "peak Q*/P",
         "damage",
         "wear of rail",
         "wear of wheel",
@@ -118,7 +118,7 @@ fn results_have_units_and_intervals_and_no_lists() {
         &text,
         "0.5500 in cycle 50, the last complete one: largest |Q| over mean P",
     );
-    place(&text, "50 complete; 0.3000 in the first");
+    place(&text, "50 complete; none (partial slip) in the first");
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(
         &text,
