@@ -80,3 +80,30 @@ fn a_default_that_decides_the_result_is_a_note() {
     let reasons = summary["reasons"].as_array().unwrap();
     assert!(!reasons.iter().any(|r| r.to_string().contains("DEFAULT")));
 }
+
+/// Sand and a lubricant have no measured wear coefficient: none is computed with that of the oxide of
+/// the steel.
+#[test]
+fn a_powder_without_a_measured_coefficient_has_no_wear_rate() {
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/wheel_rail_powder.ron");
+    for (powder, measured) in [
+        ("magnetite", true),
+        ("sand", false),
+        ("molybdenum_disulfide", false),
+    ] {
+        let set = format!("materials.powder={powder}");
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(["check", case, "--no-timing", "--set", &set])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let said = text.contains("NO WEAR RATE") && text.contains(powder);
+        assert_eq!(said, !measured, "{powder}: {text}");
+        assert_eq!(
+            text.contains("k = 1.1766e-13"),
+            measured,
+            "{powder}: {text}"
+        );
+    }
+}

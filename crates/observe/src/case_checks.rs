@@ -33,7 +33,10 @@ impl CaseChecks {
         let undecided = law_inputs::undecided(case, run);
         let undecided =
             (!undecided.is_empty()).then(|| Warning::note("LAW DEFAULT", undecided.join("; ")));
-        let warnings = [aliased, coarse, idle, undecided];
+        let unmeasured = law_inputs::unmeasured(case, run);
+        let unmeasured =
+            (!unmeasured.is_empty()).then(|| Warning::note("NO WEAR RATE", unmeasured.join("; ")));
+        let warnings = [aliased, coarse, idle, undecided, unmeasured];
         Self {
             warnings: warnings.into_iter().flatten().collect(),
             has: [

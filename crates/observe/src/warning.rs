@@ -77,6 +77,7 @@ const ORDER: [&str; 44] = [
     "NEAREST PLACES",
     "COARSE DRIVE",
     "LAW DEFAULT",
+    "NO WEAR RATE",
     "POSITION CORRECTION",
     "ACCURACY NOT SHOWN",
     "ESTIMATED ERROR",

@@ -318,6 +318,9 @@ fn build_interface(
         let friction = friction_of(&laws);
         let from = spec.parameters_from.as_deref();
         let mut numbers = given_numbers(kind.word(), name, (of_file, from), own);
+        if kind == Kind::WEAR && unmeasured(case, spec, &plugin, &numbers) {
+            continue;
+        }
         let coefficient = (kind == Kind::WEAR)
             .then(|| wear_from_hardness(&plugin, &mut numbers, (sides, spec), friction))
             .transpose()?
@@ -336,6 +339,24 @@ fn build_interface(
     interface
         .with_bonds(spec.bonds, spec.healing)
         .map_err(unfit)
+}
+
+/// Returns whether a wear law has no coefficient although a material gives its parameters: how much
+/// that material wears others was not measured, and the law's default is that of another one. The
+/// interface then has no wear law, see [`super::law_inputs::unmeasured`].
+fn unmeasured(
+    case: &Case,
+    spec: &InterfaceSpec,
+    plugin: &Plugin,
+    numbers: &BTreeMap<&str, GivenNumber<'_>>,
+) -> bool {
+    let from = spec.parameters_from.as_ref();
+    let of_material = from.is_some_and(|name| case.materials.contains_key(name));
+    let fields = plugin.parameters.iter();
+    let fields = fields.map(|f| (f.name.as_str(), f.unit.as_str()));
+    let coefficient = wear_coefficient::parameter(fields).map(|(name, _)| name);
+    let given = |name: &str| numbers.contains_key(name) || numbers.contains_key("K");
+    of_material && coefficient.is_some_and(|name| !given(name))
 }
 
 /// Resolves the parameters of a law, and checks them by the law.

@@ -48,6 +48,22 @@ pub fn of(s: &dyn RunView) -> Vec<LawInput<'_>> {
     out
 }
 
+/// Returns a sentence for each interface whose wear law is left out, since the material that gives
+/// its parameters has no coefficient for it.
+pub fn unmeasured(case: &Case, s: &dyn RunView) -> Vec<String> {
+    let pairs = case.interfaces.iter().zip(s.laws());
+    let left_out = pairs.filter_map(|(spec, built)| {
+        let law = spec.law(Kind::WEAR).filter(|_| built.wear().is_none())?;
+        let from = spec.parameters_from.as_deref()?;
+        let file = case.materials.get(from).map_or(from, String::as_str);
+        Some(format!(
+            "`{}`: the material `{file}` has no measured coefficient of the wear law `{law}`, so no wear is computed there; give `K` with its source in the `laws` of the material, or in `parameters` of the interface",
+            spec.name
+        ))
+    });
+    left_out.collect()
+}
+
 /// Whether the main results follow from a parameter, so that its default is a guess at the answer:
 /// friction coefficients of contact laws, which decide friction, and all parameters of wear laws.
 fn decides(kind: Kind, field: &LawField) -> bool {
