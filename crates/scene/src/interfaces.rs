@@ -354,7 +354,7 @@ fn unmeasured(
     let of_material = from.is_some_and(|name| case.materials.contains_key(name));
     let fields = plugin.parameters.iter();
     let fields = fields.map(|f| (f.name.as_str(), f.unit.as_str()));
-    let coefficient = wear_coefficient::parameter(fields).map(|(name, _)| name);
+    let coefficient = super::wear_coefficient::parameter(fields).map(|(name, _)| name);
     let given = |name: &str| numbers.contains_key(name) || numbers.contains_key("K");
     of_material && coefficient.is_some_and(|name| !given(name))
 }
