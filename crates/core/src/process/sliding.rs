@@ -155,16 +155,17 @@ impl SlidingBody {
         // grains.
         let (mut all, mut grains) = (Mean::default(), 0.0);
         let mut own = Mean::default();
+        let held = self.held_velocities(s);
         for side in self.sides(s) {
             let weight = side.impulse[self.normal].abs();
             own.add(weight, S::spin_velocity(&spin, &side.arms[0])[self.along]);
-            match self.velocity_of(s, side.counterpart, &side.arms[1]) {
+            match self.velocity_of(s, side.counterpart, &side.arms[1], &held) {
                 Some(velocity) => all.add(weight, velocity),
                 None => grains += weight,
             }
         }
         if grains > 0.0 {
-            all.add(grains, self.behind_grains(s));
+            all.add(grains, self.behind_grains(s, &held));
         }
         all.value() - own.value()
     }
@@ -179,12 +180,17 @@ impl SlidingBody {
             let translates = step_velocity(s, place) != S::Vector::zero();
             (translates && own != Some(place)) || step_spin(s, place) != S::Spin::zero()
         });
-        driven || s.state.systems.len() > usize::from(own.is_none())
+        driven
+            || self
+                .held_velocities(s)
+                .iter()
+                .enumerate()
+                .any(|(system, v)| *v != 0.0 && !self.is(Counterpart::System(system)))
     }
 
     /// Returns the mean velocity along the axis of the other first bodies at their contacts with
     /// grains (m/s), with the normal loads as weights.
-    fn behind_grains<S: Space>(&self, s: &Simulation<S>) -> f64 {
+    fn behind_grains<S: Space>(&self, s: &Simulation<S>, held: &[f64]) -> f64 {
         let mut mean = Mean::default();
         for c in loaded(s) {
             let sides = [0, 1].map(|k| counterpart(s, c.bodies[k]));
@@ -197,33 +203,41 @@ impl SlidingBody {
             if self.is(sides[k]) {
                 continue;
             }
-            if let Some(velocity) = self.velocity_of(s, sides[k], &c.arms[k]) {
+            if let Some(velocity) = self.velocity_of(s, sides[k], &c.arms[k], held) {
                 mean.add(c.impulse[self.normal].abs(), velocity);
             }
         }
         mean.value()
     }
 
+    /// Returns the velocity along the axis of the parts of each system that are held (m/s), their
+    /// mean; 0 where none is.
+    fn held_velocities<S: Space>(&self, s: &Simulation<S>) -> Vec<f64> {
+        let of = |system: usize| {
+            let mut mean = Mean::default();
+            let holders = s.state.systems.get(system).map(|s| s.holders());
+            let along = holders.iter().flatten().filter(|h| h.axis == self.along);
+            along.for_each(|h| mean.add(1.0, h.velocity));
+            mean.value()
+        };
+        (0..s.state.systems.len()).map(of).collect()
+    }
+
     /// Returns the velocity along the axis of a first body at `arm` from its centre (m/s), of a
-    /// deformable one that of the part that is held; `None` for a grain.
+    /// deformable one that of its parts that are held; `None` for a grain.
     fn velocity_of<S: Space>(
         &self,
         s: &Simulation<S>,
         part: Counterpart,
         arm: &S::Vector,
+        held: &[f64],
     ) -> Option<f64> {
         match part {
             Counterpart::Driven(place) => {
                 let turning = S::spin_velocity(&step_spin(s, place), arm);
                 Some(step_velocity(s, place)[self.along] + turning[self.along])
             }
-            Counterpart::System(system) => {
-                let holders = s.state.systems.get(system)?.holders();
-                let along = holders.iter().filter(|h| h.axis == self.along);
-                let mut mean = Mean::default();
-                along.for_each(|h| mean.add(1.0, h.velocity));
-                Some(mean.value())
-            }
+            Counterpart::System(system) => held.get(system).copied(),
             Counterpart::Grain => None,
         }
     }
