@@ -2,6 +2,7 @@
 //! files.
 
 mod bonds;
+mod brief;
 mod deformable;
 mod features;
 mod heat;
@@ -39,21 +40,34 @@ pub struct CheckArgs {
     /// the law's default gives it
     #[arg(long)]
     inputs: bool,
+    /// Print all lines: features, methods, memory, bonds, stiffness of contacts, heat
+    #[arg(long, short)]
+    verbose: bool,
 }
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     let built = loaded.build(&args.case.plugins.search()?)?;
     check_names(&loaded, &observers::all(&loaded, built.simulation.view()))?;
-    let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
-    for (label, text) in lines(&loaded, &built, !args.no_timing) {
+    let title = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
+    let lines = lines(&loaded, &built, !args.no_timing);
+    let inputs = match args.inputs {
+        true => inputs::lines(built.simulation.view()),
+        false => Vec::new(),
+    };
+    let inputs: String = inputs
+        .iter()
+        .map(|(label, text)| format!("\n{}", line_of(label, text)))
+        .collect();
+    if !args.verbose {
+        let time = (!args.no_timing).then(|| run_time(&loaded, built));
+        return answer(&(brief::text(title, &lines, time) + &inputs));
+    }
+    let mut out = title;
+    for (label, text) in lines {
         let _ = write!(out, "\n{}", line_of(&label, &text));
     }
-    if args.inputs {
-        for (label, text) in inputs::lines(built.simulation.view()) {
-            let _ = write!(out, "\n{}", line_of(&label, &text));
-        }
-    }
+    out += &inputs;
     answer(&out)?;
     if !args.no_timing {
         let (label, text) = run_time(&loaded, built);
@@ -94,7 +108,7 @@ fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     }
 }
 
-/// Returns what `fretwork check` prints about a case below its title, except the [run
+/// Returns what `fretwork check --verbose` prints about a case below its title, except the [run
 /// time](run_time). Deformable bodies are timed if `timed`.
 pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> {
     let (case, simulation) = (&loaded.case, &built.simulation);

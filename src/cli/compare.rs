@@ -20,6 +20,9 @@ pub struct CompareArgs {
 
 pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let written = fretwork_view::compare(&args.dirs, &args.out, &args.measured.read()?)?;
+    for line in fretwork_view::differences(&args.dirs)? {
+        inform(&line);
+    }
     let (path, runs) = (args.out.display(), args.dirs.len());
     inform(&format!(
         "{path} ({:.1} MB): {runs} runs side by side; open it in a browser",

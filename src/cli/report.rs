@@ -80,17 +80,14 @@ pub fn make(
     })
 }
 
-/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. A
-/// failure is reported, and does not change how the run ended.
-pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
-    match make(folder, Some(DEFAULT_BYTES), &[]) {
-        Ok(_) if !quiet => {
-            let path = shown.join(fretwork_view::FILE);
-            inform(&format!("  report in {}", path.display()));
-        }
-        Ok(_) => {}
-        Err(e) => complain(&format!("warning: there is no report: {e}")),
+/// Makes the report of a run that has just ended; returns whether there is one. A failure is
+/// reported, and does not change how the run ended.
+pub fn of_run(folder: &Path) -> bool {
+    let made = make(folder, Some(DEFAULT_BYTES), &[]);
+    if let Err(e) = &made {
+        complain(&format!("warning: there is no report: {e}"));
     }
+    made.is_ok()
 }
 
 /// Looks up a law of the program itself: a report never opens other libraries.

@@ -36,7 +36,8 @@ pub struct RunArgs {
     /// a check failed)
     #[arg(long)]
     strict: bool,
-    /// Print all details at the end: first and last cycle, measures, phases, solver, laws
+    /// Print all details at the end: warnings in full, all results, first and last cycle, solver,
+    /// laws
     #[arg(long, short)]
     verbose: bool,
     /// Make no report.html at the end
@@ -86,7 +87,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let Some(summary) = done.inspect_err(|e| {
         // The run has begun, and what it recorded until the failure is on disk.
         if matches!(e, Failure::Failed(_) | Failure::Run(RunError::Step(_))) {
-            report(&options.out, args);
+            let made = report(&options.out, args);
+            if !args.json {
+                inform(&format!("  {}", results(args, made)));
+            }
         }
     })?
     else {
@@ -95,18 +99,16 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if args.json {
         answer_json(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
     } else {
-        let text = summary.text(args.verbose);
-        let more = if args.verbose {
-            ""
-        } else {
-            " (more: --verbose)"
-        };
-        inform(&format!(
-            "{text}  results in {}{more}",
-            args.out().display()
-        ));
+        inform(summary.text(args.verbose).trim_end());
     }
-    report(&options.out, args);
+    let made = report(&options.out, args);
+    if !args.json {
+        let more = match args.verbose {
+            true => "",
+            false => " (more: --verbose)",
+        };
+        inform(&format!("  {}{more}", results(args, made)));
+    }
     if let Some(why) = summary
         .run
         .stopped
@@ -119,11 +121,15 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     strict(args, summary.run.reasons.first().map(String::as_str))
 }
 
-/// Makes the report, unless it is disabled.
-fn report(out: &Path, args: &RunArgs) {
-    if !args.no_report {
-        super::report::of_run(out, &args.out(), args.json);
-    }
+/// Makes the report, unless it is disabled; returns the name of its file in the folder.
+fn report(out: &Path, args: &RunArgs) -> Option<&'static str> {
+    (!args.no_report && super::report::of_run(out)).then_some(fretwork_view::FILE)
+}
+
+/// Says where the results and the page are.
+fn results(args: &RunArgs, page: Option<&str>) -> String {
+    let page = page.map_or(String::new(), |file| format!(", report in {file}"));
+    format!("results in {}{page}", args.out().display())
 }
 
 /// Fails if `--strict` is given and there is a reason not to trust the run.

@@ -15,6 +15,7 @@ mod check_features;
 mod check_methods;
 mod contact_patch;
 mod deformed_state;
+mod end_of_run;
 mod facts;
 mod fclib;
 mod fit;

@@ -20,6 +20,9 @@ pub struct Sourced {
     /// Unit; that of the schema, in SI units, by default.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
+    /// Smallest and largest value in the source, in the same unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<(f64, f64)>,
     /// Source: paper, standard or table.
     pub source: String,
 }
@@ -237,8 +240,18 @@ impl InterfaceParameters {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
                 for (name, number) in parameters {
-                    units::known(&number.unit)
-                        .map_err(|e| e.at(format!("{slot}.{law}.{name}.unit")))?;
+                    let at = |field: &str| format!("{slot}.{law}.{name}.{field}");
+                    units::known(&number.unit).map_err(|e| e.at(at("unit")))?;
+                    if let Some((low, high)) = number.range
+                        && !(low <= number.value && number.value <= high)
+                    {
+                        let message = format!(
+                            "the range of `{name}`, {low} to {high}, does not contain its value {}",
+                            number.value
+                        );
+                        return Err(ValidationError::new(at("range"), message)
+                            .expected("the smallest, then the largest value in the source"));
+                    }
                 }
             }
         }

@@ -34,9 +34,10 @@ use super::checkpoint::{
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
-use super::summary::{RunFacts, Summary, Uncertainty};
+use super::summary::{RunFacts, SampleFacts, Summary, Uncertainty};
 use super::views;
 use crate::scene::case::Case;
+use crate::scene::input_ranges::given_ranges;
 use crate::scene::processes;
 use crate::scene::{Built, LoadedCase};
 use crate::step::StepReport;
@@ -332,6 +333,8 @@ impl<'a> Recorder<'a> {
             dimension: simulation.dimension(),
             plugins: stamps(simulation.laws()),
             wear_coefficients: std::mem::take(&mut built.wear_coefficients),
+            sample: SampleFacts::of(case, simulation.view()),
+            given: given_ranges(case, &built.materials, simulation.view().laws()),
             threads: options.threads,
             seed: case.seed,
             identity: checkpoint_writer.name(),

@@ -133,10 +133,7 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
 
     // The terminal shows it.
     let text = summary.text(false);
-    assert!(
-        text.contains(&format!("highest summit         {shown}")),
-        "{text}"
-    );
+    assert!(text.contains(&format!("highest summit {shown}")), "{text}");
 
     // Report and comparison show it.
     let options = fretwork_view::Options {

@@ -279,6 +279,8 @@ pub struct Figure {
     pub charts: Vec<Chart>,
     /// Number of columns on the page.
     pub columns: usize,
+    /// Whether it shows a main result: a report begins with these figures.
+    pub leads: bool,
 }
 
 impl Figure {
@@ -292,6 +294,7 @@ impl Figure {
             heading: String::new(),
             charts: charts.into(),
             columns,
+            leads: false,
         }
     }
 
@@ -304,6 +307,7 @@ impl Figure {
             name: self.name.clone(),
             heading: self.heading.clone(),
             columns: self.columns,
+            leads: self.leads,
         }
     }
 

@@ -8,11 +8,47 @@ use crate::html::statistics::Statistics;
 use crate::html::{ReportError, Written, figures, pictures, write};
 use crate::measured::{self, MeasuredCurve};
 use fretwork_observe::chart::Figure;
+use fretwork_observe::quantity::Role;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Number of rows of the statistics of a run in the page.
 const ROWS: usize = 3000;
+
+/// Returns the main results of runs, each in a line: the values, and the difference of each run
+/// from the first with its significance.
+///
+/// # Errors
+/// A folder holds no run.
+pub fn differences(folders: &[PathBuf]) -> Result<Vec<String>, ReportError> {
+    let runs: Vec<RunFolder> = folders
+        .iter()
+        .map(|f| RunFolder::open(f))
+        .collect::<Result<_, _>>()?;
+    let mut lines = Vec::new();
+    for line in lines_of(&runs) {
+        let main = line.rows.iter().flatten().any(|r| r.role == Role::Headline);
+        let (Some(base), true) = (&line.rows[0], main) else {
+            continue;
+        };
+        let others = line.rows[1..].iter().zip(names(&runs).into_iter().skip(1));
+        let others: Vec<String> = others
+            .map(|(row, name)| {
+                let value = row.as_ref().map_or("none", |r| r.value.as_str());
+                let less = row.as_ref().and_then(|r| r.less(base));
+                let less = less.map_or(String::new(), |less| format!(" (difference {less})"));
+                format!("{name} {value}{less}")
+            })
+            .collect();
+        lines.push(format!(
+            "{}: {}; {}",
+            line.label,
+            base.value,
+            others.join("; ")
+        ));
+    }
+    Ok(lines)
+}
 
 /// Makes a page of several runs side by side, with measured curves in the figures of their kind,
 /// and these figures as PNG files beside it, `PAGE_NAME.png`.
@@ -150,8 +186,17 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
     )
 }
 
-/// Returns the table of results, one column per run.
-fn result_table(runs: &[RunFolder], names: &[String]) -> String {
+/// A result of several runs.
+struct ResultLine {
+    /// Heading of its group.
+    title: &'static str,
+    label: String,
+    /// The result of each run, where it has one.
+    rows: Vec<Option<ResultRow>>,
+}
+
+/// Returns the results of all runs, each once.
+fn lines_of(runs: &[RunFolder]) -> Vec<ResultLine> {
     let all: Vec<Vec<(&'static str, ResultRow)>> = runs
         .iter()
         .map(|run| {
@@ -168,24 +213,41 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
             keys.push(key);
         }
     }
-    if keys.is_empty() {
+    let line = |(title, label): (&'static str, String)| {
+        let own = |run: &Vec<(&str, ResultRow)>| {
+            let found = run.iter().find(|(t, r)| *t == title && r.label == label);
+            found.map(|(_, row)| row.clone())
+        };
+        ResultLine {
+            title,
+            rows: all.iter().map(own).collect(),
+            label,
+        }
+    };
+    keys.into_iter().map(line).collect()
+}
+
+/// Returns the table of results, with one column for each run, and one for the difference of each
+/// from the first.
+fn result_table(runs: &[RunFolder], names: &[String]) -> String {
+    let lines = lines_of(runs);
+    if lines.is_empty() {
         return "<p>No run has a summary of results.</p>\n".to_owned();
     }
     let mut rows = String::new();
     let mut group = "";
-    for (title, label) in &keys {
-        if *title != group {
-            group = title;
+    for line in &lines {
+        if line.title != group {
+            group = line.title;
             rows += &format!(
-                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{title}</th></tr>\n",
-                runs.len() + 1
+                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{group}</th></tr>\n",
+                2 * runs.len()
             );
         }
-        rows += &format!("<tr><th scope=\"row\">{}</th>", escape(label));
-        for run in &all {
-            let found = run.iter().find(|(t, r)| t == title && r.label == *label);
-            rows += &match found {
-                Some((_, r)) => format!(
+        rows += &format!("<tr><th scope=\"row\">{}</th>", escape(&line.label));
+        for row in &line.rows {
+            rows += &match row {
+                Some(r) => format!(
                     "<td>{} <span class=\"interval\">{}</span></td>",
                     value(&r.value),
                     escape(&r.interval)
@@ -193,10 +255,34 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
                 None => "<td>none</td>".to_owned(),
             };
         }
+        for row in &line.rows[1..] {
+            let both = row.as_ref().zip(line.rows[0].as_ref());
+            let less = both.and_then(|(row, base)| row.less(base));
+            rows += &format!(
+                "<td class=\"difference\">{}</td>",
+                escape(&less.unwrap_or_default())
+            );
+        }
         rows += "</tr>\n";
     }
-    let heads = std::iter::once("Result").chain(names.iter().map(String::as_str));
-    let heads: Vec<&str> = heads.collect();
+    let differences = names[1..].iter();
+    let differences = differences.map(|name| format!("{name} less {}", names[0]));
+    let heads = std::iter::once("Result".to_owned()).chain(names.iter().cloned());
+    let heads: Vec<String> = heads.chain(differences).collect();
     let table = table(" id=\"side-by-side\"", "Results", &heads, &rows);
-    format!("<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n{table}")
+    let random = runs
+        .iter()
+        .any(|run| run.summary["sample"]["random"] == true);
+    let seeds = match random {
+        true => {
+            " They are within one sample each: what other seeds would give is not in them, so that runs \
+             of different samples may differ by chance; a study over seeds tells."
+        }
+        false => "",
+    };
+    format!(
+        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause. A difference is significant \
+         (<em>they differ</em>) where it exceeds the half-widths of both, as the root of the sum of their \
+         squares.{seeds}</p>\n{table}"
+    )
 }

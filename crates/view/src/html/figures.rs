@@ -26,6 +26,8 @@ pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>)
         ));
         Vec::new()
     });
+    // Main results come first.
+    figures.sort_by_key(|f| !f.leads);
     for figure in &mut figures {
         *figure = figure.resolve(rows);
         let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MAX_CELLS);

@@ -19,7 +19,7 @@ mod scene;
 mod sheet;
 mod statistics;
 
-pub use compare::compare;
+pub use compare::{compare, differences};
 pub use laws::{LawInfo, LawParameter};
 pub use sheet::{Block, Section, Sheet, SheetTable};
 

@@ -52,7 +52,6 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     let scene = Scene::read(run, room, &mut gaps);
     page.viewer = scene.is_some();
     page.body = head(run, &gaps);
-    page.body += &section("results", "Results", &results::html(run, &statistics));
     if let Some(scene) = &scene {
         page.body += &section("scene", "Scene", &viewer(scene));
         page.data["scene"] = scene.head.clone();
@@ -68,6 +67,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
         "Figures",
         &figure_frames(&page.data["figures"], &statistics),
     );
+    page.body += &section("results", "Results", &results::html(run, &statistics));
     page.body += &after;
     page.blobs.push(("numbers".to_owned(), packed));
     let frames = scene.into_iter().flat_map(|s| s.frames).enumerate();
@@ -148,9 +148,9 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
     );
     out += "<nav aria-label=\"Sections\">";
     for (id, name) in [
-        ("results", "Results"),
         ("scene", "Scene"),
         ("figures", "Figures"),
+        ("results", "Results"),
         ("laws", "Materials and laws"),
         ("inputs", "Inputs"),
         ("provenance", "Provenance"),
@@ -158,7 +158,7 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
     ] {
         out += &format!("<a href=\"#{id}\">{name}</a>");
     }
-    out + "</nav>\n<main>\n" + &verdict::html(run, gaps)
+    out + "</nav>\n<main>\n" + &verdict::html(run, gaps) + &results::headline(run)
 }
 
 /// The parts after the figures.
