@@ -273,6 +273,8 @@ impl CircuitAccount {
                 M: flow(&|_, m| m),
             },
             bases: bases.collect(),
+            specific_rate: None,
+            archard_coefficient: None,
             pieces: self.state.pieces,
             largest_piece: self.state.largest,
             cost_share: circuit.cost.as_secs_f64() / wall.as_secs_f64().max(1e-9),

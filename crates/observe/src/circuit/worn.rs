@@ -65,12 +65,19 @@ impl WornGrains {
 
     /// Returns the density of the grains (kg/m^3); `None` if they are of several materials.
     fn density(&self, run: &dyn RunView) -> Option<f64> {
-        let Some(FieldValues::Whole(materials)) = run.grain_field("material") else {
+        let (materials, first_body) = ("material", "first_body");
+        let [
+            Some(FieldValues::Number(materials)),
+            Some(FieldValues::Number(first_body)),
+        ] = [materials, first_body].map(|name| run.grain_field(name))
+        else {
             return None;
         };
-        let first = *materials.first()?;
-        let alike = materials.iter().all(|m| *m == first);
-        let density = self.materials.densities.get(usize::try_from(first).ok()?);
+        let grains = materials.iter().zip(first_body);
+        let mut grains = grains.filter(|(_, first_body)| *first_body == 0.0);
+        let (first, _) = grains.next()?;
+        let alike = grains.all(|(material, _)| material == first);
+        let density = self.materials.densities.get(*first as usize);
         density.copied().filter(|d| alike && *d > 0.0)
     }
 }
