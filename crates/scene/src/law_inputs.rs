@@ -20,12 +20,17 @@ pub struct LawInput<'a> {
 }
 
 impl LawInput<'_> {
-    /// Returns the value as a reader writes it.
+    /// Returns the value as a reader writes it, with five digits where it has many.
     pub fn number(&self) -> String {
+        const WIDE: usize = 10;
         let value = self.value;
-        match value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        let text = match value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
             true => format!("{value}"),
             false => format!("{value:e}"),
+        };
+        match text.len() > WIDE {
+            true => format!("{value:.4e}"),
+            false => text,
         }
     }
 }

@@ -26,7 +26,10 @@ pub fn lines(s: &dyn RunView) -> Vec<CheckLine> {
             Some(ParameterOrigin::Default) => "default of the law",
             None => "not known",
         };
-        let origin: String = origin.chars().take(WIDE).collect();
+        let origin = match origin.char_indices().nth(WIDE) {
+            Some((cut, _)) => format!("{}...", &origin[..cut]),
+            None => origin.to_owned(),
+        };
         let unit = match input.field.unit.as_str() {
             "" => "-",
             unit => unit,

@@ -14,7 +14,7 @@ const OF_PROGRAMMERS: [&str; 6] = [
 ];
 
 /// A value of the case, the mistake with a mark at the place of the error, and what is said.
-const MISTAKES: [(&str, &str, &[&str]); 29] = [
+const MISTAKES: &[(&str, &str, &[&str])] = &[
     (
         "step: 1e-3, end",
         "step: 1e-3 ‸end",
@@ -30,7 +30,7 @@ const MISTAKES: [(&str, &str, &[&str]); 29] = [
         "step: 1 ‸mm",
         &["`time.step` is a time, and `mm` (m)", "`s`"],
     ),
-    ("step: 1e-3", "step: 1 ‸mss", &["`mss` is not a known unit"]),
+    ("step: 1e-3", "step: 1 ‸msq", &["`msq` is not a known unit"]),
     (
         "step: 1e-3",
         "step: ‸0,001",
@@ -57,6 +57,26 @@ const MISTAKES: [(&str, &str, &[&str]); 29] = [
         &["expected a number", "write `1 ms` without quotes"],
     ),
     ("step: 1e-3", "step: 1‸/1000", &["without arithmetic"]),
+    (
+        "step: 1e-3",
+        "step: ‸1.0e",
+        &["found the number `1.0e`; expected a number"],
+    ),
+    (
+        "y: Force(Table([(0.0, -1.0), (1.0, -2.0)]))",
+        "y: Force ‸-1.0",
+        &["the value of `Force` stands in parentheses: `Force(...)`"],
+    ),
+    (
+        "\"lid\",\n            material",
+        "‸\"lid,\n            material",
+        &["this text runs over several lines"],
+    ),
+    (
+        "gravity: [0.0, -9.81],",
+        "gravity: ‸[0.0, -9.81,",
+        &["this `[` is not closed by `]`"],
+    ),
     (
         "dimension: 2,",
         "dimension: 2, ‸# plane",
@@ -155,7 +175,7 @@ const MISTAKES: [(&str, &str, &[&str]); 29] = [
 
 #[test]
 fn messages_are_of_the_case_and_not_of_the_parser() {
-    for (old, new, words) in MISTAKES {
+    for &(old, new, words) in MISTAKES {
         let marked = with(PLANE, old, new);
         refused(&marked, words);
         let trial = Trial::new();
@@ -172,11 +192,6 @@ fn messages_are_of_the_case_and_not_of_the_parser() {
 #[test]
 fn brackets_that_are_not_closed() {
     for (old, new, words) in [
-        (
-            "gravity: [0.0, -9.81],",
-            "gravity: [0.0, -9.81,",
-            "this `[` is not closed by `]`",
-        ),
         (
             "friction: (body: \"lid\", along: 0, normal: 1),",
             "friction: (body: \"lid\", along: 0, normal: 1,",

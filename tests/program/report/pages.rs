@@ -268,7 +268,8 @@ fn without_views_there_is_a_small_page_and_without_a_wish_none() {
             || data(&page)["scene"]["times"].as_array().unwrap().len() <= 1
     );
     // The next run removes the page of the previous one.
-    let output = trial.call(&["run", "case.ron", "--out", "out", "--no-report"]);
+    let words = ["run", "case.ron", "--out", "out", "--no-report", "--force"];
+    let output = trial.call(&words);
     assert!(output.status.success(), "{}", text(&output));
     assert!(!trial.path("out/report.html").exists());
 }

@@ -129,6 +129,9 @@ impl Source {
             Ok(value) => return Ok(value),
             Err(error) => error,
         };
+        if let Some(fault) = self.tree.fault.as_ref().filter(|fault| fault.cause) {
+            return Err(self.error_in(&fault.span, fault.message.clone()));
+        }
         let mut source = Cow::Borrowed(self);
         for _ in 0..MAX_SPELLINGS {
             let Some((other, passed)) = source.respelled(&error) else {

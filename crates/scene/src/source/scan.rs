@@ -71,11 +71,21 @@ impl<'a> Scanner<'a> {
 
     /// Records an error. Only the first is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.record(span, message.into(), false);
+    }
+
+    /// Records an error that is the cause wherever the parser stops.
+    fn cause(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.record(span, message.into(), true);
+    }
+
+    fn record(&mut self, span: Range<usize>, message: String, cause: bool) {
         if self.fault.is_none() {
             self.fault = Some(SyntaxError {
                 at: self.at,
                 span,
-                message: message.into(),
+                message,
+                cause,
             });
         }
     }
@@ -210,7 +220,9 @@ impl<'a> Scanner<'a> {
         let based = ["0x", "0b", "0o"]
             .iter()
             .any(|base| self.rest().trim_start_matches(['+', '-']).starts_with(base));
-        if all > end && !typed && !based {
+        // An exponent without digits is no unit.
+        let exponent = all == end + 1 && adjacent.starts_with(['e', 'E']);
+        if all > end && !typed && !based && !exponent {
             let blanks = adjacent.len() - adjacent.trim_start().len();
             self.at += all;
             return ValueKind::Quantity(start + end + blanks..self.at);
@@ -370,7 +382,7 @@ impl<'a> Scanner<'a> {
                 // A list has no names, so that an earlier list was not closed.
                 Some(':') if shape == Shape::List => {
                     let message = format!("this `{opener}` is not closed by `{closer}`");
-                    self.fault(open..open + 1, message);
+                    self.cause(open..open + 1, message);
                 }
                 Some(_) => self.separator(entries.last(), shape),
             }
@@ -391,7 +403,11 @@ impl<'a> Scanner<'a> {
     fn separator(&mut self, before: Option<&Entry>, shape: Shape) {
         let word = before.filter(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Word));
         let name = word.map(|e| &self.text[e.value.span.clone()]);
-        let number = before.is_some_and(|e| matches!(e.value.kind, ValueKind::Number));
+        let kind = before.map(|e| &e.value.kind);
+        let number = matches!(kind, Some(ValueKind::Number));
+        let written = before.map(|e| &self.text[e.value.span.clone()]);
+        let text = written.filter(|_| matches!(kind, Some(ValueKind::Text)));
+        let variant = written.filter(|_| matches!(kind, Some(ValueKind::Word)));
         let named = matches!(shape, Shape::Tuple | Shape::Struct);
         let next = self.peek();
         let symbol = matches!(next, Some('=' | ';' | '#'));
@@ -402,6 +418,15 @@ impl<'a> Scanner<'a> {
             }
             (Some(c), Some(name)) if named && begins_value(c) => {
                 format!("a colon is missing after `{name}`")
+            }
+            (Some(c), None) if variant.is_some() && (c.is_ascii_digit() || "+-.".contains(c)) => {
+                let variant = variant.unwrap_or_default();
+                format!("the value of `{variant}` stands in parentheses: `{variant}(...)`")
+            }
+            (Some(_), None) if text.is_some_and(|text| text.contains('\n')) => {
+                let begins = before.map_or(0, |e| e.value.span.start);
+                let message = "this text runs over several lines: is its closing `\"` missing?";
+                return self.fault(begins..begins + 1, message);
             }
             _ => "a comma is missing before this".to_owned(),
         };
@@ -426,7 +451,7 @@ impl<'a> Scanner<'a> {
             "`{written}` has a decimal comma; write `{}`",
             written.replacen(',', ".", 1)
         );
-        self.fault(start..end, message);
+        self.cause(start..end, message);
     }
 
     /// Records a character that stands for another, and what is after it as a value of its own; a

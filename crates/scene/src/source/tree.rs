@@ -27,6 +27,8 @@ pub struct SyntaxError {
     pub span: Range<usize>,
     /// Message.
     pub message: String,
+    /// Whether it is the cause of any error that the parser reports.
+    pub cause: bool,
 }
 
 /// A value and its byte range, including its name and brackets.
