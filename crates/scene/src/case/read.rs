@@ -147,8 +147,8 @@ mod tests {
             ),
             (
                 "step: 1e-5",
-                "step: 10 |uss",
-                "`time.step` is a time, and `uss` is not a known unit",
+                "step: 10 |usq",
+                "`time.step` is a time, and `usq` is not a known unit",
             ),
             (
                 "Force(-500e3)",
