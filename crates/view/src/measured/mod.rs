@@ -101,7 +101,7 @@ const INKS: [(u8, u8, u8); 4] = [(28, 30, 34), (150, 30, 120), (0, 110, 60), (12
 /// Number of points up to which a measured curve is drawn with markers.
 const MARKED: usize = 300;
 /// Number of superimposed curves of the run that are kept beside a measured one.
-const KEPT: usize = 8;
+const KEPT: usize = 4;
 
 /// Adds measured curves to the charts of their kind.
 ///
@@ -195,12 +195,9 @@ fn by_colour(chart: &mut Chart) {
     let (last, kept) = (all.len().saturating_sub(1), all.len().min(KEPT));
     for k in 0..kept {
         let place = k * last / (kept - 1).max(1);
-        let mut series = all[place].clone();
+        let series = all[place].clone();
         let share = place as f64 / last.max(1) as f64;
         let [red, green, blue] = gradient(share);
-        if k != 0 && k + 1 != kept {
-            series.label.clear();
-        }
         chart.series.push(series.coloured(red, green, blue));
     }
     chart.colour_by_order = false;
@@ -270,7 +267,7 @@ mod tests {
         let labels: Vec<&str> = chart.series.iter().map(|s| s.label.as_str()).collect();
         assert_eq!(chart.series.len(), KEPT + 1);
         assert_eq!((labels[0], labels[KEPT - 1]), ("cycle 1", "cycle 40"));
-        assert!(labels[1].is_empty() && !chart.colour_by_order);
+        assert!(!chart.colour_by_order);
         assert!(chart.series.iter().all(|s| s.colour.is_some()));
         assert_eq!(chart.series[KEPT].points, [(1e-6, 100.0)]);
         assert!((chart.y_range.unwrap().1 - 105.0).abs() < 1e-9);
