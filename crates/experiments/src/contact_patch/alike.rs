@@ -181,7 +181,12 @@ pub(super) fn compare(
         materials(question, run, &mut found);
         under(contact, run, &mut found);
     }
-    Ok((Some(Conditions::of(first)), found.decide()?))
+    let mut notes = found.decide()?;
+    for run in &runs.list {
+        let (folder, unsure) = (run.folder.display(), run.unsure.iter());
+        notes.extend(unsure.map(|what| format!("ERROR NOT KNOWN: {folder}: {what}")));
+    }
+    Ok((Some(Conditions::of(first)), notes))
 }
 
 /// Returns the first run, and those whose case is another than by its seed.

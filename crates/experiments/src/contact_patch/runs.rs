@@ -27,6 +27,8 @@ pub(super) struct WindowRun {
     pub numerical: Option<f64>,
     /// Reasons why the run is not trustworthy; `None` for a trustworthy run.
     pub doubts: Option<Vec<String>>,
+    /// What a run whose error is not known to be small says of it.
+    pub unsure: Option<String>,
     /// Case of the run; an error says why it is not known.
     pub setup: Result<Setup, String>,
     /// Mean normal force (N; 2D N/m).
@@ -162,6 +164,10 @@ impl WindowRun {
                 .and_then(|e| e.scatter),
             numerical: numerical_error(&catalogue, COEFFICIENT),
             doubts: (!trusted).then(|| Course::of(summary).reasons),
+            unsure: summary["grade_sentence"]
+                .as_str()
+                .filter(|_| summary["grade"] == "consistent")
+                .map(str::to_owned),
             normal_force: setup::normal_force(folder, summary, start),
             motion: Motion::read(folder, summary, start),
             setup,
