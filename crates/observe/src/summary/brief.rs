@@ -234,7 +234,7 @@ mod tests {
     fn a_long_text_is_cut_at_a_clause_or_between_words() {
         assert_eq!(fitted("short", 10), "short");
         assert_eq!(
-            fitted("NOT KNOWN: the first clause, the second clause", 32),
+            fitted("NOT KNOWN: the first clause, the second clause", 34),
             "NOT KNOWN: the first clause ..."
         );
         assert_eq!(
@@ -260,7 +260,7 @@ mod tests {
         let labels: Vec<String> = lines.iter().map(label).collect();
         assert_eq!(
             labels,
-            ["friction", "", "wear", "energy", "", ""].map(str::to_owned)
+            ["friction", "", "", "wear", "energy", ""].map(str::to_owned)
         );
         assert!(lines.iter().all(|l| l.chars().count() <= COLUMNS));
         assert_eq!(within(2, &topics).len(), 2);

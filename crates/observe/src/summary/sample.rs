@@ -37,7 +37,7 @@ impl SampleFacts {
 const STUDIED: [(&str, &str, &str); 6] = [
     (
         "wheel-rail fretting of a third body",
-        "over 10 seeds of the shipped case energetic friction scatters by 2.3 %",
+        "over 10 seeds of the shipped case the energetic coefficient scatters by 2.3 %",
         "samples scatter by 2.3 %, as seeds do",
     ),
     (
@@ -52,8 +52,8 @@ const STUDIED: [(&str, &str, &str); 6] = [
     ),
     (
         "wheel-rail fretting on a degradable rail",
-        "over 3 seeds of one cycle of the shipped case friction scatters by 10 %, damage by 0.5 %",
-        "| wheel_rail_degradable, 1 cycle (3; inertia, alert 2) | friction | 0.146 | 10 |",
+        "over 3 seeds of the shipped case the energetic coefficient scatters by 10 %, damage by 0.5 %",
+        "| wheel_rail_degradable, 1 cycle (3; inertia, alert 2) | energetic coefficient | 0.146 | 10 |",
     ),
     (
         "collapse of a column of disks",
