@@ -94,8 +94,8 @@ const viewer = async (name, { errors, asked, page }, more = {}) => {
   const shows = async (k) => { await page.locator("#viewer .scrub").fill(String(k)); await page.locator("#viewer .scrub").dispatchEvent("input"); };
   await shows(0);
   check(`${name}: scrubbing shows the start`, /state 1 of/.test(await wait(time, (t) => /state 1 of/.test(t))), await time());
-  // Playing runs to the end and stops there. It is slow at first: the button is read before the end,
-  // on a busy machine too.
+  // Playing runs to the end and stops there. It is slow at first, so that the button is read before
+  // the end on a busy machine too.
   await select(page, "speed").selectOption("0.25");
   await page.locator("#viewer .play").click();
   check(`${name}: playing says so`, (await text(page, "#viewer .play")) === "Pause");
