@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 /// "Quantification of fretting damage", Wear 200 (1996) 186.
 pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 
+/// Slip ratio from which the whole contact slides, whatever the energy ratio: at the end of partial
+/// slip of an elastic sphere it is 0.26, by the loop of K. L. Johnson, Contact Mechanics (1985), 7.4.
+pub const SLIDING_SLIP_RATIO: f64 = 0.5;
+
 /// How a contact slides.
 ///
 /// # Examples
@@ -17,9 +21,9 @@ pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 /// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
 /// let (q, delta) = (30.0, 5e-6);
 /// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
+/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta), 1.0), SlipRegime::Gross);
 /// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
+/// assert_eq!(SlipRegime::of(0.05, 0.1), SlipRegime::Partial);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -34,9 +38,10 @@ pub enum SlipRegime {
 }
 
 impl SlipRegime {
-    /// Returns the regime of one cycle by its energy ratio.
-    pub fn of(energy_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION_ENERGY_RATIO {
+    /// Returns the regime of one cycle by its energy ratio, and by its slip ratio where impacts
+    /// raise the largest force: a contact that slips over half of the stroke slides.
+    pub fn of(energy_ratio: f64, slip_ratio: f64) -> Self {
+        if energy_ratio < TRANSITION_ENERGY_RATIO && slip_ratio < SLIDING_SLIP_RATIO {
             Self::Partial
         } else {
             Self::Gross
@@ -94,7 +99,7 @@ crate::described! {
         pub slip_ratio: f64 => ONE,
         /// Mean of |Q|/P at the reversals of the motion.
         pub reversal_ratio: f64 => ONE,
-        /// Partial or gross slip, from the energy ratio.
+        /// Partial or gross slip, from energy ratio and slip ratio.
         pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,

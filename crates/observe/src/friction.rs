@@ -191,7 +191,7 @@ impl Cycles {
         cycle.sliding = self.shape.aperture();
         cycle.slip_ratio = over(cycle.sliding, amplitude).min(1.0);
         cycle.reversal_ratio = self.shape.reversal();
-        cycle.regime = SlipRegime::of(cycle.energy_ratio);
+        cycle.regime = SlipRegime::of(cycle.energy_ratio, cycle.slip_ratio);
         let clock = &self.clock;
         cycle.friction_coefficient = match clock.period {
             Some(_) if cycle.regime == SlipRegime::Gross => self.shape.plateau(),

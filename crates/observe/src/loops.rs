@@ -18,12 +18,14 @@ pub struct Loop {
     stroke: [f64; 2],
     /// Number of reversals since the first cycle.
     turns: u32,
-    /// Integrals of |Q| and of P over the path (J), in equal parts of the strokes.
+    /// Work of Q, and integral of P over the path (J), in equal parts of the strokes.
     parts: Vec<[f64; 2]>,
 }
 
 /// Number of these parts.
 const PARTS: usize = 200;
+/// Part of the stroke that is left out after the elastic travel, where a loop has a rounded corner.
+const CORNER: f64 = 0.02;
 
 impl Loop {
     /// Starts the next cycle at the end of the last one.
@@ -47,7 +49,7 @@ impl Loop {
                 self.reversals.0 += q0.abs() / p0;
                 self.reversals.1 += 1;
             }
-            self.add_to_stroke(motion.abs(), turns, q, p);
+            self.add_to_stroke(motion, turns, q, p);
             if motion != 0.0 {
                 self.motion = motion;
             }
@@ -55,7 +57,8 @@ impl Loop {
         self.last = Some([displacement, q, p]);
     }
 
-    fn add_to_stroke(&mut self, path: f64, turns: bool, q: f64, p: f64) {
+    fn add_to_stroke(&mut self, motion: f64, turns: bool, q: f64, p: f64) {
+        let path = motion.abs();
         let [since, longest] = &mut self.stroke;
         if turns {
             self.turns = self.turns.saturating_add(1);
@@ -72,32 +75,34 @@ impl Loop {
         if *longest > 0.0 {
             self.parts.resize(PARTS, [0.0; 2]);
             let part = (middle / *longest * PARTS as f64) as usize;
-            let [force, load] = &mut self.parts[part.min(PARTS - 1)];
-            *force += q.abs() * path;
+            let [work, load] = &mut self.parts[part.min(PARTS - 1)];
+            *work += q * motion;
             *load += p * path;
         }
     }
 
-    /// Returns |Q|/P while the contact slides, weighted by the path; `None` before the first
+    /// Returns Q/P along the motion while the contact slides, weighted by the path; `None` before the first
     /// reversal. Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with the sliding
-    /// amplitude delta_0 ([`Self::aperture`]); the second half of the rest counts, without the
-    /// rounded corner of the loop. A stroke is the path between two reversals, the longest so far
-    /// (twice the path to the first reversal, before there are two).
+    /// amplitude delta_0 ([`Self::aperture`]). The middle of the stroke counts, where the slopes of
+    /// scars do not contribute: X. Jin, W. Sun, P. H. Shipway, Tribology International 102 (2016)
+    /// 561. That is its middle half, or less if it slides later; if it slides in the second half
+    /// alone, the second half of the part that slides. A stroke is the path between two reversals,
+    /// the longest so far (twice the path to the first reversal, before there are two).
     pub fn plateau(&self) -> Option<f64> {
         let slides = match self.crossings {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),
             _ => 1.0,
         };
-        let first = ((1.0 - 0.5 * slides) * PARTS as f64 + 1e-9) as usize;
-        let sum = |k: usize| {
-            self.parts
-                .iter()
-                .skip(first)
-                .map(|part| part[k])
-                .sum::<f64>()
+        let half = (slides - 0.5 - CORNER).min(0.25);
+        let [first, end] = match half > CORNER {
+            true => [0.5 - half, 0.5 + half],
+            false => [1.0 - 0.5 * slides, 1.0],
         };
-        let (force, load) = (sum(0), sum(1));
-        (load > 0.0).then(|| force / load)
+        let place = |share: f64| (share * PARTS as f64).round() as usize;
+        let parts = self.parts.iter().take(place(end)).skip(place(first));
+        let sum = |k: usize| parts.clone().map(|part| part[k]).sum::<f64>();
+        let (work, load) = (sum(0), sum(1));
+        (load > 0.0).then(|| work / load)
     }
 
     /// Returns half of the loop's width at Q = 0, the sliding amplitude (m).

@@ -55,7 +55,7 @@ fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
         let row = format!("<code>{key}</code></th><td>{value}</td><td>{unit}</td><td>{from}</td>");
         assert!(page.contains(&row), "{row}");
     }
-    let mu = summary["friction_coefficient"].as_f64().unwrap();
+    let mu = summary["energetic_coefficient"].as_f64().unwrap();
     assert!(
         page.contains(&format!("<span class=\"value\">{}", four_digits(mu))),
         "{mu}"
@@ -291,7 +291,7 @@ fn runs_side_by_side_show_what_differs() {
     for name in ["soft", "hard"] {
         let summary: Value =
             serde_json::from_str(&trial.page(&format!("{name}/summary.json"))).unwrap();
-        let mu = summary["friction_coefficient"].as_f64().unwrap();
+        let mu = summary["energetic_coefficient"].as_f64().unwrap();
         assert!(page.contains(&four_digits(mu)), "{name} {mu}");
     }
     assert_eq!(data(&page)["runs"].as_array().unwrap().len(), 2);

@@ -57,13 +57,15 @@ fn a_run_leaves_the_files_of_the_contract() {
         "bonds",
         "broken",
         "damage_ratio",
-        "friction_coefficient",
+        "energetic_coefficient",
         "plugins",
         "seed",
         "version",
     ] {
         assert!(!s[key].is_null(), "{key}");
     }
+    // None in partial slip.
+    assert!(s.get("friction_coefficient").is_some());
     for key in [
         "kinetic",
         "potential",

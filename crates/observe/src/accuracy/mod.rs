@@ -117,7 +117,7 @@ impl AccuracyTarget {
 
     fn name(self) -> &'static str {
         match self {
-            Self::Friction => "friction coefficient",
+            Self::Friction => "energetic coefficient",
             Self::FrictionEnergy => "energy of friction",
             Self::Damage => "damage",
             Self::Wear => "wear of first bodies",
