@@ -178,6 +178,9 @@ pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> 
     for text in law_inputs::undecided(case, s) {
         line("LAW DEFAULT", text);
     }
+    for text in law_inputs::unmeasured(case, s) {
+        line("NO WEAR RATE", text);
+    }
     let load = Load::of(case, simulation);
     groups(loaded, simulation, largest, &mut line);
     biaxial_groups(loaded, simulation, &mut line);

@@ -70,8 +70,8 @@ fn a_strip_between_two_blocks_has_the_load_of_both() {
     }
 }
 
-/// A sphere in partial slip has no coefficient of sliding, and beyond it, from a stroke of +-1.468 um,
-/// that of the law, mu 0.6, for any stroke.
+/// A sphere in partial slip has no coefficient of sliding, and beyond it, from a stroke of +-1.468
+/// um, that of the law, mu 0.6, for any stroke.
 #[test]
 fn partial_slip_has_no_coefficient_of_sliding() {
     let with = |amplitude: &str| {

@@ -81,8 +81,8 @@ fn a_default_that_decides_the_result_is_a_note() {
     assert!(!reasons.iter().any(|r| r.to_string().contains("DEFAULT")));
 }
 
-/// Sand and a lubricant have no measured wear coefficient: none is computed with that of the oxide of
-/// the steel.
+/// Sand and a lubricant have no measured wear coefficient: none is computed with that of the oxide
+/// of the steel.
 #[test]
 fn a_powder_without_a_measured_coefficient_has_no_wear_rate() {
     let case = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/wheel_rail_powder.ron");

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 
 /// Slip ratio from which the whole contact slides, whatever the energy ratio: at the end of partial
-/// slip of an elastic sphere it is 0.26, by the loop of K. L. Johnson, Contact Mechanics (1985), 7.4.
+/// slip of an elastic sphere it is 0.26, by the loop of K. L. Johnson, Contact Mechanics (1985),
+/// 7.4.
 pub const SLIDING_SLIP_RATIO: f64 = 0.5;
 
 /// How a contact slides.
@@ -110,8 +111,8 @@ crate::described! {
 }
 
 impl Cycle {
-    /// Returns normal force times the path of slip (J; J/m in 2D), of one cycle: the elastic part of
-    /// the path of a reciprocating motion is left out.
+    /// Returns normal force times the path of slip (J; J/m in 2D), of one cycle: the elastic part
+    /// of the path of a reciprocating motion is left out.
     pub fn slip_load_path(&self, reciprocates: bool) -> f64 {
         match reciprocates {
             true => self.load_path * self.slip_ratio,

@@ -56,8 +56,8 @@ impl LayerBalance {
         }
     }
 
-    /// Adds the last step; the work of sliding of a friction test is kept separately. Where the rubbed body deforms, the work of all other drives
-    /// is that of the ledger.
+    /// Adds the last step; the work of sliding of a friction test is kept separately. Where the
+    /// rubbed body deforms, the work of all other drives is that of the ledger.
     pub fn follow(&mut self, run: &dyn RunView, test: Option<Rubbing<'_>>) {
         let external = run.energies().external_work;
         let deforms = test.filter(|t| matches!(t.body.part, SlidingPart::System { .. }));

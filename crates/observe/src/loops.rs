@@ -81,13 +81,14 @@ impl Loop {
         }
     }
 
-    /// Returns Q/P along the motion while the contact slides, weighted by the path; `None` before the first
-    /// reversal. Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with the sliding
-    /// amplitude delta_0 ([`Self::aperture`]). The middle of the stroke counts, where the slopes of
-    /// scars do not contribute: X. Jin, W. Sun, P. H. Shipway, Tribology International 102 (2016)
-    /// 561. That is its middle half, or less if it slides later; if it slides in the second half
-    /// alone, the second half of the part that slides. A stroke is the path between two reversals,
-    /// the longest so far (twice the path to the first reversal, before there are two).
+    /// Returns Q/P along the motion while the contact slides, weighted by the path; `None` before
+    /// the first reversal. Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with
+    /// the sliding amplitude delta_0 ([`Self::aperture`]). The middle of the stroke counts, where
+    /// the slopes of scars do not contribute: X. Jin, W. Sun, P. H. Shipway, Tribology
+    /// International 102 (2016) 561. That is its middle half, or less if it slides later; if it
+    /// slides in the second half alone, the second half of the part that slides. A stroke is the
+    /// path between two reversals, the longest so far (twice the path to the first reversal, before
+    /// there are two).
     pub fn plateau(&self) -> Option<f64> {
         let slides = match self.crossings {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),

@@ -196,8 +196,8 @@ pub(crate) fn show_flows(found: &mut Findings) {
     });
 }
 
-/// K above which wear is more severe than that of unlubricated metals: J. F. Archard, W. Hirst, Proc.
-/// R. Soc. A 236 (1956) 397, measured 2e-7 to 2e-2.
+/// K above which wear is more severe than that of unlubricated metals: J. F. Archard, W. Hirst,
+/// Proc. R. Soc. A 236 (1956) 397, measured 2e-7 to 2e-2.
 const MOST_SEVERE: f64 = 2e-2;
 
 /// Returns Archard's coefficient as text, with the hardness.
@@ -261,8 +261,8 @@ struct WearObserverState {
 
 impl Wear {
     /// Creates the observer of wear of first bodies, with flows along an axis from a time (s) on;
-    /// the masses of bodies are too large by `scaling`; `wears` says whether an interface has a wear
-    /// law.
+    /// the masses of bodies are too large by `scaling`; `wears` says whether an interface has a
+    /// wear law.
     pub fn new(
         [start, scaling]: [f64; 2],
         materials: WearMaterials,

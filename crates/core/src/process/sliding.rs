@@ -298,8 +298,8 @@ struct Group {
 }
 
 impl Group {
-    /// Returns whether it presses the body upwards, or downwards, along the normal axis: a side wall,
-    /// whose friction acts along that axis, does not.
+    /// Returns whether it presses the body upwards, or downwards, along the normal axis: a side
+    /// wall, whose friction acts along that axis, does not.
     fn presses(&self, up: bool) -> bool {
         let faces = self.facing.abs() > 0.5 * self.contacts;
         faces && self.push * self.sign() > 0.0 && (self.facing > 0.0) == up

@@ -93,8 +93,8 @@ crate::described! {
         pub rates: Rates = part::<Rates>(),
         /// First bodies.
         pub bases: Vec<Base> = parts::<Base>(),
-        /// Specific wear rate k = V/(P s) of the grains that came loose, s the distance of slip since
-        /// the start of the account; null without a friction test, or with grains of several
+        /// Specific wear rate k = V/(P s) of the grains that came loose, s the distance of slip
+        /// since the start of the account; null without a friction test, or with grains of several
         /// materials.
         pub specific_rate: Option<f64> => WEAR_RATE,
         /// Archard's coefficient K = k H of these grains, with the hardness H of the softest first

@@ -19,9 +19,9 @@ pub struct Occupied {
 }
 
 /// Returns the results in a folder that a run with this identity would replace and not give again:
-/// those of other inputs or of another version, of a run that is not at its end, of one with another
-/// end, and files that cannot be read. The same finished run, and a run that recorded nothing, may be
-/// replaced. The folder should be locked.
+/// those of other inputs or of another version, of a run that is not at its end, of one with
+/// another end, and files that cannot be read. The same finished run, and a run that recorded
+/// nothing, may be replaced. The folder should be locked.
 pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
     let path = folder.join("results.h5");
     if !path.exists() {
