@@ -286,7 +286,7 @@ fn run(folder: &Path, out: &str, sets: &[&str]) -> String {
     let out = folder.join(out);
     let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["run", "--quiet"])
+        .arg("run")
         .arg(&case)
         .arg("--out")
         .arg(&out)
@@ -342,7 +342,7 @@ fn runs_are_compared_with_each_other_and_with_the_patch() {
             half(),
             &[&one, &other][..],
             "inputs",
-            "`interfaces.0.parameters.contact",
+            "`interfaces.contact.parameters.contact",
         ),
         (
             hard,

@@ -6,12 +6,9 @@ use crate::runs::stored::numerical_error;
 use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::unit::{VOLUME, WEAR_RATE};
 use fretwork_observe::quantity::{Catalogue, Entry, Role, Topic, find};
-use fretwork_observe::summary::Course;
+use fretwork_observe::summary::{Course, SlidingTest};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// Path of the coefficient of sliding in a summary.
-const COEFFICIENT: &str = "friction_coefficient";
 
 /// A run of a window.
 pub(super) struct WindowRun {
@@ -112,34 +109,14 @@ fn of(folder: &Path) -> Result<WindowRun, String> {
         .map_err(|why| format!("friction of a run: {}: {why}", folder.display()))
 }
 
-/// Returns why a run has no coefficient of sliding, if it has none.
-fn without_sliding(summary: &Value) -> Option<String> {
-    let regime = find(summary, "fretting.regime").and_then(Value::as_str);
-    let cycles = summary["cycles"].as_array();
-    let last = || cycles?.last()?["regime"].as_str();
-    let known = summary[COEFFICIENT].is_number();
-    match regime.or_else(|| last().filter(|_| !known)) {
-        Some("partial") => Some(
-            "the run is in partial slip: it has no coefficient of sliding; displace it further, or give friction".into(),
-        ),
-        _ if known => None,
-        Some(regime) => Some(format!(
-            "the run is in the regime `{regime}`: it has no coefficient of sliding; displace it further, or give friction"
-        )),
-        None => Some("it has no friction coefficient; its case needs `friction`".into()),
-    }
-}
-
 impl WindowRun {
     /// Reads the coefficient of sliding, the specific wear rates in the list of bodies, and the
     /// error of the worn volume.
     fn of(folder: &Path, summary: &Value) -> Result<Self, String> {
-        if let Some(why) = without_sliding(summary) {
-            return Err(why);
-        }
+        let test = SlidingTest::of(summary)?;
         let catalogue = Catalogue::of(summary);
         let shown = catalogue.shown(summary, Role::Secondary);
-        let friction = catalogue.entry(COEFFICIENT);
+        let friction = catalogue.entry(SlidingTest::COEFFICIENT);
         let wear = || shown.iter().filter(|(entry, _)| entry.topic == Topic::Wear);
         let rate = |(entry, value): &(&Entry, &Value)| {
             let (body, _) = entry
@@ -158,18 +135,20 @@ impl WindowRun {
         Ok(Self {
             folder: folder.to_owned(),
             identity: summary["identity"].as_str().map(str::to_owned),
-            friction: summary[COEFFICIENT].as_f64().unwrap_or_default().abs(),
+            friction: test.coefficient.abs(),
             scatter: friction
                 .and_then(|f| f.estimate.as_ref())
                 .and_then(|e| e.scatter),
-            numerical: numerical_error(&catalogue, COEFFICIENT),
+            numerical: numerical_error(&catalogue, SlidingTest::COEFFICIENT),
             doubts: (!trusted).then(|| Course::of(summary).reasons),
             unsure: summary["grade_sentence"]
                 .as_str()
                 .filter(|_| summary["grade"] == "consistent")
                 .map(str::to_owned),
-            normal_force: setup::normal_force(folder, summary, start),
-            motion: Motion::read(folder, summary, start),
+            normal_force: test
+                .normal_force
+                .or_else(|| setup::normal_force(folder, start)),
+            motion: Motion::read(folder, test.reciprocates, start),
             setup,
             wear: wear().filter_map(rate).collect(),
             wear_error: error.zip(worn.filter(|v| *v > 0.0)).map(|(e, v)| e / v),
@@ -211,36 +190,4 @@ pub(super) fn wear_rates(runs: &[WindowRun]) -> Vec<(String, Range)> {
         out.extend(all);
     }
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn only_what_slides_has_a_coefficient() {
-        let of = |mu: Value, regime: Value, cycle: &str| {
-            let fretting = match regime {
-                Value::Null => Value::Null,
-                regime => json!({"regime": regime}),
-            };
-            without_sliding(&json!({
-                COEFFICIENT: mu, "fretting": fretting, "cycles": [{"regime": cycle}],
-            }))
-        };
-        let says = |found: Option<String>, words: &str| found.is_some_and(|w| w.contains(words));
-        let partial = "in partial slip: it has no coefficient of sliding";
-        assert!(says(of(Value::Null, json!("partial"), "partial"), partial));
-        assert!(says(of(json!(0.008), json!("partial"), "partial"), partial));
-        assert!(says(of(Value::Null, Value::Null, "partial"), partial));
-        assert!(says(of(Value::Null, json!("mixed"), "gross"), "`mixed`"));
-        assert!(says(
-            without_sliding(&json!({})),
-            "its case needs `friction`"
-        ));
-        // The cycles of a motion in one direction have no regime of fretting.
-        assert_eq!(of(json!(0.3), Value::Null, "partial"), None);
-        assert_eq!(of(json!(0.3), json!("mixed"), "gross"), None);
-    }
 }

@@ -5,7 +5,6 @@ use crate::runs::output::column;
 use fretwork_scene::source::Source;
 use fretwork_scene::{Case, inputs};
 use fretwork_store::results::Reader;
-use serde_json::Value;
 use std::path::Path;
 
 /// Groups of inputs that change no result of a run, or only its sample.
@@ -98,15 +97,10 @@ fn since(folder: &Path, name: &str, start: f64) -> Option<Vec<f64>> {
     Some(late.map(|(_, v)| v).collect()).filter(|list: &Vec<f64>| list.len() > 1)
 }
 
-/// Returns the mean normal force of the friction test (N; 2D N/m), of its complete cycles, or else
-/// of its rows.
-pub(super) fn normal_force(folder: &Path, summary: &Value, start: f64) -> Option<f64> {
-    let mean =
-        |all: Vec<f64>| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
-    let cycles = summary["cycles"].as_array().into_iter().flatten();
-    let complete = cycles.filter(|c| c["complete"] != false);
-    let forces = complete.filter_map(|c| c["normal_force"].as_f64());
-    mean(forces.collect()).or_else(|| mean(since(folder, "P", start)?))
+/// Returns the mean normal force of the rows of the friction test (N; 2D N/m).
+pub(super) fn normal_force(folder: &Path, start: f64) -> Option<f64> {
+    let rows = since(folder, "P", start)?;
+    Some(rows.iter().sum::<f64>() / rows.len() as f64)
 }
 
 /// Motion of the moved body in the friction test.
@@ -122,12 +116,12 @@ pub(super) struct Motion {
 
 impl Motion {
     /// Reads the motion from the statistics of a run.
-    pub fn read(folder: &Path, summary: &Value, start: f64) -> Option<Self> {
+    pub fn read(folder: &Path, reciprocates: bool, start: f64) -> Option<Self> {
         let (time, delta) = (
             since(folder, "time", start)?,
             since(folder, "delta", start)?,
         );
-        Self::of(&time, &delta, !summary["fretting"].is_null())
+        Self::of(&time, &delta, reciprocates)
     }
 
     fn of(time: &[f64], delta: &[f64], reciprocates: bool) -> Option<Self> {

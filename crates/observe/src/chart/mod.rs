@@ -287,6 +287,11 @@ impl Figure {
     /// Name of the file in the folder of a run with its figures as data, a list in JSON.
     pub const FILE: &str = "figures.json";
 
+    /// Name of the figure of the loops of a friction test.
+    pub const LOOPS: &str = "fretting_loops";
+    /// Name of the figure of friction by cycle, or against the displacement.
+    pub const FRICTION: &str = "friction_coefficient";
+
     /// Creates a figure of charts on one page, in a number of columns.
     pub fn new(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self {

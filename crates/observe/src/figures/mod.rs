@@ -8,7 +8,7 @@ pub(crate) mod jump;
 pub(crate) mod scars;
 
 use self::error::{error_bar, estimated};
-use crate::chart::{Axis, Chart, Part, Series, Style, Value};
+use crate::chart::{Axis, Chart, Figure, Part, Series, Style, Value};
 use crate::cycle::Cycle;
 use crate::friction::Cycles;
 use crate::output::Output;
@@ -83,7 +83,7 @@ pub(crate) fn damage_ratio(known: &Estimate) -> Output {
 pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     let mut out = Vec::new();
     if cycles.oscillates() {
-        out.push(Output::leading("fretting_loops", loops(cycles), 2));
+        out.push(Output::leading(Figure::LOOPS, loops(cycles), 2));
     }
     let mut chart = friction(cycles);
     estimated(&mut chart, "friction coefficient", known, "");
@@ -92,7 +92,7 @@ pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
         *top = top.max(1.05 * end);
     }
     chart = chart.with_unless_zero(bar);
-    out.push(Output::leading("friction_coefficient", [chart], 1));
+    out.push(Output::leading(Figure::FRICTION, [chart], 1));
     let forces = [("tangential force Q", "Q"), ("normal force P", "P")];
     let over_time = [
         history("Friction over time", Axis::new("|Q|/P", ""), &[("", "mu")])
@@ -286,7 +286,7 @@ pub(crate) fn energy_balance(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chart::{Figure, TableColumns};
+    use crate::chart::TableColumns;
     use crate::statistics::{Column, Table};
 
     fn table(names: &[&str], rows: Vec<f64>) -> Table {

@@ -6,6 +6,7 @@ mod course;
 mod estimate;
 mod grade;
 mod sample;
+mod sliding;
 mod text;
 mod time_spent;
 
@@ -14,6 +15,7 @@ pub use self::course::{Course, RELATIVE_RESIDUAL, residual};
 pub use self::estimate::{Estimate, Uncertainty};
 pub use self::grade::{Grade, HeadlineError};
 pub use self::sample::SampleFacts;
+pub use self::sliding::SlidingTest;
 pub use self::time_spent::TimeSpent;
 
 use crate::quantity::unit::{ONE, SECOND, WORD};

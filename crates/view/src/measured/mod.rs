@@ -38,12 +38,12 @@ impl MeasuredCurve {
     fn belongs(&self, figure: &str, place: usize, chart: &Chart) -> bool {
         let pure = |unit: &str| matches!(unit, "" | "1");
         match &self.kind {
-            Kind::Loop => figure == "fretting_loops" && !pure(&chart.y.unit),
+            Kind::Loop => figure == Figure::LOOPS && !pure(&chart.y.unit),
             Kind::Ratio => {
-                let loops = figure == "fretting_loops" || figure == "friction_coefficient";
+                let loops = figure == Figure::LOOPS || figure == Figure::FRICTION;
                 loops && pure(&chart.y.unit) && !pure(&chart.x.unit)
             }
-            Kind::Cycles => figure == "friction_coefficient" && pure(&chart.x.unit),
+            Kind::Cycles => figure == Figure::FRICTION && pure(&chart.x.unit),
             Kind::Scar(body) => {
                 let scar = figure.strip_prefix("scar_");
                 place == 0 && scar.is_some_and(|s| body.as_ref().is_none_or(|b| b == s))
@@ -254,7 +254,7 @@ mod tests {
         }
         chart.colour_by_order = true;
         chart.y_range = Some((0.0, 50.0));
-        let mut figures = [Figure::new("fretting_loops", [chart], 2)];
+        let mut figures = [Figure::new(Figure::LOOPS, [chart], 2)];
         let newtons = curve(Kind::Loop, ["um", "N"], &[(1.0, 1.0)]);
         assert!(
             add(&mut figures, &[newtons.clone()])
