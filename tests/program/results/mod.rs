@@ -226,7 +226,8 @@ fn a_folder_that_cannot_be_written_is_said() {
 fn a_biaxial_test_leaves_its_figure_and_its_columns() {
     let out = folder("biaxial");
     let sets = ["--set", "time.end=0.42", "--set", "output.figures=true"];
-    let (output, s) = run("cases/verification/biaxial.ron", &out, &sets);
+    let words = [&sets[..], &["--verbose"]].concat();
+    let (output, s) = run("cases/verification/biaxial.ron", &out, &words);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{said}");
     assert!(said.contains("friction angle"), "{said}");
