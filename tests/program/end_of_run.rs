@@ -96,10 +96,7 @@ fn check_says_in_at_most_15_lines_what_to_look_at() {
         root(),
         &["check", "cases/wheel_rail_fretting.ron", "--no-timing"],
     );
-    assert!(
-        text.contains("look at              1 bonds of third_body:"),
-        "{text}"
-    );
+    assert!(text.contains("look at  1 bonds of third_body:"), "{text}");
     assert!(text.contains("NOT RESOLVED"), "{text}");
 }
 

@@ -11,6 +11,9 @@ const LOOK_AT: usize = 3;
 /// Columns of the labels, with the margin.
 const MARGIN: usize = 23;
 
+/// Columns before the text of a thing to look at, which is long.
+const LOOK_MARGIN: usize = 13;
+
 /// Labels of the lines on the scene, and how many of each are shown.
 const SCENE: [(&str, usize); 11] = [
     ("steps", 1),
@@ -47,13 +50,13 @@ pub(super) fn text(title: String, lines: &[CheckLine], time: Option<CheckLine>) 
     let look = look_at(lines.iter().chain(&time));
     let open = look.len().saturating_sub(LOOK_AT);
     let look: Vec<String> = match look.is_empty() {
-        true => vec![line_of("look at", "nothing stands out")],
+        true => vec!["  look at  nothing stands out".to_owned()],
         false => {
             let look = look.iter().take(LOOK_AT).enumerate();
             let look = look.map(|(k, text)| {
                 let label = if k == 0 { "look at" } else { "" };
-                let text = fitted(text, COLUMNS - MARGIN - 2);
-                line_of(label, &format!("{} {text}", k + 1))
+                let text = fitted(text, COLUMNS - LOOK_MARGIN);
+                format!("  {label:<9}{} {text}", k + 1)
             });
             look.collect()
         }

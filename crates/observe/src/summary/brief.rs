@@ -129,7 +129,7 @@ fn flow(entries: &[String], columns: usize) -> Vec<String> {
     lines
 }
 
-/// Cuts a text to a number of columns, at the end of a clause if it keeps half of the text, and
+/// Cuts a text to a number of columns, at the end of a clause if it keeps most of them, and
 /// otherwise between words.
 pub fn fitted(text: &str, columns: usize) -> String {
     if text.chars().count() <= columns {
@@ -138,7 +138,7 @@ pub fn fitted(text: &str, columns: usize) -> String {
     let kept: String = text.chars().take(columns - 4).collect();
     let clause = [". ", "; ", ": ", ", "].iter();
     let clause = clause.filter_map(|end| kept.rfind(end)).max();
-    let end = clause.filter(|end| *end > kept.len() / 2);
+    let end = clause.filter(|end| 4 * *end > 3 * kept.len());
     let end = end.or_else(|| kept.rfind(' ')).unwrap_or(kept.len());
     format!("{} ...", kept[..end].trim_end_matches([';', ':', ',']))
 }
