@@ -25,6 +25,9 @@ const TOPICS: [(Topic, &str); 6] = [
     (Topic::Energy, "energy"),
 ];
 
+/// Number of topics at the beginning of these that come before the others.
+const MAIN: usize = 4;
+
 impl Summary {
     /// Returns the lines of the text without details.
     pub(super) fn brief(&self) -> Vec<String> {
@@ -83,31 +86,31 @@ fn given(of: &GivenRange) -> String {
     )
 }
 
-/// Returns the lines of the topics: one of each, and second ones, and more of measures, as long as
-/// there is room.
+/// Returns the lines of the topics: one of each main topic, second ones of these, one of each other
+/// topic, and more as long as there is room.
 fn within(most: usize, topics: &[(&str, Vec<String>)]) -> Vec<String> {
-    let flowed = topics.iter().map(|(label, entries)| {
-        let lines = flow(entries, COLUMNS - MARGIN);
-        (*label, lines)
-    });
-    let flowed: Vec<(&str, Vec<String>)> = flowed.filter(|(_, l)| !l.is_empty()).collect();
-    let mut allowed = vec![1; flowed.len()];
-    let mut left = most.saturating_sub(flowed.len());
-    for round in 1..most {
-        for (k, (_, lines)) in flowed.iter().enumerate() {
-            if left > 0 && lines.len() > round {
-                (allowed[k], left) = (allowed[k] + 1, left - 1);
-            }
-        }
+    let flowed = topics.iter();
+    let flowed: Vec<Vec<String>> = flowed
+        .map(|(_, entries)| flow(entries, COLUMNS - MARGIN))
+        .collect();
+    // Places of the lines: rank, topic, line of the topic.
+    let mut places: Vec<[usize; 3]> = Vec::new();
+    for (topic, lines) in flowed.iter().enumerate() {
+        // The first lines of other topics come before the third ones of main topics.
+        let rank = |line: usize| match topic < MAIN {
+            true => line + usize::from(line >= 2),
+            false => line + 2,
+        };
+        places.extend((0..lines.len()).map(|line| [rank(line), topic, line]));
     }
-    let mut out = Vec::new();
-    for ((label, lines), count) in flowed.iter().zip(allowed) {
-        for (k, line) in lines.iter().take(count).enumerate() {
-            out.push(labelled(if k == 0 { label } else { "" }, line));
-        }
-    }
-    out.truncate(most);
-    out
+    places.sort_unstable();
+    places.truncate(most);
+    places.sort_unstable_by_key(|[_, topic, line]| [*topic, *line]);
+    let line = |[_, topic, line]: [usize; 3]| {
+        let label = if line == 0 { topics[topic].0 } else { "" };
+        labelled(label, &flowed[topic][line])
+    };
+    places.into_iter().map(line).collect()
 }
 
 fn labelled(label: &str, text: &str) -> String {
@@ -143,13 +146,13 @@ pub fn fitted(text: &str, columns: usize) -> String {
     format!("{} ...", kept[..end].trim_end_matches([';', ':', ',']))
 }
 
-/// Returns the results of a topic: main results before others, those with half-widths first.
+/// Returns the results of a topic: those with half-widths first, main results before others.
 fn entries(all: &Findings, topic: Topic) -> Vec<String> {
     let own = |q: &&Quantity| {
         q.topic == topic && q.role <= Role::Secondary && q.wording != Wording::Silent
     };
     let mut list: Vec<&Quantity> = all.all().iter().filter(own).collect();
-    list.sort_by_key(|q| (q.role, q.estimate.is_none()));
+    list.sort_by_key(|q| (q.estimate.is_none(), q.role));
     let dimension = all.dimension();
     let mut causes = topic != Topic::Energy;
     let mut out = Vec::new();

@@ -133,9 +133,10 @@ impl HeadlineError {
         let unknown = unknown.join(", ");
         let of = format!("error of {}", self.label);
         match (known.is_empty(), unknown.is_empty()) {
-            (true, _) => format!("{of}: not known, by {unknown}"),
+            (true, _) => format!("{of} not known by {unknown}"),
             (false, true) => format!("{of}: {known}"),
-            (false, false) => format!("{of}: {known}; not known: {unknown}"),
+            // What is not known comes first, since a line may end before the causes do.
+            (false, false) => format!("{of} not known by {unknown}; known: {known}"),
         }
     }
 }
@@ -186,7 +187,7 @@ mod tests {
         assert_eq!(error.grade(), Grade::ErrorKnown);
         assert_eq!(
             error.sentence(),
-            "error of friction: step 0.50 %, tolerance 0.10 %, within this sample (3 cycles) 1.0 %; not known: seeds"
+            "error of friction not known by seeds; known: step 0.50 %, tolerance 0.10 %, within this sample (3 cycles) 1.0 %"
         );
         for (estimate, says) in [
             (
@@ -194,21 +195,21 @@ mod tests {
                     step: None,
                     ..known()
                 },
-                "not known: step, seeds",
+                "not known by step, seeds",
             ),
             (
                 Estimate {
                     step: Some(0.5),
                     ..known()
                 },
-                "not known: step, seeds",
+                "not known by step, seeds",
             ),
             (
                 Estimate {
                     scatter: None,
                     ..known()
                 },
-                "not known: sample, seeds",
+                "not known by sample, seeds",
             ),
             (
                 Estimate {

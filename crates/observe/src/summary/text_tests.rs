@@ -135,7 +135,7 @@ fn a_trusted_run_begins_with_its_grade_and_what_is_known_of_the_error() {
     let says = &summary.run.grade_sentence;
     assert_eq!(
         says,
-        "error of friction coefficient: within this sample (25 cycles) 0.15 %; not known: step, tolerance, seeds"
+        "error of friction coefficient not known by step, tolerance, seeds; known: within this sample (25 cycles) 0.15 %"
     );
     place(
         &text,
