@@ -70,7 +70,7 @@ fn each_parameter_has_its_value_its_unit_and_its_origin() {
 fn a_default_that_decides_the_result_is_a_note() {
     let mu = "mu = 0.3 of the contact law `coulomb` (dry) is one of the defaults of the law";
     let k = "k = 1e-14 1/Pa of the wear law `archard` (dry)";
-    let text = call("", &["check", "--no-timing"]);
+    let text = call("", &["check", "--no-timing", "--verbose"]);
     assert!(text.contains("LAW DEFAULT") && text.contains(mu), "{text}");
     let summary: Value = serde_json::from_str(&call("", &["run", "--json"])).unwrap();
     let warnings = summary["warnings"].as_array().unwrap().iter();
@@ -93,7 +93,7 @@ fn a_powder_without_a_measured_coefficient_has_no_wear_rate() {
     ] {
         let set = format!("materials.powder={powder}");
         let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-            .args(["check", case, "--no-timing", "--set", &set])
+            .args(["check", case, "--no-timing", "--verbose", "--set", &set])
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(0));
