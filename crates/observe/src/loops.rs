@@ -24,7 +24,11 @@ pub struct Loop {
 
 /// Number of these parts.
 const PARTS: usize = 200;
-/// Part of the stroke that is left out after the elastic travel, where a loop has a rounded corner.
+/// Path from a reversal to sliding over the elastic travel 2 (delta* - delta_0) that the loop's
+/// width at Q = 0 shows: 1 for a spring, 1/(2 (1 - (1/2)^(2/3))) for a sphere on a flat, by
+/// Mindlin's loop.
+const ROUNDED: f64 = 1.36;
+/// Part of the stroke that is left out after that.
 const CORNER: f64 = 0.02;
 
 impl Loop {
@@ -94,7 +98,7 @@ impl Loop {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),
             _ => 1.0,
         };
-        let half = (slides - 0.5 - CORNER).min(0.25);
+        let half = (0.5 - ROUNDED * (1.0 - slides) - CORNER).min(0.25);
         let [first, end] = match half > CORNER {
             true => [0.5 - half, 0.5 + half],
             false => [1.0 - 0.5 * slides, 1.0],
