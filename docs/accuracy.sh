@@ -2,9 +2,9 @@
 # What the friction of the fretting cases depends on: one cycle, several seeds, one setting at a
 # time. Groups: rigid and compliant, disks with rigid and with compliant contacts
 # (cases/wheel_rail_rigid.ron); angular, polygons with compliant contacts
-# (cases/wheel_rail_fretting.ron). Prints a line a run: group, setting, seed, friction coefficient,
-# plateau Q/P, damage ratio, position correction (J/m), external work (J/m), energy released by
-# broken bonds over what their laws take, seconds of processor time.
+# (cases/wheel_rail_fretting.ron). Prints a line a run: group, setting, seed, energetic coefficient,
+# coefficient of sliding, damage ratio, position correction (J/m), external work (J/m), energy
+# released by broken bonds over what their laws take, seconds of processor time.
 # Usage: docs/accuracy.sh [FOLDER [GROUP...]], from the root of the repository, after `cargo build
 # --release`; needs python3; disks take ten minutes on two cores, angular two and a half hours of
 # one. SEEDS="7 8" takes other seeds than each group's own.
@@ -34,7 +34,7 @@ run() {
     "$program" run "cases/$case.ron" --out "$name" --set "seed=$seed" --set output.frames=0 --set output.views=0 "$@" \
         >"$name.log" 2>&1 || true
     local of="$name/summary.json"
-    echo "$group $setting $seed $(number "$of" friction_coefficient) $(number "$of" plateau_friction) $(number "$of" damage_ratio)" \
+    echo "$group $setting $seed $(number "$of" energetic_coefficient) $(number "$of" friction_coefficient) $(number "$of" damage_ratio)" \
         "$(number "$of" energy correction) $(number "$of" energy external_work) $(number "$of" fracture released_over_declared) $(number "$of" cpu_seconds)"
 }
 

@@ -43,7 +43,7 @@ def force(creepage):
         for axis, length in zip("xy", size):
             sets.append(f"half_spaces.{body}.{axis}=(from: {-wide * length:e}, to: {wide * length:e}, size: {length:e})")
     sets += ["output.every=1", "output.views=0", "output.figures=false"]
-    call = [PROGRAM, "run", "cases/verification/elastic/creep_curve.ron", "--out", folder]
+    call = [PROGRAM, "run", "cases/verification/elastic/creep_curve.ron", "--out", folder, "--force"]
     for each in sets:
         call += ["--set", each]
     subprocess.run(call, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

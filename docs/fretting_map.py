@@ -122,7 +122,7 @@ def run(shape, load, delta, name):
         "output.frames=0",
         "output.figures=false",
     ]
-    words = [PROGRAM, "run", f"cases/{shape.case}.ron", "--out", folder]
+    words = [PROGRAM, "run", f"cases/{shape.case}.ron", "--out", folder, "--force"]
     for each in sets:
         words += ["--set", each]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -141,7 +141,7 @@ def main():
     for name, case in CASES.items():
         out = os.path.join(options.folder, name)
         if not os.path.exists(os.path.join(out, "summary.json")):
-            subprocess.run([PROGRAM, "run", *case, "--out", out], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([PROGRAM, "run", *case, "--out", out, "--force"], check=True, stdout=subprocess.DEVNULL)
     for picture, run in ((grains, "spheres"), (contacts, "disks"), (bodies, "plate"), (mesh, "cylinder")):
         path = os.path.join("docs/figures" if options.figures else options.folder, f"paraview_{picture.__name__}.png")
         plotter = picture(os.path.join(options.folder, run))

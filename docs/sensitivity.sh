@@ -117,7 +117,7 @@ if case_is forced_fold "29 30" "broken measures.left_angle measures.right_angle 
     settings 5e-4 1e-3 8e-5
     explicit
 fi
-if case_is wheel_rail_degradable "7 8" "friction_coefficient plateau_friction damage_ratio energy.friction $released" --set time.end=0.1; then
+if case_is wheel_rail_degradable "7 8" "energetic_coefficient friction_coefficient damage_ratio energy.friction $released" --set time.end=0.1; then
     settings 5e-5 0.5 2e-7
     with inertia --set inertia_scaling=5.8e7
     with window --set periodic.x=8e-4 --set grains.0.count=2400 --set "grains.0.high=[8e-4, 5.05e-5]" --set grains.1.count=1380 \

@@ -56,7 +56,7 @@ def run(pressure: float, ratio: float, seed: int) -> dict:
     for k in (0, 1):
         for name in ("cohesion", "tension"):
             sets.append(f"interfaces.{k}.parameters.contact.{name}={ratio * pressure:e}")
-    words = [PROGRAM, "run", "cases/soft_third_body.ron", "--out", folder]
+    words = [PROGRAM, "run", "cases/soft_third_body.ron", "--out", folder, "--force"]
     for each in sets:
         words += ["--set", each]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -306,7 +306,7 @@ def run(program, out, point, limit):
     if kept.exists():
         return json.loads(kept.read_text())
     case(folder, *point)
-    command = [program, "run", str(folder / "case.ron"), "--out", str(folder / "out"), "--threads", "1", "--no-report"]
+    command = [program, "run", str(folder / "case.ron"), "--out", str(folder / "out"), "--threads", "1", "--no-report", "--force"]
     try:
         ended = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=limit)
     except subprocess.TimeoutExpired:

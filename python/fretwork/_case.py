@@ -212,7 +212,7 @@ class Case:
         plugin_path: Sequence[AnyPath] = (),
         trust_plugins: bool = False,
     ) -> Check:
-        """Builds the scene and reports what it uses and will cost, as ``fretwork check``. With ``timing`` steps are timed for half
+        """Builds the scene and reports what it uses and will cost, as ``fretwork check --verbose``. With ``timing`` steps are timed for half
         a second."""
         folders = [os.fspath(p) for p in plugin_path]
         title, lines = self._data.check(folders, trust_plugins, timing)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 
 class Check(Mapping[str, list[str]]):
-    """The answer of ``fretwork check``: texts by label, in its order. Printed, it is that answer.
+    """The answer of ``fretwork check --verbose``: texts by label, in its order. Printed, it is that answer.
 
     >>> check = Check("cases/a.ron", "a case", [("dimension", "2"), ("on", "friction"), ("", "bonds")])
     >>> check["dimension"], check["on"]

@@ -50,6 +50,7 @@ def contact_patch(
     yield_stress: Number | None = None,
     friction: Interval | None = None,
     friction_of: Sequence[AnyPath] = (),
+    accept: Sequence[str] = (),
     force: Number | None = None,
     displacement: Number | None = None,
     creepage: Number | None = None,
@@ -61,8 +62,9 @@ def contact_patch(
 
     ``load`` is a force (N), or a text with a force per length such as ``"13 MN/m"`` for a line contact; ``radius`` is that along the
     motion (m), ``across`` that across it, each of one body or of both, where ``"flat"`` is a plane and a negative radius concave.
-    ``friction_of`` takes the friction coefficient from folders of runs, with its interval over them; ``wear`` is Archard's K, a pure
-    number. Answers with an interval are ``{"low", "value", "high"}``; all are in SI units, of a line contact per metre.
+    ``friction_of`` takes the friction coefficient from folders of runs, with its interval over them, and ``accept`` takes them although
+    they differ from the patch in ``"materials"``, ``"pressure"`` or ``"drive"``, from each other (``"inputs"``), or are ``"untrusted"``;
+    ``wear`` is Archard's K, a pure number. Answers with an interval are ``{"low", "value", "high"}``; all are in SI units, of a line contact per metre.
     ``docs/steel_to_number.md`` has the meaning of each.
 
     >>> import fretwork
@@ -89,6 +91,7 @@ def contact_patch(
         "hardness": _texts(hardness),
         "friction": _interval(friction),
         "runs": [os.fspath(folder) for folder in friction_of],
+        "accept": list(accept),
         "wear": _interval(wear),
     }
     single = {

@@ -82,6 +82,11 @@ class Results:
         """Whether all checks of the run passed."""
         return bool(self.summary["trustworthy"])
 
+    @property
+    def grade(self) -> str:
+        """Trust in the run: ``not trustworthy``, ``consistent``, or ``error known``; empty for runs of version 0.1.0."""
+        return str(self.summary.get("grade", ""))
+
     @contextmanager
     def open(self) -> Iterator[h5py.File]:
         """The file ``results.h5`` in h5py, also while a run writes it."""

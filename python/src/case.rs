@@ -160,6 +160,7 @@ impl Case {
         for set in sets {
             CaseSpec::set(&mut source, set)?;
         }
+        CaseSpec::convert_units(&mut source)?;
         let case = CaseSpec::read(&source)?;
         check::numbers(&case).map_err(|f| source.locate(f))?;
         (self.loaded.source, self.loaded.case) = (source, case);
@@ -176,10 +177,12 @@ impl Case {
         match (value, self.edit(&[format!("{path}={text}")])) {
             (Value::String(word), Err(quoted)) => {
                 let plain = word.chars().all(|c| c.is_alphanumeric() || c == '_');
-                let kinds = CaseSpec::names(&self.loaded.source, path);
-                match plain && matches!(kinds, Some(Names::Kinds(_))) {
-                    true => self.edit(&[format!("{path}={word}")]),
-                    false => Err(quoted),
+                let digit = word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+                match CaseSpec::names(&self.loaded.source, path) {
+                    Some(Names::Kinds(_)) if plain => self.edit(&[format!("{path}={word}")]),
+                    // A number with a unit is a text in Python only.
+                    Some(Names::Value) if digit => self.edit(&[format!("{path}={word}")]),
+                    _ => Err(quoted),
                 }
             }
             (_, done) => done,

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 fn raised(error: &ReportError, folder: Option<&Path>) -> PyErr {
     match error {
         ReportError::NoRun { path, reason } => errors::wrong(path.display(), reason.clone()),
+        ReportError::Measured { reason } => errors::wrong("measured", reason.clone()),
         ReportError::Unwritable { .. } => errors::run(&error.to_string(), folder),
     }
 }
@@ -16,14 +17,14 @@ fn raised(error: &ReportError, folder: Option<&Path>) -> PyErr {
 /// recorded; returns its path.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, folder: PathBuf, bytes: Option<usize>) -> PyResult<PathBuf> {
-    let made = py.detach(|| make_report(&folder, bytes));
-    let (path, _) = made.map_err(|e| raised(&e, Some(&folder)))?;
-    Ok(path)
+    let made = py.detach(|| make_report(&folder, bytes, &[]));
+    let written = made.map_err(|e| raised(&e, Some(&folder)))?;
+    Ok(written.page)
 }
 
 /// Makes a page with the runs in these folders side by side.
 #[pyfunction]
 pub(crate) fn compare(py: Python<'_>, folders: Vec<PathBuf>, to: PathBuf) -> PyResult<()> {
-    let made = py.detach(|| compare_runs(&folders, &to));
+    let made = py.detach(|| compare_runs(&folders, &to, &[]));
     made.map(|_| ()).map_err(|e| raised(&e, None))
 }

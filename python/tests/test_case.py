@@ -70,6 +70,10 @@ def test_attributes_and_elements_are_set(shear):
     grains = [{"at": [0.01 * k, 0.0], "radius": 0.004} for k in range(3)]
     shear["grains"] = [{"List": {"material": "glass", "grains": grains}}]
     assert shear.grains[0].grains[2].at == [0.02, 0.0]
+    shear["time.step"] = "20 us"
+    assert shear.time.step == 2e-5
+    with pytest.raises(InputError, match="`time.step` is a time, and `mm`"):
+        shear["time.step"] = "1 mm"
     copy = shear.copy()
     copy.seed = 99
     assert shear.seed == 19 and copy != shear

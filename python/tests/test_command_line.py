@@ -30,7 +30,7 @@ def test_exit_codes_and_streams(here):
 
 
 def test_check_says_the_same_as_in_python(here):
-    result = call("check", "cases/plane_shear.ron", "--no-timing").stdout
+    result = call("check", "cases/plane_shear.ron", "--no-timing", "--verbose").stdout
     case = fretwork.Case.load("cases/plane_shear.ron")
     assert result.rstrip("\n") == str(case.check(timing=False))
 

@@ -2,9 +2,11 @@
 //! files.
 
 mod bonds;
+mod brief;
 mod deformable;
 mod features;
 mod heat;
+mod inputs;
 mod load;
 mod springs;
 
@@ -19,7 +21,7 @@ use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{SolverRequirements, SolverSupport};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Built, LoadedCase, load, sampling};
+use crate::scene::{Built, LoadedCase, law_inputs, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
@@ -34,16 +36,38 @@ pub struct CheckArgs {
     /// Leave out the estimate of the run time, for which steps are timed for half a second
     #[arg(long)]
     no_timing: bool,
+    /// Print the parameters of all laws: value, unit, and whether the case, a file, a material or
+    /// the law's default gives it
+    #[arg(long)]
+    inputs: bool,
+    /// Print all lines: features, methods, memory, bonds, stiffness of contacts, heat
+    #[arg(long, short)]
+    verbose: bool,
 }
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     let built = loaded.build(&args.case.plugins.search()?)?;
     check_names(&loaded, &observers::all(&loaded, built.simulation.view()))?;
-    let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
-    for (label, text) in lines(&loaded, &built, !args.no_timing) {
+    let title = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
+    let lines = lines(&loaded, &built, !args.no_timing);
+    let inputs = match args.inputs {
+        true => inputs::lines(built.simulation.view()),
+        false => Vec::new(),
+    };
+    let inputs: String = inputs
+        .iter()
+        .map(|(label, text)| format!("\n{}", line_of(label, text)))
+        .collect();
+    if !args.verbose {
+        let time = (!args.no_timing).then(|| run_time(&loaded, built));
+        return answer(&(brief::text(title, &lines, time) + &inputs));
+    }
+    let mut out = title;
+    for (label, text) in lines {
         let _ = write!(out, "\n{}", line_of(&label, &text));
     }
+    out += &inputs;
     answer(&out)?;
     if !args.no_timing {
         let (label, text) = run_time(&loaded, built);
@@ -84,7 +108,7 @@ fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     }
 }
 
-/// Returns what `fretwork check` prints about a case below its title, except the [run
+/// Returns what `fretwork check --verbose` prints about a case below its title, except the [run
 /// time](run_time). Deformable bodies are timed if `timed`.
 pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> {
     let (case, simulation) = (&loaded.case, &built.simulation);
@@ -150,6 +174,12 @@ pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> 
             "COARSE DRIVE"
         };
         line(heading, drive.text);
+    }
+    for text in law_inputs::undecided(case, s) {
+        line("LAW DEFAULT", text);
+    }
+    for text in law_inputs::unmeasured(case, s) {
+        line("NO WEAR RATE", text);
     }
     let load = Load::of(case, simulation);
     groups(loaded, simulation, largest, &mut line);

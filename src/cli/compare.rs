@@ -1,6 +1,7 @@
 //! `fretwork compare`.
 
 use super::Failure;
+use super::measured::{MeasuredArgs, pictures};
 use super::output::inform;
 use clap::Args;
 use std::path::PathBuf;
@@ -13,14 +14,20 @@ pub struct CompareArgs {
     /// The page that is written
     #[arg(long, value_name = "FILE", default_value = "compare.html")]
     out: PathBuf,
+    #[command(flatten)]
+    measured: MeasuredArgs,
 }
 
 pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
-    let size = fretwork_view::compare(&args.dirs, &args.out)?;
+    let written = fretwork_view::compare(&args.dirs, &args.out, &args.measured.read()?)?;
+    for line in fretwork_view::differences(&args.dirs)? {
+        inform(&line);
+    }
     let (path, runs) = (args.out.display(), args.dirs.len());
     inform(&format!(
         "{path} ({:.1} MB): {runs} runs side by side; open it in a browser",
-        size as f64 / 1e6
+        written.bytes as f64 / 1e6
     ));
+    pictures(&written);
     Ok(())
 }

@@ -3,9 +3,10 @@
 
 use super::Failure;
 use super::output::{answer, answer_json};
-use crate::experiments::contact_patch::{self, Question};
+use crate::experiments::contact_patch::{self, ACCEPTABLE, Question};
 use crate::shipped::search_path;
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use std::path::PathBuf;
 
 /// Text below the options of the help.
@@ -22,6 +23,8 @@ Examples:
     fretwork contact-patch --load 50N --radius 10mm --material rail_steel_r260 --friction 0.6 --displacement 5um
   Two cylinders with a tangential force:
     fretwork contact-patch --load 179N/mm --radius 1m,1m --young 210GPa --poisson 0.3 --friction 0.3 --force 20N/mm
+  Friction from runs of a window, under the pressure and between the steels of the patch:
+    ... --creepage 0.5% --friction-of results/creep_1 --friction-of results/creep_2
 
 Exit code: 0 answered, 2 wrong input. docs/steel_to_number.md goes from such a patch to friction and wear with an interval.";
 
@@ -60,16 +63,27 @@ pub struct ContactPatchArgs {
     /// Hardnesses, in place of those of the materials ('260 HBW', 2.5GPa)
     #[arg(long, value_name = "H1[,H2]", value_delimiter = ',')]
     hardness: Vec<String>,
-    /// Yield stress of the softer body; by default of its material, or its hardness over 2.8
+    /// Yield stress of the softer body; by default of its material, or the flow stress, its
+    /// hardness over 2.8
     #[arg(long = "yield", value_name = "STRESS")]
     yield_stress: Option<String>,
     /// Friction coefficient, for slip and rolling
     #[arg(long, value_name = "RANGE")]
     friction: Option<String>,
-    /// Take the friction coefficient from this run; repeat for runs with other seeds, whose scatter
-    /// gives the interval
+    /// Take the coefficient of sliding from this run; repeat for runs with other seeds, whose
+    /// scatter gives the interval
     #[arg(long = "friction-of", value_name = "DIR")]
     runs: Vec<PathBuf>,
+    /// Take these runs although they are not trustworthy (untrusted), or differ from each other
+    /// (inputs) or from the patch in materials, pressure, or motion (drive)
+    #[arg(
+        long,
+        value_name = "WHAT",
+        value_delimiter = ',',
+        requires = "runs",
+        value_parser = PossibleValuesParser::new(ACCEPTABLE.map(|(name, doc)| PossibleValue::new(name).help(doc)))
+    )]
+    accept: Vec<String>,
     /// Tangential force: what sticks under it
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     force: Option<String>,
@@ -106,6 +120,7 @@ pub fn contact_patch(args: &ContactPatchArgs) -> Result<(), Failure> {
         yield_stress: args.yield_stress.clone(),
         friction: args.friction.clone(),
         runs: args.runs.clone(),
+        accept: args.accept.clone(),
         force: args.force.clone(),
         displacement: args.displacement.clone(),
         creepage: args.creepage.clone(),

@@ -11,6 +11,7 @@ mod ending;
 mod experiment;
 mod fit;
 mod law;
+mod measured;
 mod number;
 mod observers;
 mod output;

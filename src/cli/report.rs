@@ -1,12 +1,15 @@
 //! `fretwork report`, and the report at the end of a run.
 
 use super::Failure;
+use super::measured::{MeasuredArgs, pictures};
 use super::output::{inform, report as complain};
 use crate::laws::{Kind, SearchPath};
 use crate::shipped::built_in;
 use crate::shipped::search_path;
 use clap::Args;
-use fretwork_view::{DEFAULT_BYTES, LawInfo, LawParameter, Options, ReportError};
+use fretwork_view::{
+    DEFAULT_BYTES, LawInfo, LawParameter, MeasuredCurve, Options, ReportError, Written,
+};
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -20,6 +23,8 @@ pub struct ReportArgs {
     /// the page says
     #[arg(long, value_name = "MB", default_value_t = 5.0)]
     size: f64,
+    #[command(flatten)]
+    measured: MeasuredArgs,
 }
 
 impl From<ReportError> for Failure {
@@ -40,23 +45,32 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
         )));
     }
     let bytes = (!args.full).then_some((args.size * 1e6) as usize);
-    let (path, size) = make(&args.dir, bytes)?;
+    let written = make(&args.dir, bytes, &args.measured.read()?)?;
     inform(&format!(
         "{} ({:.1} MB): open it in a browser",
-        path.display(),
-        size as f64 / 1e6
+        written.page.display(),
+        written.bytes as f64 / 1e6
     ));
+    pictures(&written);
     Ok(())
 }
 
-/// Makes the report of a folder with at most this number of bytes; returns its path and size
-/// (bytes).
+/// Makes the report of a folder with at most this number of bytes, and with measured curves.
 ///
 /// # Errors
-/// The folder has no run, or files cannot be read or written.
-pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
+/// The folder has no run, a curve does not fit to it, or files cannot be read or written.
+pub fn make(
+    folder: &Path,
+    bytes: Option<usize>,
+    measured: &[MeasuredCurve],
+) -> Result<Written, ReportError> {
     let law = |kind: &str, name: &str| law(&search_path(), kind, name);
-    let make = || fretwork_view::report(folder, &Options { bytes, law: &law });
+    let options = Options {
+        bytes,
+        law: &law,
+        measured,
+    };
+    let make = || fretwork_view::report(folder, &options);
     // A defect in making the page must not fail the run.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).unwrap_or_else(|_| {
         Err(ReportError::Unwritable {
@@ -66,17 +80,14 @@ pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), Rep
     })
 }
 
-/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. A
-/// failure is reported, and does not change how the run ended.
-pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
-    match make(folder, Some(DEFAULT_BYTES)) {
-        Ok(_) if !quiet => {
-            let path = shown.join(fretwork_view::FILE);
-            inform(&format!("  report in {}", path.display()));
-        }
-        Ok(_) => {}
-        Err(e) => complain(&format!("warning: there is no report: {e}")),
+/// Makes the report of a run that has just ended; returns whether there is one. A failure is
+/// reported, and does not change how the run ended.
+pub fn of_run(folder: &Path) -> bool {
+    let made = make(folder, Some(DEFAULT_BYTES), &[]);
+    if let Err(e) = &made {
+        complain(&format!("warning: there is no report: {e}"));
     }
+    made.is_ok()
 }
 
 /// Looks up a law of the program itself: a report never opens other libraries.

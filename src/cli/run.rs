@@ -28,11 +28,16 @@ pub struct RunArgs {
     /// Continue from the last checkpoint in the folder; results equal those of an uninterrupted run
     #[arg(long)]
     resume: bool,
+    /// Replace the results in the folder, also those of another run, a longer one, or one that is
+    /// not at its end
+    #[arg(long, conflicts_with = "resume")]
+    force: bool,
     /// Exit with 1 also if the run finished but is not trustworthy (steps missed the tolerance, or
     /// a check failed)
     #[arg(long)]
     strict: bool,
-    /// Print all details at the end: first and last cycle, measures, phases, solver, laws
+    /// Print all details at the end: warnings in full, all results, first and last cycle, solver,
+    /// laws
     #[arg(long, short)]
     verbose: bool,
     /// Make no report.html at the end
@@ -82,7 +87,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let Some(summary) = done.inspect_err(|e| {
         // The run has begun, and what it recorded until the failure is on disk.
         if matches!(e, Failure::Failed(_) | Failure::Run(RunError::Step(_))) {
-            report(&options.out, args);
+            let made = report(&options.out, args);
+            if !args.json {
+                inform(&format!("  {}", results(args, made)));
+            }
         }
     })?
     else {
@@ -91,18 +99,16 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if args.json {
         answer_json(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
     } else {
-        let text = summary.text(args.verbose);
-        let more = if args.verbose {
-            ""
-        } else {
-            " (more: --verbose)"
-        };
-        inform(&format!(
-            "{text}  results in {}{more}",
-            args.out().display()
-        ));
+        inform(summary.text(args.verbose).trim_end());
     }
-    report(&options.out, args);
+    let made = report(&options.out, args);
+    if !args.json {
+        let more = match args.verbose {
+            true => "",
+            false => " (more: --verbose)",
+        };
+        inform(&format!("  {}{more}", results(args, made)));
+    }
     if let Some(why) = summary
         .run
         .stopped
@@ -115,11 +121,15 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     strict(args, summary.run.reasons.first().map(String::as_str))
 }
 
-/// Makes the report, unless it is disabled.
-fn report(out: &Path, args: &RunArgs) {
-    if !args.no_report {
-        super::report::of_run(out, &args.out(), args.json);
-    }
+/// Makes the report, unless it is disabled; returns the name of its file in the folder.
+fn report(out: &Path, args: &RunArgs) -> Option<&'static str> {
+    (!args.no_report && super::report::of_run(out)).then_some(fretwork_view::FILE)
+}
+
+/// Says where the results and the page are.
+fn results(args: &RunArgs, page: Option<&str>) -> String {
+    let page = page.map_or(String::new(), |file| format!(", report in {file}"));
+    format!("results in {}{page}", args.out().display())
 }
 
 /// Fails if `--strict` is given and there is a reason not to trust the run.
@@ -186,6 +196,8 @@ fn run_case(
     let mut run = Run::new(loaded, built, options).observe_all(added);
     if let Some(stop) = stop {
         run = run.resume(stop);
+    } else if !args.force && !args.resume {
+        run = run.keeping();
     }
     let summary = run.execute(&mut |progress| {
         display.step(progress);
@@ -205,7 +217,10 @@ fn run_case(
         .map(Some)
         .map_err(|error| match place(loaded, &origins, &error) {
             Some(place) => Failure::Failed(format!("{error}; {place}")),
-            None => error.into(),
+            None => match error {
+                RunError::Occupied(found) => Failure::Usage(again::instead(&found, &shown)),
+                error => error.into(),
+            },
         })
 }
 

@@ -11,7 +11,7 @@ use crate::experiments::study::forecast::Forecast;
 use crate::experiments::study::plan::{Location, Plan, Point};
 use crate::experiments::study::rows::{DONE, Rows, status};
 use crate::experiments::study::spec::StudyFile;
-use crate::experiments::study::{OWNER, answers, write};
+use crate::experiments::study::{OWNER, answers, of_case, write};
 use crate::interrupt;
 use clap::{Args, Subcommand, ValueEnum};
 use fretwork_store::folder_lock::FolderLock;
@@ -36,8 +36,18 @@ pub enum StudyCommand {
 /// A study and the folders of its results.
 #[derive(Args, Debug)]
 struct StudyArgs {
-    /// The file of the study (RON)
+    /// The file of the study (RON); with --ranges or --seeds that of a case
     study: PathBuf,
+    /// Take a case, and vary its inputs over the ranges that their sources give
+    #[arg(long)]
+    ranges: bool,
+    /// Take a case, and run it with this number of seeds
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    seeds: Option<u16>,
+    /// A result that is compared, by its name in summary.json, of a case with --ranges or --seeds;
+    /// by default its main results
+    #[arg(long = "output", value_name = "NAME")]
+    outputs: Vec<String>,
     /// Folder of the results; results/study/<study> by default
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -164,7 +174,19 @@ impl StudyArgs {
             cache: self.cache.as_deref(),
             setup: &self.plugins.run_setup()?,
         };
-        Ok(Plan::new(&StudyFile::read(&self.study)?, place)?)
+        let file = match self.ranges || self.seeds.is_some() {
+            true => {
+                let seeds = self.seeds.unwrap_or(1);
+                let search = self.plugins.search()?;
+                of_case(&self.study, self.ranges, seeds, &self.outputs, &search)?
+            }
+            false if !self.outputs.is_empty() => {
+                let text = "--output goes with a case, and --seeds or --ranges; a study has `outputs` in its file";
+                return Err(Failure::Usage(text.to_owned()));
+            }
+            false => StudyFile::read(&self.study)?,
+        };
+        Ok(Plan::new(&file, place)?)
     }
 
     /// Returns the plan of the study, with a folder for this command alone. Nothing is written if
@@ -179,6 +201,15 @@ impl StudyArgs {
     /// Returns the options of every call that another engine makes.
     fn options(&self) -> Vec<String> {
         let mut words = Vec::new();
+        if self.ranges {
+            words.push("--ranges".to_owned());
+        }
+        if let Some(seeds) = self.seeds {
+            words.extend(["--seeds".to_owned(), seeds.to_string()]);
+        }
+        for output in &self.outputs {
+            words.extend(["--output".to_owned(), output.clone()]);
+        }
         if let Some(cache) = &self.cache {
             let cache = std::path::absolute(cache).unwrap_or_else(|_| cache.clone());
             words.extend(["--cache".to_owned(), cache.display().to_string()]);

@@ -96,6 +96,7 @@ fn bits<S: Space>(through_text: bool) -> Vec<u64> {
             density: fretwork::scene::material::Sourced {
                 value: 3000.0,
                 unit: String::new(),
+                range: None,
                 source: String::new(),
             },
             properties: Default::default(),

@@ -17,6 +17,7 @@ mod compliant;
 mod elastic;
 mod extremes;
 mod flush;
+mod friction;
 mod held;
 mod hollow;
 mod imposed;

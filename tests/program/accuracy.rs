@@ -209,7 +209,7 @@ fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference
         let done = folder.run(&case, out, &[&common[..], sets].concat());
         assert!(done.status.success(), "{}", reported(&done));
         let summary = folder.summary(out);
-        (summary["friction_coefficient"].as_f64().unwrap(), summary)
+        (summary["energetic_coefficient"].as_f64().unwrap(), summary)
     };
     let coarse = ["time.step=1e-3", "solver.tolerance=1e-7"];
     let (exact, reference) = friction("fine", &["time.step=1e-4", "solver.tolerance=1e-8"]);

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Output of `check` for a case: the enabled features, the disabled ones, and the whole text.
 fn check(case: &str, sets: &[&str]) -> (Vec<String>, Vec<String>, String) {
     let path = format!("cases/{case}.ron");
-    let mut args = vec!["check", &path];
+    let mut args = vec!["check", "--verbose", &path];
     for set in sets {
         args.extend(["--set", set]);
     }
@@ -140,7 +140,7 @@ impl Made {
 
     fn check(&self, sets: &[&str]) -> String {
         let case = self.0.join("case.ron").display().to_string();
-        let mut args = vec!["check", &case];
+        let mut args = vec!["check", "--verbose", &case];
         for set in sets {
             args.extend(["--set", set]);
         }

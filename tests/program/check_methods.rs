@@ -14,7 +14,7 @@ fn fretwork(args: &[&str]) -> Output {
 /// Output of `check` for a verification case.
 fn check(case: &str, sets: &[&str]) -> (bool, String) {
     let path = format!("cases/verification/{case}.ron");
-    let mut args = vec!["check", &path];
+    let mut args = vec!["check", "--verbose", &path];
     for set in sets {
         args.extend(["--set", set]);
     }

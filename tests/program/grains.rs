@@ -63,6 +63,7 @@ impl Folder {
         let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .args(["run".as_ref(), path.as_os_str(), "--out".as_ref()])
             .arg(&out)
+            .arg("--force")
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&output.stderr);

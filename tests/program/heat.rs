@@ -162,6 +162,7 @@ fn laws_that_count_time_of_the_mechanics_are_told_where_heat_has_a_clock() {
                 "check",
                 "cases/verification/thermal/cubic.ron",
                 "--no-timing",
+                "--verbose",
             ])
             .args(sets.iter().flat_map(|s| ["--set", s]))
             .output()

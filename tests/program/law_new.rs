@@ -94,7 +94,7 @@ fn in_fortran() {
 fn run_with(place: &Place, folder: &str) -> (Option<i32>, String) {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
     let output = place.shell(&format!(
-        "fretwork run {} --plugin-path {folder} --set interfaces.grain.damage=my-damage --set interfaces.grain.parameters.damage={{}} --set time.end=2e-6 --out out",
+        "fretwork run {} --plugin-path {folder} --set interfaces.grain.damage=my-damage --set interfaces.grain.parameters.damage={{}} --set time.end=2e-6 --out out --force",
         case.display()
     ));
     let error = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -25,6 +25,7 @@ fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<B
         let sourced = |value, unit: &str| Sourced {
             value,
             unit: unit.to_owned(),
+            range: None,
             source: "test".to_owned(),
         };
         let given = hardness.map(|(value, unit)| ("hardness".to_owned(), sourced(value, unit)));
@@ -131,7 +132,12 @@ fn another_steel_changes_the_coefficient_of_a_case() {
     let check = |sets: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .args(["check", "--no-timing", "cases/wheel_rail_creep.ron"])
+            .args([
+                "check",
+                "--no-timing",
+                "--verbose",
+                "cases/wheel_rail_creep.ron",
+            ])
             .args(sets.iter().flat_map(|s| ["--set", s]))
             .output()
             .unwrap();
@@ -163,6 +169,7 @@ fn another_steel_changes_the_coefficient_of_a_case() {
         .args([
             "check",
             "--no-timing",
+            "--verbose",
             "cases/wheel_rail_creep.ron",
             "--set",
             own[0],

@@ -1,5 +1,5 @@
 //! Changes of a case in an experiment: values that all runs share, and values computed from its
-//! factors, `key.path=${2e-5 * strength}`.
+//! factors, `key.path=${2e-5 * strength}`, with a unit if the value has one.
 
 use crate::expression::{Expression, number};
 
@@ -106,6 +106,7 @@ mod tests {
             Ok::<String, String>(changes.derived(&values)?.concat())
         };
         assert_eq!(set("a.b=${2e0 * strength + 1}").unwrap(), "a.b=7");
+        assert_eq!(set("a.b=${strength} us").unwrap(), "a.b=3 us");
         assert_eq!(
             set("y=Pressure(value: Constant(${-pressure}))").unwrap(),
             "y=Pressure(value: Constant(-1e-9))"

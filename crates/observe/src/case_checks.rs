@@ -8,7 +8,7 @@ use super::{biaxial, circuit, friction_report, jump};
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::view::RunView;
 use fretwork_scene::case::Case;
-use fretwork_scene::sampling;
+use fretwork_scene::{law_inputs, sampling};
 
 /// Checks of a case.
 #[derive(Clone, Debug)]
@@ -30,8 +30,15 @@ impl CaseChecks {
         let aliased = texts(true).map(|text| Warning::serious("ALIASED DRIVE", text));
         let coarse = texts(false).map(|text| Warning::note("COARSE DRIVE", text));
         let idle = (!idle.is_empty()).then(|| Warning::note("NO HEAT", idle.join("; ")));
+        let undecided = law_inputs::undecided(case, run);
+        let undecided =
+            (!undecided.is_empty()).then(|| Warning::note("LAW DEFAULT", undecided.join("; ")));
+        let unmeasured = law_inputs::unmeasured(case, run);
+        let unmeasured =
+            (!unmeasured.is_empty()).then(|| Warning::note("NO WEAR RATE", unmeasured.join("; ")));
+        let warnings = [aliased, coarse, idle, undecided, unmeasured];
         Self {
-            warnings: [aliased, coarse, idle].into_iter().flatten().collect(),
+            warnings: warnings.into_iter().flatten().collect(),
             has: [
                 case.friction.is_some(),
                 case.biaxial.is_some(),

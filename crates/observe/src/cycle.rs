@@ -1,12 +1,17 @@
 //! A cycle of a friction test, and how its contact slides.
 
-use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
+use super::quantity::unit::{ENERGY, FORCE, LOAD_PATH, METRE, ONE, VOLUME, WORD};
 use serde::{Deserialize, Serialize};
 
 /// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
 /// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
 /// "Quantification of fretting damage", Wear 200 (1996) 186.
 pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
+
+/// Slip ratio from which the whole contact slides, whatever the energy ratio: at the end of partial
+/// slip of an elastic sphere it is 0.26, by the loop of K. L. Johnson, Contact Mechanics (1985),
+/// 7.4.
+pub const SLIDING_SLIP_RATIO: f64 = 0.5;
 
 /// How a contact slides.
 ///
@@ -17,9 +22,9 @@ pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 /// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
 /// let (q, delta) = (30.0, 5e-6);
 /// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta)), SlipRegime::Gross);
+/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta), 1.0), SlipRegime::Gross);
 /// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(SlipRegime::of(0.05), SlipRegime::Partial);
+/// assert_eq!(SlipRegime::of(0.05, 0.1), SlipRegime::Partial);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -34,9 +39,10 @@ pub enum SlipRegime {
 }
 
 impl SlipRegime {
-    /// Returns the regime of one cycle by its energy ratio.
-    pub fn of(energy_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION_ENERGY_RATIO {
+    /// Returns the regime of one cycle by its energy ratio, and by its slip ratio where impacts
+    /// raise the largest force: a contact that slips over half of the stroke slides.
+    pub fn of(energy_ratio: f64, slip_ratio: f64) -> Self {
+        if energy_ratio < TRANSITION_ENERGY_RATIO && slip_ratio < SLIDING_SLIP_RATIO {
             Self::Partial
         } else {
             Self::Gross
@@ -69,11 +75,16 @@ crate::described! {
         pub tangential_amplitude: f64 => FORCE,
         /// Length of the sliding path.
         pub path: f64 => METRE,
-        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from
-        /// forces; 0 if the body was not pressed.
-        pub friction_coefficient: f64 => ONE,
-        /// From the energy ledger: (dissipation + change of stored energy - other work of the
-        /// driven bodies) over the integral of P |d delta|.
+        /// Integral of P |d delta|: normal force times the path.
+        pub load_path: f64 => LOAD_PATH,
+        /// Coefficient of sliding: |Q|/P while the contact slides, weighted by the path; null in
+        /// partial slip.
+        pub friction_coefficient: Option<f64> => ONE,
+        /// Energetic coefficient: integral of Q d delta over integral of P |d delta|, which counts
+        /// the elastic part of the path; 0 if the body was not pressed.
+        pub energetic_coefficient: f64 => ONE,
+        /// The energetic coefficient by the energy ledger: (dissipation + change of stored energy -
+        /// other work of the driven bodies) over the integral of P |d delta|.
         pub friction_from_dissipation: f64 => ONE,
         /// Bonds broken in the cycle.
         pub broken: u64 => ONE,
@@ -85,14 +96,11 @@ crate::described! {
         pub amplitude: f64 => METRE,
         /// Half of the loop's width at Q = 0, the sliding amplitude.
         pub sliding: f64 => METRE,
-        /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
-        pub stick_ratio: f64 => ONE,
+        /// Slip ratio: sliding/amplitude, the part of the stroke that is not elastic.
+        pub slip_ratio: f64 => ONE,
         /// Mean of |Q|/P at the reversals of the motion.
         pub reversal_ratio: f64 => ONE,
-        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal;
-        /// 0 before the first reversal.
-        pub plateau_ratio: f64 => ONE,
-        /// Partial or gross slip, from the energy ratio.
+        /// Partial or gross slip, from energy ratio and slip ratio.
         pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,
@@ -103,6 +111,15 @@ crate::described! {
 }
 
 impl Cycle {
+    /// Returns normal force times the path of slip (J; J/m in 2D), of one cycle: the elastic part
+    /// of the path of a reciprocating motion is left out.
+    pub fn slip_load_path(&self, reciprocates: bool) -> f64 {
+        match reciprocates {
+            true => self.load_path * self.slip_ratio,
+            false => self.load_path,
+        }
+    }
+
     /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.
     pub fn peak_ratio(&self) -> Option<f64> {
         (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)

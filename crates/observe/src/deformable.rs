@@ -233,11 +233,11 @@ impl Observer for Deformable {
             let series = Series::rows("", name, force(name));
             charts.push(Chart::new(title, x, y).with(series));
         }
-        let mut out = vec![Output::figure("deformable", charts, 2)];
+        let mut out = vec![Output::leading("deformable", charts, 2)];
         for (k, name) in self.bodies.iter().enumerate().filter(|_| !flat) {
             if let Some(state) = SurfaceState::of(end.simulation, k) {
                 let maps = contact_map::charts(name, &state, has_tractions(end.simulation, k));
-                out.push(Output::figure(format!("{name}_slip"), maps, 2));
+                out.push(Output::leading(format!("{name}_slip"), maps, 2));
             }
         }
         out
@@ -553,9 +553,9 @@ fn traction_chart(run: &dyn RunView, system: usize, name: &str) -> Chart {
         found.iter().filter_map(at).collect()
     };
     chart = chart
-        .with(Series::new("pressure", curve(0, false)))
-        .with(Series::new("shear", curve(1, false)))
-        .with(Series::new("shear where it slips", curve(1, true)).style(Style::Markers));
+        .with(Series::new("pressure p", curve(0, false)))
+        .with(Series::new("shear traction q", curve(1, false)))
+        .with(Series::new("q where it slips", curve(1, true)).style(Style::Markers));
     chart
 }
 

@@ -1,7 +1,8 @@
 //! Wear of the individual first bodies.
 
-use super::quantity::unit::{METRE, VOLUME, WEAR_RATE, WORD};
+use super::quantity::unit::{METRE, ONE, PASCAL, VOLUME, WEAR_RATE, WORD};
 use fretwork_core::view::RunView;
+use fretwork_scene::LoadedCase;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -17,8 +18,61 @@ crate::described! {
         pub depth_mean: Option<f64> => METRE,
         /// Largest depth; null if none of its surfaces recedes.
         pub depth_max: Option<f64> => METRE,
-        /// Specific wear rate k = V/(P s); null without a friction test.
+        /// Specific wear rate k = V/(P s), s the distance of slip; null without a friction test.
         pub specific_rate: Option<f64> => WEAR_RATE,
+        /// Archard's coefficient K = k H (J. F. Archard 1953); null where the material of the body
+        /// has no hardness.
+        pub archard_coefficient: Option<f64> => ONE,
+        /// Its hardness H.
+        pub hardness: Option<f64> => PASCAL,
+    }
+}
+
+/// Hardness of the material of a first body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyHardness {
+    /// Name of the body.
+    pub body: String,
+    /// Hardness (Pa).
+    pub value: f64,
+    /// As its file gives it, with the material: `260 HBW of rail_steel_r260`.
+    pub text: String,
+}
+
+/// What wear is expressed with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WearMaterials {
+    /// Density of the first bodies (kg/m^3), of which flows of mass count the worn volume.
+    pub density: f64,
+    /// Hardnesses, of the first bodies whose materials have one.
+    pub hardness: Vec<BodyHardness>,
+    /// Densities of the materials of the case in their order (kg/m^3).
+    pub densities: Vec<f64>,
+}
+
+impl WearMaterials {
+    /// Returns those of a case; `any` is whether it has first bodies.
+    pub fn of(loaded: &LoadedCase, any: bool) -> Self {
+        let case = &loaded.case;
+        let bodies = case.bodies.iter().map(|b| (&b.name, &b.material));
+        let elastic = case.elastic.iter().map(|b| (&b.name, &b.material));
+        let half_spaces = case.half_spaces.iter().map(|b| (&b.name, &b.material));
+        let all = bodies.clone().chain(elastic).chain(half_spaces);
+        let hardness = all.filter_map(|(body, material)| {
+            let (value, text) = loaded.hardness(material)?;
+            Some(BodyHardness {
+                body: body.clone(),
+                value,
+                text,
+            })
+        });
+        let density = |name: &String| loaded.density(name).unwrap_or(0.0);
+        let first = bodies.map(|b| b.1).next().filter(|_| any);
+        Self {
+            density: first.map_or(0.0, density),
+            hardness: hardness.collect(),
+            densities: case.materials.keys().map(density).collect(),
+        }
     }
 }
 
@@ -52,6 +106,8 @@ pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
         depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
         depth_max: worn.scarred.then_some(worn.depth),
         specific_rate: None,
+        archard_coefficient: None,
+        hardness: None,
     };
     bodies.into_iter().map(summary).collect()
 }

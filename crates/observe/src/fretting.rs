@@ -39,10 +39,8 @@ impl FrettingOutcome {
     pub fn new(cycles: &[Cycle]) -> Option<Self> {
         let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
         let first = complete.first()?;
-        let kind = SlipRegime::of(first.energy_ratio);
-        let same = complete
-            .iter()
-            .all(|c| SlipRegime::of(c.energy_ratio) == kind);
+        let kind = first.regime;
+        let same = complete.iter().all(|c| c.regime == kind);
         // A cycle that represents several has the fracture energy of all of them; its neighbours
         // give that of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
@@ -107,6 +105,7 @@ mod tests {
             work,
             wear_volume,
             energy_ratio,
+            regime: SlipRegime::of(energy_ratio, 0.0),
             ..Cycle::default()
         }
     }

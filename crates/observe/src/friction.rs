@@ -1,4 +1,4 @@
-//! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from
+//! Friction test: Q-delta loops, and the friction coefficients of each cycle from forces and from
 //! dissipation.
 
 use super::cycle::{Cycle, SlipRegime};
@@ -20,7 +20,9 @@ pub struct Sample {
     pub p: f64,
     /// Signed sliding distance in the step (m).
     pub slide: f64,
-    /// Work of the tangential drive over the step (J).
+    /// Velocity of what the body rubs against (m/s).
+    pub counter: f64,
+    /// Work of sliding over the step (J).
     pub work: f64,
 }
 
@@ -31,7 +33,6 @@ pub struct Cycles {
     end: f64,
     /// Cycles so far, the current one last.
     pub list: Vec<Cycle>,
-    pressure_path: f64,
     pressure_time: f64,
     time: f64,
     position: f64,
@@ -78,7 +79,6 @@ impl Cycles {
             clock,
             end,
             list: Vec::new(),
-            pressure_path: 0.0,
             pressure_time: 0.0,
             time: 0.0,
             position: 0.0,
@@ -148,7 +148,7 @@ impl Cycles {
                 cycle: number,
                 ..Cycle::default()
             });
-            (self.pressure_path, self.pressure_time, self.time) = (0.0, 0.0, 0.0);
+            (self.pressure_time, self.time) = (0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
             self.shape.next_cycle();
@@ -156,7 +156,6 @@ impl Cycles {
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
             return;
         };
-        self.pressure_path += sample.p * sample.slide.abs();
         self.pressure_time += sample.p * h;
         if self.clock.period.is_none() {
             // The step belongs to the block that contains its middle.
@@ -172,6 +171,7 @@ impl Cycles {
         self.lowest = self.lowest.min(self.position);
         self.highest = self.highest.max(self.position);
         cycle.path += sample.slide.abs();
+        cycle.load_path += sample.p * sample.slide.abs();
         cycle.work += sample.work;
         cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
         cycle.normal_force = self.pressure_time / self.time;
@@ -180,8 +180,8 @@ impl Cycles {
         let (now, then) = (&after.balance, &start.balance);
         let heat = (now.taken - then.taken) - (now.other - then.other);
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
-        cycle.friction_coefficient = over(cycle.work, self.pressure_path);
-        cycle.friction_from_dissipation = over(heat, self.pressure_path);
+        cycle.energetic_coefficient = over(cycle.work, cycle.load_path);
+        cycle.friction_from_dissipation = over(heat, cycle.load_path);
         cycle.broken = after.broken - start.broken;
         cycle.wear_volume = after.worn - start.worn;
         cycle.damage_ratio = damage;
@@ -189,19 +189,44 @@ impl Cycles {
         cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
         cycle.amplitude = amplitude;
         cycle.sliding = self.shape.aperture();
-        cycle.stick_ratio = if amplitude > 0.0 {
-            1.0 - cycle.sliding / amplitude
-        } else {
-            0.0
-        };
+        cycle.slip_ratio = over(cycle.sliding, amplitude).min(1.0);
         cycle.reversal_ratio = self.shape.reversal();
-        cycle.plateau_ratio = self.shape.plateau().unwrap_or(0.0);
-        cycle.regime = SlipRegime::of(cycle.energy_ratio);
+        cycle.regime = SlipRegime::of(cycle.energy_ratio, cycle.slip_ratio);
         let clock = &self.clock;
+        cycle.friction_coefficient = match clock.period {
+            Some(_) if cycle.regime == SlipRegime::Gross => self.shape.plateau(),
+            Some(_) => None,
+            None => (cycle.load_path > 0.0).then_some(cycle.energetic_coefficient),
+        };
         let end = clock
             .period
             .map_or(self.end, |p| clock.start + f64::from(number) * p);
         cycle.complete = sample.time >= end - 1e-6 * h;
+    }
+
+    /// Returns normal force times path over all cycles, those jumped over included (J; J/m in 2D).
+    pub fn load_path(&self) -> f64 {
+        let of = |c: &Cycle| c.load_path * f64::from(1 + c.jumped);
+        self.list.iter().map(of).sum()
+    }
+
+    /// Returns normal force times the path of slip over all cycles, those jumped over included (J;
+    /// J/m in 2D). A cycle that is not complete has the slip ratio of the one before.
+    pub fn slip_load_path(&self) -> f64 {
+        let reciprocates = self.oscillates();
+        let mut ratio = 1.0;
+        let of = |c: &Cycle| {
+            if c.complete {
+                ratio = c.slip_ratio;
+            }
+            let path = match c.complete {
+                true => c.slip_load_path(reciprocates),
+                false if reciprocates => c.load_path * ratio,
+                false => c.load_path,
+            };
+            path * f64::from(1 + c.jumped)
+        };
+        self.list.iter().map(of).sum()
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.
@@ -239,6 +264,7 @@ mod tests {
                 q: measured * q,
                 p,
                 slide: v * h,
+                counter: 0.0,
                 work: measured * q * v * h,
             };
             let [before, after] = [before, balance].map(|balance| FrictionTotals {
@@ -255,7 +281,8 @@ mod tests {
     fn a_coulomb_loop_has_the_friction_put_in() {
         let mu = 0.4;
         for c in &loops(mu, 0.0, 1.0).list {
-            assert!((c.friction_coefficient / mu - 1.0).abs() < 1e-9 && c.complete);
+            assert!((c.friction_coefficient.unwrap() / mu - 1.0).abs() < 1e-9 && c.complete);
+            assert!((c.energetic_coefficient / mu - 1.0).abs() < 1e-9);
             assert!((c.friction_from_dissipation / mu - 1.0).abs() < 1e-9);
             // A rectangular loop: E_d = 4 mu P delta.
             assert!((c.work / (4.0 * mu * 1e3 * 5e-5) - 1.0).abs() < 1e-6);
@@ -266,7 +293,7 @@ mod tests {
     #[test]
     fn a_lid_that_climbs_and_falls_has_the_same_friction() {
         for c in &loops(0.4, 0.2, 1.0).list {
-            assert!((c.friction_coefficient / 0.4 - 1.0).abs() < 1e-6);
+            assert!((c.energetic_coefficient / 0.4 - 1.0).abs() < 1e-6);
             assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-6);
         }
     }
@@ -274,7 +301,7 @@ mod tests {
     #[test]
     fn a_wrong_force_does_not_reach_the_friction_from_heat() {
         for c in &loops(0.4, 0.0, 2.0).list {
-            assert!((c.friction_coefficient / 0.8 - 1.0).abs() < 1e-9);
+            assert!((c.energetic_coefficient / 0.8 - 1.0).abs() < 1e-9);
             assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-9);
         }
     }

@@ -14,16 +14,21 @@ crate::described! {
     /// friction test.
     #[derive(Clone, Debug, Default, Serialize)]
     pub struct Friction {
-        /// Friction from forces: tangential force along the path over normal force along the path.
+        /// Coefficient of sliding: tangential over normal force while the contact slides, without
+        /// the elastic travel after a reversal; null in partial slip.
         pub friction_coefficient: Option<f64> => ONE,
+        /// Energetic coefficient: work of the tangential force over normal force times the path,
+        /// which counts the elastic part of the path.
+        pub energetic_coefficient: Option<f64> => ONE,
         /// Energy dissipated and stored by the energy ledger over the same path: an independent
-        /// check of the forces.
+        /// check of the energetic coefficient.
         pub friction_from_dissipation: Option<f64> => ONE,
-        /// Largest tangential force over the mean normal force of the same cycle.
+        /// Largest tangential force over the mean normal force of the same cycle, Q*/P.
         pub peak_friction: Option<f64> => ONE,
-        /// Friction over the second half of each stroke, without the elastic travel after a
-        /// reversal.
-        pub plateau_friction: Option<f64> => ONE,
+        /// Slip ratio: the part of the stroke that is slip; null without reciprocating motion.
+        pub slip_ratio: Option<f64> => ONE,
+        /// Energy ratio A = E_d/(4 Q* delta*); null without reciprocating motion.
+        pub energy_ratio: Option<f64> => ONE,
         /// How the coefficient scatters over cycles or blocks, for its interval.
         #[serde(skip)]
         pub scatter: Option<Scatter>,
@@ -37,14 +42,21 @@ crate::described! {
 }
 
 const NO_TEST: &str = "the case has no friction test (`friction`)";
+/// Names of the results of a friction test.
+const NAMES: [&str; 6] = [
+    "friction_coefficient",
+    "energetic_coefficient",
+    "friction_from_dissipation",
+    "peak_friction",
+    "slip_ratio",
+    "energy_ratio",
+];
 
 /// Marks the results that cases without a friction test do not have.
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Friction, Role::Detail);
     add(&Friction::default(), None, found);
-    let names = ["friction_coefficient", "friction_from_dissipation"];
-    let names = names.iter().chain(&["peak_friction", "plateau_friction"]);
-    for name in names.chain(&["cycles", "fretting"]) {
+    for name in NAMES.iter().chain(&["cycles", "fretting"]) {
         found.edit(name, |q| {
             q.lacks(NO_TEST);
         });
@@ -66,11 +78,14 @@ pub(super) fn report(
     found: &mut Findings,
 ) {
     let last = cycles.last();
+    let of_strokes = last.filter(|_| cycles.oscillates());
     let friction = Friction {
-        friction_coefficient: last.map(|c| c.friction_coefficient),
+        friction_coefficient: last.and_then(|c| c.friction_coefficient),
+        energetic_coefficient: last.map(|c| c.energetic_coefficient),
         friction_from_dissipation: last.map(|c| c.friction_from_dissipation),
         peak_friction: last.and_then(Cycle::peak_ratio),
-        plateau_friction: last.map(|c| c.plateau_ratio).filter(|p| *p > 0.0),
+        slip_ratio: of_strokes.map(|c| c.slip_ratio),
+        energy_ratio: of_strokes.map(|c| c.energy_ratio),
         scatter: cycles.scatter(),
         cycles: cycles.list.clone(),
         oscillates: cycles.oscillates(),
@@ -98,22 +113,27 @@ fn show(
         (false, true) => "over the second half".to_owned(),
         (_, false) => "over the completed part of the evaluated time".to_owned(),
     };
+    let none = last.friction_coefficient.is_none();
+    let text = no_sliding(friction, fretting.is_some());
     found.edit("friction_coefficient", |q| {
         q.headline("friction coefficient");
-        q.remark(format!("{over}, from forces"));
+        match none {
+            true => q.sentence("friction coefficient", text),
+            false => q.remark(format!("{over}: |Q|/P while the contact slides")),
+        };
     });
     for (name, label, what) in [
         (
-            "friction_from_dissipation",
+            "energetic_coefficient",
             "energetic coefficient",
+            "work of Q over P times the path, the elastic part included",
+        ),
+        (
+            "friction_from_dissipation",
+            "from the energy ledger",
             "energy dissipated and stored over P times the path",
         ),
-        ("peak_friction", "peak Q/P", "largest |Q| over mean P"),
-        (
-            "plateau_friction",
-            "plateau Q/P",
-            "|Q|/P over the second half of each stroke, without the elastic travel after a reversal",
-        ),
+        ("peak_friction", "peak Q*/P", "largest |Q| over mean P"),
     ] {
         found.edit(name, |q| {
             q.secondary(label).remark(format!("{over}: {what}"));
@@ -137,7 +157,7 @@ fn show(
         let unfinished = if c.complete { "" } else { " (unfinished)" };
         let text = format!(
             "friction {}, E_d {}, mean P {}, largest |Q| {}, {} bonds broken, worn {}",
-            number(c.friction_coefficient, 4),
+            coefficient(c),
             quantity(c.work, joule),
             quantity(c.normal_force, newton),
             quantity(c.tangential_amplitude, newton),
@@ -154,8 +174,8 @@ fn show(
         let text = format!(
             "{} complete; {} in the first, {} in the last",
             complete.len(),
-            number(first.friction_coefficient, 4),
-            number(last.friction_coefficient, 4)
+            coefficient(first),
+            coefficient(last)
         );
         found.edit("fretting.energy", |q| {
             q.secondary("dissipated in all cycles");
@@ -172,9 +192,10 @@ fn show(
         )
     };
     let text = format!(
-        "{} {whole}; E_d/(4 Q delta) {}, E_d {}, stroke +-{}",
+        "{} {whole}; A = E_d/(4 Q* delta*) {}, slip ratio {}, E_d {}, stroke +-{}",
         last.regime.name(),
         number(last.energy_ratio, 3),
+        number(last.slip_ratio, 3),
         quantity(last.work, joule),
         quantity(last.amplitude, "m")
     );
@@ -203,9 +224,31 @@ fn show(
     }
 }
 
+/// Returns the coefficient of sliding of a cycle as text.
+fn coefficient(cycle: &Cycle) -> String {
+    match cycle.friction_coefficient {
+        Some(mu) => number(mu, 4),
+        None => format!("none ({})", cycle.regime.name()),
+    }
+}
+
+/// Returns why there is no coefficient of sliding, with what describes the contact instead.
+fn no_sliding(friction: &Friction, reciprocates: bool) -> String {
+    if !reciprocates {
+        return "none: nothing slid under a load".to_owned();
+    }
+    let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |x| number(x, 3));
+    format!(
+        "none, partial slip: Q*/P {}, slip ratio {}, A = E_d/(4 Q* delta*) {}",
+        known(friction.peak_friction),
+        known(friction.slip_ratio),
+        known(friction.energy_ratio)
+    )
+}
+
 impl Friction {
     fn warnings(&self) -> Vec<Warning> {
-        let both = [self.friction_coefficient, self.friction_from_dissipation];
+        let both = [self.energetic_coefficient, self.friction_from_dissipation];
         let infinite = both.into_iter().flatten().any(|x| !x.is_finite());
         let unfinished = !self.cycles.is_empty() && self.cycles.iter().all(|c| !c.complete);
         let unfinished = unfinished.then(|| {

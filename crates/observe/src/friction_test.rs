@@ -5,16 +5,16 @@ use super::figures;
 use super::fretting;
 use super::friction::{Cycles, FrictionTotals, Sample};
 use super::friction_report;
-use super::layer::LayerBalance;
+use super::layer::{LayerBalance, Rubbing};
 use super::output::Output;
 use super::quantity::unit::{FORCE, LOAD_PATH, METRE, ONE, Unit};
 use super::quantity::{Findings, Role, Topic};
 use super::run_state::damage_ratio;
 use super::statistics::Column;
-use super::wear::WearSummary;
+use super::wear::{LoadPath, WearSummary};
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ struct FrictionTestState {
     force: f64,
     /// Volume worn off first bodies (m^3; m^3/m).
     worn: f64,
-    /// Normal force times sliding distance, over the run and skipped cycles (N m; N).
+    /// Normal force times sliding distance before the first cycle (N m; N).
     load_path: f64,
 }
 
@@ -85,6 +85,7 @@ impl FrictionTest {
             q: drive.force,
             p: normal,
             slide: drive.slide,
+            counter: drive.counter,
             work: drive.work(self.state.force),
         }
     }
@@ -105,14 +106,21 @@ impl Observer for FrictionTest {
 
     fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
         self.sample = self.measure(run);
-        let work = self.sample.work;
-        self.state.layer.follow(run, Some((&self.body, work)));
+        let (body, sample) = (&self.body, &self.sample);
+        let test = Rubbing {
+            body,
+            work: sample.work,
+            counter: sample.counter,
+        };
+        self.state.layer.follow(run, Some(test));
         self.state.worn += report.totals.worn_first;
         self.state.force = self.sample.q;
         let after = self.cumulated(run);
         let (sample, state) = (&self.sample, &mut self.state);
         state.slide += sample.slide;
-        state.load_path += run.cycle_multiplier() * sample.p * sample.slide.abs();
+        if state.cycles.number(run.time()) == 0 {
+            state.load_path += sample.p * sample.slide.abs();
+        }
         state.cycles.add(
             sample,
             run.options().scheme.h,
@@ -130,7 +138,11 @@ impl Observer for FrictionTest {
     fn columns(&self) -> Vec<Column> {
         let c = |name, unit: Unit, doc| Column::new(name, unit, doc);
         vec![
-            c("delta", METRE, "displacement of the body under test"),
+            c(
+                "delta",
+                METRE,
+                "displacement of the body under test, relative to what it rubs against",
+            ),
             c("Q", FORCE, "tangential force that moves it"),
             c("P", FORCE, "normal force"),
             c("mu", ONE, "|Q|/P"),
@@ -155,16 +167,19 @@ impl Observer for FrictionTest {
         if number > 0 && cycles.oscillates() {
             caption.push(format!("cycle {number} of {}", cycles.total()));
         }
-        if let Some(c) = cycles.list.last() {
-            let mu = c.friction_coefficient;
+        if let Some(mu) = cycles.list.last().and_then(|c| c.friction_coefficient) {
             caption.push(format!("friction coefficient {mu:.3}"));
         }
         caption
     }
 
     fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
-        let path = self.state.load_path;
-        let doc = "normal force times sliding distance: the integral of P |ds| over the run";
+        let path = self.state.load_path + self.state.cycles.slip_load_path();
+        let doc = "normal force times distance of slip: the integral of P |ds| over the run, without the elastic part of reciprocating strokes";
+        found.keep(LoadPath {
+            slip: path,
+            imposed: self.state.load_path + self.state.cycles.load_path(),
+        });
         found.begin(Topic::Wear, Role::Detail);
         found.add("wear.load_path", path, LOAD_PATH, doc);
         if let Some(mut wear) = found.get::<WearSummary>().cloned().filter(|_| path > 0.0) {

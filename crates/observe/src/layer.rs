@@ -5,7 +5,7 @@
 //! contacts: it is dissipated in contacts or stored by the other bodies. The ledger's external work
 //! is not used here, so the two balances check each other.
 
-use fretwork_core::process::cycle::{SlidingBody, SlidingPart};
+use fretwork_core::process::sliding::{SlidingBody, SlidingPart};
 use fretwork_core::view::RunView;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,18 @@ pub struct Balance {
     pub taken: f64,
     /// Work of the driven bodies on their contacts, except the tangential drive of the test.
     pub other: f64,
+}
+
+/// Sliding of the rubbed body in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Rubbing<'a> {
+    /// The rubbed body.
+    pub body: &'a SlidingBody,
+    /// Work of sliding over the step (J; J/m in 2D).
+    pub work: f64,
+    /// Velocity of what the body rubs against (m/s), see
+    /// [`SlidingStep::counter`](fretwork_core::process::sliding::SlidingStep::counter).
+    pub counter: f64,
 }
 
 /// Observer of the balance.
@@ -44,14 +56,13 @@ impl LayerBalance {
         }
     }
 
-    /// Adds the last step. For a friction test its body and the work of its drive (J; J/m) are
-    /// given, which is kept separately. Where the rubbed body deforms, the work of all other drives
-    /// is that of the ledger.
-    pub fn follow(&mut self, run: &dyn RunView, test: Option<(&SlidingBody, f64)>) {
+    /// Adds the last step; the work of sliding of a friction test is kept separately. Where the
+    /// rubbed body deforms, the work of all other drives is that of the ledger.
+    pub fn follow(&mut self, run: &dyn RunView, test: Option<Rubbing<'_>>) {
         let external = run.energies().external_work;
-        let deforms = test.filter(|(body, _)| matches!(body.part, SlidingPart::System { .. }));
-        if let Some((_, work)) = deforms {
-            self.other += external - self.external - work;
+        let deforms = test.filter(|t| matches!(t.body.part, SlidingPart::System { .. }));
+        if let Some(test) = deforms {
+            self.other += external - self.external - test.work;
         }
         self.external = external;
         let (h, theta) = (run.options().scheme.h, run.options().scheme.theta);
@@ -69,8 +80,9 @@ impl LayerBalance {
             if deforms.is_none() {
                 self.other -= impulse.dot(&v) + moment.dot(&w);
             }
-            if let Some((body, _)) = test.filter(|(body, _)| body.part == SlidingPart::Driven(d)) {
-                self.other += impulse[body.along] * v[body.along];
+            if let Some(t) = test.filter(|t| t.body.part == SlidingPart::Driven(d)) {
+                let along = t.body.along;
+                self.other += impulse[along] * (v[along] - t.counter);
             }
             let (dv, dw) = (*v1 - v0, *w1 - w0);
             self.apart -= h * bodies.mass[b] * gravity.dot(&v);

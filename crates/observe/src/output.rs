@@ -25,4 +25,12 @@ impl Output {
     pub fn figure(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self::Figure(Figure::new(name, charts, columns))
     }
+
+    /// Creates a figure of a main result, with which a report begins.
+    pub fn leading(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
+        Self::Figure(Figure {
+            leads: true,
+            ..Figure::new(name, charts, columns)
+        })
+    }
 }

@@ -21,22 +21,30 @@ pub struct Scatter {
     pub count: usize,
     /// Description of the values: `cycles 6 to 10`.
     pub over: String,
+    /// What the values are: `cycles`.
+    pub of: &'static str,
 }
 
 impl Scatter {
-    fn new(values: &[f64], over: String) -> Option<Self> {
+    fn new(values: &[f64], over: String, of: &'static str) -> Option<Self> {
         let finite = values.iter().all(|v| v.is_finite());
         let flow = steady::of_blocks(values).filter(|_| finite && values.len() >= FEWEST)?;
         Some(Self {
             flow,
             count: values.len(),
             over,
+            of,
         })
     }
 
     /// Returns the half-width of the interval; `None` if the values show a trend.
     pub fn half_width(&self) -> Option<f64> {
         self.flow.steady.then_some(self.flow.half_width)
+    }
+
+    /// Returns the scope of the interval: it says nothing of other samples.
+    pub fn scope(&self) -> String {
+        format!("within this sample ({} {})", self.count, self.of)
     }
 
     /// Describes the method of the interval, or the reason why there is none.
@@ -64,21 +72,22 @@ impl Scatter {
 }
 
 /// Returns the scatter of a value over the later half of the complete cycles, at least three;
-/// `None` if there are fewer.
-pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
+/// `None` if there are fewer, or if one of them has no value.
+pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> Option<f64>) -> Option<Scatter> {
     let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
     let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
     let late = &complete[complete.len() - count..];
     let (first, last) = (late.first()?.cycle, late.last()?.cycle);
-    let values: Vec<f64> = late.iter().map(|c| value(c)).collect();
-    Scatter::new(&values, format!("cycles {first} to {last}"))
+    let values: Option<Vec<f64>> = late.iter().map(|c| value(c)).collect();
+    Scatter::new(&values?, format!("cycles {first} to {last}"), "cycles")
 }
 
 /// Returns the scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
 pub fn over_blocks(blocks: &[(f64, f64)]) -> Option<Scatter> {
     let ratio = |b: &(f64, f64)| (b.1 > 0.0).then(|| b.0 / b.1);
     let values: Option<Vec<f64>> = blocks.iter().map(ratio).collect();
-    Scatter::new(&values?, format!("{} blocks of equal time", blocks.len()))
+    let over = format!("{} blocks of equal time", blocks.len());
+    Scatter::new(&values?, over, "blocks of time")
 }
 
 #[cfg(test)]
@@ -89,7 +98,7 @@ mod tests {
         let cycle = |(k, v): (usize, &f64)| Cycle {
             cycle: k as u32 + 1,
             complete: true,
-            friction_coefficient: *v,
+            friction_coefficient: Some(*v),
             ..Cycle::default()
         };
         values.iter().enumerate().map(cycle).collect()
@@ -102,6 +111,7 @@ mod tests {
         let list = cycles(&[0.9, 0.8, 0.7, 0.39, 0.41, 0.40]);
         let scatter = over_cycles(&list, |c| c.friction_coefficient).unwrap();
         assert_eq!(scatter.over, "cycles 4 to 6");
+        assert_eq!(scatter.scope(), "within this sample (3 cycles)");
         assert!((scatter.flow.mean - 0.40).abs() < 1e-12);
         let half = scatter.half_width().unwrap();
         assert!(

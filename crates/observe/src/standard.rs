@@ -3,8 +3,9 @@
 use super::accuracy::{ChosenSettings, report_accuracy};
 use super::biaxial::Biaxial;
 use super::case_checks::CaseChecks;
-use super::circuit::{BrokenBonds, CircuitAccount};
+use super::circuit::{BrokenBonds, CircuitAccount, WornGrains};
 use super::deformable::Deformable;
+use super::first_bodies::WearMaterials;
 use super::fracture::Fracture;
 use super::friction::Cycles;
 use super::friction_test::FrictionTest;
@@ -27,8 +28,8 @@ use fretwork_scene::processes;
 use std::time::Duration;
 
 /// Returns the observers of a run of a case, from the current state of its simulation on, in the
-/// order of the columns of the statistics. `density` is that of the first bodies (kg/m^3).
-pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
+/// order of the columns of the statistics.
+pub fn observers(case: &Case, run: &dyn RunView, materials: &WearMaterials) -> Observers {
     let test = processes::FrictionTest::of(case, run);
     let mut all = Observers::default();
     all.push(Box::new(CaseChecks::of(case, run)));
@@ -36,7 +37,8 @@ pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
     let start = test.map_or(0.0, |t| t.start);
     let along = case.friction.as_ref().map_or(0, |t| t.along);
     let wears = run.laws().iter().any(|l| l.wear().is_some());
-    let wear = Wear::new([start, case.inertia_scaling, density], along, wears);
+    let flows = [start, case.inertia_scaling];
+    let wear = Wear::new(flows, materials.clone(), along, wears);
     all.push(Box::new(wear));
     if let Some(test) = test {
         let cycles = Cycles::of(test.clock, case.time.end);
@@ -68,7 +70,8 @@ pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
     all.push(Box::new(BrokenBonds::new(bonds)));
     all.push(Box::new(Fracture::of(case, run)));
     if let Some(circuit) = &case.circuit {
-        all.push(Box::new(CircuitAccount::new(circuit.start)));
+        let worn = WornGrains::new(test.map(|t| t.body), materials.clone());
+        all.push(Box::new(CircuitAccount::new(circuit.start, worn)));
     }
     if let Some(top) = case.output.shear {
         all.push(Box::new(LocalShear::new(run, top)));
@@ -98,7 +101,7 @@ pub fn pictures_of_some_cases() -> [&'static str; 3] {
 /// Returns the results of a run of a case as far as they are known before its first step: values
 /// are those of the start, and results that a case cannot have give the reason.
 pub fn declared(case: &Case, run: &dyn RunView) -> Findings {
-    declared_by(&observers(case, run, 0.0), run)
+    declared_by(&observers(case, run, &WearMaterials::default()), run)
 }
 
 /// What a run with these observers will say, as far as it is known before its first step.

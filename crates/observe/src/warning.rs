@@ -37,7 +37,7 @@ impl Warning {
 }
 
 /// Categories in the order in which they are reported; those of other observers follow.
-const ORDER: [&str; 43] = [
+const ORDER: [&str; 45] = [
     "INTERRUPTED",
     "STOPPED",
     "NOT FINITE",
@@ -76,6 +76,8 @@ const ORDER: [&str; 43] = [
     "HEAT OUT OF RANGE",
     "NEAREST PLACES",
     "COARSE DRIVE",
+    "LAW DEFAULT",
+    "NO WEAR RATE",
     "POSITION CORRECTION",
     "ACCURACY NOT SHOWN",
     "ESTIMATED ERROR",

@@ -3,9 +3,9 @@
 
 use super::chart::Axis;
 use super::figures::history;
-use super::first_bodies::{self, BodyWear};
+use super::first_bodies::{self, BodyWear, WearMaterials};
 use super::output::Output;
-use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WORD};
+use super::quantity::unit::{LOAD_PATH, MASS_FLOW, ONE, PASCAL, SECOND, VOLUME, WEAR_RATE, WORD};
 use super::quantity::{Findings, Role, Topic, Wording, number, parts, quantity};
 use super::statistics::Column;
 use crate::observer::{Observer, RunEnd};
@@ -40,8 +40,8 @@ crate::described! {
         pub volume_first_bodies: f64 => VOLUME,
         /// Volume worn between grains.
         pub volume_third_body: f64 => VOLUME,
-        /// Normal force times sliding distance: the integral of P |ds| over the run; null without
-        /// a friction test.
+        /// Normal force times distance of slip: the integral of P |ds| over the run, without the
+        /// elastic part of reciprocating strokes; null without a friction test.
         pub load_path: Option<f64> => LOAD_PATH,
         /// Wear of the first bodies that lost material.
         pub bodies: Vec<BodyWear> = parts::<BodyWear>(),
@@ -134,9 +134,11 @@ impl WearSummary {
     /// Sets the specific wear rates of the bodies, by the integral of P |ds|.
     pub(crate) fn rate(&mut self, load_path: f64, found: &mut Findings) {
         let volume = VOLUME.symbol(found.dimension());
+        let materials = found.get::<WearMaterials>().cloned().unwrap_or_default();
         for (k, body) in self.bodies.iter_mut().enumerate() {
             let rate = body.volume / load_path;
             body.specific_rate = Some(rate);
+            let hard = materials.hardness.iter().find(|h| h.body == body.body);
             let doc = format!("specific wear rate k = V/(P s) of `{}`", body.body);
             let path = format!("wear.bodies.{k}.specific_rate");
             let added = found.add(&path, rate, WEAR_RATE, doc);
@@ -144,9 +146,23 @@ impl WearSummary {
                 let label = format!("specific wear rate of {}", body.body);
                 added.secondary(label).silent();
             }
+            if let Some(hard) = hard {
+                let coefficient = rate * hard.value;
+                body.archard_coefficient = Some(coefficient);
+                body.hardness = Some(hard.value);
+                let at = format!("wear.bodies.{k}");
+                let doc = format!("Archard's coefficient K = k H of `{}`", body.body);
+                found.add(&format!("{at}.archard_coefficient"), coefficient, ONE, doc);
+                let doc = format!("hardness H of `{}`: {}", body.body, hard.text);
+                found.add(&format!("{at}.hardness"), hard.value, PASCAL, doc);
+            }
+            let mut text = of_body(body, volume);
+            if let Some(hard) = hard {
+                text += &archard(rate * hard.value, &hard.text);
+            }
             found.edit(&format!("wear.bodies.{k}.volume"), |q| {
                 if let Wording::Sentence(label, _) = q.wording.clone() {
-                    q.sentence(label, of_body(body, volume));
+                    q.sentence(label, text);
                 }
             });
         }
@@ -180,6 +196,22 @@ pub(crate) fn show_flows(found: &mut Findings) {
     });
 }
 
+/// K above which wear is more severe than that of unlubricated metals: J. F. Archard, W. Hirst,
+/// Proc. R. Soc. A 236 (1956) 397, measured 2e-7 to 2e-2.
+const MOST_SEVERE: f64 = 2e-2;
+
+/// Returns Archard's coefficient as text, with the hardness.
+pub(crate) fn archard(coefficient: f64, hardness: &str) -> String {
+    let severe = match coefficient > MOST_SEVERE {
+        true => ", more than unlubricated metals wear (K up to 0.02)",
+        false => "",
+    };
+    format!(
+        ", K = k H = {} (H {hardness}){severe}",
+        number(coefficient, 3)
+    )
+}
+
 /// Returns volume, depths and specific wear rate as text.
 fn of_body(w: &BodyWear, volume: &str) -> String {
     let mut text = quantity(w.volume, volume);
@@ -197,6 +229,15 @@ fn of_body(w: &BodyWear, volume: &str) -> String {
     text
 }
 
+/// Normal force times distance over a run, by its friction test (J; J/m in 2D).
+#[derive(Clone, Copy, Debug)]
+pub struct LoadPath {
+    /// Of slip.
+    pub slip: f64,
+    /// Of the whole path, the elastic part included.
+    pub imposed: f64,
+}
+
 /// Observes wear.
 #[derive(Clone, Debug)]
 pub struct Wear {
@@ -204,8 +245,7 @@ pub struct Wear {
     along: usize,
     /// Factor by which the masses of bodies are too large, see `inertia_scaling` of a case.
     scaling: f64,
-    /// Density of the first bodies (kg/m^3).
-    density: f64,
+    materials: WearMaterials,
     /// Whether an interface of the case has a wear law.
     wears: bool,
     state: WearObserverState,
@@ -220,15 +260,20 @@ struct WearObserverState {
 }
 
 impl Wear {
-    /// Creates the observer of wear of first bodies of a density (kg/m^3), with flows along an axis
-    /// from a time (s) on; the masses of bodies are too large by `scaling`; `wears` says whether an
-    /// interface has a wear law.
-    pub fn new([start, scaling, density]: [f64; 3], along: usize, wears: bool) -> Self {
+    /// Creates the observer of wear of first bodies, with flows along an axis from a time (s) on;
+    /// the masses of bodies are too large by `scaling`; `wears` says whether an interface has a
+    /// wear law.
+    pub fn new(
+        [start, scaling]: [f64; 2],
+        materials: WearMaterials,
+        along: usize,
+        wears: bool,
+    ) -> Self {
         Self {
             wears,
             along,
             scaling,
-            density,
+            materials,
             state: WearObserverState {
                 volumes: (0.0, 0.0),
                 flows: Flows::since(start),
@@ -276,7 +321,7 @@ impl Observer for Wear {
         let summary = WearSummary {
             unit: MASS_FLOW.symbol(run.dimension()),
             start: state.flows.start,
-            Qs: state.flows.source(over) * self.density,
+            Qs: state.flows.source(over) * self.materials.density,
             Qi: state.flows.internal(),
             Qe: closed,
             Qw: closed,
@@ -286,6 +331,7 @@ impl Observer for Wear {
             bodies: first_bodies::wear(run),
         };
         summary.report(self.wears, found);
+        found.keep(self.materials.clone());
     }
 
     fn file_names(&self) -> Vec<String> {

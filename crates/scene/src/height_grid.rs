@@ -1,11 +1,12 @@
 //! Heights over a grid: the reader of files of heights, and checks that their lines are the rows of
 //! the grid.
 //!
-//! A file has numbers with a decimal point, one line for each row of the grid along x, separated by
-//! blanks, tabs, commas or semicolons. Empty lines, and lines that begin with `#`, are skipped. A
-//! profile of a single row may have one height per line.
+//! A file has one line for each row of the grid along x, with numbers that are separated by blanks,
+//! tabs, commas or semicolons, and have a decimal point; or a decimal comma, where something else
+//! separates them. Empty lines, and lines that begin with `#`, are skipped. A profile of a single
+//! row may have one height per line.
 
-use super::sample::table::decimal_comma;
+use super::measured::Layout;
 use super::source::{InputError, read_text};
 use std::ops::Range;
 use std::path::Path;
@@ -25,6 +26,9 @@ pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
     let (text, name) = (read_text(path)?, path.display().to_string());
     let body = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let mut rows: Vec<Vec<f64>> = Vec::new();
+    // A text with points has no decimal commas.
+    let layout = Layout::of(body);
+    let commas = Some(layout).filter(|l| l.decimal_comma && !body.contains('.'));
     let (mut at, mut whole) = (text.len() - body.len(), true);
     for line in body.split_inclusive('\n') {
         let span = at..at + line.trim_end().len();
@@ -33,7 +37,15 @@ pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let row = numbers(line).map_err(|why| InputError::at(&name, &text, span.clone(), why))?;
+        let row = match commas {
+            Some(layout) => layout
+                .cells(line)
+                .iter()
+                .map(|w| layout.number(w))
+                .collect(),
+            None => numbers(line),
+        };
+        let row = row.map_err(|why| InputError::at(&name, &text, span.clone(), why))?;
         if let Some(before) = rows.last()
             && before.len() != row.len()
         {
@@ -126,6 +138,11 @@ fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{plural}")
 }
 
+/// Returns the message for a number with a decimal comma.
+fn decimal_comma(word: &str) -> String {
+    format!("`{word}` has a comma within; write numbers with a decimal point, or all with a comma")
+}
+
 /// The numbers of a line.
 fn numbers(line: &str) -> Result<Vec<f64>, String> {
     let separates = |c: char| c.is_whitespace() || c == ';';
@@ -192,6 +209,8 @@ mod tests {
             "1, 2, 3,\n4, 5, 6.5\n  # end",
             "1;2;3\n4;5;6.5",
             "1\t2 3\n4\t5\t6.5",
+            "1,0 2,0 3,0\n4,0 5,0 6,5",
+            "1,0;2,0;3,0\n4,0;5,0;6,5",
         ] {
             assert_eq!(of(text, [3, 2]).unwrap(), six, "{text:?}");
         }
@@ -214,7 +233,8 @@ mod tests {
                 "in 2 lines of 6",
             ),
             ("1 2 3 4 5 6 7 8 9 10 11 12\n", [4, 3], 0, "in 1 line of 12"),
-            ("1,0 2,0\n3,0 4,0\n", [4, 1], 1, "decimal point"),
+            ("1,0 2,0\n3,0 4,0\n", [4, 1], 0, "in 2 lines of 2"),
+            ("1,0 2.0\n3,0 4,0\n", [2, 2], 1, "decimal point"),
             ("1.5 2\n1,0;2,0\n", [2, 2], 2, "decimal point"),
             ("1,0,2,0\n3,0,4,0\n", [2, 2], 0, "decimal point"),
             ("0 0 1\n1 0 2\n2 0 3\n3 0 4\n", [4, 3], 0, "places x, y"),

@@ -1,9 +1,7 @@
 //! Table of all inputs of a case: values from the file, and defaults of the others.
 
-use crate::case::Case;
+use crate::case::{Case, key_units};
 use crate::source::{Group, Node, Shape, Source, Tree, ValueKind, fields_at};
-
-mod key_units;
 
 /// Origin of the value of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +53,7 @@ const WIDE: usize = 160;
 /// ```
 pub fn of(text: &str) -> Result<Vec<Input>, String> {
     let source = Source::from_text("case", text);
-    let case: Case = source.parse().map_err(|e| e.to_string())?;
+    let case = Case::read(&source).map_err(|e| e.to_string())?;
     let full = case.to_ron().map_err(|e| e.to_string())?;
     let tree = Tree::of(&full);
     let mut walk = Walk {
@@ -189,7 +187,7 @@ impl Walk<'_> {
         self.out.push(Input {
             path: parts.join("."),
             value,
-            unit: key_units::of(&at.named, self.dimension as usize),
+            unit: key_units::of(&at.named, self.dimension as usize).unwrap_or_default(),
             from,
         });
     }

@@ -11,7 +11,7 @@ use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::laws::{
-    AreaRule, BondRule, Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath,
+    AreaRule, BondRule, Interface, Kind, LawError, LoadedLaw, ParameterOrigin, Plugin, SearchPath,
 };
 use fretwork_core::view::RunView;
 use std::collections::{BTreeMap, BTreeSet};
@@ -316,7 +316,11 @@ fn build_interface(
         let own = spec.parameters.get(kind).unwrap_or(&none);
         let plugin = find_law(case, kind, name, path)?;
         let friction = friction_of(&laws);
-        let mut numbers = given_numbers(kind.word(), name, of_file, own);
+        let from = spec.parameters_from.as_deref();
+        let mut numbers = given_numbers(kind.word(), name, (of_file, from), own);
+        if kind == Kind::WEAR && unmeasured(case, spec, &plugin, &numbers) {
+            continue;
+        }
         let coefficient = (kind == Kind::WEAR)
             .then(|| wear_from_hardness(&plugin, &mut numbers, (sides, spec), friction))
             .transpose()?
@@ -337,6 +341,24 @@ fn build_interface(
         .map_err(unfit)
 }
 
+/// Returns whether a wear law has no coefficient although a material gives its parameters: how much
+/// that material wears others was not measured, and the law's default is that of another one. The
+/// interface then has no wear law, see [`super::law_inputs::unmeasured`].
+fn unmeasured(
+    case: &Case,
+    spec: &InterfaceSpec,
+    plugin: &Plugin,
+    numbers: &BTreeMap<&str, GivenNumber<'_>>,
+) -> bool {
+    let from = spec.parameters_from.as_ref();
+    let of_material = from.is_some_and(|name| case.materials.contains_key(name));
+    let fields = plugin.parameters.iter();
+    let fields = fields.map(|f| (f.name.as_str(), f.unit.as_str()));
+    let coefficient = super::wear_coefficient::parameter(fields).map(|(name, _)| name);
+    let given = |name: &str| numbers.contains_key(name) || numbers.contains_key("K");
+    of_material && coefficient.is_some_and(|name| !given(name))
+}
+
 /// Resolves the parameters of a law, and checks them by the law.
 fn load_law(
     case: &Case,
@@ -355,29 +377,33 @@ fn load_law(
             return Err(ValidationError::new(slot, message).into());
         }
     }
-    let mut values: BTreeMap<&str, f64> = BTreeMap::new();
+    let mut values: BTreeMap<&str, (f64, String)> = BTreeMap::new();
     for (parameter, number) in numbers {
         let value =
             parameter_value(&plugin, kind, parameter, number).map_err(|fault| InterfaceError {
                 fault,
                 in_file: !number.in_case,
             })?;
-        values.insert(parameter, value);
+        values.insert(parameter, (value, number.origin.clone()));
     }
-    if let Some(coefficient) = coefficient {
-        values.insert(&coefficient.parameter, coefficient.value);
+    if let Some(found) = coefficient {
+        let origin = format!("K and the hardness of `{}`", found.softer);
+        values.insert(&found.parameter, (found.value, origin));
     }
     let of_materials = properties_of_sides(&plugin, &values, sides, spec)?;
     values.extend(of_materials);
-    let parameters: Vec<f64> = plugin
+    let resolved = plugin
         .parameters
         .iter()
-        .map(|f| values.get(f.name.as_str()).copied().unwrap_or(f.default))
-        .collect();
+        .map(|f| match values.remove(f.name.as_str()) {
+            Some((value, origin)) => (value, ParameterOrigin::Given(origin)),
+            None => (f.default, ParameterOrigin::Default),
+        });
+    let (parameters, origins): (Vec<f64>, Vec<ParameterOrigin>) = resolved.unzip();
     plugin
         .validate(&parameters)
         .map_err(|e| ValidationError::new(slot, e.to_string()))?;
-    Ok(LoadedLaw::new(plugin, parameters))
+    Ok(LoadedLaw::new(plugin, parameters).with_origins(origins))
 }
 
 fn find_law(

@@ -32,10 +32,10 @@ pub(super) type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
 /// the second.
 pub(super) fn properties_of_sides<'a>(
     plugin: &'a Plugin,
-    given: &BTreeMap<&str, f64>,
+    given: &BTreeMap<&str, (f64, String)>,
     sides: &Sides<'_>,
     spec: &InterfaceSpec,
-) -> Result<Vec<(&'a str, f64)>, ValidationError> {
+) -> Result<Vec<(&'a str, (f64, String))>, ValidationError> {
     let mut out = Vec::new();
     let names = [&spec.between.0, &spec.between.1];
     for field in &plugin.parameters {
@@ -64,6 +64,10 @@ pub(super) fn properties_of_sides<'a>(
             unit: &sourced.unit,
             at: slot.to_owned(),
             in_case: true,
+            origin: format!(
+                "`{property}` of the material `{}`: {}",
+                names[side], sourced.source
+            ),
         };
         let value = parameter_value(plugin, plugin.kind, name, &number).map_err(|mut fault| {
             fault.path = slot.to_owned();
@@ -73,7 +77,7 @@ pub(super) fn properties_of_sides<'a>(
             );
             fault
         })?;
-        out.push((name, value));
+        out.push((name, (value, number.origin)));
     }
     Ok(out)
 }
@@ -150,21 +154,25 @@ pub(super) struct GivenNumber<'a> {
     pub at: String,
     /// Whether the number is in the case itself.
     pub in_case: bool,
+    /// Where it is, for readers: "the case".
+    pub origin: String,
 }
 
 /// Returns numbers by parameter; those of the case take precedence over those of the file.
 pub(super) fn given_numbers<'a>(
     slot: &str,
     law: &str,
-    file: Option<&'a BTreeMap<String, Sourced>>,
+    (file, from): (Option<&'a BTreeMap<String, Sourced>>, Option<&str>),
     own: &'a BTreeMap<String, NumberSpec>,
 ) -> BTreeMap<&'a str, GivenNumber<'a>> {
+    let from = from.unwrap_or_default();
     let of_file = file.into_iter().flatten().map(|(name, number)| {
         let given = GivenNumber {
             value: number.value,
             unit: &number.unit,
             at: format!("{slot}.{law}.{name}"),
             in_case: false,
+            origin: format!("parameters_from `{from}`: {}", number.source),
         };
         (name.as_str(), given)
     });
@@ -174,6 +182,7 @@ pub(super) fn given_numbers<'a>(
             unit: number.unit.as_deref().unwrap_or_default(),
             at: format!("parameters.{slot}.{name}"),
             in_case: true,
+            origin: "the case".to_owned(),
         };
         (name.as_str(), given)
     });

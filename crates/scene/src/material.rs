@@ -1,7 +1,7 @@
 //! Materials and parameters of interface laws: numbers with their units and sources.
 
 use super::shipped_materials;
-use super::source::{InputError, Source, ValidationError, nearest};
+use super::source::{InputError, Source, ValidationError, Wanted, nearest};
 use super::units::{self, UnitError};
 use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
 use serde::de::value::MapAccessDeserializer;
@@ -20,6 +20,9 @@ pub struct Sourced {
     /// Unit; that of the schema, in SI units, by default.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
+    /// Smallest and largest value in the source, in the same unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<(f64, f64)>,
     /// Source: paper, standard or table.
     pub source: String,
 }
@@ -237,8 +240,18 @@ impl InterfaceParameters {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
                 for (name, number) in parameters {
-                    units::known(&number.unit)
-                        .map_err(|e| e.at(format!("{slot}.{law}.{name}.unit")))?;
+                    let at = |field: &str| format!("{slot}.{law}.{name}.{field}");
+                    units::known(&number.unit).map_err(|e| e.at(at("unit")))?;
+                    if let Some((low, high)) = number.range
+                        && !(low <= number.value && number.value <= high)
+                    {
+                        let message = format!(
+                            "the range of `{name}`, {low} to {high}, does not contain its value {}",
+                            number.value
+                        );
+                        return Err(ValidationError::new(at("range"), message)
+                            .expected("the smallest, then the largest value in the source"));
+                    }
                 }
             }
         }
@@ -279,11 +292,22 @@ impl MaterialLibrary {
         self
     }
 
-    /// Reads the file `NAME.ron`.
+    /// Reads the file `NAME.ron`. A unit with a value, `value: 200 GPa`, stands beside it in the
+    /// text that is returned.
     ///
     /// # Errors
     /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
+        let mut source = self.find(name)?;
+        let units = source.replace_quantities(|place| match place.names.last() {
+            Some(name) if name == "value" => Wanted::Pair,
+            _ => Wanted::AsWritten,
+        });
+        units.map_err(Err)?;
+        Ok(source)
+    }
+
+    fn find(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
                 format!("{name}.ron (built in Rust)"),

@@ -6,7 +6,8 @@ use super::circuit;
 use super::phases::{drives_of_holder, holder_name};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::process::circuit::Intervals;
-use fretwork_core::process::cycle::{CycleClock, SlidingBody, SlidingPart};
+use fretwork_core::process::cycle::CycleClock;
+use fretwork_core::process::sliding::{SlidingBody, SlidingPart};
 use fretwork_core::view::{RunSetup, RunView};
 
 /// The friction test of a case, in its scene.

@@ -8,12 +8,12 @@ use super::source::{ValidationError, nearest};
 use runits::{Dimension, ParseError, UnknownUnit};
 
 /// Units that are suggested for a wrong or unknown one.
-const USUAL: [&str; 62] = [
+const USUAL: [&str; 63] = [
     "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "min", "h", "kg", "g", "mg", "t", "N",
     "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa", "bar", "J", "mJ", "kJ", "MJ", "W", "kW", "Hz",
     "kHz", "rad", "deg", "K", "m/s", "mm/s", "km/h", "kg/m^3", "g/cm^3", "t/m^3", "N/m", "N/mm",
-    "J/m^2", "kJ/m^2", "MJ/m^2", "Pa/m", "MPa/mm", "GPa/mm", "1/Pa", "1/MPa", "m^3/J", "mm^3/J",
-    "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
+    "kN/m", "J/m^2", "kJ/m^2", "MJ/m^2", "Pa/m", "MPa/mm", "GPa/mm", "1/Pa", "1/MPa", "m^3/J",
+    "mm^3/J", "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
 ];
 
 /// Hardness scales, which are not pressures.
@@ -409,7 +409,7 @@ mod tests {
             .and_then(|e| e.expected);
         assert_eq!(
             fits.as_deref(),
-            Some("`J/m^2`, `N/m`, `N/mm`, `kJ/m^2`, `MJ/m^2`")
+            Some("`J/m^2`, `N/m`, `N/mm`, `kN/m`, `kJ/m^2`, `MJ/m^2`")
         );
     }
 

@@ -157,6 +157,7 @@ mod tests {
         Sourced {
             value,
             unit: unit.to_owned(),
+            range: None,
             source: "test".to_owned(),
         }
     }

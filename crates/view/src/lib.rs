@@ -24,9 +24,11 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod html;
+mod measured;
 mod png;
 
 pub use fretwork_observe::chart::{Axis, Chart, Figure, Series, Style, TableColumns, quantity};
 pub use fretwork_observe::picture::Paint;
 pub use html::*;
+pub use measured::{MeasuredColumns, MeasuredCurve, read_measured};
 pub use png::*;

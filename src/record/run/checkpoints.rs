@@ -47,6 +47,7 @@ impl Recorder<'_> {
         self.drawing.wait()?;
         let state = self.state()?;
         self.write_frame(FrameKind::State, state)?;
+        self.last_state = None;
         // The other files can be regenerated from the results; this one is written for the user to
         // read.
         self.table
@@ -87,7 +88,14 @@ impl Recorder<'_> {
         self.describe_figures(Duration::ZERO)
     }
 
-    fn state(&mut self) -> Result<Vec<u8>, RunError> {
+    /// Whether the next step may be the last, which ends the run in another way than a longer run
+    /// would continue: with a row, and with the last phase.
+    pub(super) fn near_end(&self) -> bool {
+        let longest = self.accuracy.as_ref().map_or(1, AccuracyControl::longest);
+        self.checkpoint_writer.keeps_last() && self.total - self.done <= longest
+    }
+
+    pub(super) fn state(&mut self) -> Result<Vec<u8>, RunError> {
         let rows = self.results.rows()?;
         let mut bytes = self.simulation.save()?;
         bytes.extend(encode(&RunLoopState {

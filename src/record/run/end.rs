@@ -104,6 +104,10 @@ impl Recorder<'_> {
     /// Closes the results file, and marks it as complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.run.stopped.is_none() {
+            if let Some(state) = self.last_state.take() {
+                let (number, bytes) = self.checkpoint_writer.frame(FrameKind::State, state);
+                self.results.keep_state(number, &bytes)?;
+            }
             let (number, bytes) = self.checkpoint_writer.frame(FrameKind::Ended, Vec::new());
             self.results.set_final_checkpoint(number, &bytes);
         }

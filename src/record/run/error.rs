@@ -1,6 +1,6 @@
 //! Errors of a run.
 
-use crate::record::checkpoint::ResumeError;
+use crate::record::checkpoint::{Occupied, ResumeError};
 use crate::record::encoding::EncodingError;
 use crate::record::results::ResultsError;
 use crate::scene::source::InputError;
@@ -28,6 +28,11 @@ pub enum RunError {
     /// Another run is writing in the folder, or it cannot be owned.
     #[error(transparent)]
     Lock(#[from] LockError),
+    /// The folder has results that the run would replace, see [`Run::keeping`].
+    ///
+    /// [`Run::keeping`]: super::Run::keeping
+    #[error(transparent)]
+    Occupied(Box<Occupied>),
     /// A written file cannot be read back.
     #[error("cannot read {} back: {reason}; its results are not summarised or drawn", path.display())]
     Read {
@@ -92,7 +97,7 @@ impl RunError {
     pub fn is_input(&self) -> bool {
         match self {
             Self::Resume(e) => e.is_input(),
-            Self::Input(_) | Self::Lock(LockError::Held { .. }) => true,
+            Self::Input(_) | Self::Occupied(_) | Self::Lock(LockError::Held { .. }) => true,
             _ => false,
         }
     }

@@ -27,14 +27,17 @@ use self::drawing::{Camera, Drawing};
 use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::schedule::due;
-use self::stamps::{density_of, stamps};
-use super::checkpoint::{CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find};
+use self::stamps::stamps;
+use super::checkpoint::{
+    CheckpointWriter, FolderState, FrameKind, Identity, ResumePoint, find, occupied,
+};
 use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
-use super::summary::{RunFacts, Summary, Uncertainty};
+use super::summary::{RunFacts, SampleFacts, Summary, Uncertainty};
 use super::views;
 use crate::scene::case::Case;
+use crate::scene::input_ranges::given_ranges;
 use crate::scene::processes;
 use crate::scene::{Built, LoadedCase};
 use crate::step::StepReport;
@@ -42,6 +45,7 @@ use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
+use fretwork_observe::first_bodies::WearMaterials;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard;
 use fretwork_observe::{Observer, Observers};
@@ -120,6 +124,7 @@ pub struct Run<'a> {
     stop: Option<ResumePoint>,
     observers: Observers,
     hurry: Option<&'a AtomicBool>,
+    keeping: bool,
 }
 
 impl<'a> Run<'a> {
@@ -132,7 +137,17 @@ impl<'a> Run<'a> {
             stop: None,
             observers: Observers::default(),
             hurry: None,
+            keeping: false,
         }
+    }
+
+    /// Refuses to replace results in the folder that this run would not give again: those of other
+    /// inputs, or of a longer run or one that is not at its end, see
+    /// [`occupied`]. Without it a run replaces what is there.
+    #[must_use]
+    pub fn keeping(mut self) -> Self {
+        self.keeping = true;
+        self
     }
 
     /// Omits the figures if the flag is set when the run ends, so that a stopped run ends sooner.
@@ -223,12 +238,12 @@ pub fn stopped(
 /// Returns the observers that a run of a case has, for a program that steps without a run.
 pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
-    standard::observers(&loaded.case, s, density_of(loaded, any))
+    standard::observers(&loaded.case, s, &WearMaterials::of(loaded, any))
 }
 
 /// Returns the columns of the statistics that a run of a case has.
 pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
-    standard::observers(case, s, 0.0).columns()
+    standard::observers(case, s, &WearMaterials::default()).columns()
 }
 
 /// A run in progress.
@@ -262,6 +277,9 @@ struct Recorder<'a> {
     total: u64,
     spread: u64,
     checkpoint_writer: CheckpointWriter,
+    /// The state shortly before the end, from which a longer run can continue; it is written with
+    /// the end.
+    last_state: Option<Vec<u8>>,
     /// Wall and processor time of the run before it was resumed; and the start of this part.
     elapsed_before_resume: (Duration, Duration),
     /// Slot in which the watch over plugins finds the files during a step.
@@ -299,7 +317,13 @@ impl<'a> Recorder<'a> {
             None => {
                 let made = std::fs::create_dir_all(&options.out);
                 made.map_err(|e| unwritable(&options.out, &e))?;
-                FolderLock::exclusive(&options.out, RUN_LOCK)?
+                let lock = FolderLock::exclusive(&options.out, RUN_LOCK)?;
+                if run.keeping
+                    && let Some(found) = occupied(&options.out, &identity)
+                {
+                    return Err(RunError::Occupied(Box::new(found)));
+                }
+                lock
             }
         };
         let frames = options.out.join("frames");
@@ -309,6 +333,8 @@ impl<'a> Recorder<'a> {
             dimension: simulation.dimension(),
             plugins: stamps(simulation.laws()),
             wear_coefficients: std::mem::take(&mut built.wear_coefficients),
+            sample: SampleFacts::of(case, simulation.view()),
+            given: given_ranges(case, &built.materials, simulation.view().laws()),
             threads: options.threads,
             seed: case.seed,
             identity: checkpoint_writer.name(),
@@ -339,6 +365,7 @@ impl<'a> Recorder<'a> {
             total,
             spread: total,
             checkpoint_writer,
+            last_state: None,
             elapsed_before_resume: (Duration::ZERO, Duration::ZERO),
             emergency: EmergencySave::new(options.out.clone(), lock.clone()),
             clock: Instant::now(),
@@ -408,6 +435,8 @@ impl<'a> Recorder<'a> {
             }
             if self.checkpoint_writer.due(step) {
                 self.timed(|t| &mut t.files, Self::write_checkpoint)?;
+            } else if self.last_state.is_none() && self.near_end() {
+                self.last_state = Some(self.timed(|t| &mut t.files, Self::state)?);
             }
         }
         Ok(None)

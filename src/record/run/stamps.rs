@@ -3,7 +3,6 @@
 use crate::certify::{Certificate, certify_in_child, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
-use crate::scene::build::LoadedCase;
 
 /// Returns the laws of a run, each listed once, and whether each passes certification with its
 /// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
@@ -115,14 +114,5 @@ impl CertificateCache {
         let certified = made.is_ok_and(|c| c.certified());
         self.found.push((key, certified));
         certified
-    }
-}
-
-/// Returns the density of the first bodies, for wear expressed as mass.
-pub(super) fn density_of(loaded: &LoadedCase, any: bool) -> f64 {
-    let material = loaded.case.bodies.first().map(|b| b.material.as_str());
-    match (any, material) {
-        (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
-        _ => 0.0,
     }
 }

@@ -10,7 +10,7 @@ use super::*;
 use fretwork::elastic::half_space::{
     CellGrid, Cells, FilledSide, HalfSpace, HalfSpaceSpec, Profile, Reach,
 };
-use fretwork::process::cycle::{SlidingBody, SlidingPart};
+use fretwork::process::sliding::{SlidingBody, SlidingPart};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

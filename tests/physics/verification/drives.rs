@@ -525,7 +525,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
         let mut check = std::process::Command::new(env!("CARGO_BIN_EXE_fretwork"));
         let output = check
             .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .arg("check")
+            .args(["check", "--verbose"])
             .arg(&path)
             .output()
             .unwrap();

@@ -30,7 +30,7 @@ fn ledger(table: &mut Table) {
     table.compare("energy", "residual over external work", 0.0, off, 1e-6);
     for c in cycles {
         let name = format!("cycle {}: mu from heat is mu from forces", c.cycle);
-        let (forces, heat) = (c.friction_coefficient, c.friction_from_dissipation);
+        let (forces, heat) = (c.energetic_coefficient, c.friction_from_dissipation);
         table.compare("energy", &name, forces, heat, 1e-9);
     }
 }

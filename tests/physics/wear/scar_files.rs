@@ -23,7 +23,7 @@ impl Folder {
 fn run(out: &Folder, sets: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     command
-        .arg("run")
+        .args(["run", "--verbose"])
         .arg(scene::file("verification/worn_slide"))
         .arg("--out")
         .arg(&out.0);

@@ -89,7 +89,7 @@ fn blocks_that_coarsen_are_checked_and_run() {
         ),
     ] {
         trial.write("case.ron", block(&mesh, &touches));
-        let output = trial.call(&["check", "case.ron", "--no-timing"]);
+        let output = trial.call(&["check", "case.ron", "--no-timing", "--verbose"]);
         let said = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(0), "{said}");
         assert!(said.contains(size), "{said}");

@@ -330,7 +330,7 @@ fn profiles() {
             "`level` is not a finite number",
         ),
         (&endless, 1, "`inf` is not a finite number"),
-        ("0,5 0,25\n", 1, "decimal point"),
+        ("0,5 0.25\n", 1, "decimal point"),
     ] {
         refused_in("heights.txt", &unmarked(&file), (text, line), &[says]);
     }
@@ -359,7 +359,7 @@ fn heights_of_other_rows() {
     refused_beside(&wide, &[("h.txt", turned)], &["transposed"]);
     let places = "0 0 1e-6\n1 0 2e-6\n2 0 3e-6\n3 0 4e-6\n";
     refused_beside(&wide, &[("h.txt", places)], &["places x, y and heights z"]);
-    let commas = "1,0 2,0 3,0 4,0\n".repeat(3);
+    let commas = "1,0 2,0 3.0 4,0\n".repeat(3);
     refused_in("h.txt", &unmarked(&wide), (&commas, 1), &["decimal point"]);
 }
 

@@ -183,7 +183,7 @@ fn rows_that_a_law_left_without_a_state_are_not_replaced() {
         &[
             "before it had saved a state to resume from",
             "`own` crashed in prepare",
-            "omit --resume",
+            "--force in place of --resume",
         ],
     );
     assert!(table() == before);

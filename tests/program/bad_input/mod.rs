@@ -14,6 +14,7 @@ mod limits;
 #[cfg(target_os = "linux")]
 mod linked;
 mod magnitudes;
+mod mistakes;
 mod mutations;
 mod names;
 mod numbers;

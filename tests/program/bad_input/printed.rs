@@ -64,7 +64,7 @@ fn a_run_tells_of_materials_that_pass_through_each_other() {
     for (command, words) in [
         (
             "check",
-            "no interface         grain and wall: they pass through each other",
+            "no interface: grain and wall: they pass through each other",
         ),
         (
             "run",

@@ -280,7 +280,7 @@ fn what_is_no_function_of_time() {
     let sine = "Displacement(Sine(amplitude: 1e-4, frequency: 20.0))";
     let expected = "expected a number, or a function of time: `Constant(...)`";
     for (new, found) in [
-        (r#"Velocity(‸"0.1 m/s")"#, "SI units, without a unit"),
+        (r#"Velocity(‸"0.1 m/s")"#, "write `0.1 m/s` without quotes"),
         ("Velocity(‸[0.1, 0.2])", "found a list"),
     ] {
         refused(&with(PLANE, sine, new), &[expected, found]);

@@ -309,8 +309,16 @@ impl Trial {
         assert!(compiled.success());
     }
 
-    /// Calls the program without variables of the environment.
+    /// Calls the program without variables of the environment; a run replaces an earlier one of the
+    /// trial.
     pub fn call(&self, arguments: &[&str]) -> Output {
+        let replaces = arguments.first() == Some(&"run") && !arguments.contains(&"--resume");
+        let force: &[&str] = if replaces { &["--force"] } else { &[] };
+        self.call_as_written(&[arguments, force].concat())
+    }
+
+    /// Calls the program without variables of the environment.
+    pub fn call_as_written(&self, arguments: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .args(arguments)
             .current_dir(&self.folder)

@@ -284,6 +284,7 @@ fn check_times_steps_of_laws_that_fail_and_hang() {
         // The watch over laws would end the command with code 1 much later.
         let words = [
             "check",
+            "--verbose",
             "case.ron",
             "--plugin-path",
             folder.to_str().unwrap(),

@@ -133,21 +133,19 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
 
     // The terminal shows it.
     let text = summary.text(false);
-    assert!(
-        text.contains(&format!("highest summit         {shown}")),
-        "{text}"
-    );
+    assert!(text.contains(&format!("highest summit {shown}")), "{text}");
 
     // Report and comparison show it.
     let options = fretwork_view::Options {
         bytes: None,
         law: &|_, _| None,
+        measured: &[],
     };
-    let (page, _) = fretwork_view::report(&folder.0, &options).unwrap();
+    let page = fretwork_view::report(&folder.0, &options).unwrap().page;
     let other = Folder::new("quantities-two");
     ran(&other);
     let both = folder.0.join("both.html");
-    fretwork_view::compare(&[folder.0.clone(), other.0.clone()], &both).unwrap();
+    fretwork_view::compare(&[folder.0.clone(), other.0.clone()], &both, &[]).unwrap();
     for page in [page, both] {
         let page = std::fs::read_to_string(page).unwrap();
         assert!(page.contains("highest summit") && page.contains("work of the climb"));

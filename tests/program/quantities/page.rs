@@ -8,6 +8,7 @@ use fretwork::record::summary::Uncertainty;
 use fretwork::scene::case::Case;
 use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
+use fretwork_observe::first_bodies::WearMaterials;
 use fretwork_observe::standard;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -178,7 +179,9 @@ fn columns(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
     let mut all: BTreeMap<String, Rows> = BTreeMap::new();
     for (LoadedCase { case, .. }, built) in cases {
         let chosen = Chosen::of(case);
-        for observer in standard::observers(case, built.simulation.view(), 1.0).iter() {
+        for observer in
+            standard::observers(case, built.simulation.view(), &WearMaterials::default()).iter()
+        {
             let own = observer.name();
             let kind = chosen.kind(&own);
             let list = all.entry(kind.0.to_owned()).or_default();
@@ -196,7 +199,8 @@ fn columns(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
 fn events(cases: &[(LoadedCase, Built)]) -> BTreeMap<&'static str, Rows> {
     let mut all: BTreeMap<&str, Rows> = BTreeMap::new();
     for (LoadedCase { case, .. }, built) in cases {
-        let observers = standard::observers(case, built.simulation.view(), 1.0);
+        let observers =
+            standard::observers(case, built.simulation.view(), &WearMaterials::default());
         for table in observers.event_tables() {
             let list = all.entry(table.name).or_default();
             for column in table.columns.into_iter().chain(table.list) {
@@ -213,7 +217,7 @@ fn measures(cases: &[(LoadedCase, Built)]) -> BTreeMap<String, Rows> {
     let mut all: BTreeMap<String, Rows> = BTreeMap::new();
     for (LoadedCase { case, .. }, built) in cases {
         let (chosen, run) = (Chosen::of(case), built.simulation.view());
-        let observers = standard::observers(case, run, 1.0);
+        let observers = standard::observers(case, run, &WearMaterials::default());
         let end = RunEnd {
             simulation: run,
             table: &Table::new(observers.columns(), run.dimension()),

@@ -1,6 +1,7 @@
 //! `fretwork report` and `fretwork compare`: content of a page; its size is limited, it loads
 //! nothing, and no text of a case becomes markup. `tests/browser` tests pages in a browser.
 
+mod measured;
 mod pages;
 mod refusals;
 

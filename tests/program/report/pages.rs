@@ -55,7 +55,7 @@ fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
         let row = format!("<code>{key}</code></th><td>{value}</td><td>{unit}</td><td>{from}</td>");
         assert!(page.contains(&row), "{row}");
     }
-    let mu = summary["friction_coefficient"].as_f64().unwrap();
+    let mu = summary["energetic_coefficient"].as_f64().unwrap();
     assert!(
         page.contains(&format!("<span class=\"value\">{}", four_digits(mu))),
         "{mu}"
@@ -268,7 +268,8 @@ fn without_views_there_is_a_small_page_and_without_a_wish_none() {
             || data(&page)["scene"]["times"].as_array().unwrap().len() <= 1
     );
     // The next run removes the page of the previous one.
-    let output = trial.call(&["run", "case.ron", "--out", "out", "--no-report"]);
+    let words = ["run", "case.ron", "--out", "out", "--no-report", "--force"];
+    let output = trial.call(&words);
     assert!(output.status.success(), "{}", text(&output));
     assert!(!trial.path("out/report.html").exists());
 }
@@ -290,7 +291,7 @@ fn runs_side_by_side_show_what_differs() {
     for name in ["soft", "hard"] {
         let summary: Value =
             serde_json::from_str(&trial.page(&format!("{name}/summary.json"))).unwrap();
-        let mu = summary["friction_coefficient"].as_f64().unwrap();
+        let mu = summary["energetic_coefficient"].as_f64().unwrap();
         assert!(page.contains(&four_digits(mu)), "{name} {mu}");
     }
     assert_eq!(data(&page)["runs"].as_array().unwrap().len(), 2);

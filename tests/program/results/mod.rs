@@ -57,13 +57,15 @@ fn a_run_leaves_the_files_of_the_contract() {
         "bonds",
         "broken",
         "damage_ratio",
-        "friction_coefficient",
+        "energetic_coefficient",
         "plugins",
         "seed",
         "version",
     ] {
         assert!(!s[key].is_null(), "{key}");
     }
+    // None in partial slip.
+    assert!(s.get("friction_coefficient").is_some());
     for key in [
         "kinetic",
         "potential",
@@ -224,7 +226,8 @@ fn a_folder_that_cannot_be_written_is_said() {
 fn a_biaxial_test_leaves_its_figure_and_its_columns() {
     let out = folder("biaxial");
     let sets = ["--set", "time.end=0.42", "--set", "output.figures=true"];
-    let (output, s) = run("cases/verification/biaxial.ron", &out, &sets);
+    let words = [&sets[..], &["--verbose"]].concat();
+    let (output, s) = run("cases/verification/biaxial.ron", &out, &words);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{said}");
     assert!(said.contains("friction angle"), "{said}");

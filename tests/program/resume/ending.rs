@@ -116,7 +116,7 @@ fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
     assert!((known["scatter"].as_f64().unwrap() / half - 1.0).abs() < 1e-6);
     // These half-widths are from repeated steps.
     assert!(known["step"].as_f64().unwrap() >= 0.0 && known["tolerance"].as_f64().unwrap() >= 0.0);
-    assert!(text.contains("(95 %, Student, cycles 2 to 4)"), "{text}");
+    assert!(text.contains("(within this sample (3 cycles)"), "{text}");
     let damage = &summary["uncertainty"]["damage_ratio"];
     assert_eq!(damage["value"], summary["damage_ratio"]);
     assert!(damage["scatter"].is_null());

@@ -179,7 +179,12 @@ fn one_damaged_checkpoint_costs_some_steps_two_are_refused() {
     flip(&mut bytes, found[0].1);
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
-    refused(&out.0, job(), 1, &["damaged", "omit --resume"]);
+    refused(
+        &out.0,
+        job(),
+        1,
+        &["damaged", "--force in place of --resume"],
+    );
     let mut bytes = good;
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
@@ -197,7 +202,12 @@ fn a_file_that_is_cut_or_none_is_refused() {
     let good = std::fs::read(&path).unwrap();
     for length in [0, 7, 600, good.len() / 50, good.len() / 3] {
         std::fs::write(&path, &good[..length]).unwrap();
-        refused(&out.0, job(), 1, &["results.h5", "omit --resume"]);
+        refused(
+            &out.0,
+            job(),
+            1,
+            &["results.h5", "--force in place of --resume"],
+        );
     }
     std::fs::write(&path, b"not a file of results at all").unwrap();
     refused(&out.0, job(), 1, &["cannot read"]);

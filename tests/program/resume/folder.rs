@@ -10,6 +10,10 @@ const SETS: [&str; 4] = [
     "output.figures=false",
 ];
 
+fn stopped_job() -> Job<'static> {
+    job(&SETS)
+}
+
 fn job(sets: &'static [&'static str]) -> Job<'static> {
     Job {
         case: "shear_cell_3d",
@@ -75,7 +79,11 @@ fn files_of_an_older_run_go_and_those_of_others_stay() {
     };
     assert!(!refused.run(&out.0, &[]).status.success());
     assert!(before.iter().all(|f| out.0.join(f).exists()));
-    job(&FEW).done(&out.0, &[]);
+    // One that would replace results of other inputs, too, unless it is told to.
+    let reported = said(&job(&FEW).run(&out.0, &[]), 2);
+    assert!(reported.contains("`time.end` was 0.004"), "{reported}");
+    assert!(before.iter().all(|f| out.0.join(f).exists()));
+    job(&FEW).done(&out.0, &["--force"]);
     job(&FEW).done(&fresh.0, &[]);
     let mut expected = files(&fresh.0);
     expected.extend(own.map(str::to_owned));
@@ -157,9 +165,9 @@ fn a_run_goes_on_beyond_its_end() {
     }
 }
 
-/// A run that finished before a state was due has nothing to continue from, and is kept.
+/// A run without states has nothing to continue from, and is kept.
 #[test]
-fn a_short_run_is_not_replaced_by_a_longer_one() {
+fn a_run_without_states_is_not_replaced_by_a_longer_one() {
     const SHORT: [&str; 3] = [
         "time.end=0.004",
         "output.checkpoint=Never",
@@ -175,10 +183,80 @@ fn a_short_run_is_not_replaced_by_a_longer_one() {
     job(&SHORT).done(&before.0, &[]);
     let reported = said(&job(&LONG).run(&out.0, &["--resume"]), 1);
     assert!(
-        reported.contains("no state of `output.checkpoint` was due"),
+        reported.contains("`output.checkpoint: Never`"),
         "{reported}"
     );
     same(&before.0, &out.0);
+}
+
+/// A run of any length keeps a state before its end, so that it can be longer than it was.
+#[test]
+fn a_short_run_goes_on_beyond_its_end() {
+    const SETS: [&str; 2] = ["output.frames=0", "output.views=0"];
+    let with = |end: &'static str| [&SETS[..], &[end]].concat();
+    let (first, later) = (with("time.end=0.004"), with("time.end=0.006"));
+    let job = |sets| Job {
+        case: "plane_shear",
+        sets,
+    };
+    let (out, long) = (Folder::new("brief"), Folder::new("brief-long"));
+    job(&first).done(&out.0, &[]);
+    job(&later).done(&long.0, &[]);
+    let reported = job(&later).done(&out.0, &["--resume"]);
+    assert!(reported.contains("resuming the run"), "{reported}");
+    same(&long.0, &out.0);
+}
+
+/// Only the same finished run is replaced unasked; the refusal names commands that work.
+#[test]
+fn results_of_another_run_are_kept() {
+    const SETS: [&str; 3] = ["output.frames=0", "output.figures=false", "time.end=0.002"];
+    const OTHER: [&str; 3] = ["output.frames=0", "output.figures=false", "seed=7"];
+    const LONGER: [&str; 3] = ["output.frames=0", "output.figures=false", "time.end=0.003"];
+    let job = |sets: &'static [&'static str]| Job {
+        case: "plane_shear",
+        sets,
+    };
+    let out = Folder::new("kept");
+    let kept = |reported: &str, words: &[&str]| {
+        for word in ["nothing was changed", "--out", "-2", "--force"] {
+            assert!(reported.contains(word), "{word}: {reported}");
+        }
+        for word in words {
+            assert!(reported.contains(word), "{word}: {reported}");
+        }
+    };
+    job(&SETS).done(&out.0, &[]);
+    let before = std::fs::read(out.0.join("results.h5")).unwrap();
+    kept(
+        &said(&job(&OTHER).run(&out.0, &[]), 2),
+        &["a run of other inputs", "`seed`"],
+    );
+    kept(
+        &said(&job(&LONGER).run(&out.0, &[]), 2),
+        &["up to an earlier `time.end`, 0.002 s", "--resume"],
+    );
+    assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
+    // The same run again gives the same results.
+    job(&SETS).done(&out.0, &[]);
+    job(&LONGER).done(&out.0, &["--force"]);
+    kept(
+        &said(&job(&SETS).run(&out.0, &[]), 2),
+        &["`time.end` was 0.003"],
+    );
+    // A run that was stopped is not begun again, but continued.
+    let out = Folder::new("kept-stopped");
+    let long = stopped_job();
+    long.killed_after(&out.0, 2);
+    kept(
+        &said(&long.run(&out.0, &[]), 2),
+        &["this run, which is not at its end", "--resume"],
+    );
+    long.done(&out.0, &["--resume"]);
+    // What cannot be read is not replaced either.
+    std::fs::write(out.0.join("results.h5"), "no results").unwrap();
+    kept(&said(&long.run(&out.0, &[]), 2), &["cannot be read"]);
+    long.done(&out.0, &["--force"]);
 }
 
 #[test]
@@ -235,7 +313,7 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     for word in [
         "beyond its `time.end`",
         "second half of the whole run",
-        "without --resume",
+        "--force in place of --resume",
     ] {
         assert!(reported.contains(word), "{reported}");
     }

@@ -20,7 +20,7 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
         "--vary",
         "time.step=1.25e-4,2e-3",
         "--output",
-        "friction_coefficient=0.3%",
+        "energetic_coefficient=0.3%",
         "--seeds",
         "1",
         "--budget",
@@ -33,7 +33,7 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
         let found = all.iter().find(|s| s["setting"] == name);
         found.unwrap_or_else(|| panic!("no {name} in {all:#?}"))
     };
-    let error = |name: &str| number(named(name), "/outputs/friction_coefficient/error/mean").abs();
+    let error = |name: &str| number(named(name), "/outputs/energetic_coefficient/error/mean").abs();
     assert_eq!(
         named("accuracy 0.001")["sets"],
         serde_json::json!(["accuracy=0.001"])
@@ -43,5 +43,5 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
     }
     let (own, chosen) = (error("the case's own"), error("accuracy 0.001"));
     assert!(own > 0.003 && chosen < 0.5 * own, "{own} and {chosen}");
-    frontier_is_what_nothing_dominates(&found, "friction_coefficient");
+    frontier_is_what_nothing_dominates(&found, "energetic_coefficient");
 }

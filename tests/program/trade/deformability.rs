@@ -35,7 +35,7 @@ const SHEAR: &str = r#"(
 /// Output of `fretwork check` for the case of a setting.
 fn check(case: &str, setting: &Value) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
-    command.args(["check", case]);
+    command.args(["check", "--verbose", case]);
     for set in setting["sets"].as_array().unwrap() {
         command.args(["--set", set.as_str().unwrap()]);
     }

@@ -10,6 +10,15 @@ use fretwork_abi::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Where the value of a parameter comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParameterOrigin {
+    /// It was given; the text says where, such as "the case".
+    Given(String),
+    /// The law's default.
+    Default,
+}
+
 /// A plugin with the values of its parameters, in the order of its schema.
 #[derive(Clone, Debug)]
 pub struct LoadedLaw {
@@ -17,6 +26,8 @@ pub struct LoadedLaw {
     pub plugin: Arc<Plugin>,
     /// Values, one per parameter.
     pub parameters: Vec<f64>,
+    /// Where they come from, one per parameter; empty if that is not known.
+    pub origins: Vec<ParameterOrigin>,
     /// Index of its first column among the interface's internal variables.
     pub first_variable: usize,
 }
@@ -27,8 +38,16 @@ impl LoadedLaw {
         Self {
             plugin: Arc::new(plugin),
             parameters,
+            origins: Vec::new(),
             first_variable: 0,
         }
+    }
+
+    /// Adds where the values of the parameters come from, one per parameter.
+    #[must_use]
+    pub fn with_origins(mut self, origins: Vec<ParameterOrigin>) -> Self {
+        self.origins = origins;
+        self
     }
 
     /// Creates a law with the defaults of its parameters.

@@ -46,7 +46,7 @@ pub use built_in::BuiltInLaws;
 pub use error::LawError;
 pub use function::Call;
 pub use history::LawHistory;
-pub use interface::{AreaRule, BondOpening, BondRule, Interface, LoadedLaw};
+pub use interface::{AreaRule, BondOpening, BondRule, Interface, LoadedLaw, ParameterOrigin};
 pub use kind::{Kind, KindSpec};
 pub use library::Plugin;
 pub use outputs::Range;

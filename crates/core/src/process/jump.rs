@@ -1,8 +1,9 @@
 //! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of
 //! each jump.
 
-use super::cycle::{CycleClock, SlidingBody};
+use super::cycle::CycleClock;
 pub use super::jump_summary::{Jump, JumpPoint, JumpSummary};
+use super::sliding::SlidingBody;
 use super::{Process, ProcessError};
 use crate::contact::Bond;
 use crate::contact::events::BondEnergies;

@@ -17,5 +17,6 @@ pub mod heat;
 pub mod jump;
 mod jump_summary;
 pub mod recession;
+pub mod sliding;
 
 pub use crate::step::process::{Process, ProcessError};

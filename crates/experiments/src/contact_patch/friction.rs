@@ -1,8 +1,10 @@
 //! The friction coefficient of the patch: given, or from runs with different seeds.
 
+use super::Contact;
+use super::alike::{self, Conditions};
 use super::question::{Question, range};
 use super::range::Range;
-use super::runs;
+use super::runs::{self, Runs, WindowRun};
 use fretwork_math::statistics::interval::Mean;
 use serde::Serialize;
 
@@ -18,12 +20,21 @@ pub struct Friction {
     pub scatter: Option<f64>,
     /// Largest half-width of the runs' own estimates of the error by step, tolerance and coupling.
     pub numerical: Option<f64>,
+    /// Conditions of the runs, those of the first where accepted runs differ.
+    pub conditions: Option<Conditions>,
+    /// Warnings on the runs.
+    #[serde(skip)]
+    pub(super) notes: Vec<String>,
 }
 
 impl Friction {
     /// Returns the coefficient that a question gives, or that of its runs; `None` without either.
-    pub(super) fn of(question: &Question) -> Result<Option<Self>, String> {
-        match (&question.friction, question.runs.as_slice()) {
+    pub(super) fn of(
+        question: &Question,
+        contact: &Contact,
+        runs: &Runs,
+    ) -> Result<Option<Self>, String> {
+        match (&question.friction, runs.list.as_slice()) {
             (None, []) => Ok(None),
             (Some(_), [_, ..]) => Err(
                 "friction: give the coefficient, or the runs that it is from, not both".to_owned(),
@@ -33,21 +44,30 @@ impl Friction {
                 runs: 0,
                 scatter: None,
                 numerical: None,
+                conditions: None,
+                notes: Vec::new(),
             })),
-            (None, folders) => of_runs(folders).map(Some),
+            (None, _) => {
+                let (conditions, differences) = alike::compare(question, contact, runs)?;
+                let found = of_runs(&runs.list)?;
+                Ok(Some(Self {
+                    conditions,
+                    notes: [runs.notes.as_slice(), &differences].concat(),
+                    ..found
+                }))
+            }
         }
     }
 }
 
-fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
-    let runs = runs::read(folders)?;
+fn of_runs(runs: &[WindowRun]) -> Result<Friction, String> {
     let values: Vec<f64> = runs.iter().map(|r| r.friction).collect();
     let mean = Mean::of(&values).ok_or("friction of runs: there is no run")?;
-    let scatter = match runs.as_slice() {
+    let scatter = match runs {
         [one] => one.scatter,
         _ => mean.half_width,
     };
-    let numerical = runs::largest(&runs, |r| r.numerical);
+    let numerical = runs::largest(runs, |r| r.numerical);
     let half = scatter.unwrap_or(0.0) + numerical.unwrap_or(0.0);
     let value = mean.mean;
     if half.is_nan() || value <= half {
@@ -64,6 +84,8 @@ fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
         runs: runs.len(),
         scatter,
         numerical,
+        conditions: None,
+        notes: Vec::new(),
     })
 }
 
@@ -88,6 +110,7 @@ mod tests {
             let rate = format!("{value}e-13").parse::<f64>().unwrap();
             let summary = json!({
                 "friction_coefficient": value, "stopped": null, "interrupted": false,
+                "trustworthy": true, "identity": k.to_string(),
                 "wear": {"volume": 2.0, "bodies": [
                     {"body": "rail", "specific_rate": rate}, {"body": "wheel", "specific_rate": null},
                 ]},
@@ -101,9 +124,10 @@ mod tests {
             std::fs::write(run.join("summary.json"), summary.to_string()).unwrap();
             folders.push(run);
         }
-        let got = of_runs(&folders).unwrap();
-        let one = of_runs(&folders[..1]).unwrap();
-        let worn = runs::wear_rates(&runs::read(&folders).unwrap());
+        let both = runs::read(&folders).unwrap();
+        let got = of_runs(&both.list).unwrap();
+        let one = of_runs(&both.list[..1]).unwrap();
+        let worn = runs::wear_rates(&both.list);
         std::fs::remove_dir_all(&folder).unwrap();
         // 0.32e-13 with the same scatter, and a tenth by the step.
         let [(body, rate)] = worn.as_slice() else {
@@ -118,6 +142,6 @@ mod tests {
         assert!((got.numerical.unwrap() - 0.025).abs() < 1e-15);
         assert!((got.coefficient.value - 0.32).abs() < 1e-15);
         assert!((one.coefficient.high - 0.415).abs() < 1e-12);
-        assert!(of_runs(&folders[..1]).is_err_and(|e| e.contains("summary.json")));
+        assert!(runs::read(&folders[..1]).is_err_and(|e| e.contains("summary.json")));
     }
 }

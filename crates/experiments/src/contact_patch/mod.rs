@@ -16,19 +16,26 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod alike;
 mod friction;
 mod question;
 mod range;
+mod regime;
 mod runs;
+mod setup;
 mod slip;
+mod strength;
 mod text;
 mod warnings;
 mod wear;
 
+pub use alike::{ACCEPTABLE, Conditions};
 pub use friction::Friction;
 pub use question::Question;
 pub use range::Range;
+pub use regime::WearRegime;
 pub use slip::{Rolling, Tangential, Window};
+pub use strength::Strength;
 pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
 
 use fretwork_core::laws::SearchPath;
@@ -81,25 +88,6 @@ pub struct Patch {
     /// Approach of distant points (m); for a line it depends on the form of the bodies at a
     /// distance.
     pub approach: Option<f64>,
-}
-
-/// Largest pressures that the softer body can carry.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Strength {
-    /// Yield stress (Pa).
-    pub yield_stress: f64,
-    /// Whether the yield stress is estimated from the hardness, H/2.8 (D. Tabor, The Hardness of
-    /// Metals, 1951).
-    pub estimated: bool,
-    /// Largest pressure at which nothing yields (Pa): 1.6 Y of a point, 1.79 Y of a line (Johnson,
-    /// 6.2).
-    pub first_yield: f64,
-    /// Largest pressure to which the steel shakes down elastically in rolling (Pa), with k =
-    /// Y/sqrt(3): 4 k of a line without friction, 4.7 k of a point, and k/mu of full slip (Johnson,
-    /// 9.2).
-    pub shakedown: f64,
-    /// Hardness (Pa).
-    pub hardness: Option<f64>,
 }
 
 /// The theory that applies to the patch.
@@ -163,8 +151,9 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
         theory,
         curvature,
     };
-    let friction = Friction::of(question)?;
-    let strength = strength(question, &contact, friction.as_ref())?;
+    let runs = runs::read(&question.runs)?;
+    let mut friction = Friction::of(question, &contact, &runs)?;
+    let strength = Strength::of(question, &contact, friction.as_ref())?;
     let tangential = Tangential::of(question, &contact, friction.as_ref())?;
     let rolling = Rolling::of(question, &contact, friction.as_ref())?;
     let wear = Wear::of(
@@ -172,13 +161,19 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
         &contact,
         rolling.as_ref(),
         friction.as_ref(),
+        &runs.list,
         laws,
     )?;
     let window = Window::of(question, &contact, rolling.as_ref(), tangential.as_ref())?;
+    if let Some(friction) = &mut friction {
+        friction
+            .notes
+            .extend(alike::drive(question, &runs, &window)?);
+    }
     let patch = match &contact.theory {
         Theory::Line(line) => Patch {
             pressure: line.pressure,
-            mean_pressure: load / (2.0 * line.half_width),
+            mean_pressure: contact.mean_pressure(),
             semi_axis: line.half_width,
             semi_axis_across: None,
             area: None,
@@ -186,7 +181,7 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
         },
         Theory::Point(point) => Patch {
             pressure: point.pressure,
-            mean_pressure: load / point.area(),
+            mean_pressure: contact.mean_pressure(),
             semi_axis: point.along,
             semi_axis_across: Some(point.across),
             area: Some(point.area()),
@@ -214,39 +209,4 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
     };
     answer.warnings = warnings::of(question, &contact, &answer);
     Ok(answer)
-}
-
-/// Yield stress over hardness of a metal that does not harden (Tabor 1951).
-const HARDNESS_OVER_YIELD: f64 = 2.8;
-
-fn strength(
-    question: &Question,
-    contact: &Contact,
-    friction: Option<&Friction>,
-) -> Result<Option<Strength>, String> {
-    let least = |values: [Option<f64>; 2]| values.into_iter().flatten().reduce(f64::min);
-    let hardness = least(contact.bodies.each_ref().map(|b| b.hardness));
-    let given = match &question.yield_stress {
-        Some(text) => Some(question::positive("yield_stress", text, "Pa")?),
-        None => least(contact.bodies.each_ref().map(|b| b.yield_stress)),
-    };
-    let estimate = hardness.map(|h| h / HARDNESS_OVER_YIELD);
-    let Some(yield_stress) = given.or(estimate) else {
-        return Ok(None);
-    };
-    let (first, frictionless): (f64, f64) = match contact.is_line() {
-        true => (1.79, 4.0),
-        false => (1.6, 4.7),
-    };
-    let k = yield_stress / 3.0f64.sqrt();
-    let factor = friction.map_or(frictionless, |f| {
-        frictionless.min(1.0 / f.coefficient.value)
-    });
-    Ok(Some(Strength {
-        yield_stress,
-        estimated: given.is_none(),
-        first_yield: first * yield_stress,
-        shakedown: factor * k,
-        hardness,
-    }))
 }

@@ -27,12 +27,16 @@ pub struct Question {
     pub poisson: Vec<String>,
     /// Hardnesses, which replace those of the materials.
     pub hardness: Vec<String>,
-    /// Yield stress of the softer body; by default of its material, or its hardness over 2.8.
+    /// Yield stress of the softer body; by default of its material, or the flow stress, its
+    /// hardness over 2.8.
     pub yield_stress: Option<String>,
     /// Friction coefficient: `0.4`, `0.40+-0.03` or `0.3..0.5`.
     pub friction: Option<String>,
     /// Folders of runs from which friction coefficients are read, with their interval.
     pub runs: Vec<PathBuf>,
+    /// Differences between these runs and the patch that are accepted, by the names in
+    /// [`ACCEPTABLE`](super::ACCEPTABLE).
+    pub accept: Vec<String>,
     /// Tangential force: a force, or a force per length for a line contact.
     pub force: Option<String>,
     /// Amplitude of the displacement of distant points of the bodies, in fretting.
@@ -60,6 +64,8 @@ pub(super) struct Body {
     pub hardness: Option<f64>,
     /// Yield stress of its material (Pa).
     pub yield_stress: Option<f64>,
+    /// Source of the yield stress.
+    pub yield_source: Option<String>,
 }
 
 /// A number with a unit.
@@ -163,6 +169,9 @@ impl Question {
             solid: Solid { young, poisson },
             hardness,
             yield_stress: property("yield_stress", "Pa"),
+            yield_source: file
+                .as_ref()
+                .and_then(|m| Some(m.properties.get("yield_stress")?.source.clone())),
         })
     }
 }

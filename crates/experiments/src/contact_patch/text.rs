@@ -1,6 +1,6 @@
 //! The answer as lines of text.
 
-use super::{Answer, Range};
+use super::{Answer, Conditions, Range};
 use fretwork_observe::quantity::unit::{FORCE, Unit, VOLUME};
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
@@ -81,20 +81,24 @@ impl Answer {
         );
         add("E*", quantity(self.effective_modulus, "Pa"));
         if let Some(s) = &self.strength {
-            let of = if s.estimated {
-                ", estimated as hardness/2.8"
-            } else {
-                ""
-            };
             add(
                 "limits of the pressure",
                 format!(
-                    "first yield {}, shakedown {}, yield stress {}{of}",
+                    "first yield {}, shakedown {}, from {} as {}",
                     quantity(s.first_yield, "Pa"),
                     quantity(s.shakedown, "Pa"),
-                    quantity(s.yield_stress, "Pa")
+                    quantity(s.yield_stress, "Pa"),
+                    s.name()
                 ),
             );
+            match (&s.source, s.estimated) {
+                (Some(source), _) => add("", source.clone()),
+                (None, true) => add(
+                    "",
+                    "an upper bound: metals that harden yield below their flow stress".to_owned(),
+                ),
+                (None, false) => {}
+            }
         }
         if let Some(f) = &self.friction {
             let part = |x: Option<f64>| x.map_or("not known".to_owned(), |x| number(x, 2));
@@ -111,6 +115,9 @@ impl Answer {
                 "friction coefficient",
                 format!("{}{from}", ranged(&f.coefficient, "")),
             );
+            if let Some(conditions) = &f.conditions {
+                add("conditions of the runs", self.conditions(conditions));
+            }
         }
         self.slip_lines(force, energy, &mut add);
         self.wear_lines(dimension, &mut add);
@@ -121,6 +128,36 @@ impl Answer {
             add(heading, text.to_owned());
         }
         out
+    }
+
+    /// Pressure, materials and motion of the runs, and what is done about their speed.
+    fn conditions(&self, of: &Conditions) -> String {
+        let mut parts = Vec::new();
+        parts.extend(
+            of.pressure
+                .map(|p| format!("{} in the mean", quantity(p, "Pa"))),
+        );
+        if !of.materials.is_empty() {
+            parts.push(of.materials.join(" and "));
+        }
+        if let (Some(slip), Some(to_and_fro)) = (of.slip, of.reciprocates) {
+            let (by, ways) = match to_and_fro {
+                true => ("+-", "to and fro"),
+                false => ("", "one way"),
+            };
+            parts.push(format!("slip of {by}{} {ways}", quantity(slip, "m")));
+        }
+        let patch = self.rolling.as_ref().and_then(|r| r.slip_speed);
+        let speed = of.speed.map(|v| match patch {
+            None => format!("at {}", quantity(v, "m/s")),
+            Some(patch) => format!(
+                "at {}, taken as that at {}",
+                quantity(v, "m/s"),
+                quantity(patch.value, "m/s")
+            ),
+        });
+        parts.extend(speed);
+        parts.join(", ")
     }
 
     fn slip_lines(&self, force: &str, energy: &str, add: &mut impl FnMut(&str, String)) {
@@ -189,6 +226,19 @@ impl Answer {
                     ranged(&map.energy_per_area.map(|x| 1e-6 * x), ""),
                     map.regime,
                     ranged(&map.volume, "m3")
+                ),
+            );
+            add("", format!("measured on {}", map.measured_on));
+        }
+        if let Some(regime) = &wear.regime {
+            let [low, high] = regime.coefficient;
+            add(
+                "wear, Jendel's chart",
+                format!(
+                    "{} at a slip of {} and {} of the hardness: K {low:e} to {high:e}",
+                    regime.words(),
+                    ranged(&regime.slip_speed, "m/s"),
+                    number(regime.pressure_over_hardness, 2)
                 ),
             );
         }

@@ -3,7 +3,8 @@
 
 use super::question::{Question, range};
 use super::range::Range;
-use super::runs;
+use super::regime::WearRegime;
+use super::runs::{self, WindowRun};
 use super::{Contact, Friction, Rolling, Theory};
 use fretwork_core::laws::{Kind, Plugin, SearchPath};
 use serde::Serialize;
@@ -18,6 +19,8 @@ pub struct Wear {
     /// Wear of each first body of the runs that give the friction coefficient, by its specific wear
     /// rate in these runs.
     pub window: Vec<WindowWear>,
+    /// Regime by slip speed and pressure; `None` without a speed or a hardness.
+    pub regime: Option<WearRegime>,
 }
 
 /// Wear of the patch by the specific wear rate of a first body of a window.
@@ -49,9 +52,20 @@ pub struct BodyWear {
     pub depth_per_passage: Option<Range>,
 }
 
+/// Pair of steels on which the map was measured.
+pub(super) const MEASURED_ON: &str = "R8T wheel on 900A (now R260) rail steel, dry twin disks";
+
+/// Hardnesses of 900A rail steel, as R260 in EN 13674-1 (Pa).
+const RAIL: [f64; 2] = [260.0 * HBW, 300.0 * HBW];
+const HBW: f64 = 9.806_65e6;
+
 /// Wear by the map over T gamma/A.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyMap {
+    /// Pair of steels on which the map was measured.
+    pub measured_on: &'static str,
+    /// Whether the hardness of the rail is that of the steel of the map; `None` without a hardness.
+    pub same_rail: Option<bool>,
     /// T gamma/A (Pa).
     pub energy_per_area: Range,
     /// Regime at the middle of the interval: `mild`, `severe` or `catastrophic`.
@@ -68,6 +82,7 @@ impl Wear {
         contact: &Contact,
         rolling: Option<&Rolling>,
         friction: Option<&Friction>,
+        runs: &[WindowRun],
         laws: &SearchPath,
     ) -> Result<Option<Self>, String> {
         let given = question.wear.as_ref();
@@ -95,21 +110,26 @@ impl Wear {
             .map(|k| archard(contact, &k, &slipped))
             .unwrap_or_default();
         let map = match &contact.theory {
-            Theory::Point(point) => Some(EnergyMap::of(&energy, point.area(), laws)?),
+            Theory::Point(point) => Some(EnergyMap {
+                same_rail: rail(contact).hardness.map(is_of_map),
+                ..EnergyMap::of(&energy, point.area(), laws)?
+            }),
             Theory::Line(_) => None,
         };
-        let window = carried_over(contact, &runs::read(&question.runs)?, &slipped);
-        let any = !archard.is_empty() || map.is_some() || !window.is_empty();
+        let window = carried_over(contact, runs, &slipped);
+        let regime = rolling.and_then(|r| WearRegime::of(contact, r));
+        let any = !archard.is_empty() || map.is_some() || !window.is_empty() || regime.is_some();
         Ok(any.then_some(Self {
             archard,
             energy_map: map,
             window,
+            regime,
         }))
     }
 }
 
 /// The specific wear rates of a window times load and slip of the patch.
-fn carried_over(contact: &Contact, runs: &[runs::WindowRun], slipped: &Range) -> Vec<WindowWear> {
+fn carried_over(contact: &Contact, runs: &[WindowRun], slipped: &Range) -> Vec<WindowWear> {
     let of = |(body, specific_rate): (String, Range)| {
         let volume = Range::of(&specific_rate, slipped, |k, s| k * s);
         WindowWear {
@@ -151,6 +171,18 @@ fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
     contact.bodies.iter().filter_map(of).collect()
 }
 
+/// Returns the rail: the straight body, or the second of two that roll.
+pub(super) fn rail(contact: &Contact) -> &super::Body {
+    let straight = contact.bodies.iter().find(|b| b.curvature[0] == 0.0);
+    straight.unwrap_or(&contact.bodies[1])
+}
+
+/// Returns whether a hardness (Pa) is that of the rail steel of the map.
+fn is_of_map(hardness: f64) -> bool {
+    let [low, high] = RAIL;
+    hardness > low * (1.0 - 1e-9) && hardness < high * (1.0 + 1e-9)
+}
+
 impl EnergyMap {
     /// Evaluates the map of the shipped law, with its default parameters, at an energy per metre
     /// (J/m).
@@ -162,6 +194,8 @@ impl EnergyMap {
         let per_area = energy.map(|e| e / area);
         let mass = per_area.map(|x| map.mass(x));
         Ok(Self {
+            measured_on: MEASURED_ON,
+            same_rail: None,
             energy_per_area: per_area,
             regime: map.regime(per_area.value),
             mass_per_area: mass,

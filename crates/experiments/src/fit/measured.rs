@@ -1,26 +1,35 @@
-//! Measured curves from CSV files.
+//! Measured curves from tables of text.
 
 use super::branches::laid_out;
 use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
 use crate::Error;
-use crate::table::csv::{read, without_unit};
 use fretwork_math::fit::residuals::Measurement;
-use fretwork_scene::sample::table::number;
+use fretwork_scene::InputError;
+use fretwork_scene::measured::{Heading, MeasuredTable};
 use std::path::Path;
+
+/// Returns the heading of a column; the name alone if the file cannot be read.
+fn found(path: &Path, column: &str) -> Heading {
+    let own = MeasuredTable::read(path).ok().and_then(|table| {
+        let place = table.column(column)?;
+        table.headings.get(place).cloned()
+    });
+    own.unwrap_or_else(|| Heading {
+        text: column.to_owned(),
+        name: column.to_owned(),
+        unit: String::new(),
+    })
+}
 
 /// Returns the heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot
 /// be read.
 pub fn heading(path: &Path, column: &str) -> String {
-    let mut headings = read(path).map_or(Vec::new(), |t| t.headings).into_iter();
-    let own = headings.find(|h| without_unit(h) == column);
-    own.unwrap_or_else(|| column.to_owned())
+    found(path, column).text
 }
 
 /// Returns the unit in the heading of a column, `MPa` in `stress [MPa]`; empty if there is none.
 pub fn unit(path: &Path, column: &str) -> String {
-    let heading = heading(path, column);
-    let unit = heading.split_once(" [").map_or("", |(_, unit)| unit);
-    unit.trim_end().trim_end_matches(']').to_owned()
+    found(path, column).unit
 }
 
 /// Reads a measured curve, and its largest distance from 0, which determines the distance of
@@ -35,28 +44,17 @@ pub fn curve(
     along: AlongSpec,
 ) -> Result<(Measurement, f64), Error> {
     let fail = |why: String| Error::Usage(format!("{}: {why}", path.display()));
-    let texts = read(path)?;
-    let names: Vec<&str> = texts.headings.iter().map(|h| without_unit(h)).collect();
-    let place = |column: &str| {
-        let place = names.iter().position(|n| *n == column);
-        place.ok_or_else(|| {
-            fail(format!(
-                "there is no column `{column}`; there are {}",
-                names.join(", ")
-            ))
-        })
-    };
+    let wrong = |e: InputError| Error::Usage(e.with_line());
+    let table = MeasuredTable::read(path).map_err(wrong)?;
+    let place = |column: &str| table.required(column).map_err(wrong);
     let (x, y) = (place(&spec.x)?, place(&spec.y)?);
     let sigma = match &spec.sigma {
         SigmaSpec::Column(column) => Some(place(column)?),
         _ => None,
     };
     let mut rows: Vec<[f64; 3]> = Vec::new();
-    for (line, texts) in texts.rows.iter().enumerate() {
-        let number = |k: usize| {
-            let text = texts.get(k).map_or("", String::as_str);
-            number(text, names[k]).map_err(|why| fail(format!("point {}: {why}", line + 1)))
-        };
+    for row in 0..table.rows() {
+        let number = |column: usize| table.value(row, column).map_err(wrong);
         let row = [number(x)?, number(y)?, sigma.map_or(Ok(0.0), number)?];
         if spec
             .within
@@ -101,9 +99,9 @@ mod tests {
     fn a_curve_is_read_with_its_uncertainty() {
         let path =
             std::env::temp_dir().join(format!("fretwork-measured-{}.csv", std::process::id()));
-        let text = "# a shear test\nu [mm], tau [MPa], s\n0, 0, 1\n0.1, 50, 2\n0.2, -80, 3\n";
+        let text = "# a shear test\nu [mm]; tau (MPa); s\n0; 0; 1\n0,1; 50; 2\n0,2; -80; 3\n";
         std::fs::write(&path, text).unwrap();
-        assert_eq!(heading(&path, "tau"), "tau [MPa]");
+        assert_eq!(heading(&path, "tau"), "tau (MPa)");
         assert_eq!(heading(&path, "s"), "s");
         assert_eq!(
             (unit(&path, "tau"), unit(&path, "s")),

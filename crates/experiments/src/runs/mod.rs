@@ -2,13 +2,15 @@
 //! none is made twice.
 //!
 //! [`launcher`] starts runs, [`stored`] evaluates how they ended, [`key`] names them, [`trial`]
-//! times a few steps of one, [`pool`] makes several at once; [`output`] reads the numbers that they
-//! leave, [`available`] lists those that a case has. [`randomness`] determines whether the seed of
-//! a case matters, [`perturbation`] distinguishes runs where it does not.
+//! times a few steps of one, also under load (`loaded`), [`pool`] makes several at once; [`output`]
+//! reads the numbers that they leave, [`available`] lists those that a case has. [`randomness`]
+//! determines whether the seed of a case matters, [`perturbation`] distinguishes runs where it does
+//! not.
 
 pub mod available;
 pub mod key;
 pub mod launcher;
+mod loaded;
 pub mod output;
 pub mod perturbation;
 pub mod pool;

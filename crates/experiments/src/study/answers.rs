@@ -4,10 +4,13 @@ use super::files::PARQUET;
 use super::forecast::Forecast;
 use super::plan::{Plan, Point};
 use super::rows::Rows;
+use super::spec::DesignSpec;
 use crate::duration::seconds;
 use crate::factor::Level;
 use crate::runs::stored::summary;
 use crate::table::Cell;
+use fretwork_math::statistics::interval::Mean;
+use fretwork_observe::quantity::{quantity, with_half_width};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -143,6 +146,9 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     let folder = plan.out.display();
     let files: Vec<String> = names.map(|name| format!("{folder}/{name}")).collect();
     let _ = write!(out, "\n{}", files.join(", "));
+    for line in intervals(plan, rows) {
+        let _ = write!(out, "\n{line}");
+    }
     for name in rows.without_text(&plan.regimes) {
         let texts = match first_texts(plan, rows).join("`, `") {
             none if none.is_empty() => String::new(),
@@ -154,6 +160,42 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
         );
     }
     out
+}
+
+/// Returns the interval of each output of a study whose runs are one sample: seeds of one setting,
+/// or points drawn over ranges.
+fn intervals(plan: &Plan, rows: &Rows) -> Vec<String> {
+    let drawn = matches!(
+        plan.design,
+        DesignSpec::LatinHypercube { .. } | DesignSpec::Sobol { .. }
+    );
+    let line = |(name, unit): (&String, &String)| {
+        let values: Vec<f64> = rows.trusted(name).into_iter().flatten().collect();
+        let mean = Mean::of(&values)?;
+        if plan.settings.len() == 1 {
+            let half = mean.half_width?;
+            let text = with_half_width(mean.mean, half, unit);
+            return Some(format!("{name}: {text} over {} seeds (95 %)", mean.count));
+        }
+        let shown = |x: f64| quantity(x, unit);
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (drawn && values.len() > 1).then(|| {
+            format!(
+                "{name}: {} to {} over {} runs within the ranges of the inputs, mean {}",
+                shown(low),
+                shown(high),
+                values.len(),
+                shown(mean.mean)
+            )
+        })
+    };
+    let names: Vec<String> = plan.outputs.iter().map(|o| o.name.clone()).collect();
+    names
+        .iter()
+        .zip(&plan.output_units)
+        .filter_map(line)
+        .collect()
 }
 
 /// Returns the names of the texts in the summary of the first completed run, which `regimes` may

@@ -1,11 +1,11 @@
 //! Studies: one case run at many points of its factors, here or by another engine, with the results
 //! in one table.
 //!
-//! [`spec`] reads the file, [`design`] determines the points, [`plan`] numbers the runs,
-//! [`forecast`] estimates their duration, [`execute`] makes them on this machine and [`export`]
-//! writes scripts for other engines, [`rows`] collects them in a table, [`analysis`] evaluates it
-//! for the [`settings`], the [`page`] and the [`figures`]; [`files`] writes them, [`answers`]
-//! formats them for a terminal.
+//! [`spec`] reads the file, [`of_case`] makes one of a case, [`design`] determines the points,
+//! [`plan`] numbers the runs, [`forecast`] estimates their duration, [`execute`] makes them on this
+//! machine and [`export`] writes scripts for other engines, [`rows`] collects them in a table,
+//! [`analysis`] evaluates it for the [`settings`], the [`page`] and the [`figures`]; [`files`]
+//! writes them, [`answers`] formats them for a terminal.
 
 mod analysis;
 pub mod answers;
@@ -15,6 +15,7 @@ pub mod export;
 mod figures;
 mod files;
 pub mod forecast;
+mod of_case;
 mod page;
 pub mod plan;
 pub mod rows;
@@ -22,6 +23,7 @@ mod settings;
 pub mod spec;
 
 pub use files::write;
+pub use of_case::of_case;
 
 use crate::folder::Owner;
 

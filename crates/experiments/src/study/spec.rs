@@ -135,7 +135,10 @@ impl Spec for StudySpec {
                 fail("design", "the number of points is 1 to 1,000,000")
             }
             DesignSpec::Table { .. } => Ok(()),
-            _ if self.factors.is_empty() => fail("factors", "a study varies one factor or more"),
+            _ if self.factors.is_empty() && self.seeds < 2 => fail(
+                "factors",
+                "a study varies one factor or more, or has several `seeds`",
+            ),
             _ => Ok(()),
         }
     }

@@ -95,6 +95,11 @@ impl Growth {
         }
     }
 
+    /// Returns the largest number of steps of the case that a step may span.
+    pub fn most(&self) -> u32 {
+        self.most
+    }
+
     /// Returns the number of steps of the case that the last step spanned.
     pub fn last(&self) -> u32 {
         self.last

@@ -18,7 +18,7 @@ pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report
 
 use crate::error_estimate::{Increments, RatioPair, RepeatedStretch, StretchRepeats, cost};
 use fretwork_core::bodies::Dof;
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::{RepeatError, StepError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
@@ -117,7 +117,7 @@ impl AccuracyTarget {
 
     fn name(self) -> &'static str {
         match self {
-            Self::Friction => "friction coefficient",
+            Self::Friction => "energetic coefficient",
             Self::FrictionEnergy => "energy of friction",
             Self::Damage => "damage",
             Self::Wear => "wear of first bodies",
@@ -280,6 +280,11 @@ impl AccuracyControl {
     /// Returns the number of steps of the case that the last step spanned: 1 unless it had grown.
     pub fn spanned(&self) -> u64 {
         u64::from(self.growth.last())
+    }
+
+    /// Returns the largest number of steps of the case that a step may span.
+    pub fn longest(&self) -> u64 {
+        u64::from(self.growth.most())
     }
 
     /// Whether the step of the case is complete.

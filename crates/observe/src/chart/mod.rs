@@ -279,11 +279,18 @@ pub struct Figure {
     pub charts: Vec<Chart>,
     /// Number of columns on the page.
     pub columns: usize,
+    /// Whether it shows a main result: a report begins with these figures.
+    pub leads: bool,
 }
 
 impl Figure {
     /// Name of the file in the folder of a run with its figures as data, a list in JSON.
     pub const FILE: &str = "figures.json";
+
+    /// Name of the figure of the loops of a friction test.
+    pub const LOOPS: &str = "fretting_loops";
+    /// Name of the figure of friction by cycle, or against the displacement.
+    pub const FRICTION: &str = "friction_coefficient";
 
     /// Creates a figure of charts on one page, in a number of columns.
     pub fn new(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
@@ -292,6 +299,7 @@ impl Figure {
             heading: String::new(),
             charts: charts.into(),
             columns,
+            leads: false,
         }
     }
 
@@ -304,6 +312,7 @@ impl Figure {
             name: self.name.clone(),
             heading: self.heading.clone(),
             columns: self.columns,
+            leads: self.leads,
         }
     }
 

@@ -2,9 +2,11 @@
 //! process, [`fretwork_core::process::circuit`].
 
 mod summary;
+mod worn;
 
 pub(crate) use summary::report_none;
 pub use summary::{Base, CircuitSummary, Rates};
+pub use worn::WornGrains;
 
 use super::figures;
 use super::observer::{Event, EventTable};
@@ -19,6 +21,7 @@ use super::wear::show_flows;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::circuit::{CircuitProcess, Debris, GrainCircuit};
+use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use fretwork_core::wear::ledger::{Flows, GrainPlace, MassLedger};
 use nalgebra::Vector3;
@@ -148,6 +151,7 @@ impl Observer for BrokenBonds {
 #[derive(Clone, Debug)]
 pub struct CircuitAccount {
     start: f64,
+    worn: WornGrains,
     state: CircuitObserverState,
 }
 
@@ -157,6 +161,8 @@ struct CircuitObserverState {
     /// Number of pieces that detached, and number of grains of the largest.
     pieces: u64,
     largest: usize,
+    /// Normal force times the path of the rubbed body since the start of the account (J; J/m).
+    load_path: f64,
     /// Time, accumulated flows, and the mass in the contact, at each update.
     series: DecimatedSeries<(f64, Flows, f64)>,
 }
@@ -174,9 +180,10 @@ impl CircuitAccount {
     pub const FIGURES: [&str; 1] = ["circuit.png"];
 
     /// Starts the account of a circuit at a time (s).
-    pub fn new(start: f64) -> Self {
+    pub fn new(start: f64, worn: WornGrains) -> Self {
         Self {
             start,
+            worn,
             state: CircuitObserverState::default(),
         }
     }
@@ -266,6 +273,8 @@ impl CircuitAccount {
                 M: flow(&|_, m| m),
             },
             bases: bases.collect(),
+            specific_rate: None,
+            archard_coefficient: None,
             pieces: self.state.pieces,
             largest_piece: self.state.largest,
             cost_share: circuit.cost.as_secs_f64() / wall.as_secs_f64().max(1e-9),
@@ -280,6 +289,12 @@ impl Observer for CircuitAccount {
 
     fn reads_statistics(&self) -> bool {
         false
+    }
+
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        if run.time() > self.start {
+            self.state.load_path += self.worn.load_path(run);
+        }
     }
 
     fn event_tables(&self) -> Vec<EventTable> {
@@ -402,6 +417,8 @@ impl Observer for CircuitAccount {
             });
         }
         circuit.report(found);
+        let mass = circuit.flows.source.mass;
+        self.worn.report(self.state.load_path, mass, run, found);
         show_flows(found);
     }
 

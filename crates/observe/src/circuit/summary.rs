@@ -1,6 +1,6 @@
 //! Summary of the tribological circuit at the end of a run.
 
-use crate::quantity::unit::{MASS, ONE, SECOND, WORD};
+use crate::quantity::unit::{MASS, ONE, SECOND, WEAR_RATE, WORD};
 use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part, parts, values};
 use crate::steady::MeanFlow;
 use crate::warning::Warning;
@@ -93,6 +93,13 @@ crate::described! {
         pub rates: Rates = part::<Rates>(),
         /// First bodies.
         pub bases: Vec<Base> = parts::<Base>(),
+        /// Specific wear rate k = V/(P s) of the grains that came loose, s the distance of slip
+        /// since the start of the account; null without a friction test, or with grains of several
+        /// materials.
+        pub specific_rate: Option<f64> => WEAR_RATE,
+        /// Archard's coefficient K = k H of these grains, with the hardness H of the softest first
+        /// body; null without one.
+        pub archard_coefficient: Option<f64> => ONE,
         /// Number of debris pieces that came loose.
         pub pieces: u64 => ONE,
         /// Number of grains of the largest piece.

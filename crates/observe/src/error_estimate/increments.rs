@@ -1,6 +1,6 @@
 //! Growth of the results of a run over a few steps.
 
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::{StepError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
 use serde::{Deserialize, Serialize};

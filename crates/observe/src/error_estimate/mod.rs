@@ -16,7 +16,7 @@ pub use change::Change;
 pub use report::{Effects, Repeats, Shares};
 
 pub(crate) use change::RatioPair;
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::{RepeatError, StepReport};
 use fretwork_core::view::{RunControl, RunView};
 use fretwork_scene::case::Case;

@@ -3,7 +3,7 @@
 use super::increments::Stretch;
 use super::{FINER, StretchRepeats};
 use fretwork_core::laws::Interface;
-use fretwork_core::process::cycle::SlidingBody;
+use fretwork_core::process::sliding::SlidingBody;
 use fretwork_core::step::{Coupling, RepeatError};
 use fretwork_core::view::RunControl;
 

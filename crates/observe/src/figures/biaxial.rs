@@ -32,5 +32,5 @@ pub(crate) fn charts(start: f64) -> Output {
         .with(rows("without rattlers", "coordination_carried").style(Style::Dashed)),
         chart("Solid fraction", "solid fraction φ", rows("", "compacity")),
     ];
-    Output::figure("biaxial", panels, 2)
+    Output::leading("biaxial", panels, 2)
 }

@@ -5,8 +5,8 @@ use crate::picture::{OPEN_COLOUR, SLIP_COLOUR, STICK_COLOUR};
 use crate::tractions::{ContactZone, FacetTraction, SurfaceState};
 use nalgebra::Vector3;
 
-/// Returns the maps of the contact of a surface: stick and slip with the tangential tractions,
-/// pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of the
+/// Returns the maps of the contact of a surface: pressure, stick and slip with the tangential
+/// tractions, shear, and their ratio; none where nothing is loaded. Tractions are those of the
 /// points of the surface where these have equal tributary areas, otherwise those of its facets.
 pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart> {
     let touching = |k: &usize| state.zone[*k] != ContactZone::Open;
@@ -53,18 +53,20 @@ pub(crate) fn charts(name: &str, state: &SurfaceState, equal: bool) -> Vec<Chart
         true => t.shear / t.pressure,
         false => f64::NAN,
     };
-    let mut out = vec![zones];
-    let mut add = |what: &str, unit: &str, of: &dyn Fn(&Local) -> f64| {
+    let mut out = Vec::new();
+    let mut add = |what: &str, (name, unit): (&str, &str), of: &dyn Fn(&Local) -> f64| {
         let value = |t: &Local| if t.loaded { of(t) } else { f64::NAN };
         let values: Vec<f64> = tractions.iter().map(value).collect();
         if values.iter().any(|v| *v > 0.0) {
-            let scale = Axis::new(what.to_lowercase(), unit);
+            let scale = Axis::new(name, unit);
             out.push(chart(what, &shapes, Colours::Values { values, scale }));
         }
     };
-    add("Pressure", "Pa", &|t| t.pressure);
-    add("Shear", "Pa", &|t| t.shear);
-    add("Shear over pressure", "", &ratio);
+    add("Pressure", ("pressure p", "Pa"), &|t| t.pressure);
+    add("Shear", ("shear traction q", "Pa"), &|t| t.shear);
+    add("Shear over pressure", ("q/p", ""), &ratio);
+    // What the contact carries comes first, where it carries anything.
+    out.insert(out.len().min(1), zones);
     out
 }
 

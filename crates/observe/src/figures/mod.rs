@@ -8,7 +8,7 @@ pub(crate) mod jump;
 pub(crate) mod scars;
 
 use self::error::{error_bar, estimated};
-use crate::chart::{Axis, Chart, Part, Series, Style, Value};
+use crate::chart::{Axis, Chart, Figure, Part, Series, Style, Value};
 use crate::cycle::Cycle;
 use crate::friction::Cycles;
 use crate::output::Output;
@@ -83,7 +83,7 @@ pub(crate) fn damage_ratio(known: &Estimate) -> Output {
 pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     let mut out = Vec::new();
     if cycles.oscillates() {
-        out.push(Output::figure("fretting_loops", loops(cycles), 2));
+        out.push(Output::leading(Figure::LOOPS, loops(cycles), 2));
     }
     let mut chart = friction(cycles);
     estimated(&mut chart, "friction coefficient", known, "");
@@ -92,7 +92,7 @@ pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
         *top = top.max(1.05 * end);
     }
     chart = chart.with_unless_zero(bar);
-    out.push(Output::figure("friction_coefficient", [chart], 1));
+    out.push(Output::leading(Figure::FRICTION, [chart], 1));
     let forces = [("tangential force Q", "Q"), ("normal force P", "P")];
     let over_time = [
         history("Friction over time", Axis::new("|Q|/P", ""), &[("", "mu")])
@@ -161,7 +161,7 @@ fn friction(cycles: &Cycles) -> Chart {
         // Rows before the start of the test belong to a compaction.
         let since = Part::Since(cycles.start());
         let x = Axis::of_rows("relative displacement δ");
-        let mean = cycles.last().map(|c| c.friction_coefficient);
+        let mean = cycles.last().and_then(|c| c.friction_coefficient);
         return Chart::new("Friction coefficient against displacement", x, mu)
             .note("Ratio of tangential to normal force over the path.")
             .with(Series::rows("|Q|/P", "delta", "mu").part(since))
@@ -170,26 +170,28 @@ fn friction(cycles: &Cycles) -> Chart {
                 Series::level(label, mean)
             }));
     }
-    let list = |f: &dyn Fn(&Cycle) -> f64| -> Vec<(f64, f64)> {
+    let list = |f: &dyn Fn(&Cycle) -> Option<f64>| -> Vec<(f64, f64)> {
         let complete = cycles.list.iter().filter(|c| c.complete);
-        complete.map(|c| (f64::from(c.cycle), f(c))).collect()
+        let point = |c: &Cycle| Some((f64::from(c.cycle), f(c)?));
+        complete.filter_map(point).collect()
     };
-    let peak = |c: &Cycle| c.tangential_amplitude / c.normal_force;
-    let plateau = |c: &Cycle| c.plateau_ratio;
     let mut chart = Chart::new("Friction coefficient by cycle", Axis::cycles(), mu)
-        .note("From forces, over each cycle; the plateau leaves the elastic travel out.")
+        .note("Sliding: |Q|/P while the contact slides, none in partial slip. Energetic: work of Q over P times the path, the elastic part included.")
         .with_unless_zero(
-            Series::new("from forces", list(&|c| c.friction_coefficient)).style(Style::LineMarkers),
+            Series::new("sliding", list(&|c| c.friction_coefficient)).style(Style::LineMarkers),
+        )
+        .with_unless_zero(Series::new("peak Q*/P", list(&Cycle::peak_ratio)).style(Style::Dashed))
+        .with_unless_zero(
+            Series::new("energetic", list(&|c| Some(c.energetic_coefficient)))
+                .style(Style::Dashed),
         )
         .with_unless_zero(
             Series::new(
-                "from dissipated energy",
-                list(&|c| c.friction_from_dissipation),
+                "energetic, from the ledger",
+                list(&|c| Some(c.friction_from_dissipation)),
             )
             .style(Style::Markers),
-        )
-        .with_unless_zero(Series::new("peak Q*/P", list(&peak)).style(Style::Dashed))
-        .with_unless_zero(Series::new("plateau Q/P", list(&plateau)).style(Style::Dashed));
+        );
     let all = chart.series.iter().flat_map(|s| &s.points).map(|p| p.1);
     let highest = all.filter(|y| y.is_finite()).fold(0.0, f64::max);
     if highest > 0.0 {
@@ -284,7 +286,7 @@ pub(crate) fn energy_balance(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chart::{Figure, TableColumns};
+    use crate::chart::TableColumns;
     use crate::statistics::{Column, Table};
 
     fn table(names: &[&str], rows: Vec<f64>) -> Table {

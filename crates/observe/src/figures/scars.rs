@@ -39,7 +39,7 @@ pub(crate) fn charts(run: &dyn RunView) -> Vec<Output> {
                 .with(Series::new("worn", now.collect())),
             );
         }
-        out.push(Output::figure(file_name(scar.name), charts, 2));
+        out.push(Output::leading(file_name(scar.name), charts, 2));
     }
     out
 }

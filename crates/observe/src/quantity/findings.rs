@@ -401,7 +401,7 @@ impl Findings {
 
     /// Adds half-widths to a quantity.
     pub fn estimate(&mut self, name: &str, estimate: &Estimate) {
-        self.edit(name, |q| q.estimate = Some(estimate.clone()));
+        self.edit(name, |q| q.estimate = Some(estimate.clone().judged()));
     }
 
     /// Returns the number of a quantity; `None` where it is null, not a number, or not available.

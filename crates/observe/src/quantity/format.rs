@@ -31,42 +31,88 @@ pub fn number(value: f64, digits: i32) -> String {
     }
 }
 
+/// A unit as it is shown: with a prefix that suits the size of a value.
+struct ShownUnit {
+    /// Factor on values in the SI unit, and a divisor.
+    scale: [f64; 2],
+    /// Name; empty for pure numbers.
+    name: String,
+}
+
+impl ShownUnit {
+    fn of(value: f64, unit: &str) -> Self {
+        if matches!(unit, "" | "1") {
+            let (scale, name) = ([1.0, 1.0], String::new());
+            return Self { scale, name };
+        }
+        let (base, rest) = unit.split_at(unit.find(['/', ' ']).unwrap_or(unit.len()));
+        let (factor, base) = match base {
+            "kg" => (1e3, "g"),
+            other => (1.0, other),
+        };
+        let value = factor * value;
+        let size = value.abs();
+        if matches!(base, "m3" | "m^3") {
+            let (over, name) = if size >= 1e-2 {
+                (1.0, "m3")
+            } else {
+                (1e-9, "mm3")
+            };
+            let name = format!("{name}{rest}");
+            return Self {
+                scale: [factor, over],
+                name,
+            };
+        }
+        let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "g"].contains(&base);
+        if !takes || size == 0.0 || !size.is_finite() {
+            let name = format!("{base}{rest}");
+            return Self {
+                scale: [factor, 1.0],
+                name,
+            };
+        }
+        let highest = if base == "s" { 0 } else { 9 };
+        let magnitude = number(size, 4)
+            .parse::<f64>()
+            .unwrap_or(size)
+            .log10()
+            .floor() as i32;
+        let power = (3 * magnitude.div_euclid(3)).clamp(-15, highest);
+        let prefix = PREFIXES.iter().find(|p| p.0 == power).map_or("", |p| p.1);
+        let name = format!("{prefix}{base}{rest}");
+        Self {
+            scale: [factor, 10f64.powi(power)],
+            name,
+        }
+    }
+
+    /// Formats a value in the SI unit with `digits` digits.
+    fn number(&self, value: f64, digits: i32) -> String {
+        number(self.scale[0] * value / self.scale[1], digits)
+    }
+
+    /// Adds the name to the text of a number.
+    fn after(&self, text: String) -> String {
+        if self.name.is_empty() {
+            return text;
+        }
+        format!("{text} {}", self.name)
+    }
+}
+
 /// Formats a value in an SI unit: `2.300e-5`, `m` gives `23.00 um`. Kilograms become grams, and
 /// cubic metres mm3, so that volumes have a common unit.
 pub fn quantity(value: f64, unit: &str) -> String {
-    if matches!(unit, "" | "1") {
-        return number(value, 4);
-    }
-    let (base, rest) = unit.split_at(unit.find(['/', ' ']).unwrap_or(unit.len()));
-    let (value, base) = match base {
-        "kg" => (1e3 * value, "g"),
-        other => (value, other),
-    };
-    let size = value.abs();
-    if matches!(base, "m3" | "m^3") {
-        let (scale, name) = if size >= 1e-2 {
-            (1.0, "m3")
-        } else {
-            (1e-9, "mm3")
-        };
-        return format!("{} {name}{rest}", number(value / scale, 4));
-    }
-    let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "g"].contains(&base);
-    if !takes || size == 0.0 || !size.is_finite() {
-        return format!("{} {base}{rest}", number(value, 4));
-    }
-    let highest = if base == "s" { 0 } else { 9 };
-    let magnitude = number(size, 4)
-        .parse::<f64>()
-        .unwrap_or(size)
-        .log10()
-        .floor() as i32;
-    let power = (3 * magnitude.div_euclid(3)).clamp(-15, highest);
-    let prefix = PREFIXES.iter().find(|p| p.0 == power).map_or("", |p| p.1);
-    format!(
-        "{} {prefix}{base}{rest}",
-        number(value / 10f64.powi(power), 4)
-    )
+    let shown = ShownUnit::of(value, unit);
+    shown.after(shown.number(value, 4))
+}
+
+/// Formats a value with its half-width in one unit: `0.4020 +- 0.012`, `23.00 +- 0.40 um`.
+pub fn with_half_width(value: f64, half_width: f64, unit: &str) -> String {
+    let shown = ShownUnit::of(value, unit);
+    let numbers = [shown.number(value, 4), shown.number(half_width, 2)];
+    shown.after(numbers.join(" +- "))
 }
 
 #[cfg(test)]
@@ -87,5 +133,16 @@ mod tests {
         assert_eq!(quantity(0.412_345, ""), "0.4123");
         assert_eq!(quantity(1e-30, "J"), "1.000e-15 fJ");
         assert_eq!(quantity(1.2e-15, "m^3/(N m)"), "1.200e-6 mm3/(N m)");
+    }
+
+    #[test]
+    fn a_half_width_has_the_unit_of_its_value() {
+        assert_eq!(with_half_width(0.402, 0.0123, "1"), "0.4020 +- 0.012");
+        assert_eq!(with_half_width(2.3e-5, 4e-7, "m"), "23.00 +- 0.40 um");
+        assert_eq!(
+            with_half_width(2.229e-12, 6.5e-13, "m^3/m"),
+            "0.002229 +- 0.00065 mm3/m"
+        );
+        assert_eq!(with_half_width(4.5e-9, 1e-9, "kg/s"), "4.500 +- 1.0 ug/s");
     }
 }

@@ -5,6 +5,7 @@
 
 mod catalogue;
 mod described;
+mod difference;
 mod estimate;
 mod findings;
 mod format;
@@ -13,9 +14,10 @@ mod path;
 
 pub use catalogue::{Catalogue, Entry};
 pub use described::{Described, Field, Schema, field, part, parts, values};
-pub use estimate::Estimate;
+pub use difference::{Compared, Difference, Significance};
+pub use estimate::{DETERMINED, Estimate};
 pub use findings::{Expected, Findings};
-pub use format::{number, quantity};
+pub use format::{number, quantity, with_half_width};
 pub use fretwork_core::unit::{self, Unit};
 pub use path::{find, renamed};
 
@@ -43,6 +45,8 @@ pub enum Role {
 pub enum Topic {
     /// Friction.
     Friction,
+    /// Regimes of slip and flow, in words.
+    Regime,
     /// Bonds and their damage.
     Damage,
     /// Wear and the flows of matter.
@@ -61,6 +65,7 @@ impl Topic {
     pub fn title(self) -> &'static str {
         match self {
             Self::Friction => "Friction",
+            Self::Regime => "Regime",
             Self::Damage => "Damage",
             Self::Wear => "Wear",
             Self::Energy => "Energy",

@@ -39,6 +39,15 @@ impl Uncertainty {
         repeated(&mut all.damage_ratio, &repeats, |e| e.damage);
         repeated(&mut all.wear, &repeats, |e| e.wear);
         repeated(&mut all.friction_energy, &repeats, |e| e.friction_energy);
+        let judged = [
+            &mut all.friction_coefficient,
+            &mut all.damage_ratio,
+            &mut all.wear,
+            &mut all.friction_energy,
+        ];
+        for estimate in judged {
+            *estimate = std::mem::take(estimate).judged();
+        }
         all.repeats = repeats;
         all
     }
@@ -52,6 +61,7 @@ impl Uncertainty {
         if let Some(scatter) = friction.and_then(|f| f.scatter.as_ref()) {
             mu.method = Some(scatter.method());
             mu.scatter = scatter.half_width();
+            mu.scope = mu.scatter.map(|_| scatter.scope());
             mu.value = mu.scatter.map_or(mu.value, |_| Some(scatter.flow.mean));
         }
         let bonds = found.number("bonds").unwrap_or(0.0);
@@ -67,8 +77,9 @@ impl Uncertainty {
         // A cycle that represents several is not a sample like the others.
         let single = cycles.iter().all(|c| c.jumped == 0);
         let alike = friction.oscillates && complete > 0 && single;
-        if let Some(s) = scatter::over_cycles(cycles, |c| c.wear_volume).filter(|_| alike) {
+        if let Some(s) = scatter::over_cycles(cycles, |c| Some(c.wear_volume)).filter(|_| alike) {
             all.wear.scatter = s.half_width().map(|w| w * complete as f64);
+            all.wear.scope = all.wear.scatter.map(|_| s.scope());
             all.wear.method = Some(format!("wear of a cycle times {complete}: {}", s.method()));
         }
         all

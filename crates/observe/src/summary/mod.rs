@@ -1,18 +1,27 @@
 //! `summary.json`, and the text at the end of a run: the facts of a run and the results of its
 //! observers.
 
+mod brief;
 mod course;
 mod estimate;
+mod grade;
+mod sample;
+mod sliding;
 mod text;
 mod time_spent;
 
+pub use self::brief::{COLUMNS, fitted};
 pub use self::course::{Course, RELATIVE_RESIDUAL, residual};
 pub use self::estimate::{Estimate, Uncertainty};
+pub use self::grade::{Grade, HeadlineError};
+pub use self::sample::SampleFacts;
+pub use self::sliding::SlidingTest;
 pub use self::time_spent::TimeSpent;
 
 use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Topic, field, part, parts, quantity, values};
 use crate::warning::{self, Warning};
+use fretwork_scene::input_ranges::GivenRange;
 use fretwork_scene::wear_coefficient::WearCoefficient;
 use serde::{Serialize, Serializer};
 
@@ -57,6 +66,14 @@ crate::described! {
         pub case: String => WORD,
         /// Whether all checks passed.
         pub trustworthy: bool => WORD,
+        /// Trust in three grades: `not trustworthy`, a check failed; `consistent`, the ledgers
+        /// close and the steps converged; `error known`, in addition the error of the headline is
+        /// known and at most 5 %.
+        pub grade: Grade => WORD,
+        /// What is known of the error of the headline, and what is not.
+        pub grade_sentence: String => WORD,
+        /// What decides how far its numbers go.
+        pub sample: SampleFacts = part::<SampleFacts>(),
         /// Reasons why it is not trustworthy, as sentences, worst first.
         pub reasons: Vec<String> = values(WORD),
         /// The reasons, followed by notes.
@@ -77,6 +94,9 @@ crate::described! {
         /// Wear coefficients that follow from the hardness of materials; left out without any.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         pub wear_coefficients: Vec<WearCoefficient> = crate::quantity::Schema::ListOfParts(&COEFFICIENT),
+        /// Parameters of laws from files that give a range with them; left out without any.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub given: Vec<GivenRange> = crate::quantity::Schema::ListOfParts(&GIVEN),
         /// Number of threads that the run used.
         pub threads: usize => ONE,
         /// Seed of the random numbers of the case.
@@ -89,6 +109,23 @@ crate::described! {
         pub interrupted: bool => WORD,
     }
 }
+
+/// Fields of a parameter that was given with a range.
+const GIVEN: [Field; 9] = [
+    field("file", WORD, "file of the value, without .ron"),
+    field("kind", WORD, "kind of the law"),
+    field("law", WORD, "the law"),
+    field("parameter", WORD, "the parameter"),
+    field("value", WORD, "its value, in the unit of the law"),
+    field(
+        "range",
+        WORD,
+        "smallest and largest value in its source, in the unit of the law",
+    ),
+    field("unit", WORD, "unit of the law"),
+    field("source", WORD, "source of the value"),
+    field("keys", WORD, "keys of the case that would replace it"),
+];
 
 /// Fields of a wear coefficient.
 const COEFFICIENT: [Field; 10] = [
@@ -134,6 +171,12 @@ impl Summary {
         let reasons = list.iter().filter(|w| w.serious);
         run.reasons = reasons.map(Warning::to_string).collect();
         run.trustworthy = run.reasons.is_empty();
+        let error = HeadlineError::of(&self.found, &run.sample);
+        run.grade = match run.trustworthy {
+            true => error.grade(),
+            false => Grade::NotTrustworthy,
+        };
+        run.grade_sentence = error.sentence();
         list
     }
 
@@ -148,6 +191,9 @@ impl Summary {
             all.add(group, serde_json::Map::new(), WORD, doc);
         }
         all.extend(&self.found);
+        all.edit("fretting.regime", |q| {
+            q.about(Topic::Regime);
+        });
         all
     }
 }

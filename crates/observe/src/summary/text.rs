@@ -1,25 +1,26 @@
-//! Text at the end of a run: warnings, then the results of the observers, by topic.
+//! Text at the end of a run: in brief, or with all details: warnings, then the results of the
+//! observers, by topic.
 
 use super::Summary;
 use crate::quantity::{Findings, Quantity, Role, Topic, Wording, number, quantity};
 use std::fmt::Write as _;
 
-/// Largest number of plain values of a topic that are printed without `--verbose`.
-const MAX_PLAIN_VALUES: usize = 8;
-
 impl Summary {
-    /// The text: warnings first, then the results, with all details if `verbose`.
+    /// The text: a few lines, or warnings and results with all details if `verbose`.
     pub fn text(&self, verbose: bool) -> String {
+        if !verbose {
+            return self.brief().join("\n") + "\n";
+        }
         let mut out = String::new();
-        if !self.run.trustworthy {
-            out += "NOT TRUSTWORTHY\n";
+        let _ = writeln!(out, "{}", self.run.grade.words());
+        if self.run.trustworthy {
+            let _ = writeln!(out, "  {}", self.run.grade_sentence);
         }
         for warning in &self.run.warnings {
             let _ = writeln!(out, "  {warning}");
         }
         let _ = writeln!(out, "{}", self.run.case);
-        let all = self.quantities();
-        for (label, text) in lines(&all, verbose) {
+        for (label, text) in lines(&self.quantities()) {
             let _ = writeln!(out, "  {label:<22} {text}");
         }
         out
@@ -27,36 +28,16 @@ impl Summary {
 }
 
 /// Returns labels and texts, by topic; details of all topics come before the course of the run.
-fn lines(all: &Findings, verbose: bool) -> Vec<(String, String)> {
-    let mut list: Vec<&Quantity> = all
-        .all()
-        .iter()
-        .filter(|q| q.wording != Wording::Silent)
-        .collect();
-    list.retain(|q| verbose || q.role <= Role::Secondary);
+fn lines(all: &Findings) -> Vec<(String, String)> {
+    let shown = all.all().iter();
+    let mut list: Vec<&Quantity> = shown.filter(|q| q.wording != Wording::Silent).collect();
     list.sort_by_key(|q| (q.role >= Role::Detail, q.topic));
     // The line of the whole run is the last.
     let last = |q: &&Quantity| q.topic == Topic::Run && q.role == Role::Secondary;
     let (ends, list): (Vec<&Quantity>, Vec<&Quantity>) = list.into_iter().partition(last);
     let dimension = all.dimension();
-    let mut out = Vec::new();
-    let plain = |q: &&&Quantity, topic| q.topic == topic && matches!(q.wording, Wording::Value(_));
-    let mut folded = Vec::new();
-    for q in &list {
-        let count = list.iter().filter(|other| plain(other, q.topic)).count();
-        if plain(&q, q.topic) && !verbose && count > MAX_PLAIN_VALUES {
-            let group = q.name().split('.').next().unwrap_or_default().to_owned();
-            if !folded.contains(&group) {
-                let text = format!("{count} values: --verbose, or `{group}` in summary.json");
-                out.push((group.clone(), text));
-                folded.push(group);
-            }
-            continue;
-        }
-        out.extend(line(q, dimension));
-    }
-    out.extend(ends.iter().filter_map(|q| line(q, dimension)));
-    out
+    let list = list.into_iter().chain(ends);
+    list.filter_map(|q| line(q, dimension)).collect()
 }
 
 fn line(q: &Quantity, dimension: usize) -> Option<(String, String)> {
@@ -90,21 +71,29 @@ fn with_remark(q: &Quantity, remark: &str, dimension: usize) -> Option<String> {
         unit => quantity(h, unit),
     };
     let settings = estimate.from_settings(half);
+    let open = match estimate.is_determined() {
+        Some(false) => "not determined: ",
+        _ => "",
+    };
     Some(match (estimate.value, estimate.scatter) {
         (Some(mean), Some(scatter)) => {
-            let method = estimate.method.as_ref();
-            let method = method.map_or(String::new(), |m| format!(" ({m})"));
+            let scope = [&estimate.scope, &estimate.method].into_iter().flatten();
+            let scope: Vec<&str> = scope.map(String::as_str).collect();
+            let method = match scope.is_empty() {
+                true => String::new(),
+                false => format!(" ({})", scope.join("; ")),
+            };
             let own = match Some(mean) == q.value.as_f64() {
                 true => remark,
                 false => format!("; {value}{remark}"),
             };
             format!(
-                "{} +- {}{method}{settings}{own}",
+                "{open}{} +- {}{method}{settings}{own}",
                 quantity(mean, unit),
                 half(scatter)
             )
         }
-        _ => format!("{value}{settings}{remark}"),
+        _ => format!("{open}{value}{settings}{remark}"),
     })
 }
 

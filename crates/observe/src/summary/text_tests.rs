@@ -15,11 +15,8 @@ fn fretting() -> Summary {
     let cycle = |k: u32| Cycle {
         cycle: k,
         complete: true,
-        friction_coefficient: if k < 10 {
-            0.3
-        } else {
-            0.4 + 1e-3 * f64::from(k * 7 % 5)
-        },
+        friction_coefficient: (k >= 10).then(|| 0.4 + 1e-3 * f64::from(k * 7 % 5)),
+        energetic_coefficient: 0.4,
         friction_from_dissipation: 0.41,
         normal_force: 1e3,
         tangential_amplitude: 550.0,
@@ -50,6 +47,8 @@ fn fretting() -> Summary {
         depth_mean: Some(1e-7),
         depth_max: Some(3e-7),
         specific_rate: Some(volume / 10.0),
+        archard_coefficient: None,
+        hardness: None,
     };
     let wear = WearSummary {
         volume_first_bodies: 5e-14,
@@ -81,59 +80,119 @@ fn place(text: &str, what: &str) -> usize {
 }
 
 #[test]
-fn warnings_come_first_then_friction_damage_wear_energies() {
+fn the_end_of_a_run_has_at_most_14_lines_of_100_columns_in_their_order() {
     let mut summary = fretting();
-    let warning = Warning::serious("NOT CONVERGED", "12 of 6000 steps");
-    summary.found.warn([warning]);
+    let long =
+        "the steps are too long, and this sentence says more than a line holds; it goes on, and on";
+    let warnings = [
+        "NOT STEADY",
+        "NOT UNIQUE",
+        "COARSE DRIVE",
+        "ERROR NOT KNOWN",
+    ];
+    let notes = warnings.map(|of| Warning::note(of, long));
+    summary.found.warn(notes);
+    summary
+        .found
+        .warn([Warning::serious("NOT CONVERGED", "12 of 6000 steps")]);
     summary.check();
     let text = summary.text(false);
     assert!(
-        text.starts_with("NOT TRUSTWORTHY\n  NOT CONVERGED: "),
+        text.starts_with("NOT TRUSTWORTHY\n  NOT CONVERGED: 12 of 6000 steps\n"),
         "{text}"
     );
     let order = [
         "NOT CONVERGED",
-        "wheel on rail",
-        "friction coefficient",
-        "energetic coefficient",
-        "peak Q/P",
-        "damage",
-        "wear of rail",
-        "wear of wheel",
-        "external work",
-        "layer ",
-        "\n  run ",
+        "  friction   ",
+        "  wear       ",
+        "  damage     ",
+        "  regime     ",
+        "  measures   ",
+        "  energy     ",
+        "  look at    1 NOT STEADY",
+        "             2 ",
+        "             3 ",
+        "  run        ",
     ];
     let places: Vec<usize> = order.iter().map(|w| place(&text, w)).collect();
     assert!(places.is_sorted(), "{places:?}\n{text}");
+    assert!(text.lines().count() <= 14, "{text}");
+    assert!(text.lines().all(|l| l.chars().count() <= 100), "{text}");
+    assert!(!text.contains("             4 "), "{text}");
 }
 
 #[test]
-fn results_have_units_and_intervals_and_no_lists() {
-    let text = fretting().text(false);
-    assert!(!text.contains("NOT TRUSTWORTHY"));
+fn a_trusted_run_begins_with_its_grade_and_what_is_known_of_the_error() {
+    let mut summary = fretting();
+    summary.run.sample.random = true;
+    summary.run.sample.seeds = Some("one seed".to_owned());
+    summary.check();
+    assert_eq!(summary.run.grade, crate::summary::Grade::Consistent);
+    let text = summary.text(false);
     // For k in 26..=50 each of 0.400 to 0.404 occurs five times: mean 0.402, deviation 1e-3
     // sqrt(2 * 25/24), t(24, 0.975) = 2.0639: 0.000596.
-    place(&text, "0.4020 +- 0.00060 (95 %, Student, cycles 26 to 50");
+    assert!(text.starts_with("CONSISTENT: the ledgers close"), "{text}");
+    let says = &summary.run.grade_sentence;
+    assert_eq!(
+        says,
+        "error of friction coefficient not known by step, tolerance, seeds; known: within this sample (25 cycles) 0.15 %"
+    );
+    place(
+        &text,
+        "friction coefficient 0.4020 +- 0.00060 (within this sample (25 cycles))",
+    );
+    place(&text, "damage ratio 0.3000");
+    place(&text, "gross slip in cycle 50; mixed over all cycles");
+    place(&text, "look at    1 one seed");
+    assert!(!text.contains("layer_30"), "{text}");
+}
+
+#[test]
+fn a_result_with_a_large_half_width_is_not_determined() {
+    let mut summary = fretting();
+    let estimate = crate::quantity::Estimate {
+        value: Some(0.3),
+        step: Some(0.19),
+        tolerance: Some(0.04),
+        ..crate::quantity::Estimate::default()
+    };
+    summary.found.estimate("damage_ratio", &estimate);
+    summary.check();
+    let text = summary.text(false);
+    // The root of the sum of squares of 0.19 and 0.04.
+    place(&text, "damage ratio not determined: 0.3000 +- 0.19");
+    place(
+        &text,
+        "damage ratio is not determined: step may change 63 %",
+    );
+    place(
+        &summary.text(true),
+        "not determined: 0.3000 +- 0.19 (step) +- 0.040 (tolerance)",
+    );
+}
+
+#[test]
+fn results_have_units_and_intervals() {
+    let text = fretting().text(true);
+    assert!(!text.contains("NOT TRUSTWORTHY"));
+    place(
+        &text,
+        "0.4020 +- 0.00060 (within this sample (25 cycles); 95 %, Student, cycles 26 to 50",
+    );
     place(
         &text,
         "0.5500 in cycle 50, the last complete one: largest |Q| over mean P",
     );
-    place(&text, "50 complete; 0.3000 in the first");
+    place(&text, "50 complete; none (partial slip) in the first");
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(
         &text,
         "3.000e-5 mm3, 100.0 nm deep on average where worn, 300.0 nm at most; k = V/(P s) = 3.000e-6 mm3/(N m)",
     );
-    place(&text, "measures               31 values: --verbose");
     place(&text, "external work          110.0 mJ");
     place(
         &text,
         "damage ratio           0.3000 (12 of 40 bonds broken)",
-    );
-    assert!(
-        !text.contains("layer_") && text.lines().count() < 25,
-        "{text}"
     );
 }
 

@@ -64,9 +64,10 @@ pub fn load_reader(
 
 fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
     for set in sets {
-        source.set::<Case>(set)?;
+        Case::set(&mut source, set)?;
     }
-    let case: Case = source.parse()?;
+    Case::convert_units(&mut source)?;
+    let case = Case::read(&source)?;
     LoadedCase::checked(source, case, path)
 }
 

@@ -185,6 +185,18 @@ impl LoadedCase {
         materials.densities.get(name).map(|d| d.1)
     }
 
+    /// Returns the hardness of a material of the case: as a pressure (Pa), and as its file gives it
+    /// with the name of the file. `None` without one, or on a scale that is no pressure.
+    pub fn hardness(&self, name: &str) -> Option<(f64, String)> {
+        let materials = self.materials(&self.material_library()).ok()?;
+        let (index, _) = materials.densities.get(name)?;
+        let given = materials.properties.get(usize::from(*index))?;
+        let given = given.get("hardness")?;
+        let value = crate::quantity::hardness_in_pascal(given.value, &given.unit)?;
+        let file = self.case.materials.get(name)?;
+        Some((value, format!("{} {} of {file}", given.value, given.unit)))
+    }
+
     /// Reads the materials.
     fn materials(&self, library: &MaterialLibrary) -> Result<Materials, InputError> {
         let mut out = Materials::default();

@@ -179,6 +179,7 @@ impl CaseBuilder {
             density: Sourced {
                 value: density,
                 unit: "kg/m^3".to_owned(),
+                range: None,
                 source: source.into(),
             },
             properties: BTreeMap::new(),

@@ -7,6 +7,7 @@ mod grains;
 mod half_space;
 mod heat;
 mod interface;
+pub(crate) mod key_units;
 mod read;
 mod shapes;
 pub(crate) mod slots;

@@ -1,7 +1,8 @@
-//! Reader of numeric CSV tables with a header of column names.
+//! Reader of numeric tables with a header of column names, see [`crate::measured`] for their
+//! layout.
 
+use crate::measured::{Heading, Layout, lines};
 use crate::source::{InputError, nearest, read_text};
-use csv::{ReaderBuilder, StringRecord, Trim};
 use std::ops::Range;
 use std::path::Path;
 
@@ -43,55 +44,40 @@ impl Table {
 
     fn parse(
         name: String,
-        mut text: String,
+        text: String,
         required: &[&str],
         optional: &[&str],
         lengths: bool,
     ) -> Result<Self, InputError> {
-        if text.starts_with('\u{feff}') {
-            text.drain(..'\u{feff}'.len_utf8());
-        }
-        let mut reader = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(text.as_bytes());
-        let mut table = Self {
-            name,
-            text: String::new(),
-            header: Vec::new(),
-            rows: Vec::new(),
-        };
-        let mut metres: Vec<f64> = Vec::new();
-        let mut record = StringRecord::new();
-        loop {
-            let more = reader.read_record(&mut record);
-            let span = line_before(&text, reader.position().byte() as usize);
-            let fail = |message| InputError::at(&table.name, &text, span.clone(), message);
-            if !more.map_err(|e| fail(format!("this is not a valid CSV file: {e}")))? {
-                break;
-            }
-            if table.header.is_empty() {
-                let (header, units) = parse_header(&record, lengths, &fail)?;
+        let layout = Layout::of(&text);
+        let (mut header, mut metres, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        for (span, line) in lines(&text) {
+            let fail = |message| InputError::at(&name, &text, span.clone(), message);
+            let words = layout.cells(line);
+            let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();
+            if header.is_empty() {
+                (header, metres) = parse_header(&words, lengths, &fail)?;
                 check_header(&header, required, optional).map_err(|(message, near)| {
                     let columns = [required, optional].concat().join(", ");
                     fail(message)
                         .expected(format!("columns of the names {columns}"))
                         .did_you_mean(near.as_deref())
                 })?;
-                (table.header, metres) = (header, units);
                 continue;
             }
-            let row = parse_row(&record, &table.header, &metres, &fail)?;
-            table.rows.push((span, row));
+            let row = parse_row(layout, &words, &header, &metres, &fail)?;
+            rows.push((span, row));
         }
-        table.text = text;
-        if table.rows.is_empty() {
+        if rows.is_empty() {
             let message = "there is no row of numbers below the header";
-            return Err(InputError::about(&table.name, message));
+            return Err(InputError::about(&name, message));
         }
-        Ok(table)
+        Ok(Self {
+            name,
+            text,
+            header,
+            rows,
+        })
     }
 
     /// Number of rows.
@@ -123,11 +109,11 @@ impl Table {
 
 /// Returns the names of the columns, and for a table of lengths the unit of each in metres.
 fn parse_header(
-    record: &StringRecord,
+    words: &[&str],
     lengths: bool,
     fail: &impl Fn(String) -> InputError,
 ) -> Result<(Vec<String>, Vec<f64>), InputError> {
-    let mut header: Vec<String> = record.iter().map(str::to_owned).collect();
+    let mut header: Vec<String> = words.iter().map(|w| (*w).to_owned()).collect();
     let mut metres = Vec::new();
     if lengths {
         for name in &mut header {
@@ -143,18 +129,18 @@ fn parse_header(
 
 /// The values of a row, multiplied by the units of their columns.
 fn parse_row(
-    record: &StringRecord,
+    layout: Layout,
+    words: &[&str],
     header: &[String],
     metres: &[f64],
     fail: &impl Fn(String) -> InputError,
 ) -> Result<Vec<f64>, InputError> {
-    if record.len() != header.len() {
-        let words: Vec<&str> = record.iter().collect();
+    if words.len() != header.len() {
         let (values, columns) = (words.len(), header.len());
         // Numbers with decimal commas are read as two.
         let halves = values > columns && words.iter().all(|w| !w.contains('.'));
         let why = if halves {
-            "; if commas stand for decimal points, write points"
+            "; if commas stand for decimal points, write points, or semicolons between the columns"
         } else {
             ""
         };
@@ -162,44 +148,28 @@ fn parse_row(
             "this line has {values} values and the header {columns} columns{why}"
         )));
     }
-    let mut row = Vec::with_capacity(record.len());
-    for (word, column) in record.iter().zip(header) {
-        let number = number(word, column).map_err(|why| fail(why).expected("a finite number"))?;
+    let mut row = Vec::with_capacity(words.len());
+    for (word, column) in words.iter().zip(header) {
+        let number = layout.number(word).map_err(|_| {
+            fail(format!("the value `{word}` of `{column}` is not a number"))
+                .expected("a finite number")
+        })?;
         row.push(number * metres.get(row.len()).copied().unwrap_or(1.0));
     }
     Ok(row)
 }
 
-/// A finite number of a table.
-///
-/// # Errors
-/// The reason, in a sentence.
-pub fn number(word: &str, column: &str) -> Result<f64, String> {
-    let number = word.parse().ok().filter(|x: &f64| x.is_finite());
-    number.ok_or_else(|| match word.replacen(',', ".", 1).parse::<f64>() {
-        Ok(_) if word.contains(',') => decimal_comma(word),
-        _ => format!("the value `{word}` of `{column}` is not a number"),
-    })
-}
-
-/// Returns the message for a number with a decimal comma.
-pub fn decimal_comma(word: &str) -> String {
-    format!("`{word}` has a comma within; write numbers with a decimal point")
-}
-
 /// Splits a column's name into its name and its unit in metres.
 fn length(name: &str) -> Result<(String, f64), String> {
-    let Some((short, unit)) = name.split_once('[') else {
-        return Ok((name.to_owned(), 1.0));
-    };
-    let metre = match unit.trim_end_matches(']').trim() {
-        "m" => 1.0,
+    let heading = Heading::parse(name);
+    let metre = match heading.unit.as_str() {
+        "" | "m" => 1.0,
         "mm" => 1e-3,
         "um" | "\u{b5}m" | "\u{3bc}m" => 1e-6,
         "nm" => 1e-9,
         other => return Err(format!("`{other}` is not a unit of length")),
     };
-    Ok((short.trim().to_owned(), metre))
+    Ok((heading.name, metre))
 }
 
 fn check_header(
@@ -207,12 +177,6 @@ fn check_header(
     required: &[&str],
     optional: &[&str],
 ) -> Result<(), (String, Option<String>)> {
-    if let [one] = header
-        && let Some(mark) = [';', '\t', ' '].into_iter().find(|m| one.contains(*m))
-    {
-        let message = format!("columns are separated by commas, not by {mark:?}");
-        return Err((message, None));
-    }
     let known = || required.iter().chain(optional).copied();
     for (k, name) in header.iter().enumerate() {
         if header[..k].contains(name) {
@@ -231,13 +195,6 @@ fn check_header(
         Some(missing) => Err((format!("the column `{missing}` is missing"), None)),
         None => Ok(()),
     }
-}
-
-/// Returns the byte range of the line that ends before a position.
-fn line_before(text: &str, end: usize) -> Range<usize> {
-    let before = text[..end.min(text.len())].trim_end_matches(['\r', '\n']);
-    let start = before.rfind('\n').map_or(0, |k| k + 1);
-    start..before.len()
 }
 
 #[cfg(test)]
@@ -282,6 +239,19 @@ mod tests {
     }
 
     #[test]
+    fn any_delimiter_and_decimal_commas_are_read() {
+        for text in [
+            "x;radius\n1,5;2\n",
+            "x\tradius\n1,5\t2\n",
+            "x radius\n1,5 2\n",
+            "x,radius\n\"1,5\",\"2\"\n",
+        ] {
+            let table = read(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            assert_eq!(table.rows[0].1, [1.5, 2.0], "{text}");
+        }
+    }
+
+    #[test]
     fn bad_tables_are_refused_at_their_line() {
         for (text, line, says) in [
             (
@@ -292,11 +262,9 @@ mod tests {
             ("x,radius\n1,2\n\n# c\n1,NaN\n", 5, "`NaN` of `radius`"),
             ("x,radius\n1,2,3\n", 2, "3 values and the header 2 columns"),
             ("x,radius\n1,5,2,5\n", 2, "decimal points, write points"),
-            ("x,radius\n\"1,5\",\"2,5\"\n", 2, "decimal point"),
             ("x,radius,radus\n1,2,3\n", 1, "unknown column `radus`"),
             ("x,x,radius\n1,2,3\n", 1, "`x` is there twice"),
             ("x\n1\n", 1, "`radius` is missing"),
-            ("x;radius\n1;2\n", 1, "separated by commas"),
             ("1,2\n1,2\n", 1, "must name the columns"),
             ("x,radius\n", 0, "no row of numbers"),
         ] {

@@ -173,6 +173,18 @@ impl InputError {
         }
     }
 
+    /// Returns file, line and message, for use as the end of another message.
+    pub fn with_line(&self) -> String {
+        let line = self.position().map(|(line, _)| format!(" line {line}:"));
+        let text = format!(
+            "{}:{} {}",
+            self.file,
+            line.unwrap_or_default(),
+            self.message
+        );
+        super::clean(&text)
+    }
+
     /// Returns whether the error concerns a whole file: it is missing, unreadable or empty.
     pub fn is_about_a_whole_file(&self) -> bool {
         self.context

@@ -5,9 +5,14 @@ use std::ops::Range;
 use ron::error::{Error as RonError, Position, SpannedError};
 
 use super::respell::Step;
+use super::scan::starts_word;
 use super::set::{one_of, shorten};
 use super::tree::{Node, Shape, ValueKind, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
+use crate::quantity;
+
+/// Gives the names of the variants of the enum at a path of the schema, if there is one.
+pub(super) type Kinds<'a> = &'a dyn Fn(&Source, &[String]) -> Option<Vec<&'static str>>;
 
 impl Source {
     /// Returns the byte offset of a position reported by ron (lines and columns in characters).
@@ -21,8 +26,9 @@ impl Source {
     }
 
     /// Converts an error from ron, located at the token that caused it.
-    pub(super) fn explain(&self, error: &SpannedError) -> InputError {
-        let error = self.locate_parse_error(error);
+    /// `kinds` gives the names of the variants that may stand at a path.
+    pub(super) fn explain(&self, error: &SpannedError, kinds: Kinds<'_>) -> InputError {
+        let error = self.locate_parse_error(error, kinds);
         // An unclosed bracket makes the text after it look wrong: report it as well.
         match &self.tree.fault {
             Some(fault) if fault.message != error.message => {
@@ -34,7 +40,7 @@ impl Source {
         }
     }
 
-    fn locate_parse_error(&self, error: &SpannedError) -> InputError {
+    fn locate_parse_error(&self, error: &SpannedError, kinds: Kinds<'_>) -> InputError {
         let start = self.offset(&error.span.start);
         let end = self.offset(&error.span.end).max(start);
         match &error.code {
@@ -60,7 +66,10 @@ impl Source {
                 outer,
             } => {
                 let span = self.word(found, end);
-                let place = outer.as_ref().map(|outer| format!(" in {outer}"));
+                let around = self.tree.around(span.start);
+                let path = around.and_then(|node| self.path_to(&node.span));
+                let place = path.map(|path| format!(" for {path}"));
+                let place = place.or_else(|| outer.as_ref().map(|outer| format!(" in {outer}")));
                 let message = format!("unknown variant `{found}`{}", place.unwrap_or_default());
                 self.error_in(&span, message)
                     .expected(one_of(expected))
@@ -104,7 +113,7 @@ impl Source {
                 let message = format!("values are nested more than {MAX_DEPTH} levels deep");
                 self.error_in(&(end..end + 1), message)
             }
-            other => self.syntax(other, start, end),
+            other => self.syntax(other, start, end, kinds),
         }
     }
 
@@ -128,7 +137,7 @@ impl Source {
         })
     }
 
-    /// Returns ` in Name`, from the type, the written name, or the path of the struct.
+    /// Returns ` in Name`, from the written name, the path or the type of the struct.
     fn owner(&self, outer: Option<&str>, inside: &Range<usize>) -> String {
         let outer = outer.map(str::to_owned);
         let written = || {
@@ -140,7 +149,7 @@ impl Source {
             let node = self.tree.around(inside.start)?;
             self.path_to(&node.span)
         };
-        let place = outer.or_else(written).or_else(path);
+        let place = written().or_else(path).or(outer);
         place
             .map(|place| format!(" in {place}"))
             .unwrap_or_default()
@@ -198,9 +207,38 @@ impl Source {
         }
     }
 
-    fn syntax(&self, code: &RonError, start: usize, end: usize) -> InputError {
+    /// Returns the error of a number with a unit where the parser takes none.
+    fn unit_at_fault(&self, code: &RonError, start: usize, end: usize) -> Option<InputError> {
+        let at = |offset: usize| {
+            let around = self.tree.around(offset);
+            let found = around.into_iter().chain(self.tree.ending_at(offset));
+            found
+                .into_iter()
+                .find(|n| matches!(n.kind, ValueKind::Quantity(_)))
+        };
+        let node = at(end).or_else(|| at(start))?;
+        let ValueKind::Quantity(unit) = &node.kind else {
+            return None;
+        };
+        if matches!(code, RonError::ExpectedString) {
+            return Some(self.wrong_type(node, "a text in quotes"));
+        }
+        let path = self.path_to(&node.span);
+        let place = path.map_or_else(String::new, |path| format!(" for {path}"));
+        let message = format!(
+            "a unit, `{}`, is not read here{place}",
+            &self.text[unit.clone()]
+        );
+        let error = self.error_in(unit, message);
+        Some(error.expected("the number alone, in SI units"))
+    }
+
+    fn syntax(&self, code: &RonError, start: usize, end: usize, kinds: Kinds<'_>) -> InputError {
         if let Some(fault) = self.tree.fault.as_ref().filter(|fault| fault.at <= end) {
             return self.error_in(&fault.span, fault.message.clone());
+        }
+        if let Some(found) = self.unit_at_fault(code, start, end) {
+            return found;
         }
         let text = &self.text;
         // The white space that ron left before the token is skipped.
@@ -233,12 +271,19 @@ impl Source {
             if within && spare {
                 return self.wrong_type(node, "an integer");
             }
-            if matches!(code, RonError::ExpectedIdentifier) && self.is_time_function(node) {
-                let error = self.wrong_type(node, TIME_FUNCTION);
-                return match node.kind {
-                    ValueKind::Text => error.help("numbers here are in SI units, without a unit"),
-                    _ => error,
-                };
+            let name = matches!(
+                code,
+                RonError::ExpectedIdentifier
+                    | RonError::SuggestRawIdentifier(_)
+                    | RonError::InvalidIdentifier(_)
+            );
+            if name && self.is_time_function(node) {
+                return self.wrong_type(node, TIME_FUNCTION);
+            }
+            let quoted = matches!(node.kind, ValueKind::Text);
+            let path = self.tree.path_of(text, &node.span);
+            if let Some(variants) = kinds(self, &path).filter(|_| name && !quoted) {
+                return self.wrong_type(node, &one_of(&variants));
             }
             if let Some(expected) = expected_type(code) {
                 return self.wrong_type(node, &expected);
@@ -265,7 +310,17 @@ impl Source {
             let surplus = "one value too many, or a bracket that closes too late";
             return self.error_in(&span, surplus);
         }
+        let word = self.word_at(token);
         match (expected_type(code), next) {
+            (Some(expected), Some(_))
+                if matches!(code, RonError::ExpectedString) && !word.is_empty() =>
+            {
+                let error = self.error_in(
+                    &(token..token + word.len()),
+                    format!("found the word `{word}`"),
+                );
+                error.expected(expected).help(format!("write `\"{word}\"`"))
+            }
             (Some(expected), Some(')' | ']' | '}' | ',')) => self
                 .error_in(&span, "a value is missing")
                 .expected(expected),
@@ -275,7 +330,19 @@ impl Source {
             (Some(expected), None) => self
                 .error_in(&span, "the text ends too early")
                 .expected(expected),
-            (None, _) => self.error_in(&span, sentence(code)),
+            (None, _) => self.error_in(&span, sentence(code, word)),
+        }
+    }
+
+    /// Returns the word that begins at a byte; empty if there is none.
+    fn word_at(&self, at: usize) -> &str {
+        let rest = self.text.get(at..).unwrap_or_default();
+        let end = rest.find(|c: char| c != '_' && !c.is_alphanumeric());
+        let word = &rest[..end.unwrap_or(rest.len())];
+        if word.starts_with(starts_word) {
+            word
+        } else {
+            ""
         }
     }
 
@@ -294,7 +361,7 @@ impl Source {
     fn wrong_type(&self, node: &Node, expected: &str) -> InputError {
         let written = shorten(&self.text[node.span.clone()]);
         let found = match &node.kind {
-            ValueKind::Number => format!("the number `{written}`"),
+            ValueKind::Number | ValueKind::Quantity(_) => format!("the number `{written}`"),
             ValueKind::Text => format!("the text `{written}`"),
             ValueKind::Char => format!("the character `{written}`"),
             ValueKind::Word => format!("the word `{written}`"),
@@ -314,13 +381,19 @@ impl Source {
             &node.head(&self.text),
             format!("wrong type{place}: found {found}"),
         );
-        let quotes = matches!(node.kind, ValueKind::Word) && expected == "a text in quotes";
+        let unquoted_text = matches!(node.kind, ValueKind::Word | ValueKind::Quantity(_));
+        let quotes = unquoted_text && expected == "a text in quotes";
+        let number = matches!(node.kind, ValueKind::Text) && expected.starts_with("a number");
+        let inner = written.trim_matches('"');
+        let number = number && quantity::parts(inner).1 == inner.len();
         let unquoted = matches!(node.kind, ValueKind::Text) && expected.starts_with("a name");
         let error = error.expected(expected);
         if quotes {
             error.help(format!("write `\"{written}\"`"))
+        } else if number {
+            error.help(format!("write `{inner}` without quotes"))
         } else if unquoted {
-            error.help(format!("write `{}`", written.trim_matches('"')))
+            error.help(format!("write `{inner}`"))
         } else {
             error
         }
@@ -342,7 +415,10 @@ fn expected_type(code: &RonError) -> Option<String> {
         RonError::ExpectedArray => "a list `[...]`".into(),
         RonError::ExpectedMap => "a map `{...}`".into(),
         RonError::ExpectedStructLike => "`(...)`".into(),
-        RonError::ExpectedNamedStructLike("") => "`(...)`".into(),
+        // Types of the schema, which cases do not write.
+        RonError::ExpectedNamedStructLike(name) if name.is_empty() || name.ends_with("Spec") => {
+            "`(...)`".into()
+        }
         RonError::ExpectedNamedStructLike(name) => format!("`{name}(...)` or `(...)`"),
         RonError::ExpectedOption => "`Some(...)` or `None`".into(),
         RonError::ExpectedUnit => "`()`".into(),
@@ -351,12 +427,25 @@ fn expected_type(code: &RonError) -> Option<String> {
     })
 }
 
-/// Returns ron's message in lower case, to continue a sentence.
-fn sentence(code: &RonError) -> String {
-    let words = code.to_string();
-    let mut letters = words.chars();
-    match letters.next() {
-        Some(first) => first.to_lowercase().chain(letters).collect(),
-        None => "malformed text".to_owned(),
+/// Returns what an error of ron that no rule above covers means for the text.
+fn sentence(code: &RonError, word: &str) -> String {
+    match code {
+        RonError::Eof => "the text ends too early".to_owned(),
+        RonError::ExpectedMapColon => "a colon is missing between a key and its value".to_owned(),
+        RonError::ExpectedComma => "a comma is missing before this".to_owned(),
+        RonError::InvalidEscape(_) => {
+            "a backslash in a text begins an escape such as `\\n`: write `\\\\` for a backslash"
+                .to_owned()
+        }
+        RonError::FloatUnderscore | RonError::UnderscoreAtBeginning => {
+            "this is no number: `_` may only stand between digits".to_owned()
+        }
+        RonError::UnexpectedChar(c) => format!("unexpected character {c:?}"),
+        RonError::NoSuchExtension(name) => format!("there is no extension `{name}`"),
+        RonError::SuggestRawIdentifier(found) | RonError::InvalidIdentifier(found) => {
+            format!("`{}` is not a name", shorten(found))
+        }
+        _ if word.is_empty() => "this does not belong here".to_owned(),
+        _ => format!("`{}` does not belong here", shorten(word)),
     }
 }

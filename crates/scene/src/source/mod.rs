@@ -10,6 +10,7 @@ mod file;
 mod names;
 mod nearest;
 pub mod numbers;
+mod quantities;
 mod repeated;
 mod respell;
 mod scan;
@@ -39,6 +40,7 @@ pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind, split_path};
 
+pub(crate) use quantities::{Place, Wanted};
 pub(crate) use schema::fields_at;
 use source_map::SourceMap;
 
@@ -127,6 +129,9 @@ impl Source {
             Ok(value) => return Ok(value),
             Err(error) => error,
         };
+        if let Some(fault) = self.tree.fault.as_ref().filter(|fault| fault.cause) {
+            return Err(self.error_in(&fault.span, fault.message.clone()));
+        }
         let mut source = Cow::Borrowed(self);
         for _ in 0..MAX_SPELLINGS {
             let Some((other, passed)) = source.respelled(&error) else {
@@ -152,7 +157,16 @@ impl Source {
                 return quoted.parse();
             }
         }
-        Err(source.explain(&error))
+        Err(source.explain(&error, &Source::kinds::<T>))
+    }
+
+    /// Returns the names of the variants of the enum at a path of `T`, if there is one.
+    fn kinds<T: DeserializeOwned>(&self, path: &[String]) -> Option<Vec<&'static str>> {
+        let root = self.tree.root.as_ref();
+        match schema::levels::<T>(&self.text, root, path).pop() {
+            Some(schema::Level::Enum(variants)) => Some(variants),
+            _ => None,
+        }
     }
 
     /// Parses the text as it is written.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind};
+use crate::quantity;
 
 /// Scans `text`; the first malformed position is recorded and scanning continues.
 pub(super) fn scan(text: &str) -> Tree {
@@ -42,6 +43,11 @@ fn is_blank(c: char) -> bool {
     )
 }
 
+/// Whether a value may begin with a character.
+fn begins_value(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '-' | '+' | '.' | '"' | '(' | '[' | '{') || starts_word(c)
+}
+
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
@@ -65,11 +71,21 @@ impl<'a> Scanner<'a> {
 
     /// Records an error. Only the first is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.record(span, message.into(), false);
+    }
+
+    /// Records an error that is the cause wherever the parser stops.
+    fn cause(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.record(span, message.into(), true);
+    }
+
+    fn record(&mut self, span: Range<usize>, message: String, cause: bool) {
         if self.fault.is_none() {
             self.fault = Some(SyntaxError {
                 at: self.at,
                 span,
-                message: message.into(),
+                message,
+                cause,
             });
         }
     }
@@ -152,10 +168,7 @@ impl<'a> Scanner<'a> {
                 ValueKind::Text
             }
             '\'' => self.character(),
-            '0'..='9' | '+' | '-' | '.' => {
-                self.skip_while(|c| continues_word(c) || matches!(c, '.' | '+' | '-'));
-                ValueKind::Number
-            }
+            '0'..='9' | '+' | '-' | '.' => self.number(),
             'r' if self.raw_string(1) => ValueKind::Text,
             'b' if self.rest().starts_with("br") && self.raw_string(2) => ValueKind::Other,
             'b' if self.rest().starts_with("b\"") => {
@@ -182,7 +195,7 @@ impl<'a> Scanner<'a> {
                 }
             }
             c => {
-                self.fault(self.here(), format!("unexpected character {c:?}"));
+                self.unexpected(c);
                 self.at += c.len_utf8();
                 self.skip_while(|c| !is_blank(c) && !"()[]{},:\"'".contains(c));
                 ValueKind::Other
@@ -192,6 +205,46 @@ impl<'a> Scanner<'a> {
             span: start..self.at,
             kind,
         })
+    }
+
+    /// Scans a number, with its unit if it has one.
+    fn number(&mut self) -> ValueKind {
+        let start = self.at;
+        let (end, all) = quantity::parts(self.rest());
+        let adjacent = &self.rest()[end..];
+        // RON has types and bases as part of a number: `1.0f64`, `0x1f`.
+        let typed = ["f", "i", "u"].iter().any(|kind| {
+            let width = adjacent.strip_prefix(kind);
+            width.is_some_and(|w| ["8", "16", "32", "64"].iter().any(|n| w.starts_with(n)))
+        });
+        let based = ["0x", "0b", "0o"]
+            .iter()
+            .any(|base| self.rest().trim_start_matches(['+', '-']).starts_with(base));
+        // An exponent without digits is no unit.
+        let exponent = all == end + 1 && adjacent.starts_with(['e', 'E']);
+        if all > end && !typed && !based && !exponent {
+            let blanks = adjacent.len() - adjacent.trim_start().len();
+            self.at += all;
+            return ValueKind::Quantity(start + end + blanks..self.at);
+        }
+        self.skip_while(|c| continues_word(c) || matches!(c, '.' | '+' | '-'));
+        ValueKind::Number
+    }
+
+    /// Records a character that begins no value.
+    fn unexpected(&mut self, c: char) {
+        let message = match c {
+            '#' => "a comment begins with `//`, not with `#`".to_owned(),
+            '=' => "a name and its value have `:` between them, not `=`".to_owned(),
+            ';' => "values have `,` between them, not `;`".to_owned(),
+            '\u{201c}' | '\u{201d}' | '\u{201e}' | '\u{2018}' | '\u{2019}' | '\u{ab}' | '`' => {
+                format!("a text has straight double quotes, `\"...\"`, not `{c}`")
+            }
+            '\u{2212}' | '\u{2013}' => format!("a minus is `-`, not `{c}`"),
+            '$' => "`$` is for studies and fits; write the value".to_owned(),
+            c => format!("unexpected character {c:?}"),
+        };
+        self.fault(self.here(), message);
     }
 
     /// Scans an identifier, raw (`r#name`) or plain, whose first character was checked by the
@@ -257,8 +310,17 @@ impl<'a> Scanner<'a> {
                 ValueKind::Char
             }
             _ => {
-                self.fault(self.here(), "this character is never closed by `'`");
-                self.at += 1;
+                let line = body.lines().next().unwrap_or_default();
+                let text = line.split_once('\'').map(|(text, _)| text);
+                let message = match text.filter(|text| !text.is_empty()) {
+                    Some(text) => format!(
+                        "a text has double quotes: write `\"{}\"`",
+                        super::set::shorten(text)
+                    ),
+                    None => "this `'` begins a character and is never closed; a text has double quotes, `\"...\"`".to_owned(),
+                };
+                self.fault(self.here(), message);
+                self.at += 1 + text.map_or(0, |text| text.len() + 1);
                 ValueKind::Other
             }
         }
@@ -312,14 +374,17 @@ impl<'a> Scanner<'a> {
             }
             self.blank();
             match self.peek() {
-                Some(',') => self.at += 1,
+                Some(',') => {
+                    self.at += 1;
+                    self.decimal_comma(&entries, shape, name.is_some());
+                }
                 Some(')' | ']' | '}') | None => {}
                 // A list has no names, so that an earlier list was not closed.
                 Some(':') if shape == Shape::List => {
                     let message = format!("this `{opener}` is not closed by `{closer}`");
-                    self.fault(open..open + 1, message);
+                    self.cause(open..open + 1, message);
                 }
-                Some(_) => self.fault(self.here(), "a comma is missing before this"),
+                Some(_) => self.separator(entries.last(), shape),
             }
         }
         entries.shrink_to_fit();
@@ -332,6 +397,72 @@ impl<'a> Scanner<'a> {
                 entries,
             })),
         })
+    }
+
+    /// Records what stands after a value in place of a comma.
+    fn separator(&mut self, before: Option<&Entry>, shape: Shape) {
+        let word = before.filter(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Word));
+        let name = word.map(|e| &self.text[e.value.span.clone()]);
+        let kind = before.map(|e| &e.value.kind);
+        let number = matches!(kind, Some(ValueKind::Number));
+        let written = before.map(|e| &self.text[e.value.span.clone()]);
+        let text = written.filter(|_| matches!(kind, Some(ValueKind::Text)));
+        let variant = written.filter(|_| matches!(kind, Some(ValueKind::Word)));
+        let named = matches!(shape, Shape::Tuple | Shape::Struct);
+        let next = self.peek();
+        let symbol = matches!(next, Some('=' | ';' | '#'));
+        let message = match (next, name) {
+            (Some(c), _) if symbol => return self.skip_unexpected(c),
+            (Some('/' | '*'), _) if number => {
+                "a value is one number, without arithmetic: write the result".to_owned()
+            }
+            (Some(c), Some(name)) if named && begins_value(c) => {
+                format!("a colon is missing after `{name}`")
+            }
+            (Some(c), None) if variant.is_some() && (c.is_ascii_digit() || "+-.".contains(c)) => {
+                let variant = variant.unwrap_or_default();
+                format!("the value of `{variant}` stands in parentheses: `{variant}(...)`")
+            }
+            (Some(_), None) if text.is_some_and(|text| text.contains('\n')) => {
+                let begins = before.map_or(0, |e| e.value.span.start);
+                let message = "this text runs over several lines: is its closing `\"` missing?";
+                return self.fault(begins..begins + 1, message);
+            }
+            _ => "a comma is missing before this".to_owned(),
+        };
+        self.fault(self.here(), message);
+    }
+
+    /// Records a decimal comma, `step: 0,001`: digits follow it directly where a name must follow.
+    fn decimal_comma(&mut self, entries: &[Entry], shape: Shape, variant: bool) {
+        let Some(entry) = entries.last() else { return };
+        let named = shape == Shape::Struct && entry.key.is_some();
+        let alone = shape == Shape::Tuple && variant && entries.len() == 1;
+        let number = matches!(entry.value.kind, ValueKind::Number);
+        let follows = entry.value.span.end + 1 == self.at;
+        let digits = self.peek().is_some_and(|c| c.is_ascii_digit());
+        if !(number && follows && digits && (named || alone)) {
+            return;
+        }
+        let length = quantity::parts(self.rest()).0;
+        let (start, end) = (entry.value.span.start, self.at + length);
+        let written = &self.text[start..end];
+        let message = format!(
+            "`{written}` has a decimal comma; write `{}`",
+            written.replacen(',', ".", 1)
+        );
+        self.cause(start..end, message);
+    }
+
+    /// Records a character that stands for another, and what is after it as a value of its own; a
+    /// comment up to the end of its line.
+    fn skip_unexpected(&mut self, c: char) {
+        self.unexpected(c);
+        if c == '#' {
+            self.skip_while(|c| c != '\n');
+        } else {
+            self.at += c.len_utf8();
+        }
     }
 
     /// Scans one element: `name: value` in parentheses, `key: value` in braces, or a value.

@@ -56,7 +56,8 @@ impl<'a> Assignment<'a> {
     /// Returns whether the value is a name, and may be a text whose quotes the shell removed.
     fn is_word(&self) -> bool {
         let tree = scan::scan(self.value());
-        let word = matches!(tree.root.map(|root| root.kind), Some(ValueKind::Word));
+        let kind = tree.root.map(|root| root.kind);
+        let word = matches!(kind, Some(ValueKind::Word | ValueKind::Quantity(_)));
         word && !matches!(self.value(), "true" | "false")
     }
 
@@ -178,9 +179,12 @@ impl Source {
             return false;
         };
         let node = self.tree.around(offset);
-        let Some(node) =
-            node.filter(|node| matches!(node.kind, ValueKind::Word | ValueKind::Number))
-        else {
+        let Some(node) = node.filter(|node| {
+            matches!(
+                node.kind,
+                ValueKind::Word | ValueKind::Number | ValueKind::Quantity(_)
+            )
+        }) else {
             return false;
         };
         let span = node.span.clone();

@@ -16,6 +16,8 @@ enum RangeOrigin {
     File(usize),
     /// Inserted by the parser for the text at this byte of the file.
     Added(usize),
+    /// Written in place of these bytes of the file.
+    InPlaceOf(Range<usize>),
     /// A `--set` argument.
     Set {
         /// Index.
@@ -76,6 +78,10 @@ impl SourceMap {
                 span: *file..*file,
                 set: None,
             },
+            RangeOrigin::InPlaceOf(file) => RangeLocation {
+                span: file.clone(),
+                set: None,
+            },
             RangeOrigin::File(file) => {
                 let begin = file + (span.start - start).min(first.length);
                 let (last_start, last) = self.range_at(span.end.saturating_sub(1).max(span.start));
@@ -84,6 +90,7 @@ impl SourceMap {
                         file + (span.end - last_start.min(span.end)).min(last.length)
                     }
                     RangeOrigin::Added(file) => *file,
+                    RangeOrigin::InPlaceOf(file) => file.end,
                     RangeOrigin::Set { landed, .. } => landed.end,
                 };
                 RangeLocation {
@@ -147,6 +154,32 @@ impl SourceMap {
     /// Records that a `--set` replaced `range`: lengths, and byte ranges of the argument.
     pub fn replace(&mut self, range: &Range<usize>, set: usize, parts: &[(usize, Range<usize>)]) {
         let landed = self.place(range).span;
+        let parts = parts.iter().map(|(length, argument)| SourceRange {
+            length: *length,
+            from: RangeOrigin::Set {
+                set,
+                argument: argument.clone(),
+                landed: landed.clone(),
+            },
+        });
+        self.splice(range, parts.collect());
+    }
+
+    /// Records that the parser wrote `length` bytes in place of `range`, which keep its location.
+    pub fn rewrite(&mut self, range: &Range<usize>, length: usize) {
+        let place = self.place(range);
+        let from = match place.set {
+            Some((set, argument)) => RangeOrigin::Set {
+                set,
+                argument,
+                landed: place.span,
+            },
+            None => RangeOrigin::InPlaceOf(place.span),
+        };
+        self.splice(range, vec![SourceRange { length, from }]);
+    }
+
+    fn splice(&mut self, range: &Range<usize>, parts: Vec<SourceRange>) {
         let mut pieces = Vec::with_capacity(self.0.len() + parts.len() + 1);
         let mut after = Vec::new();
         let mut start = 0;
@@ -161,14 +194,7 @@ impl SourceMap {
             }
             start = end;
         }
-        pieces.extend(parts.iter().map(|(length, argument)| SourceRange {
-            length: *length,
-            from: RangeOrigin::Set {
-                set,
-                argument: argument.clone(),
-                landed: landed.clone(),
-            },
-        }));
+        pieces.extend(parts);
         pieces.extend(after);
         self.0 = pieces;
     }
@@ -179,6 +205,7 @@ impl SourceRange {
         let from = match &self.from {
             RangeOrigin::File(start) => RangeOrigin::File(start + skip),
             RangeOrigin::Added(at) => RangeOrigin::Added(*at),
+            RangeOrigin::InPlaceOf(file) => RangeOrigin::InPlaceOf(file.clone()),
             RangeOrigin::Set {
                 set,
                 argument,

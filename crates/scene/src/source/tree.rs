@@ -27,6 +27,8 @@ pub struct SyntaxError {
     pub span: Range<usize>,
     /// Message.
     pub message: String,
+    /// Whether it is the cause of any error that the parser reports.
+    pub cause: bool,
 }
 
 /// A value and its byte range, including its name and brackets.
@@ -43,6 +45,8 @@ pub struct Node {
 pub enum ValueKind {
     /// A number, `inf` and `NaN` included.
     Number,
+    /// A number with a unit after it, at this byte range: `10 us`.
+    Quantity(Range<usize>),
     /// A string, raw or not.
     Text,
     /// A character.
@@ -206,7 +210,9 @@ impl Tree {
             let Some(index) = entries.iter().position(|entry| holds(&entry.value.span)) else {
                 break;
             };
-            if !group.is_some(text) {
+            // The content of a variant has the components of the variant.
+            let only = group.shape == Shape::Tuple && group.entries.len() == 1;
+            if !(only && group.name.is_some()) {
                 path.push(group.component(text, index));
             }
             node = Some(&entries[index].value);

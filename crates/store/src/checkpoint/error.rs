@@ -11,7 +11,7 @@ pub enum ResumeError {
     #[error(transparent)]
     Lock(#[from] LockError),
     /// The file cannot be read.
-    #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
+    #[error("cannot read {}: {reason}; to start again from the beginning write --force in place of --resume", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -20,7 +20,7 @@ pub enum ResumeError {
     },
     /// All checkpoints in the file are damaged.
     #[error(
-        "the checkpoints in {} are damaged, and there is no other state to resume from; nothing was changed; to start again from the beginning omit --resume",
+        "the checkpoints in {} are damaged, and there is no other state to resume from; nothing was changed; to start again from the beginning write --force in place of --resume",
         path.display()
     )]
     Damaged {
@@ -30,7 +30,7 @@ pub enum ResumeError {
     /// A run ended with rows, and without a state.
     #[error(
         "the run in {} ended before it had saved a state to resume from ({why}); nothing was changed; to start again from the beginning, \
-         which replaces its rows, omit --resume",
+         which replaces its rows, write --force in place of --resume",
         path.display()
     )]
     NoState {
@@ -42,7 +42,7 @@ pub enum ResumeError {
     /// The file was written by another version.
     #[error(
         "{} was written by Fretwork {theirs}, this is {ours}, and results of two versions may differ in their bits: resume with the version \
-         that started it, or start again without --resume",
+         that started it, or start again with --force in place of --resume",
         path.display()
     )]
     Version {
@@ -67,7 +67,7 @@ pub enum ResumeError {
     },
     /// The run cannot be extended beyond its original end.
     #[error(
-        "the run in {} cannot be extended beyond its `time.end`: {why}; run it again without --resume",
+        "the run in {} cannot be extended beyond its `time.end`: {why}; run it again with --force in place of --resume, or in another folder with --out",
         path.display()
     )]
     Longer {
@@ -77,7 +77,7 @@ pub enum ResumeError {
         why: &'static str,
     },
     /// An intact checkpoint does not fit the case.
-    #[error("the checkpoint in {} cannot be restored: {source}; to start again from the beginning omit --resume", path.display())]
+    #[error("the checkpoint in {} cannot be restored: {source}; to start again from the beginning write --force in place of --resume", path.display())]
     State {
         /// The file.
         path: PathBuf,

@@ -34,17 +34,21 @@ pub struct ResumePoint {
 /// are complete.
 pub const SUMMARY_FILE: &str = "summary.json";
 
-/// Whether the run with this identity in a folder finished without an error.
-fn finished(folder: &Path, identity: &str) -> bool {
+/// The summary of the run in a folder; null if it has none.
+fn summary(folder: &Path) -> serde_json::Value {
     let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).unwrap_or_default();
-    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
+/// Whether the run with this identity in a folder finished without an error.
+pub(super) fn finished(folder: &Path, identity: &str) -> bool {
+    let summary = summary(folder);
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
 /// Returns the reason why the run with this identity in a folder ended, if the run recorded one.
 fn ended(folder: &Path, identity: &str) -> Option<String> {
-    let text = std::fs::read_to_string(folder.join(SUMMARY_FILE)).ok()?;
-    let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let summary = summary(folder);
     let ours = summary["identity"] == identity;
     ours.then(|| summary["stopped"].as_str().map(str::to_owned))?
 }
@@ -150,9 +154,15 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<FolderContent
     match states.next_back() {
         // Starting again would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),
+        // A run of one step is made again in no time.
+        None if is_finished && summary(folder)["steps"].as_u64() == Some(1) => {
+            Ok(FolderContents::Nothing)
+        }
         None if is_finished => Err(ResumeError::NoState {
             path,
-            why: "it is finished, and no state of `output.checkpoint` was due before".to_owned(),
+            why:
+                "it is finished, and `output.checkpoint: Never`, or an end by itself, kept no state"
+                    .to_owned(),
         }),
         None => match ended(folder, &Identity::name(&name)).filter(|_| results.has_rows()) {
             Some(why) => Err(ResumeError::NoState { path, why }),

@@ -70,6 +70,11 @@ impl Identity {
         hex(&Sha256::digest(bytes))
     }
 
+    /// End time (s).
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
     /// Whether `now` describes the same run with a later end.
     pub fn ends_later(&self, now: &Self) -> bool {
         now.end > self.end

@@ -13,10 +13,12 @@ mod error;
 mod find;
 mod frame;
 mod identity;
+mod occupied;
 mod writer;
 
 pub use error::ResumeError;
 pub use find::{FolderState, ResumePoint, SUMMARY_FILE, find};
 pub use frame::{Frame, FrameKind};
 pub use identity::Identity;
+pub use occupied::{Occupied, occupied};
 pub use writer::CheckpointWriter;

@@ -46,6 +46,11 @@ impl CheckpointWriter {
         }
     }
 
+    /// Whether the run keeps a state before its end, from which a longer one can continue.
+    pub fn keeps_last(&self) -> bool {
+        self.rule != Checkpoint::Never
+    }
+
     /// Name of the run's identity, which is written to the summary.
     pub fn name(&self) -> String {
         Identity::name(&self.identity)

@@ -211,6 +211,19 @@ impl Results {
         }
     }
 
+    /// Writes a last state of the run, which the end of the file follows: in a file that grows in
+    /// place at once, since its other checkpoint is overwritten at the end.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn keep_state(&mut self, number: u64, bytes: &[u8]) -> Result<(), ResultsError> {
+        if self.store.as_ref().is_some_and(Store::grows_in_place) {
+            return self.checkpoint(number, bytes);
+        }
+        self.set_final_checkpoint(number, bytes);
+        Ok(())
+    }
+
     /// Appends a row of statistics.
     ///
     /// # Errors

@@ -51,7 +51,7 @@ pub enum ResultsError {
         columns: usize,
     },
     /// The results cannot be read.
-    #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
+    #[error("cannot read {}: {reason}; to start again from the beginning write --force in place of --resume", path.display())]
     Read {
         /// The file.
         path: PathBuf,

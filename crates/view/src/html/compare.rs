@@ -5,26 +5,79 @@ use crate::html::folder::RunFolder;
 use crate::html::page::{Page, difference_table, escape, footer, item, section, table, value};
 use crate::html::results::{self, ResultRow};
 use crate::html::statistics::Statistics;
-use crate::html::{ReportError, figures, write};
+use crate::html::{ReportError, Written, figures, pictures, write};
+use crate::measured::{self, MeasuredCurve};
 use fretwork_observe::chart::Figure;
+use fretwork_observe::quantity::Role;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Number of rows of the statistics of a run in the page.
 const ROWS: usize = 3000;
 
-/// Makes a page of several runs side by side; returns its size in bytes.
+/// Returns the main results of runs, each in a line: the values, and the difference of each run
+/// from the first with its significance.
 ///
 /// # Errors
-/// A folder holds no run, or the page cannot be written.
-pub fn compare(folders: &[PathBuf], to: &Path) -> Result<usize, ReportError> {
+/// A folder holds no run.
+pub fn differences(folders: &[PathBuf]) -> Result<Vec<String>, ReportError> {
     let runs: Vec<RunFolder> = folders
         .iter()
         .map(|f| RunFolder::open(f))
         .collect::<Result<_, _>>()?;
-    let html = page(&runs, &names(&runs));
+    let mut lines = Vec::new();
+    for line in lines_of(&runs) {
+        let main = line.rows.iter().flatten().any(|r| r.role == Role::Headline);
+        let (Some(base), true) = (&line.rows[0], main) else {
+            continue;
+        };
+        let others = line.rows[1..].iter().zip(names(&runs).into_iter().skip(1));
+        let others: Vec<String> = others
+            .map(|(row, name)| {
+                let value = row.as_ref().map_or("none", |r| r.value.as_str());
+                let less = row.as_ref().and_then(|r| r.less(base));
+                let less = less.map_or(String::new(), |less| format!(" (difference {less})"));
+                format!("{name} {value}{less}")
+            })
+            .collect();
+        lines.push(format!(
+            "{}: {}; {}",
+            line.label,
+            base.value,
+            others.join("; ")
+        ));
+    }
+    Ok(lines)
+}
+
+/// Makes a page of several runs side by side, with measured curves in the figures of their kind,
+/// and these figures as PNG files beside it, `PAGE_NAME.png`.
+///
+/// # Errors
+/// A folder holds no run, a measured curve does not fit to them, or a file cannot be written.
+pub fn compare(
+    folders: &[PathBuf],
+    to: &Path,
+    measured: &[MeasuredCurve],
+) -> Result<Written, ReportError> {
+    let runs: Vec<RunFolder> = folders
+        .iter()
+        .map(|f| RunFolder::open(f))
+        .collect::<Result<_, _>>()?;
+    let (html, figures) = page(&runs, &names(&runs), measured)?;
     write(to, &html)?;
-    Ok(html.len())
+    let stem = to
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    Ok(Written {
+        page: to.to_owned(),
+        bytes: html.len(),
+        pictures: pictures(&figures, |name| {
+            to.with_file_name(format!("{stem}_{name}.png"))
+        })?,
+    })
 }
 
 /// Returns the names of the folders, or their full paths if two have the same name.
@@ -41,7 +94,12 @@ fn names(runs: &[RunFolder]) -> Vec<String> {
     (0..runs.len()).map(name).collect()
 }
 
-fn page(runs: &[RunFolder], names: &[String]) -> String {
+/// Returns the page, and the figures of all runs drawn over each other.
+fn page(
+    runs: &[RunFolder],
+    names: &[String],
+    curves: &[MeasuredCurve],
+) -> Result<(String, Vec<Figure>), ReportError> {
     let mut gaps: Vec<Vec<String>> = runs.iter().map(|r| r.gaps.clone()).collect();
     let series: Vec<Statistics> = runs
         .iter()
@@ -76,7 +134,9 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
         .map(|(k, (s, name))| figures::columns(name, &format!("{k}:"), s, &mut numbers))
         .collect();
     let drawn: Vec<(&str, Vec<Figure>)> = names.into_iter().zip(described).collect();
-    let mut figures = figures::overlaid(&drawn, &mut numbers);
+    let mut overlaid = figures::overlaid(&drawn);
+    measured::add(&mut overlaid, curves).map_err(|reason| ReportError::Measured { reason })?;
+    let mut figures = figures::json(&overlaid, &mut numbers);
     figures.push(json!({"any": true}));
     let frames: String = (0..figures.len())
         .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
@@ -89,14 +149,14 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
     );
     body += "</main>\n";
     body += &footer("fretwork compare");
-    Page {
+    let page = Page {
         title: "Runs side by side - Fretwork".to_owned(),
         body,
         data: json!({"runs": columns, "figures": figures, "palette": figures::palette()}),
         blobs: vec![("numbers".to_owned(), numbers.packed())],
         viewer: false,
-    }
-    .html()
+    };
+    Ok((page.html(), overlaid))
 }
 
 fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> String {
@@ -126,8 +186,17 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
     )
 }
 
-/// Returns the table of results, one column per run.
-fn result_table(runs: &[RunFolder], names: &[String]) -> String {
+/// A result of several runs.
+struct ResultLine {
+    /// Heading of its group.
+    title: &'static str,
+    label: String,
+    /// The result of each run, where it has one.
+    rows: Vec<Option<ResultRow>>,
+}
+
+/// Returns the results of all runs, each once.
+fn lines_of(runs: &[RunFolder]) -> Vec<ResultLine> {
     let all: Vec<Vec<(&'static str, ResultRow)>> = runs
         .iter()
         .map(|run| {
@@ -144,24 +213,41 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
             keys.push(key);
         }
     }
-    if keys.is_empty() {
+    let line = |(title, label): (&'static str, String)| {
+        let own = |run: &Vec<(&str, ResultRow)>| {
+            let found = run.iter().find(|(t, r)| *t == title && r.label == label);
+            found.map(|(_, row)| row.clone())
+        };
+        ResultLine {
+            title,
+            rows: all.iter().map(own).collect(),
+            label,
+        }
+    };
+    keys.into_iter().map(line).collect()
+}
+
+/// Returns the table of results, with one column for each run, and one for the difference of each
+/// from the first.
+fn result_table(runs: &[RunFolder], names: &[String]) -> String {
+    let lines = lines_of(runs);
+    if lines.is_empty() {
         return "<p>No run has a summary of results.</p>\n".to_owned();
     }
     let mut rows = String::new();
     let mut group = "";
-    for (title, label) in &keys {
-        if *title != group {
-            group = title;
+    for line in &lines {
+        if line.title != group {
+            group = line.title;
             rows += &format!(
-                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{title}</th></tr>\n",
-                runs.len() + 1
+                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{group}</th></tr>\n",
+                2 * runs.len()
             );
         }
-        rows += &format!("<tr><th scope=\"row\">{}</th>", escape(label));
-        for run in &all {
-            let found = run.iter().find(|(t, r)| t == title && r.label == *label);
-            rows += &match found {
-                Some((_, r)) => format!(
+        rows += &format!("<tr><th scope=\"row\">{}</th>", escape(&line.label));
+        for row in &line.rows {
+            rows += &match row {
+                Some(r) => format!(
                     "<td>{} <span class=\"interval\">{}</span></td>",
                     value(&r.value),
                     escape(&r.interval)
@@ -169,10 +255,34 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
                 None => "<td>none</td>".to_owned(),
             };
         }
+        for row in &line.rows[1..] {
+            let both = row.as_ref().zip(line.rows[0].as_ref());
+            let less = both.and_then(|(row, base)| row.less(base));
+            rows += &format!(
+                "<td class=\"difference\">{}</td>",
+                escape(&less.unwrap_or_default())
+            );
+        }
         rows += "</tr>\n";
     }
-    let heads = std::iter::once("Result").chain(names.iter().map(String::as_str));
-    let heads: Vec<&str> = heads.collect();
+    let differences = names[1..].iter();
+    let differences = differences.map(|name| format!("{name} less {}", names[0]));
+    let heads = std::iter::once("Result".to_owned()).chain(names.iter().cloned());
+    let heads: Vec<String> = heads.chain(differences).collect();
     let table = table(" id=\"side-by-side\"", "Results", &heads, &rows);
-    format!("<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n{table}")
+    let random = runs
+        .iter()
+        .any(|run| run.summary["sample"]["random"] == true);
+    let seeds = match random {
+        true => {
+            " They are within one sample each: what other seeds would give is not in them, so that runs \
+             of different samples may differ by chance; a study over seeds tells."
+        }
+        false => "",
+    };
+    format!(
+        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause. A difference is significant \
+         (<em>they differ</em>) where it exceeds the half-widths of both, as the root of the sum of their \
+         squares.{seeds}</p>\n{table}"
+    )
 }

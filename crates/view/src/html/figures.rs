@@ -26,6 +26,8 @@ pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>)
         ));
         Vec::new()
     });
+    // Main results come first.
+    figures.sort_by_key(|f| !f.leads);
     for figure in &mut figures {
         *figure = figure.resolve(rows);
         let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MAX_CELLS);
@@ -49,24 +51,33 @@ pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
     charts.map(|(name, c)| chart(name, c, numbers)).collect()
 }
 
-/// Returns the charts of several runs drawn over each other. If a chart has more than one curve,
+/// Returns the figures of several runs drawn over each other. If a chart has more than one curve,
 /// the legend gives run and curve; of a chart over cycles only the last cycle is drawn.
-pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
-    let mut all: Vec<(&str, Chart)> = Vec::new();
+pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)]) -> Vec<Figure> {
+    let mut all: Vec<Figure> = Vec::new();
     for (run, figure) in runs
         .iter()
         .flat_map(|(n, figures)| figures.iter().map(move |f| (n, f)))
     {
+        let at = all.iter().position(|f| f.name == figure.name);
+        let at = at.unwrap_or_else(|| {
+            all.push(Figure {
+                charts: Vec::new(),
+                heading: String::new(),
+                ..figure.clone()
+            });
+            all.len() - 1
+        });
+        let charts = &mut all[at].charts;
         for own in figure.charts.iter().filter(|c| c.field.is_none()) {
-            let same =
-                |(name, chart): &(&str, Chart)| *name == figure.name && chart.title == own.title;
-            let at = all.iter().position(same).unwrap_or_else(|| {
+            let at = charts.iter().position(|c| c.title == own.title);
+            let at = at.unwrap_or_else(|| {
                 let mut empty = own.clone();
                 empty.series.clear();
                 (empty.subtitle, empty.colour_by_order) = (None, false);
                 (empty.x_range, empty.y_range) = (None, None);
-                all.push((&figure.name, empty));
-                all.len() - 1
+                charts.push(empty);
+                charts.len() - 1
             });
             let skipped = if own.colour_by_order {
                 own.series.len() - 1
@@ -79,7 +90,7 @@ pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Ve
                     1 => (*run).to_owned(),
                     _ => format!("{run}: {}", series.label),
                 };
-                let series_of_all = &mut all[at].1.series;
+                let series_of_all = &mut charts[at].series;
                 series_of_all.push(Series {
                     label,
                     colour: None,
@@ -89,9 +100,7 @@ pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Ve
             }
         }
     }
-    all.iter()
-        .map(|(name, c)| chart(name, c, numbers))
-        .collect()
+    all
 }
 
 /// A chart for the page.

@@ -3,6 +3,7 @@
 use crate::html::folder::RunFolder;
 use crate::html::materials::Files;
 use fretwork_scene::Case;
+use fretwork_scene::material::Sourced;
 use fretwork_scene::source::Source;
 use fretwork_scene::wear_coefficient;
 
@@ -194,12 +195,12 @@ fn parameters(
             } else if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
                 (*value, unit(given), "the case".to_owned())
             } else if let Some((_, number)) = of_file.iter().find(|f| f.0 == parameter) {
-                (number.value, unit(&number.unit), number.source.clone())
+                (number.value, unit(&number.unit), with_range(number))
             } else if let Some((number, material)) = files.property(case, spec, &parameter) {
                 (
                     number.value,
                     unit(&number.unit),
-                    format!("material {material}: {}", number.source),
+                    format!("material {material}: {}", with_range(&number)),
                 )
             } else if kind == "wear" && from_hardness.is_some_and(|(name, _)| name == parameter) {
                 let why = "from K and the hardness; the run left no summary that has the value";
@@ -217,4 +218,13 @@ fn parameters(
         ]
     };
     names.into_iter().map(row).collect()
+}
+
+/// Returns the source of a number, with the range that it gives.
+fn with_range(number: &Sourced) -> String {
+    let range = number.range.map(|(low, high)| {
+        let [low, high] = [low, high].map(crate::html::results::number);
+        format!("range {low} to {high}; ")
+    });
+    range.unwrap_or_default() + &number.source
 }

@@ -19,11 +19,14 @@ mod scene;
 mod sheet;
 mod statistics;
 
-pub use compare::compare;
+pub use compare::{compare, differences};
 pub use laws::{LawInfo, LawParameter};
 pub use sheet::{Block, Section, Sheet, SheetTable};
 
+use crate::measured::{self, MeasuredCurve};
+use crate::png::draw_panels;
 use folder::RunFolder;
+use fretwork_observe::chart::Figure;
 use std::path::{Path, PathBuf};
 
 pub use fretwork_observe::output::REPORT as FILE;
@@ -38,6 +41,8 @@ pub struct Options<'a> {
     pub bytes: Option<usize>,
     /// Looks up a law by kind and name, for its parameters and reference.
     pub law: &'a dyn Fn(&str, &str) -> Option<LawInfo>,
+    /// Measured curves, drawn in the figures of their kind.
+    pub measured: &'a [MeasuredCurve],
 }
 
 impl std::fmt::Debug for Options<'_> {
@@ -59,6 +64,12 @@ pub enum ReportError {
         /// Reason, and what to do.
         reason: String,
     },
+    /// A measured curve does not fit to the figures.
+    #[error("{reason}")]
+    Measured {
+        /// Reason, and what to do.
+        reason: String,
+    },
     /// The page cannot be written.
     #[error("cannot write {}: {reason}", path.display())]
     Unwritable {
@@ -72,21 +83,57 @@ pub enum ReportError {
 impl ReportError {
     /// Whether the input is wrong, and not the place where the page goes.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::NoRun { .. })
+        !matches!(self, Self::Unwritable { .. })
     }
 }
 
-/// Writes the report of the run in a folder as `report.html` in that folder; returns its path and
-/// its size in bytes.
+/// Files that were written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// The page.
+    pub page: PathBuf,
+    /// Size of the page (bytes).
+    pub bytes: usize,
+    /// Pictures of the figures with measured curves.
+    pub pictures: Vec<PathBuf>,
+}
+
+/// Writes the report of the run in a folder as `report.html` in that folder, and figures with
+/// measured curves as PNG files beside it, `NAME_measured.png`.
 ///
 /// # Errors
-/// The folder holds no run, or the page cannot be written.
-pub fn report(folder: &Path, options: &Options<'_>) -> Result<(PathBuf, usize), ReportError> {
+/// The folder holds no run, a measured curve does not fit to it, or a file cannot be written.
+pub fn report(folder: &Path, options: &Options<'_>) -> Result<Written, ReportError> {
     let run = RunFolder::open(folder)?;
+    let figures = page::report::with_measured(&run, options.measured)?;
     let html = page::report::page(&run, options);
-    let path = folder.join(FILE);
-    write(&path, &html)?;
-    Ok((path, html.len()))
+    let page = folder.join(FILE);
+    write(&page, &html)?;
+    let name = |figure: &str| folder.join(format!("{figure}_measured.png"));
+    Ok(Written {
+        page,
+        bytes: html.len(),
+        pictures: pictures(&figures, name)?,
+    })
+}
+
+/// Draws the figures with measured curves as PNG files of these names.
+fn pictures(
+    figures: &[Figure],
+    name: impl Fn(&str) -> PathBuf,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let mut out = Vec::new();
+    for figure in figures.iter().filter(|f| measured::is_in(f)) {
+        let path = name(&figure.name);
+        draw_panels(&figure.headed(), figure.columns, &path).map_err(|e| {
+            ReportError::Unwritable {
+                path: path.clone(),
+                reason: e.to_string(),
+            }
+        })?;
+        out.push(path);
+    }
+    Ok(out)
 }
 
 /// Writes a page under another name and renames it, so that it is never incomplete.

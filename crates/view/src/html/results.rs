@@ -1,7 +1,7 @@
 //! Results of a run with their uncertainty and their definitions.
 
 use crate::html::folder::RunFolder;
-use fretwork_observe::quantity::{Catalogue, Entry, Estimate, Role, Topic};
+use fretwork_observe::quantity::{Catalogue, Compared, Difference, Entry, Estimate, Role, Topic};
 use serde_json::Value;
 
 /// A result.
@@ -15,6 +15,25 @@ pub(crate) struct ResultRow {
     pub interval: String,
     /// Definition in one sentence.
     pub meaning: String,
+    /// Prominence.
+    pub role: Role,
+    /// The number, to be compared with that of another run, and its unit.
+    pub number: Option<(Compared, String)>,
+}
+
+impl ResultRow {
+    /// Returns the difference from a base with its significance; `None` where one of the two has no
+    /// number, or their units differ.
+    pub fn less(&self, base: &Self) -> Option<String> {
+        let ((own, unit), (base, same)) = (self.number.as_ref()?, base.number.as_ref()?);
+        (unit == same).then(|| shown(&Difference::new(own, base).text(unit)))
+    }
+}
+
+/// Returns a text of numbers and units as a page shows it.
+fn shown(text: &str) -> String {
+    let text = text.replace("+-", "±");
+    text.replace("m3", "m³").replace("m2", "m²")
 }
 
 /// Heading and rows of a group of results.
@@ -93,9 +112,16 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
         .map_or(String::new(), |own| {
             format!("; `{}` is {}", entry.path, shown(own))
         });
+    let open = estimate.and_then(Estimate::is_determined) == Some(false);
+    let shown_value = shown_value.unwrap_or_else(|| value.to_string());
     ResultRow {
         label: entry.label.clone(),
-        value: shown_value.unwrap_or_else(|| value.to_string()),
+        value: match open {
+            true => format!("not determined: {shown_value}"),
+            false => shown_value,
+        },
+        role: entry.role,
+        number: own.map(|own| (Compared::new(own, estimate), unit.to_owned())),
         interval: estimate.map_or(String::new(), |e| interval(e, half)),
         meaning: entry.doc.clone() + &itself,
     }
@@ -104,7 +130,8 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
 /// Formats the half-widths of an estimate, as ` ± 0.008 (scatter)`.
 fn interval(estimate: &Estimate, shown: impl Fn(f64) -> String) -> String {
     let (settings, unknown) = estimate.known();
-    let scatter = estimate.scatter.map(|half| ("scatter", half));
+    let scope = estimate.scope.as_deref().unwrap_or("scatter");
+    let scatter = estimate.scatter.map(|half| (scope, half));
     let spelled = |of| if of == "step" { "time step" } else { of };
     let known = scatter.into_iter().chain(settings);
     let known: Vec<String> = known
@@ -167,6 +194,7 @@ mod tests {
             estimate: Some(Estimate {
                 value: Some(2.5),
                 scatter: Some(0.25),
+                scope: Some("within this sample (3 cycles)".to_owned()),
                 ..Estimate::default()
             }),
         };
@@ -175,7 +203,40 @@ mod tests {
             (row.label.as_str(), row.value.as_str()),
             ("pull", "2.500 N")
         );
-        assert_eq!(row.interval, "± 250.0 mN (scatter)");
+        assert_eq!(row.interval, "± 250.0 mN (within this sample (3 cycles))");
         assert_eq!(row.meaning, "how it pulls; `spin.largest` is 2.000 N");
+        let base = ResultRow {
+            number: Some((Compared::new(2.0, entry.estimate.as_ref()), "N".to_owned())),
+            ..row.clone()
+        };
+        assert_eq!(row.less(&base).as_deref(), Some("equal"));
+    }
+
+    #[test]
+    fn a_result_with_a_large_half_width_is_not_determined() {
+        let entry = Entry {
+            path: "damage".to_owned(),
+            unit: Some("1".to_owned()),
+            doc: String::new(),
+            role: Role::Headline,
+            topic: Topic::Damage,
+            label: "damage".to_owned(),
+            estimate: Some(Estimate {
+                value: Some(0.31),
+                step: Some(0.12),
+                ..Estimate::default()
+            }),
+        };
+        let open = row(&entry, &json!(0.31));
+        assert_eq!(open.value, "not determined: 0.31");
+        assert_eq!(open.less(&open.clone()).as_deref(), Some("equal"));
+        let other = row(
+            &Entry {
+                estimate: None,
+                ..entry
+            },
+            &json!(0.5),
+        );
+        assert_eq!(other.less(&open).as_deref(), Some("not determined"));
     }
 }

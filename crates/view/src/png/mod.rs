@@ -9,6 +9,7 @@ mod scene;
 
 pub use canvas::DrawError;
 pub use chart::draw_panels;
+pub(crate) use chart::gradient;
 pub use notice::noted;
 pub use scene::paint::ColourScale;
 pub use scene::solid::{Faces, SolidScene, Sphere};

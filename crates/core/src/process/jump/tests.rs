@@ -4,7 +4,7 @@ use super::*;
 use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
-use crate::process::cycle::SlidingPart;
+use crate::process::sliding::SlidingPart;
 use crate::wear::Scar;
 use nalgebra::Vector2;
 

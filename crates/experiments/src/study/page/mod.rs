@@ -119,7 +119,11 @@ fn settings_section(plan: &Plan, runs: &Rows, analysis: &Analysis) -> Section {
             "The first {LISTED} of {} settings; all are in settings.csv.",
             plan.settings.len()
         ),
-        false => "Means over the seeds, with intervals of 95 %.".to_owned(),
+        false if plan.seeds.len() == 1 => "One seed each, without intervals.".to_owned(),
+        false => format!(
+            "Means over {} seeds, ± half-widths of 95 %.",
+            plan.seeds.len()
+        ),
     };
     let heads = heads.iter().map(String::as_str);
     section("Settings", vec![table(note, heads, rows)])

@@ -18,7 +18,7 @@ use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::picture::{Picture, PictureContent};
 use crate::quantity::unit::{ENERGY, ONE};
-use crate::quantity::{Findings, Unit};
+use crate::quantity::{Findings, Topic, Unit};
 use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
@@ -331,7 +331,10 @@ impl Observer for ThirdBody {
         let regime = FlowRegime::of(flow.as_ref(), cluster);
         let said = regime.describe(flow.as_ref(), cluster);
         let doc = "flow regime of the layer";
-        found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
+        let text = format!("{said}; {over}");
+        found
+            .finding(&self.column("regime"), text, doc)
+            .about(Topic::Regime);
         let means = Observer::columns(self)
             .into_iter()
             .zip(columns(self.dimension, self.heated));
@@ -469,7 +472,7 @@ impl Observer for ThirdBody {
             dimension: self.dimension,
             heated: self.heated,
         };
-        outputs.push(Output::figure(name, figure.charts(), 2));
+        outputs.push(Output::leading(name, figure.charts(), 2));
         outputs
     }
 }

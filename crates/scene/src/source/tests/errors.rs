@@ -32,7 +32,7 @@ fn ron_errors_stand_on_the_token() {
     assert_eq!(
         refusal("frequency: 5.0", "frequency: \"5.0\""),
         "case.ron:8:20: error: wrong type for `loading.frequency`: \
-         found the text `\"5.0\"`; expected a number"
+         found the text `\"5.0\"`; expected a number; write `5.0` without quotes"
     );
     assert_eq!(
         refusal("name: \"wheel (on rail) }\"", "name: wheel"),
@@ -42,7 +42,7 @@ fn ron_errors_stand_on_the_token() {
     );
     assert_eq!(
         refusal("Disk(radius", "Dsk(radius"),
-        "case.ron:11:65: error: unknown variant `Dsk` in Shape2; \
+        "case.ron:11:65: error: unknown variant `Dsk` for `bodies.wheel.shape`; \
          expected one of `Disk`, `Point`; did you mean `Disk`?"
     );
     assert_eq!(

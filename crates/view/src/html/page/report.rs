@@ -6,8 +6,10 @@ use crate::html::folder::RunFolder;
 use crate::html::materials::Files;
 use crate::html::scene::Scene;
 use crate::html::statistics::Statistics;
-use crate::html::{Options, figures};
+use crate::html::{Options, ReportError, figures};
 use crate::html::{laws as law_data, results::quantity};
+use crate::measured::{self, MeasuredCurve};
+use fretwork_observe::chart::Figure;
 use fretwork_scene::Case;
 use serde_json::{Value, json};
 
@@ -26,14 +28,15 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     } else {
         ALL_ROWS
     };
-    let (mut statistics, mut data, mut packed) = numbers(run, most, &mut gaps);
+    let measured = options.measured;
+    let (mut statistics, mut data, mut packed) = numbers(run, measured, most, &mut gaps);
     while let Some(bytes) = options
         .bytes
         .filter(|b| packed.len() > b / SHARE && most > 200)
     {
         most = (most * (bytes / SHARE) / packed.len()).max(200);
         gaps.clone_from(&run.gaps);
-        (statistics, data, packed) = numbers(run, most, &mut gaps);
+        (statistics, data, packed) = numbers(run, measured, most, &mut gaps);
     }
     let files = Files::read(run);
     let mut page = Page {
@@ -49,7 +52,6 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     let scene = Scene::read(run, room, &mut gaps);
     page.viewer = scene.is_some();
     page.body = head(run, &gaps);
-    page.body += &section("results", "Results", &results::html(run, &statistics));
     if let Some(scene) = &scene {
         page.body += &section("scene", "Scene", &viewer(scene));
         page.data["scene"] = scene.head.clone();
@@ -65,6 +67,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
         "Figures",
         &figure_frames(&page.data["figures"], &statistics),
     );
+    page.body += &section("results", "Results", &results::html(run, &statistics));
     page.body += &after;
     page.blobs.push(("numbers".to_owned(), packed));
     let frames = scene.into_iter().flat_map(|s| s.frames).enumerate();
@@ -75,14 +78,41 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
 
 /// Returns the statistics with about `rows` rows at most, and the figures: the data that scripts
 /// read, and the packed numbers.
-fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics, Value, String) {
+fn numbers(
+    run: &RunFolder,
+    measured: &[MeasuredCurve],
+    most: usize,
+    gaps: &mut Vec<String>,
+) -> (Statistics, Value, String) {
     let statistics = Statistics::read(run, most, gaps);
     let mut numbers = Arrays::default();
     let columns = figures::columns("", "", &statistics, &mut numbers);
-    let mut list = figures::json(&figures::of_run(run, &statistics, gaps), &mut numbers);
+    let mut drawn = figures::of_run(run, &statistics, gaps);
+    if let Err(reason) = measured::add(&mut drawn, measured) {
+        gaps.push(format!("A measured curve is missing: {reason}."));
+    }
+    let mut list = figures::json(&drawn, &mut numbers);
     list.extend((statistics.columns.len() > 1).then(|| json!({"any": true})));
     let data = json!({"runs": [columns], "figures": list, "palette": figures::palette()});
     (statistics, data, numbers.packed())
+}
+
+/// Returns the figures of a run with measured curves in them; none without measured curves.
+///
+/// # Errors
+/// A curve does not fit to the figures.
+pub(crate) fn with_measured(
+    run: &RunFolder,
+    curves: &[MeasuredCurve],
+) -> Result<Vec<Figure>, ReportError> {
+    if curves.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut gaps = Vec::new();
+    let statistics = Statistics::read(run, ALL_ROWS, &mut gaps);
+    let mut drawn = figures::of_run(run, &statistics, &mut gaps);
+    measured::add(&mut drawn, curves).map_err(|reason| ReportError::Measured { reason })?;
+    Ok(drawn)
 }
 
 /// Returns title, verdict and links.
@@ -118,9 +148,9 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
     );
     out += "<nav aria-label=\"Sections\">";
     for (id, name) in [
-        ("results", "Results"),
         ("scene", "Scene"),
         ("figures", "Figures"),
+        ("results", "Results"),
         ("laws", "Materials and laws"),
         ("inputs", "Inputs"),
         ("provenance", "Provenance"),
@@ -128,7 +158,7 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
     ] {
         out += &format!("<a href=\"#{id}\">{name}</a>");
     }
-    out + "</nav>\n<main>\n" + &verdict::html(run, gaps)
+    out + "</nav>\n<main>\n" + &verdict::html(run, gaps) + &results::headline(run)
 }
 
 /// The parts after the figures.

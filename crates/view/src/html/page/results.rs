@@ -4,7 +4,7 @@ use super::escape;
 use crate::html::folder::RunFolder;
 use crate::html::results::{self, ResultGroup, ResultRow};
 use crate::html::statistics::{Column, Statistics};
-use fretwork_observe::quantity::Catalogue;
+use fretwork_observe::quantity::{Catalogue, Role};
 use fretwork_store::summary::NOT_REPRODUCIBLE;
 use serde_json::Value;
 
@@ -22,13 +22,35 @@ pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
         return everything(&run.summary, &Catalogue::default());
     }
     let mut out = String::from(
-        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause: scatter within the run, and what a finer time step or a \
-         tighter tolerance would change, estimated from repeated steps.</p>\n",
+        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause: scatter within this sample, and what a finer time step or a \
+         tighter tolerance would change, estimated from repeated steps. A result whose half-widths together exceed a quarter of it is \
+         not determined.</p>\n",
     );
     for group in &groups {
         out += &table(group);
     }
     out + &everything(&run.summary, &Catalogue::of(&run.summary))
+}
+
+/// Returns the main results of a run, for the top of its page; empty where there are none.
+pub(crate) fn headline(run: &RunFolder) -> String {
+    let groups = results::groups(run).into_iter();
+    let rows = groups.flat_map(|(_, rows)| rows);
+    let main: String = rows
+        .filter(|r| r.role == Role::Headline)
+        .map(|r| {
+            format!(
+                "<tr><th scope=\"row\">{}</th><td>{} <span class=\"interval\">{}</span></td></tr>\n",
+                escape(&r.label),
+                value(&r.value),
+                escape(&r.interval)
+            )
+        })
+        .collect();
+    if main.is_empty() {
+        return main;
+    }
+    format!("<table class=\"results\" id=\"headline\"><tbody>\n{main}</tbody></table>\n")
 }
 
 /// Returns the last row of the statistics, for a run without results.
@@ -39,6 +61,8 @@ fn last_row(series: &Statistics) -> String {
             value: results::quantity(*column.values.last()?, &column.unit),
             interval: String::new(),
             meaning: column.doc.clone(),
+            role: Role::Detail,
+            number: None,
         })
     };
     let rows: Vec<ResultRow> = series.columns.iter().filter_map(row).collect();

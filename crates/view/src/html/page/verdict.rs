@@ -7,7 +7,11 @@ use serde_json::Value;
 /// The verdict of a run on itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// All checks passed, and there are no notes.
+    /// All checks passed, and the error of the headline is known and small.
+    ErrorKnown,
+    /// All checks passed; the error of the headline is large or not known.
+    Consistent,
+    /// All checks passed, and there are no notes, in a run of a version without grades.
     Trustworthy,
     /// All checks passed, with notes.
     Noted,
@@ -23,6 +27,11 @@ impl Verdict {
         let notes = run.summary["warnings"]
             .as_array()
             .is_some_and(|w| !w.is_empty());
+        match run.summary["grade"].as_str() {
+            Some("error known") => return Self::ErrorKnown,
+            Some("consistent") => return Self::Consistent,
+            _ => {}
+        }
         match run.summary["trustworthy"].as_bool() {
             Some(true) if notes => Self::Noted,
             Some(true) => Self::Trustworthy,
@@ -34,8 +43,8 @@ impl Verdict {
     /// CSS class of the verdict.
     pub fn class(self) -> &'static str {
         match self {
-            Self::Trustworthy => "good",
-            Self::Noted => "noted",
+            Self::ErrorKnown | Self::Trustworthy => "good",
+            Self::Consistent | Self::Noted => "noted",
             Self::Not => "bad",
             Self::Unknown => "unknown",
         }
@@ -44,6 +53,8 @@ impl Verdict {
     /// Text of the verdict.
     pub fn words(self) -> &'static str {
         match self {
+            Self::ErrorKnown => "Error known",
+            Self::Consistent => "Consistent",
             Self::Trustworthy => "Trustworthy",
             Self::Noted => "Trustworthy, with notes",
             Self::Not => "Not trustworthy",
@@ -53,6 +64,14 @@ impl Verdict {
 
     fn sentence(self) -> &'static str {
         match self {
+            Self::ErrorKnown => {
+                "The ledgers close, the steps converged, every check passed, and the error of the main result is known \
+                 and at most 5 %."
+            }
+            Self::Consistent => {
+                "The ledgers close, the steps converged, and every check passed. The error of the main result is not \
+                 known to be small."
+            }
             Self::Trustworthy => {
                 "The run finished, and every check of convergence, energy, motion and laws passed."
             }
@@ -87,20 +106,52 @@ pub(crate) fn html(run: &RunFolder, gaps: &[String]) -> String {
         verdict.words(),
         verdict.sentence()
     );
+    let known = run.summary["grade_sentence"].as_str();
+    if let Some(known) = known.filter(|_| verdict != Verdict::Unknown) {
+        out += &format!("<p class=\"known\">{}.</p>\n", escape(&capital(known)));
+    }
+    if let Some(seeds) = run.summary["sample"]["seeds"].as_str() {
+        out += &format!("<p class=\"known\">{}.</p>\n", with_code(&capital(seeds)));
+    }
     let reasons = texts(&run.summary["reasons"]);
     let warnings = texts(&run.summary["warnings"]);
     let notes = warnings.iter().filter(|w| !reasons.contains(w));
     let mut items: Vec<(&str, &str)> = reasons.iter().map(|r| ("reason", *r)).collect();
     items.extend(gaps.iter().map(|g| ("gap", g.as_str())));
     items.extend(notes.map(|n| ("note", *n)));
-    if !items.is_empty() {
-        out += "<ul class=\"warnings\">\n";
-        for (class, text) in items {
-            out += &format!("<li class=\"{class}\">{}</li>\n", item(text));
-        }
-        out += "</ul>\n";
+    // What comes after the third is folded: the picture and the main results follow.
+    let shown = items.len().min(UNFOLDED);
+    out += &list(&items[..shown]);
+    let rest = &items[shown..];
+    if !rest.is_empty() {
+        out += &format!(
+            "<details><summary>{} more</summary>\n{}</details>\n",
+            rest.len(),
+            list(rest)
+        );
     }
     out + "</div>\n"
+}
+
+/// Number of warnings that are not folded.
+const UNFOLDED: usize = 3;
+
+fn list(items: &[(&str, &str)]) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items: String = items
+        .iter()
+        .map(|(class, text)| format!("<li class=\"{class}\">{}</li>\n", item(text)))
+        .collect();
+    format!("<ul class=\"warnings\">\n{items}</ul>\n")
+}
+
+/// A sentence that begins with a capital.
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 /// Returns a warning with its keyword, as in `NOT CONVERGED: ...`, in bold.

@@ -9,7 +9,8 @@ mod tests;
 
 use crate::png::canvas::{Canvas, DrawError, INK, PAGE, Rgb, SOFT_INK, TEXT, wrapped};
 use crate::png::font::{Anchor, TextStyle as Text, text_width};
-use curve::{draw_series, gradient, thinned};
+pub(crate) use curve::gradient;
+use curve::{draw_series, thinned};
 use fretwork_observe::chart::{Chart, PALETTE, Series};
 use legend::Legend;
 pub(crate) use scale::{AxisScale, check_range};

@@ -1,0 +1,94 @@
+//! The friction coefficient is that of sliding, whatever moves, and wear is per distance of slip.
+
+use crate::scene;
+use fretwork::record::Summary;
+
+fn ran(case: &str, sets: &[&str]) -> Summary {
+    let sets = [&["output.figures=false", "output.frames=0"], sets].concat();
+    scene::ran(case, &sets, |_| {})
+}
+
+fn number(summary: &Summary, name: &str) -> f64 {
+    let found = summary.found.number(name);
+    found.unwrap_or_else(|| panic!("no {name}"))
+}
+
+/// mu 0.4, P 10 N, r 10 mm, omega 2 pi rad/s: a path of 62.83 mm a turn, V = k P s.
+#[test]
+fn a_pin_on_a_turning_disc_has_the_friction_and_wear_of_its_contact() {
+    let path = 2.0 * std::f64::consts::TAU * 0.01;
+    for body in ["pin", "disc"] {
+        let of = format!("friction.body={body}");
+        let found = ran("verification/pin_on_disc", &[&of]);
+        let near = |name: &str, expected: f64| {
+            let got = number(&found, name);
+            assert!((got / expected - 1.0).abs() < 5e-3, "{body}: {name} {got}");
+        };
+        near("friction_coefficient", 0.4);
+        near("energetic_coefficient", 0.4);
+        near("friction_from_dissipation", 0.4);
+        near("wear.load_path", 10.0 * path);
+        near("wear.volume_first_bodies", 1e-13 * 10.0 * path);
+        // K = k H with the nominal 260 HBW.
+        let worn = |k: usize, name: &str| found.found.number(&format!("wear.bodies.{k}.{name}"));
+        let hardness = 260.0 * 9.80665e6;
+        let (rates, coefficients): (Vec<f64>, Vec<f64>) = (0..2)
+            .filter_map(|k| Some((worn(k, "specific_rate")?, worn(k, "archard_coefficient")?)))
+            .unzip();
+        assert!(!rates.is_empty());
+        for (k, coefficient) in rates.iter().zip(coefficients) {
+            assert!((coefficient / (k * hardness) - 1.0).abs() < 1e-9);
+        }
+        assert!(
+            (rates.iter().sum::<f64>() / 1e-13 - 1.0).abs() < 5e-3,
+            "{rates:?}"
+        );
+    }
+}
+
+/// Q and P of both contacts add up, and it does not matter which of the bodies moves.
+#[test]
+fn a_strip_between_two_blocks_has_the_load_of_both() {
+    let still = "bodies.strip.dofs.x=Fixed";
+    let moving = ["below", "above"].map(|b| format!("bodies.{b}.dofs.x=Velocity(Constant(-0.7))"));
+    let moves = [still, &moving[0], &moving[1]];
+    for sets in [&[] as &[&str], &moves] {
+        let found = ran("verification/two_sided_friction", sets);
+        for (name, expected) in [
+            ("friction_coefficient", 0.3),
+            ("friction_from_dissipation", 0.3),
+            ("cycles.0.normal_force", 200.0),
+            ("cycles.0.tangential_amplitude", 60.0),
+            ("wear.load_path", 200.0 * 0.7 * 0.2),
+        ] {
+            let got = number(&found, name);
+            assert!(
+                (got / expected - 1.0).abs() < 0.02,
+                "{sets:?}: {name} {got}"
+            );
+        }
+    }
+}
+
+/// A sphere in partial slip has no coefficient of sliding, and beyond it, from a stroke of +-1.468
+/// um, that of the law, mu 0.6, for any stroke.
+#[test]
+fn partial_slip_has_no_coefficient_of_sliding() {
+    let with = |amplitude: &str| {
+        let drive = format!(
+            "half_spaces.1.dofs.x=Displacement(Sine(amplitude:{amplitude},frequency:20.0,start:0.01))"
+        );
+        ran("sphere_on_flat_fretting", &[&drive])
+    };
+    let stuck = with("5e-7");
+    assert_eq!(stuck.found.number("friction_coefficient"), None);
+    assert!(number(&stuck, "peak_friction") < 0.6);
+    assert!(number(&stuck, "energy_ratio") < 0.2 && number(&stuck, "slip_ratio") < 0.2);
+    for amplitude in ["3e-6", "6e-6"] {
+        let slides = with(amplitude);
+        let mu = number(&slides, "friction_coefficient");
+        assert!((mu / 0.6 - 1.0).abs() < 0.01, "{amplitude}: {mu}");
+        let energetic = number(&slides, "energetic_coefficient");
+        assert!(energetic < 0.9 * mu, "{amplitude}: {energetic}");
+    }
+}
