@@ -171,16 +171,16 @@ fn run_case(
             }
             FolderState::Finished => {
                 // If the process was ended while it made the report, the results are complete.
-                if !options.out.join(fretwork_view::FILE).exists() {
-                    report(&options.out, args);
-                }
+                let missing = !options.out.join(fretwork_view::FILE).exists();
+                let made = missing.then(|| report(&options.out, args)).flatten();
+                let page = made.map_or(String::new(), |file| format!(", report in {file}"));
                 let path = options.out.join("summary.json");
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 if args.json && !text.is_empty() {
                     answer_json(text.trim_end())?;
                 } else {
                     super::output::inform(&format!(
-                        "the run in {out} is finished: nothing to do; to run it again omit --resume"
+                        "the run in {out} is finished: nothing to do{page}; to run it again omit --resume"
                     ));
                 }
                 let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

@@ -41,6 +41,8 @@ pub struct Cycles {
     before: Option<FrictionTotals>,
     shape: Loop,
     place: f64,
+    /// Times between which the contact slides, of strokes (s).
+    sliding: Vec<[f64; 2]>,
     /// Integrals of Q d delta and P |d delta| over blocks of equal time, for tests without a
     /// period.
     blocks: Vec<(f64, f64)>,
@@ -87,6 +89,7 @@ impl Cycles {
             before: None,
             shape: Loop::default(),
             place: 0.0,
+            sliding: Vec::new(),
             blocks: vec![(0.0, 0.0); if clock.period.is_some() { 0 } else { BLOCKS }],
         }
     }
@@ -100,6 +103,17 @@ impl Cycles {
         let width = (self.end - self.clock.start) / BLOCKS as f64;
         let done = (self.time / width + 1e-6).floor() as usize;
         scatter::over_blocks(&self.blocks[..done.min(self.blocks.len())])
+    }
+
+    /// Returns the times between which the contact slides (s); `None` without reciprocating motion,
+    /// where all of it does.
+    pub fn sliding(&self) -> Option<&[[f64; 2]]> {
+        self.oscillates().then_some(&self.sliding)
+    }
+
+    /// Returns whether the contact slides at the last sample, after the elastic part of the stroke.
+    pub fn slides(&self) -> bool {
+        self.shape.slides()
     }
 
     /// Number of the cycle at a time (s), from 1; 0 before the start.
@@ -177,6 +191,13 @@ impl Cycles {
         cycle.normal_force = self.pressure_time / self.time;
         self.place += sample.slide;
         self.shape.add(self.place, sample.q, sample.p);
+        if self.shape.slides() {
+            let start = sample.time - h;
+            match self.sliding.last_mut().filter(|s| start < s[1] + 0.5 * h) {
+                Some(span) => span[1] = sample.time,
+                None => self.sliding.push([start, sample.time]),
+            }
+        }
         let (now, then) = (&after.balance, &start.balance);
         let heat = (now.taken - then.taken) - (now.other - then.other);
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };

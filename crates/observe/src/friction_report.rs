@@ -38,6 +38,9 @@ crate::described! {
         /// Whether the motion is reciprocating.
         #[serde(skip)]
         pub oscillates: bool,
+        /// Times between which the contact slides (s); `None` where all of the motion is sliding.
+        #[serde(skip)]
+        pub sliding: Option<Vec<[f64; 2]>>,
     }
 }
 
@@ -89,6 +92,7 @@ pub(super) fn report(
         scatter: cycles.scatter(),
         cycles: cycles.list.clone(),
         oscillates: cycles.oscillates(),
+        sliding: cycles.sliding().map(<[_]>::to_vec),
     };
     found.begin(Topic::Friction, Role::Detail);
     add(&friction, fretting.as_ref(), found);

@@ -160,6 +160,11 @@ impl Observer for FrictionTest {
         Some((cycles.number(time), cycles.total()))
     }
 
+    fn slides(&self) -> Option<bool> {
+        let cycles = &self.state.cycles;
+        cycles.oscillates().then(|| cycles.slides())
+    }
+
     fn caption(&self, run: &dyn RunView) -> Vec<String> {
         let cycles = &self.state.cycles;
         let mut caption = Vec::new();

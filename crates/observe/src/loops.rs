@@ -18,6 +18,8 @@ pub struct Loop {
     stroke: [f64; 2],
     /// Number of reversals since the first cycle.
     turns: u32,
+    /// Path from the last reversal to Q = 0 (m).
+    unloaded: Option<f64>,
     /// Work of Q, and integral of P over the path (J), in equal parts of the strokes.
     parts: Vec<[f64; 2]>,
 }
@@ -49,11 +51,17 @@ impl Loop {
                 self.crossings = Some([low.min(at), high.max(at)]);
             }
             let turns = motion * self.motion < 0.0;
+            if turns {
+                self.unloaded = None;
+            }
             if turns && p0 > 0.0 {
                 self.reversals.0 += q0.abs() / p0;
                 self.reversals.1 += 1;
             }
             self.add_to_stroke(motion, turns, q, p);
+            if self.unloaded.is_none() && q * motion > 0.0 {
+                self.unloaded = Some(self.stroke[0]);
+            }
             if motion != 0.0 {
                 self.motion = motion;
             }
@@ -108,6 +116,13 @@ impl Loop {
         let sum = |k: usize| parts.clone().map(|part| part[k]).sum::<f64>();
         let (work, load) = (sum(0), sum(1));
         (load > 0.0).then(|| work / load)
+    }
+
+    /// Returns whether the contact slides at the last sample: from the reversal to Q = 0 it is half
+    /// of its elastic travel that has passed. `false` before the first reversal.
+    pub fn slides(&self) -> bool {
+        let elastic = self.unloaded.map(|path| 2.0 * ROUNDED * path);
+        self.turns > 0 && elastic.is_some_and(|elastic| self.stroke[0] > elastic)
     }
 
     /// Returns half of the loop's width at Q = 0, the sliding amplitude (m).
@@ -204,6 +219,15 @@ mod tests {
             path += p * (to - x).abs();
             x = to;
             l.add(x, q, p);
+            let since = (4 * step + n) % (2 * n);
+            let slip = a - mu * p / k;
+            // Path since the reversal, of a stroke of 2 a.
+            let since =
+                a * (1.0 - (std::f64::consts::TAU * f64::from(since) / f64::from(4 * n)).cos());
+            let sure = (since - ROUNDED * 2.0 * (a - slip)).abs() > 0.01 * a;
+            if step > n && sure {
+                assert_eq!(l.slides(), since > ROUNDED * 2.0 * (a - slip), "{step}");
+            }
             if step == n - 1 {
                 // The plateau counts from the first reversal.
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);

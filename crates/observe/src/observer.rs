@@ -121,6 +121,12 @@ pub trait Observer: Debug + Send {
         None
     }
 
+    /// Returns whether the contact of its friction test slides now; `None` if it follows none, or
+    /// none that reciprocates.
+    fn slides(&self) -> Option<bool> {
+        None
+    }
+
     /// Returns lines of text below the pictures of the current step.
     fn caption(&self, _: &dyn RunView) -> Vec<String> {
         Vec::new()
@@ -250,6 +256,11 @@ impl Observers {
     /// Calls [`Observer::before_step`] of all observers.
     pub fn before_step(&mut self, run: &dyn RunView) {
         self.list.iter_mut().for_each(|o| o.before_step(run));
+    }
+
+    /// Returns the first answer to [`Observer::slides`].
+    pub fn slides(&self) -> Option<bool> {
+        self.list.iter().find_map(|o| o.slides())
     }
 
     /// Calls [`Observer::after_step`] of all observers.

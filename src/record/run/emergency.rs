@@ -79,6 +79,7 @@ impl Recorder<'_> {
     pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
         let begun = Instant::now();
         self.observers.before_step(self.simulation.view());
+        let slides = self.observers.slides();
         let outputs = UnsavedOutputs {
             table: std::mem::take(&mut self.table),
             results: std::mem::take(&mut self.results),
@@ -90,7 +91,7 @@ impl Recorder<'_> {
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
         // A law may also hang in a repeated step.
-        let repeated = self.estimate.before_step(&mut *self.simulation, self.done);
+        let repeated = (self.estimate).before_step(&mut *self.simulation, self.done, slides);
         let repeated = repeated.map_err(RunError::from);
         let report = repeated.and_then(|()| self.part());
         // If the slot is empty, the watch took and wrote the outputs just before the law returned.

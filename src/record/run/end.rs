@@ -11,6 +11,7 @@ use crate::record::summary::Uncertainty;
 use fretwork_observe::RunEnd;
 use fretwork_observe::accuracy::report_accuracy;
 use fretwork_observe::chart::{Figure, TableColumns};
+use fretwork_observe::friction_report::Friction;
 use fretwork_observe::solving::report_problems;
 use fretwork_observe::statistics::Table;
 use std::path::Path;
@@ -33,7 +34,8 @@ impl Recorder<'_> {
         let driven = driven
             .map(|d| self.simulation.kinetic_energy(d.body as usize))
             .sum();
-        let repeats = self.estimate.report(self.simulation.energies(), driven);
+        let friction = found.get::<Friction>();
+        let repeats = (self.estimate).report(self.simulation.energies(), driven, friction);
         self.uncertainty = Uncertainty::new(&found, repeats);
         self.uncertainty.report(&mut found);
         let accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));

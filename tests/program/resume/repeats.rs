@@ -143,11 +143,11 @@ fn slide_to_a_stop(length: u32) {
     let mut estimate = ErrorEstimate::new(&loaded.case, &s, total);
     for _ in 0..total {
         let done = s.state.steps;
-        estimate.before_step(&mut s, done).unwrap();
+        estimate.before_step(&mut s, done, None).unwrap();
         let report = s.step().unwrap();
         estimate.after_step(&s, &report);
     }
-    let found: Repeats = estimate.report(&s.state.energy, 0.0);
+    let found: Repeats = estimate.report(&s.state.energy, 0.0, None);
     assert_eq!((found.places, found.failed, found.steps), (8, 0, length));
     // The later half of the steps is compared, from the velocity that is left after the first half.
     let earlier = f64::from(length / 2);

@@ -1,6 +1,7 @@
 //! Estimate of the error of a run: at times drawn from the seed the run repeats a few steps with a
 //! quarter of the step, with a hundredth of the tolerance, and, where damage is coupled explicitly,
-//! with implicit coupling, and compares the growth of friction, damage and wear.
+//! with implicit coupling, and compares the growth of friction, damage and wear. In a reciprocating
+//! friction test it waits for the contact to slide, as long as half the time between two places.
 //!
 //! The state is restored after each repetition, so that the run has the same bits as without.
 //! Observers do not see repeated steps.
@@ -36,6 +37,8 @@ const MAX_COST: f64 = 0.05;
 pub(crate) struct StretchRepeats {
     /// Number of steps done before it.
     step: u64,
+    /// Time before and after the steps of the run that are compared (s).
+    span: [f64; 2],
     /// Growth with the step and tolerance of the run.
     pub(crate) base: Increments,
     /// Growth with a quarter of the step.
@@ -57,6 +60,8 @@ pub struct ErrorEstimate {
     to_come: std::collections::VecDeque<u64>,
     /// Number of steps of the run, as known at its start.
     total: u64,
+    /// Number of steps for which a place waits for the contact to slide.
+    patience: u64,
     body: Option<SlidingBody>,
     /// Whether repetitions are skipped once they cost too much: where the case does not give their
     /// number.
@@ -94,6 +99,7 @@ impl ErrorEstimate {
         match plan.and_then(|plan| permitted.map(|()| plan)) {
             Ok(plan) => {
                 estimate.length = plan.length;
+                estimate.patience = (total - from) / (2 * plan.count.max(1) as u64);
                 estimate.to_come = plan.draw(case.seed, from, total).into();
             }
             Err(reason) => estimate.reason = Some(reason),
@@ -102,11 +108,21 @@ impl ErrorEstimate {
     }
 
     /// Repeats the next steps, where one of the places is reached: `step` steps of the case are
-    /// done.
+    /// done. `slides` says whether the contact of a reciprocating friction test slides.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn before_step(&mut self, run: &mut dyn RunControl, step: u64) -> Result<(), RepeatError> {
+    pub fn before_step(
+        &mut self,
+        run: &mut dyn RunControl,
+        step: u64,
+        slides: Option<bool>,
+    ) -> Result<(), RepeatError> {
+        let last = self.total.saturating_sub(u64::from(self.length));
+        let waits = |at: &u64| step < (at + self.patience).min(last);
+        if slides == Some(false) && self.to_come.front().is_none_or(waits) {
+            return Ok(());
+        }
         let mut due = false;
         while self.to_come.front().is_some_and(|at| *at <= step) {
             // A step that spans several steps of the case may pass several places.

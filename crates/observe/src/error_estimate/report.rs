@@ -3,6 +3,7 @@
 use super::Increments;
 use super::change::{Change, RatioPair};
 use super::{ErrorEstimate, FINER, StretchRepeats};
+use crate::friction_report::Friction;
 use crate::quantity::unit::{ONE, WORD};
 use crate::quantity::{part, values};
 use fretwork_core::energy::Energy;
@@ -13,7 +14,7 @@ crate::described! {
     /// where they cannot be compared.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct Effects {
-        /// Friction coefficient, from forces.
+        /// Friction coefficient, over the places at which the contact slides.
         pub friction_coefficient: Option<Change> = part::<Change>(),
         /// Energy dissipated by friction.
         pub friction_energy: Option<Change> = part::<Change>(),
@@ -24,17 +25,27 @@ crate::described! {
     }
 }
 
+/// Growth at a place with the settings of the run, and with finer ones.
+struct Pair {
+    coarse: Increments,
+    fine: Increments,
+    /// Whether the contact slides there.
+    slides: bool,
+}
+
 impl Effects {
-    fn of(pairs: &[(Increments, Increments)], extrapolation: f64) -> Self {
-        let change = |part: fn(&Increments) -> [f64; 2]| {
-            let pairs = pairs.iter().map(|(coarse, fine)| RatioPair {
-                coarse: part(coarse),
-                fine: part(fine),
+    fn of(pairs: &[Pair], extrapolation: f64) -> Self {
+        let over = |slide: bool, part: fn(&Increments) -> [f64; 2]| {
+            let pairs = pairs.iter().filter(|p| p.slides || !slide);
+            let pairs = pairs.map(|pair| RatioPair {
+                coarse: part(&pair.coarse),
+                fine: part(&pair.fine),
             });
             Change::over(&pairs.collect::<Vec<_>>(), extrapolation)
         };
+        let change = |part| over(false, part);
         Self {
-            friction_coefficient: change(|i| [i.work, i.load_path]),
+            friction_coefficient: over(true, |i| [i.work, i.load_path]),
             friction_energy: change(|i| [i.friction_energy, 1.0]),
             damage: change(|i| [i.damage, 1.0]),
             wear: change(|i| [i.wear, 1.0]),
@@ -94,12 +105,23 @@ crate::described! {
 }
 
 impl ErrorEstimate {
-    /// Returns the results, given the ledger at the end and the kinetic energy of driven bodies
-    /// then (J).
-    pub fn report(&self, energy: &Energy, driven: f64) -> Repeats {
+    /// Returns the results, given the ledger at the end, the kinetic energy of driven bodies then
+    /// (J), and the friction test, if there is one.
+    pub fn report(&self, energy: &Energy, driven: f64, friction: Option<&Friction>) -> Repeats {
+        let sliding = friction.and_then(|f| f.sliding.as_deref());
+        let slides = |[from, to]: [f64; 2]| {
+            let within = |span: &[f64; 2]| span[0] <= from && to <= span[1];
+            sliding.is_none_or(|spans| spans.iter().any(within))
+        };
         let pairs = |fine: fn(&StretchRepeats) -> Option<Increments>| {
-            let pairs = self.places.iter().filter_map(|p| Some((p.base, fine(p)?)));
-            pairs.collect::<Vec<_>>()
+            let pair = |p: &StretchRepeats| {
+                Some(Pair {
+                    coarse: p.base,
+                    fine: fine(p)?,
+                    slides: slides(p.span),
+                })
+            };
+            self.places.iter().filter_map(pair).collect::<Vec<_>>()
         };
         let coupled = pairs(|p| p.coupled);
         let short = 1.0 / f64::from(FINER);
@@ -134,5 +156,58 @@ impl ErrorEstimate {
                 unconverged: share(self.supplied[1], self.supplied[0]),
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three places at which the force of sliding changes by 1 %, and one in the elastic part of
+    /// the stroke, at which it changes by half and turns its sign.
+    #[test]
+    fn the_elastic_part_of_a_stroke_is_no_error_of_sliding() {
+        let place = |from: f64, coarse: f64, fine: f64| {
+            let grown = |work| Increments {
+                work,
+                load_path: 2.0,
+                friction_energy: work,
+                ..Increments::default()
+            };
+            StretchRepeats {
+                step: 0,
+                span: [from, from + 0.1],
+                base: grown(coarse),
+                finer: grown(fine),
+                tighter: grown(coarse),
+                tight: true,
+                coupled: None,
+            }
+        };
+        let estimate = ErrorEstimate {
+            places: vec![
+                place(0.1, -0.4, 0.6),
+                place(0.5, 0.8, 0.808),
+                place(1.5, 0.8, 0.808),
+                place(1.8, 0.8, 0.808),
+            ],
+            ..ErrorEstimate::default()
+        };
+        let friction = |sliding| Friction {
+            sliding,
+            ..Friction::default()
+        };
+        let change = |friction: &Friction| {
+            let repeats = estimate.report(&Energy::default(), 0.0, Some(friction));
+            repeats.step.friction_coefficient.unwrap()
+        };
+        let known = change(&friction(Some(vec![[0.4, 1.0], [1.4, 2.0]])));
+        assert!((known.change - 0.01 * 4.0 / 3.0).abs() < 1e-12, "{known:?}");
+        assert!(known.half_width < 1e-12, "{known:?}");
+        assert!(change(&friction(None)).change > 0.4);
+        let two = friction(Some(vec![[1.4, 2.0]]));
+        let repeats = estimate.report(&Energy::default(), 0.0, Some(&two));
+        assert_eq!(repeats.step.friction_coefficient, None);
+        assert!(repeats.step.friction_energy.is_some());
     }
 }

@@ -52,6 +52,8 @@ impl RepeatedStretch {
         let Some(base) = stretch(run, 1, &|_| ())? else {
             return Ok((None, [cost, cost]));
         };
+        let [from, to] = [length / 2, length]
+            .map(|steps| run.time() + f64::from(steps) * run.options().scheme.h);
         let each = base.cost / f64::from(length);
         let finer = stretch(run, FINER, &shorten)?;
         let most = MAX_ITERATIONS
@@ -73,6 +75,7 @@ impl RepeatedStretch {
         };
         let place = StretchRepeats {
             step: run.steps(),
+            span: [from, to],
             base: base.increments,
             finer: finer.increments,
             tighter: tighter.increments,
