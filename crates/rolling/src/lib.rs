@@ -19,6 +19,7 @@ pub mod friction;
 mod gmres;
 pub mod motion;
 pub mod normal;
+pub mod patch;
 pub mod surfaces;
 pub mod tangential;
 
@@ -26,5 +27,6 @@ pub use fields::{Field, Vector};
 pub use friction::{Bound, Coulomb, Falling, Friction};
 pub use motion::{Creepage, Motion};
 pub use normal::{NormalError, Pressure, normal};
+pub use patch::{Patch, PatchError, Refined, Rolling};
 pub use surfaces::Surfaces;
 pub use tangential::{Tractions, tangential};

@@ -22,8 +22,14 @@ pub struct Creepage {
 pub enum Motion {
     /// Steady rolling with creepages: a step is a passage by one cell.
     Steady(Creepage),
-    /// A shift of the first body (m), as in fretting, from a state with tractions (Pa) that the
-    /// cells had before.
+    /// Rolling with creepages by one cell, from the tractions (Pa) at its start.
+    Transient {
+        /// The creepages.
+        creepage: Creepage,
+        /// Tractions before.
+        from: Field,
+    },
+    /// A shift of the first body, as in fretting, from the tractions (Pa) at its start.
     Shift {
         /// Displacement along x and y (m).
         by: Vector,
@@ -37,7 +43,7 @@ impl Motion {
     pub fn passage(&self) -> Passage {
         match self {
             Self::Steady(_) => Passage::Steady,
-            Self::Shift { .. } => Passage::Shift,
+            Self::Transient { .. } | Self::Shift { .. } => Passage::Shift,
         }
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::convolution::{Convolution, Spectrum};
 use crate::fields::{Field, Vector};
+use crate::motion::Motion;
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::influence::{Influence, rectangle};
 use fretwork_elastic::half_space::{CellGrid, Complex64};
@@ -59,13 +60,16 @@ impl Surfaces {
         (one - other).abs() > 1e-12 * (one.abs() + other.abs())
     }
 
-    /// Returns the tangential displacements by pressures (m), relative to those one cell upstream in
-    /// steady rolling.
-    pub fn slip_by_pressure(&self, pressure: &[f64], passage: Passage) -> Field {
+    /// Returns the slip by pressures in a motion (m): in rolling the displacement less that one cell
+    /// upstream, in a shift under constant pressures none.
+    pub fn slip_by_pressure(&self, pressure: &[f64], motion: &Motion) -> Field {
+        if matches!(motion, Motion::Shift { .. }) {
+            return vec![[0.0; 2]; pressure.len()];
+        }
         let [x, y] = self.convolution.spectra(|at| {
-            let moved = |at| of_cell(&self.grid, &self.bodies, at);
-            let (here, there) = (moved(at), upstream(at, passage).map(moved));
-            [0, 1].map(|k| here[k][2] - there.map_or(0.0, |u| u[k][2]))
+            let [here, there] =
+                [0.0, 1.0].map(|ahead| of_cell(&self.grid, &self.bodies, [at[0] + ahead, at[1]]));
+            [0, 1].map(|k| here[k][2] - there[k][2])
         });
         let field: Field = pressure.iter().map(|p| [*p, 0.0]).collect();
         self.convolution
@@ -82,6 +86,20 @@ impl Surfaces {
             .convolution
             .apply(traction, |k, [p, q]| [x[k] * p + y[k] * q, Complex64::ZERO]);
         moved.into_iter().map(|u| u[0]).collect()
+    }
+
+    /// Returns the tangential displacements by tractions (m), including that of the layer, at places
+    /// that lie `ahead` cells upstream of each cell.
+    pub fn displacement(&self, traction: &[Vector], ahead: usize) -> Field {
+        let [xx, yy, xy] = self.convolution.spectra(|at| {
+            let there = [at[0] + ahead as f64, at[1]];
+            let u = of_cell(&self.grid, &self.bodies, there);
+            let own = if there == [0.0; 2] { self.layer } else { 0.0 };
+            [u[0][0] + own, u[1][1] + own, u[0][1]]
+        });
+        self.convolution.apply(traction, |k, [x, y]| {
+            [xx[k] * x + xy[k] * y, xy[k] * x + yy[k] * y]
+        })
     }
 
     /// Returns the map from tractions to slip.

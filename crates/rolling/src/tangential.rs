@@ -190,21 +190,23 @@ pub fn tangential(
     tolerance: f64,
 ) -> Result<Tractions, TangentialError> {
     let slip = surfaces.slip(motion.passage());
+    let less = |mut rigid: Field, moved: &[Vector]| {
+        add(&mut rigid, -1.0, moved);
+        rigid
+    };
     let mut rigid = match motion {
         Motion::Steady(creepage) => rigid_slip(&surfaces.grid, creepage),
+        Motion::Transient { creepage, from } => less(
+            rigid_slip(&surfaces.grid, creepage),
+            &surfaces.displacement(from, 1),
+        ),
         Motion::Shift { by, from } => {
-            let mut rigid = slip.by(from);
-            rigid
-                .iter_mut()
-                .for_each(|w| *w = [by[0] - w[0], by[1] - w[1]]);
-            rigid
+            less(vec![*by; pressure.len()], &surfaces.displacement(from, 0))
         }
     };
     if surfaces.couple() {
-        let moved = surfaces.slip_by_pressure(pressure, motion.passage());
-        if matches!(motion, Motion::Steady(_)) {
-            add(&mut rigid, 1.0, &moved);
-        }
+        let moved = surfaces.slip_by_pressure(pressure, motion);
+        add(&mut rigid, 1.0, &moved);
     }
     let scale = 1.0 / slip.own;
     let problem = Problem {
