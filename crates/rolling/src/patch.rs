@@ -37,19 +37,25 @@ pub struct Rolling {
     pub moment: f64,
     /// Energy dissipated by slip over the distance rolled (N).
     pub dissipation: f64,
-    /// Energy supplied by the drive over the distance rolled (N), T gamma: -(F_x xi + F_y eta + M_z
-    /// phi). It is the dissipation on a fine grid.
+    /// Energy supplied by the creepages over the distance rolled (N), T gamma: -(F_x xi + F_y eta +
+    /// M_z phi).
     pub t_gamma: f64,
+    /// Force against rolling by pressures that are larger on the side on which material enters (N),
+    /// the integral of p dh/dx: none for like bodies. With T gamma it is the dissipation, but for
+    /// an error that vanishes with the cells.
+    pub resistance: f64,
 }
 
-/// Results with the error of the grid, from this grid and one of cells twice as large.
+/// Results with the error of the grid, from this grid and two of cells twice as large that are half a
+/// cell of theirs apart: the patch has its edge at other places of the cells.
 #[derive(Clone, Debug)]
 pub struct Refined {
     /// On the fine grid.
     pub fine: Rolling,
     /// Force extrapolated to cells of no size, to first order (N).
     pub force: Vector,
-    /// Difference of that force to the one of the fine grid (N), the error of the latter.
+    /// Error of the force of the fine grid (N): its difference to the extrapolated one, and half of
+    /// the difference of the coarse grids.
     pub error: Vector,
 }
 
@@ -107,11 +113,14 @@ impl Patch<'_> {
         speed: f64,
     ) -> Result<Refined, PatchError> {
         let coarse = self.rolls(twice(&grid), creepage, law, speed)?;
+        let other = self.rolls_from(displaced(&coarse.grid), None, creepage, law, speed)?;
         let fine = self.rolls_from(grid, Some(&coarse), creepage, law, speed)?;
-        let error = [0, 1].map(|k| fine.force[k] - coarse.force[k]);
+        let pairs = [0, 1].map(|k| [coarse.force[k], other.force[k]]);
+        let change = [0, 1].map(|k| fine.force[k] - 0.5 * (pairs[k][0] + pairs[k][1]));
+        let apart = pairs.map(|[a, b]| 0.5 * (a - b).abs());
         Ok(Refined {
-            force: [0, 1].map(|k| fine.force[k] + error[k]),
-            error: error.map(f64::abs),
+            force: [0, 1].map(|k| fine.force[k] + change[k]),
+            error: [0, 1].map(|k| change[k].abs() + apart[k]),
             fine,
         })
     }
@@ -157,7 +166,17 @@ impl Patch<'_> {
                 return Err(PatchError::Coupled(ROUNDS.0));
             }
         }
-        Ok(Rolling::new(grid, pressure, tractions, creepage))
+        let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
+        let half = 0.5 * grid.size[0];
+        let slope = |[x, y]: [f64; 2]| {
+            ((self.distance)([x + half, y]) - (self.distance)([x - half, y])) / (2.0 * half)
+        };
+        let pressures = rolling.pressure.pressure.iter().enumerate();
+        let sum: f64 = pressures
+            .map(|(cell, p)| p * slope(grid.middle(cell)))
+            .sum();
+        rolling.resistance = sum * grid.area(3);
+        Ok(rolling)
     }
 }
 
@@ -181,6 +200,7 @@ impl Rolling {
             moment,
             dissipation,
             t_gamma,
+            resistance: 0.0,
         }
     }
 
@@ -205,6 +225,15 @@ fn twice(grid: &CellGrid) -> CellGrid {
         from: grid.from,
         size: [0, 1].map(|k| grid.extent()[k] / cells[k] as f64),
         cells,
+    }
+}
+
+/// Returns a grid that begins half a cell before another one, and is a cell larger.
+fn displaced(grid: &CellGrid) -> CellGrid {
+    CellGrid {
+        from: [0, 1].map(|k| grid.from[k] - 0.5 * grid.size[k]),
+        size: grid.size,
+        cells: grid.cells.map(|n| n + 1),
     }
 }
 

@@ -61,12 +61,16 @@ fn the_error_of_the_grid_covers_finer_ones() {
             let [coarse, fine] = [32, 64].map(of);
             for k in 0..2 {
                 let off = (coarse.force[k] - fine.force[k]).abs();
-                let allowed = coarse.error[k] + 2e-3 * mu * load;
-                assert!(off < allowed, "{creepage:?}: {off} {allowed}");
+                let allowed = coarse.error[k] + fine.error[k];
+                assert!(off <= allowed, "{bodies:?} {creepage:?}: {off} {allowed}");
+                assert!(fine.error[k] < 0.012 * mu * load, "{:?}", fine.error);
             }
             // The power of the drive is that of slip but for an error of first order.
-            let lost = [&coarse, &fine].map(|r| (1.0 - r.fine.dissipation / r.fine.t_gamma).abs());
-            assert!(lost[1] < 0.06 && lost[1] < 0.6 * lost[0] + 1e-3, "{lost:?}");
+            let lost = [&coarse, &fine].map(|r| {
+                let supplied = r.fine.t_gamma + r.fine.resistance;
+                (1.0 - r.fine.dissipation / supplied).abs()
+            });
+            assert!(lost[1] < 0.08 && lost[1] < 0.6 * lost[0] + 1e-3, "{lost:?}");
         }
     }
 }
