@@ -14,6 +14,7 @@
 //! ```
 
 pub mod convolution;
+pub mod fastsim;
 pub mod fields;
 pub mod friction;
 mod gmres;
@@ -23,6 +24,7 @@ pub mod patch;
 pub mod surfaces;
 pub mod tangential;
 
+pub use fastsim::Fastsim;
 pub use fields::{Field, Vector};
 pub use friction::{Bound, Coulomb, Falling, Friction};
 pub use motion::{Creepage, Motion};
