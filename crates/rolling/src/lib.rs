@@ -23,6 +23,7 @@ pub mod normal;
 pub mod patch;
 pub mod surfaces;
 pub mod tangential;
+pub mod temperature;
 
 pub use fastsim::Fastsim;
 pub use fields::{Field, Vector};
