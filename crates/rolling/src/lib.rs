@@ -21,6 +21,7 @@ mod gmres;
 pub mod motion;
 pub mod normal;
 pub mod patch;
+pub mod profile;
 pub mod surfaces;
 pub mod tangential;
 pub mod temperature;

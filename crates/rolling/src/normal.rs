@@ -56,10 +56,7 @@ const MOST: usize = 2000;
 const TOLERANCE: f64 = 1e-10;
 
 /// Returns the pressures under a load (N) of bodies at an undeformed distance (m), one number per
-/// cell, by conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231, 1999).
-///
-/// `start` has pressures to begin with. Conjugate gradients begin anew where a cell comes into
-/// contact.
+/// cell; `start` has pressures to begin with.
 ///
 /// # Errors
 /// The load is not positive, a distance is not a number, the patch reaches the border of the grid,
@@ -70,6 +67,33 @@ pub fn normal(
     load: f64,
     start: Option<&[f64]>,
 ) -> Result<Pressure, NormalError> {
+    wearing(surfaces, distance, load, None, start)
+}
+
+/// Returns the pressures of bodies that wear under them: `worn` has, for each row of cells, the
+/// depth that goes by one pascal in one of its cells (m/Pa), which adds to the distance of the whole
+/// row. By conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231, 1999), which begin anew where a
+/// cell comes into contact.
+///
+/// # Errors
+/// Those of [`normal`].
+pub fn wearing(
+    surfaces: &Surfaces,
+    distance: &[f64],
+    load: f64,
+    worn: Option<&[f64]>,
+    start: Option<&[f64]>,
+) -> Result<Pressure, NormalError> {
+    let displacement = |pressure: &[f64]| {
+        let mut moved = surfaces.normal(pressure);
+        let columns = surfaces.grid.cells[0];
+        for (row, depth) in worn.into_iter().flatten().enumerate() {
+            let cells = row * columns..(row + 1) * columns;
+            let sum: f64 = pressure[cells.clone()].iter().sum();
+            moved[cells].iter_mut().for_each(|u| *u += depth * sum);
+        }
+        moved
+    };
     if !(load > 0.0 && load.is_finite()) {
         return Err(NormalError::Load(load));
     }
@@ -98,7 +122,7 @@ pub fn normal(
             values.iter_mut().for_each(|v| *v -= mean);
             mean
         };
-        let mut gap = surfaces.normal(&p);
+        let mut gap = displacement(&p);
         gap.iter_mut().zip(distance).for_each(|(g, h)| *g += h);
         let approach = level(&mut gap);
         let over = |a: &[f64], b: &[f64]| -> f64 {
@@ -114,7 +138,7 @@ pub fn normal(
                 false => 0.0,
             };
         }
-        let mut moved = surfaces.normal(&direction);
+        let mut moved = displacement(&direction);
         level(&mut moved);
         let curvature = over(&moved, &direction);
         let length = match curvature > 0.0 {
