@@ -32,8 +32,8 @@ impl SampleFacts {
     }
 }
 
-/// Titles of shipped cases, what runs of several of their seeds found, and where `docs/accuracy.md`
-/// has the number.
+/// Titles of shipped cases, what runs of several of their seeds found, and where
+/// `docs/dev/sensitivity.md` has the number.
 const STUDIED: [(&str, &str, &str); 6] = [
     (
         "wheel-rail fretting of a third body",
@@ -75,7 +75,7 @@ fn scatter_over_seeds(title: &str) -> String {
         || {
             "one seed, and the scatter over seeds is not known; `fretwork study run CASE --seeds 8` measures it".to_owned()
         },
-        |(_, says, _)| format!("one seed; {says} (docs/accuracy.md)"),
+        |(_, says, _)| format!("one seed; {says} (docs/dev/sensitivity.md)"),
     )
 }
 
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn each_scatter_is_that_of_the_page_on_accuracy() {
-        let page = read("docs/accuracy.md");
+        let page = read("docs/dev/sensitivity.md");
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         let cases = [
             "wheel_rail_fretting",
