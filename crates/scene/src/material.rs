@@ -122,11 +122,12 @@ pub struct Material {
 }
 
 /// Properties with a known unit.
-const PROPERTIES: [(&str, &str); 10] = [
+const PROPERTIES: [(&str, &str); 11] = [
     ("young", "Pa"),
     ("shear_modulus", "Pa"),
     ("bulk_modulus", "Pa"),
     ("yield_stress", "Pa"),
+    ("yield_stress_hardened", "Pa"),
     ("tensile_strength", "Pa"),
     ("poisson", ""),
     ("conductivity", "W/(m K)"),
