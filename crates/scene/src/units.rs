@@ -104,6 +104,45 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     })
 }
 
+/// Converts a value to SI units; returns it with the symbol of its unit there, `Pa` for `MPa`, which
+/// is empty for pure numbers.
+///
+/// # Errors
+/// The unit is unknown, or a scale of hardness.
+pub fn in_si(value: f64, given: &str) -> Result<(f64, String), UnitError> {
+    if given.trim().is_empty() {
+        return Ok((value, String::new()));
+    }
+    if let Some(scale) = hardness(given) {
+        return Err(UnitError {
+            message: format!("`{scale}` is a scale of hardness, which has no unit in SI"),
+            expected: None,
+            nearest: None,
+        });
+    }
+    let unit = read(given)?;
+    let alike = |name: &&&str| {
+        read(name).is_ok_and(|u| {
+            u.dimension == unit.dimension
+                && u.angle == unit.angle
+                && (u.factor - 1.0).abs() < 8.0 * f64::EPSILON
+        })
+    };
+    let symbol = match USUAL.iter().find(alike) {
+        _ if unit.dimension.is_dimensionless() && !unit.angle => String::new(),
+        Some(name) => (*name).to_owned(),
+        None => {
+            let plain = Unit {
+                angle: false,
+                ..unit
+            };
+            let angle = if unit.angle { "rad " } else { "" };
+            format!("{angle}{}", base(&plain))
+        }
+    };
+    Ok((convert(value, given, &symbol)?, symbol))
+}
+
 /// Checks that a text is a unit or a hardness scale.
 ///
 /// # Errors
@@ -173,6 +212,14 @@ fn read(text: &str) -> Result<Unit, UnitError> {
             nearest: near,
         });
     }
+    let mut words = plain.split(|c: char| !c.is_alphabetic() && c != '_');
+    if let Some(word) = words.find(|word| is_plural_of_symbol(word)) {
+        let singular = text.replacen(word, &word[..word.len() - 1], 1);
+        return Err(UnitError {
+            nearest: Some(singular),
+            ..unknown(word)
+        });
+    }
     let quantity = runits::parse(&plain).map_err(|error| match error {
         ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
         ParseError::DivideByZero => refused("it divides by zero".into()),
@@ -227,6 +274,20 @@ fn far(text: &str) -> Option<&str> {
             Some("M" | "G" | "T" | "P" | "E" | "Z" | "Y")
         ) || matches!(*word, "megametre" | "megameter" | "gigametre" | "gigameter")
     })
+}
+
+/// Whether the crate reads a word as the plural of a symbol: `mss` as milliseconds, but also `Ns` as
+/// newtons and `Pas` as pascals, where a product was meant. Names have plurals, `metres` and `bars`.
+fn is_plural_of_symbol(word: &str) -> bool {
+    let Some(singular) = word.strip_suffix('s') else {
+        return false;
+    };
+    let (Ok(one), Ok(many)) = (runits::unit(singular), runits::unit(word)) else {
+        return false;
+    };
+    let same = one.factor() == many.factor() && one.dimension() == many.dimension();
+    let name = singular.len() > 2 && singular.chars().all(|c| c.is_ascii_lowercase());
+    same && (!name || is_plural_of_symbol(singular))
 }
 
 /// Returns the factor from the crate's base units, which include the gram, to SI.
@@ -465,6 +526,42 @@ mod tests {
         ] {
             assert!(known(good).is_ok(), "{good:?} is refused");
         }
+    }
+
+    #[test]
+    fn names_have_plurals_and_symbols_do_not() {
+        for name in [
+            "metres", "newtons", "bars", "hours", "seconds", "ms", "us", "s", "rad/s",
+        ] {
+            assert!(known(name).is_ok(), "{name}");
+        }
+        for (plural, near) in [
+            ("mss", "ms"),
+            ("Ns", "N"),
+            ("kNs/m", "kN/m"),
+            ("MPas", "MPa"),
+        ] {
+            let error = known(plural).err();
+            let error = error.unwrap_or_else(|| panic!("{plural} passes"));
+            assert_eq!(error.nearest.as_deref(), Some(near), "{error:?}");
+        }
+    }
+
+    #[test]
+    fn values_have_a_symbol_in_si() {
+        for (value, given, si, symbol) in [
+            (5.0, "um", 5e-6, "m"),
+            (1.0, "kPa", 1e3, "Pa"),
+            (30.0, "%", 0.3, ""),
+            (2.0, "1/kPa", 2e-3, "1/Pa"),
+            (3e-5, "mm^3/(N m)", 3e-14, "1/Pa"),
+            (0.3, "", 0.3, ""),
+            (2.0, "kg m/s", 2.0, "kg m s^-1"),
+            (1.0, "rad/s", 1.0, "rad s^-1"),
+        ] {
+            assert_eq!(in_si(value, given), Ok((si, symbol.to_owned())), "{given}");
+        }
+        assert!(in_si(260.0, "HBW").is_err() && in_si(1.0, "foo").is_err());
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::runs::output::OutputName;
 use crate::{Error, RunSetup, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
+use fretwork_scene::units::convert;
 use fretwork_scene::{Built, InputError, LoadedCase};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -312,11 +313,19 @@ fn units(
         let known = known.map_or("", |i| i.unit);
         match (known, factor.unit.as_str()) {
             ("", own) => Ok(own.to_owned()),
-            (known, own) if own.is_empty() || own == known => Ok(known.to_owned()),
-            (known, own) => Err(read.source.error_at(
-                &format!("factors.{k}.unit"),
-                format!("the case has its key in `{known}`, not in `{own}`; leave the unit out"),
-            )),
+            (known, own) if own.is_empty() || convert(1.0, own, known) == Ok(1.0) => {
+                Ok(known.to_owned())
+            }
+            (known, own) => {
+                let path = format!("factors.{k}.unit");
+                let written = read.source.position_of(&path).is_some();
+                let (path, help) = match written {
+                    true => (path, "; leave the unit out"),
+                    false => (format!("factors.{k}"), ""),
+                };
+                let why = format!("the case has its key in `{known}`, not in `{own}`{help}");
+                Err(read.source.error_at(&path, why))
+            }
         }
     };
     factors.iter().enumerate().map(of).collect()
