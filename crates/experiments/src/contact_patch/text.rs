@@ -208,7 +208,11 @@ impl Answer {
                 );
             }
             if let Some(slip) = &t.local_slip {
-                add("slip in the middle", format!("+-{}", ranged(slip, "m")));
+                let text = match slip.high > 0.0 {
+                    true => format!("+-{}", ranged(slip, "m")),
+                    false => "none: it sticks".to_owned(),
+                };
+                add("slip in the middle", text);
             }
         }
         if let Some(r) = &self.rolling {
@@ -315,16 +319,12 @@ impl Answer {
             ),
         );
         if let Some(slip) = &w.slip {
-            let what = match self.rolling.as_ref().and_then(|r| r.creepage) {
-                Some(_) => "a passage slips by",
-                None => "displacement",
+            let text = match self.rolling.as_ref().and_then(|r| r.creepage) {
+                _ if slip.high <= 0.0 => "none: the middle sticks".to_owned(),
+                Some(_) => format!("a passage slips by {}", ranged(slip, "m")),
+                None => format!("+-{}", ranged(slip, "m")),
             };
-            let text = if slip.high <= 0.0 {
-                "none: the middle sticks".to_owned()
-            } else {
-                ranged(slip, "m")
-            };
-            add("slip in the window", format!("{what} {text}"));
+            add("slip in the window", text);
         }
     }
 }
