@@ -33,6 +33,7 @@ mod line_length;
 mod material_laws;
 mod plugin_loading;
 mod quantities;
+mod rebuilt_program;
 mod report;
 mod results;
 mod resume;

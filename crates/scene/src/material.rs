@@ -286,6 +286,14 @@ impl MaterialLibrary {
         }
     }
 
+    /// The files built into the program alone.
+    pub fn shipped() -> Self {
+        Self {
+            folders: Vec::new(),
+            own: BTreeMap::new(),
+        }
+    }
+
     /// Adds texts by name, which are used instead of files of the same names.
     #[must_use]
     pub fn with_own(mut self, texts: &BTreeMap<String, String>) -> Self {

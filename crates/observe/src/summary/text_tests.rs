@@ -187,7 +187,7 @@ fn results_have_units_and_intervals() {
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(
         &text,
-        "3.000e-5 mm3, 100.0 nm deep on average where worn, 300.0 nm at most; k = V/(P s) = 3.000e-6 mm3/(N m)",
+        "3.000e-5 mm3; k 3.000e-6 mm3/(N m); 100.0 nm deep on average where worn, 300.0 nm at most",
     );
     place(&text, "external work          110.0 mJ");
     place(

@@ -224,3 +224,14 @@ pub(crate) fn columns(
         .collect();
     json!({"name": name, "rows": statistics.rows, "every": statistics.every, "columns": columns})
 }
+
+/// Returns the figure of any column for the scripts: friction, damage or a force over time, with
+/// wear beside it, where a run has them.
+pub(crate) fn of_any_column() -> Value {
+    json!({"any": {
+        "across": ["time"],
+        "up": ["mu", "sin_phi", "damage_ratio", "worn_first"],
+        "units": ["N", "N/m"],
+        "right": ["worn_first", "damage_ratio"],
+    }})
+}
