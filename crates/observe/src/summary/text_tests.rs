@@ -108,7 +108,6 @@ fn the_end_of_a_run_has_at_most_14_lines_of_100_columns_in_their_order() {
         "  damage     ",
         "  regime     ",
         "  measures   ",
-        "  energy     ",
         "  look at    1 NOT STEADY",
         "             2 ",
         "             3 ",
