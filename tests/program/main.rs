@@ -31,6 +31,7 @@ mod layers;
 mod library_features;
 mod line_length;
 mod material_laws;
+mod pages;
 mod plugin_loading;
 mod quantities;
 mod rebuilt_program;
