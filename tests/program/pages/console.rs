@@ -130,7 +130,8 @@ fn place(line: &str, output: &[&str], from: usize) -> Option<usize> {
 /// The lines of a block with the output of today: what was left out stays so, and lines that say how
 /// long something took are left out.
 pub(super) fn renewed(shown: &[&str], output: &[&str]) -> Vec<String> {
-    let whole = shown.iter().all(|l| *l == LEFT_OUT);
+    // A block that leaves nothing out, or does not say what it shows, has all of it.
+    let whole = shown.iter().all(|l| *l != LEFT_OUT) || shown.iter().all(|l| *l == LEFT_OUT);
     let mut kept = vec![whole; output.len()];
     let mut from = 0;
     for segment in shown.split(|l| *l == LEFT_OUT).filter(|s| !s.is_empty()) {
@@ -192,6 +193,7 @@ mod tests {
         let output = ["case", "  a 1", "  b 2", "  c 3", "end"];
         let renewed = |shown: &[&str]| renewed(shown, &output);
         assert_eq!(renewed(&[]), output);
+        assert_eq!(renewed(&["case", "  d 8"]), output);
         assert_eq!(renewed(&["...", "  b 1", "..."]), ["...", "  b 2", "..."]);
         assert_eq!(
             renewed(&["case", "...", "  c 2", "end"]),
