@@ -54,7 +54,7 @@ fn today(block: &Block, lines: &[&str], folder: &Path) -> Vec<String> {
 
 #[test]
 fn commands_of_the_pages_print_what_the_pages_show() {
-    let mut run = 0;
+    let (mut run, mut old) = (0, Vec::new());
     for path in pages() {
         let page = read(&path);
         let blocks = blocks(&page).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
@@ -75,9 +75,11 @@ fn commands_of_the_pages_print_what_the_pages_show() {
             run += 1;
         }
         made.extend(lines[copied..].iter().map(|l| (*l).to_owned()));
-        settle(&path, &(made.join("\n") + "\n"), "commands_of_the_pages");
+        let settled = settle(&path, &(made.join("\n") + "\n"), "commands_of_the_pages");
+        old.extend(settled.err());
     }
     assert!(run > 10, "{run}");
+    assert!(old.is_empty(), "{}", old.join("\n"));
 }
 
 #[test]

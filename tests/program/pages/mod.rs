@@ -38,22 +38,25 @@ fn mode() -> Mode {
 }
 
 /// Compares a page with what the program makes of it, or writes it. `test` is the name of the test.
-pub(crate) fn settle(path: &Path, made: &str, test: &str) {
+///
+/// # Errors
+/// How an old page differs.
+pub(crate) fn settle(path: &Path, made: &str, test: &str) -> Result<(), String> {
     let page = read(path);
     if page == made {
-        return;
+        return Ok(());
     }
     if mode() != Mode::Compare {
         std::fs::write(path, made).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        return;
+        return Ok(());
     }
     let missing: Vec<&str> = made.lines().filter(|l| !has_line(&page, l)).collect();
     let gone: Vec<&str> = page.lines().filter(|l| !has_line(made, l)).collect();
-    panic!(
+    Err(format!(
         "{} is old; write it with FRETWORK_WRITE_PAGES=1 cargo test --test program {test}; it lacks \
          {missing:#?} and still has {gone:#?}",
         path.display()
-    );
+    ))
 }
 
 fn has_line(text: &str, line: &str) -> bool {

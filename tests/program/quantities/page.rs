@@ -305,5 +305,5 @@ fn the_page_lists_every_quantity_with_its_unit() {
         let (from, to) = (place(&begin) + begin.len(), place(&end));
         made.replace_range(from..to, &table);
     }
-    settle(path.as_ref(), &made, "the_page_lists_every");
+    settle(path.as_ref(), &made, "the_page_lists_every").unwrap();
 }
