@@ -106,25 +106,50 @@ pub(super) fn blocks(page: &str) -> Result<Vec<Block>, String> {
 
 /// What identifies a line of output whose numbers may change: its words before the first number
 /// that follows them.
-fn label(line: &str) -> &str {
+fn label(line: &str) -> String {
     let words = line.find(char::is_alphabetic).map_or("", |k| &line[k..]);
     let end = words.find(|c: char| c.is_ascii_digit());
-    words[..end.unwrap_or(words.len())].trim()
+    let words = words[..end.unwrap_or(words.len())].split_whitespace();
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// The place of a line in the output from another place on: the same text, the same label, or a
-/// label of which that of the line is the beginning.
+/// label of which one is the beginning of the other.
 fn place(line: &str, output: &[&str], from: usize) -> Option<usize> {
     let rest = output.get(from..)?;
     let wanted = label(line);
     let alike = |same: &dyn Fn(&str) -> bool| {
-        let found = rest.iter().position(|l| same(label(l)));
+        let found = rest.iter().position(|l| same(&label(l)));
         found.filter(|_| !wanted.is_empty())
     };
     let same = rest.iter().position(|l| *l == line);
     let found = same.or_else(|| alike(&|l| l == wanted));
-    let found = found.or_else(|| alike(&|l| l.starts_with(wanted)));
+    let found = found.or_else(|| alike(&|l| l.starts_with(&wanted)));
+    // One word may begin many lines.
+    let found = found.or_else(|| alike(&|l| l.contains(' ') && wanted.starts_with(l)));
     found.map(|k| from + k)
+}
+
+/// Number of spaces before a line.
+fn indent(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+/// Column at which the text of a line begins, behind its name in the left column.
+fn column(line: &str) -> usize {
+    let begin = indent(line);
+    let gap = line[begin..].find("  ").map(|k| begin + k);
+    gap.map_or(begin, |k| k + indent(&line[k..]))
+}
+
+/// Number of lines from a line of output on over which its text goes on. Those that begin at the
+/// margin are whole: what follows is indented below them.
+fn height(output: &[&str]) -> usize {
+    let Some(first) = output.first().filter(|l| indent(l) > 0) else {
+        return 1;
+    };
+    let more = output.iter().skip(1);
+    1 + more.take_while(|l| indent(l) == column(first) + 2).count()
 }
 
 /// The lines of a block with the output of today: what was left out stays so, and lines that say how
@@ -139,8 +164,8 @@ pub(super) fn renewed(shown: &[&str], output: &[&str]) -> Vec<String> {
         for line in segment {
             if let Some(at) = place(line, output, from) {
                 let begin = found.map_or(at, |f| f.start);
-                found = Some(begin..at + 1);
-                from = at + 1;
+                from = at + height(&output[at..]);
+                found = Some(begin..from);
             }
         }
         kept[found.unwrap_or_default()].fill(true);
@@ -204,6 +229,10 @@ mod tests {
             renewed(&["  a 7", "  d 8", "  c 9", "..."]),
             ["case", "  a 1", "  b 2", "  c 3", "..."]
         );
+        // A line that is broken is shown with its rest.
+        let broken = ["  a   b 1 c", "        d 2", "      e"];
+        let shown = super::renewed(&["...", "  a b 1 c d", "..."], &broken);
+        assert_eq!(shown, ["  a   b 1 c", "        d 2", "..."]);
         let timed = super::renewed(&[], &["a", "b (7 a second)", "c"]);
         assert_eq!(timed, ["a", "...", "c"]);
     }
