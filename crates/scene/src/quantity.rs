@@ -126,8 +126,8 @@ pub fn quantity(text: &str, wanted: &str) -> Result<f64, UnitError> {
     convert(value, rest, wanted)
 }
 
-/// Parses a number with or without a unit, and converts it to SI units, see [`in_si`]; `None` if the
-/// text is something else.
+/// Parses a number with or without a unit, and converts it to SI units, see [`in_si`]; `None` if
+/// the text is something else.
 pub fn si_quantity(text: &str) -> Option<Result<(f64, String), UnitError>> {
     let text = text.trim();
     let (end, all) = parts(text);

@@ -104,8 +104,8 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     })
 }
 
-/// Converts a value to SI units; returns it with the symbol of its unit there, `Pa` for `MPa`, which
-/// is empty for pure numbers.
+/// Converts a value to SI units; returns it with the symbol of its unit there, `Pa` for `MPa`,
+/// which is empty for pure numbers.
 ///
 /// # Errors
 /// The unit is unknown, or a scale of hardness.
@@ -276,8 +276,9 @@ fn far(text: &str) -> Option<&str> {
     })
 }
 
-/// Whether the crate reads a word as the plural of a symbol: `mss` as milliseconds, but also `Ns` as
-/// newtons and `Pas` as pascals, where a product was meant. Names have plurals, `metres` and `bars`.
+/// Whether the crate reads a word as the plural of a symbol: `mss` as milliseconds, but also `Ns`
+/// as newtons and `Pas` as pascals, where a product was meant. Names have plurals, `metres` and
+/// `bars`.
 fn is_plural_of_symbol(word: &str) -> bool {
     let Some(singular) = word.strip_suffix('s') else {
         return false;

@@ -380,8 +380,8 @@ fn outputs(
     Ok((all, units))
 }
 
-/// Builds the first setting, and reads the case with each level separately, and builds it if there
-/// are few, so that an invalid level is refused before any run.
+/// Reads the case with each level separately, and builds it if there are few, so that an invalid
+/// level is refused before any run; then builds the first setting.
 fn check_levels(
     read: &StudyFile,
     base: &LoadedCase,
@@ -393,7 +393,6 @@ fn check_levels(
         Values::Listed(values) => values.clone(),
         Values::Range { .. } => vec![f.at(0.0), f.at(1.0)],
     };
-    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;
     for factor in factors {
         for value in levels(factor).into_iter().filter(|v| !v.sets.is_empty()) {
@@ -412,5 +411,6 @@ fn check_levels(
             })?;
         }
     }
+    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     Ok(())
 }

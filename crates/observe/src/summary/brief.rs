@@ -166,7 +166,8 @@ fn labelled(label: &str, text: &str) -> String {
     format!("  {label:<width$}{text}", width = MARGIN - 2)
 }
 
-/// Keeps this number of lines of a broken text, at least one; the end of the last shows that more follows.
+/// Keeps this number of lines of a broken text, at least one; the end of the last shows that more
+/// follows.
 pub fn cut(lines: &mut Vec<String>, count: usize, columns: usize) {
     let rest = lines.split_off(count.min(lines.len()));
     let Some(last) = lines.last_mut().filter(|_| !rest.is_empty()) else {

@@ -4,8 +4,8 @@
 //! Columns are separated by commas, semicolons, tabs or blanks; numbers have a decimal point or a
 //! decimal comma; lines that begin with `#` are comments. A heading is a name with its unit: `delta
 //! (um)`, `Q [N]`, `delta / um`, `mu`; units may also stand in a row below the names. Without
-//! headings columns are called `1`, `2`, ... Lines of another form above the headings, as instruments
-//! write them, are skipped.
+//! headings columns are called `1`, `2`, ... Lines of another form above the headings, as
+//! instruments write them, are skipped.
 
 mod heading;
 mod layout;
@@ -145,8 +145,8 @@ impl MeasuredTable {
     }
 }
 
-/// Returns the text of a file: in UTF-8, in UTF-16 with a byte order mark, or else in Latin-1, whose
-/// bytes are the first characters of Unicode, as older instruments write `\u{b5}m`.
+/// Returns the text of a file: in UTF-8, in UTF-16 with a byte order mark, or else in Latin-1,
+/// whose bytes are the first characters of Unicode, as older instruments write `\u{b5}m`.
 fn decoded(bytes: Vec<u8>) -> String {
     let wide = |pair: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks::<2>().0.iter().map(|p| pair(*p));

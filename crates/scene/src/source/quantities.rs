@@ -58,8 +58,8 @@ impl Source {
         false
     }
 
-    /// Replaces each number with a unit, `5 um`, by `(value: 5, unit: "um")`, for a schema that takes
-    /// such pairs.
+    /// Replaces each number with a unit, `5 um`, by `(value: 5, unit: "um")`, for a schema that
+    /// takes such pairs.
     ///
     /// # Errors
     /// A unit is unknown, or given twice.

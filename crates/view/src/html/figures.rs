@@ -8,6 +8,7 @@ use fretwork_observe::chart::{
     Axis, AxisRange, Chart, Colours, DARK_PALETTE, FieldMap, Figure, GRADIENT, PALETTE, Series,
     Style,
 };
+use fretwork_observe::statistics::{BESIDE_FIRST, UP_FIRST};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
@@ -230,8 +231,8 @@ pub(crate) fn columns(
 pub(crate) fn of_any_column() -> Value {
     json!({"any": {
         "across": ["time"],
-        "up": ["mu", "sin_phi", "damage_ratio", "worn_first"],
+        "up": UP_FIRST,
         "units": ["N", "N/m"],
-        "right": ["worn_first", "damage_ratio"],
+        "right": BESIDE_FIRST,
     }})
 }
