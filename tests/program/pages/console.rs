@@ -152,8 +152,8 @@ fn height(output: &[&str]) -> usize {
     1 + more.take_while(|l| indent(l) == column(first) + 2).count()
 }
 
-/// The lines of a block with the output of today: what was left out stays so, and lines that say how
-/// long something took are left out.
+/// The lines of a block with the output of today: what was left out stays so, and lines that say
+/// how long something took are left out.
 pub(super) fn renewed(shown: &[&str], output: &[&str]) -> Vec<String> {
     // A block that leaves nothing out, or does not say what it shows, has all of it.
     let whole = shown.iter().all(|l| *l != LEFT_OUT) || shown.iter().all(|l| *l == LEFT_OUT);
