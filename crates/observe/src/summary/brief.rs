@@ -2,6 +2,7 @@
 //! results by topic, and three things to look at.
 
 use super::{Grade, Summary};
+use crate::quantity::unit::WEAR_RATE;
 use crate::quantity::{Findings, Quantity, Role, Topic, Wording, quantity, with_half_width};
 use fretwork_scene::input_ranges::GivenRange;
 use serde_json::Value;
@@ -229,15 +230,15 @@ pub fn fitted(text: &str, columns: usize) -> String {
     format!("{} ...", kept[..end].trim_end_matches([';', ':', ',']))
 }
 
-/// Returns the results of a topic: those with half-widths first, main results before others, flows
-/// of matter last.
+/// Returns the results of a topic: those with half-widths first, then specific wear rates, main
+/// results before others, flows of matter last.
 fn entries(all: &Findings, topic: Topic) -> Vec<String> {
     let own = |q: &&Quantity| {
         q.topic == topic && q.role <= Role::Secondary && q.wording != Wording::Silent
     };
     let mut list: Vec<&Quantity> = all.all().iter().filter(own).collect();
     let flow = |q: &Quantity| q.topic == Topic::Wear && q.role == Role::Headline;
-    list.sort_by_key(|q| (q.estimate.is_none(), flow(q), q.role));
+    list.sort_by_key(|q| (q.estimate.is_none(), q.unit != WEAR_RATE, flow(q), q.role));
     let dimension = all.dimension();
     let mut causes = topic != Topic::Energy;
     let mut out: Vec<String> = Vec::new();
