@@ -288,11 +288,10 @@ fn entry(q: &Quantity, dimension: usize, causes: bool) -> Option<String> {
             return Some(format!("{} not determined: {shown}", q.label()));
         }
         let by: Vec<String> = estimate.shares().into_iter().map(|(of, _)| of).collect();
-        let by = match causes {
-            true => format!(" ({})", by.join(", ")),
-            false => String::new(),
-        };
-        return Some(format!("{} {shown}{by}", q.label()));
+        let plain = format!("{} {shown}", q.label());
+        let caused = format!("{plain} ({})", by.join(", "));
+        let fits = causes && caused.chars().count() <= COLUMNS - MARGIN;
+        return Some(if fits { caused } else { plain });
     }
     match &q.wording {
         Wording::Sentence(label, text) => Some(format!("{label} {text}")),
