@@ -104,8 +104,7 @@ impl Loop {
     /// amplitude delta_0 ([`Self::aperture`]). If the contact slides from the first quarter on, the
     /// middle half of the stroke counts, where the slopes of scars cancel (X. Jin, W. Sun, P. H.
     /// Shipway, Tribology International 102 (2016) 561). If Q/P still rises towards a plateau there,
-    /// as of a layer of debris, it is the second half, or less if the elastic part is longer: at
-    /// most the second half of the part that slides.
+    /// as of a layer of debris, it is the second half of the part that slides.
     pub fn plateau(&self) -> Option<f64> {
         let slides = match self.crossings {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),
@@ -119,7 +118,7 @@ impl Loop {
                 return self.over(0.25, 0.75);
             }
         }
-        self.over(elastic.min(1.0 - 0.5 * slides).max(0.5), 1.0)
+        self.over(1.0 - 0.5 * slides, 1.0)
     }
 
     /// Returns Q/P along the motion over a part of the strokes.
