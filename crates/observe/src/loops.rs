@@ -97,14 +97,14 @@ impl Loop {
     }
 
     /// Returns Q/P along the motion while the contact slides, weighted by the path; `None` before
-    /// the first reversal. A stroke is the path between two reversals, the longest so far (twice the
-    /// path to the first reversal, before there are two).
+    /// the first reversal. A stroke is the path between two reversals, the longest so far (twice
+    /// the path to the first reversal, before there are two).
     ///
     /// Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with the sliding
     /// amplitude delta_0 ([`Self::aperture`]). If the contact slides from the first quarter on, the
     /// middle half of the stroke counts, where the slopes of scars cancel (X. Jin, W. Sun, P. H.
-    /// Shipway, Tribology International 102 (2016) 561). If Q/P still rises towards a plateau there,
-    /// as of a layer of debris, it is the second half of the part that slides.
+    /// Shipway, Tribology International 102 (2016) 561). If Q/P still rises towards a plateau
+    /// there, as of a layer of debris, it is the second half of the part that slides.
     pub fn plateau(&self) -> Option<f64> {
         let slides = match self.crossings {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),
