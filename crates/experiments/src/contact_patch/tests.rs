@@ -300,3 +300,20 @@ fn a_coefficient_comes_from_runs_or_is_given_and_lies_above_zero() {
     let said = answer(&scattered, &laws).unwrap_err();
     assert!(said.contains("contains zero; more runs"), "{said}");
 }
+
+#[test]
+fn a_run_alone_without_an_estimate_is_named() {
+    let folder = Folder::new("alone");
+    let question = Question {
+        creepage: None,
+        displacement: Some("100 um".into()),
+        runs: vec![folder.run("a", &json!({}))],
+        accept: ACCEPTABLE.map(|(name, _)| name.to_owned()).to_vec(),
+        ..wheel()
+    };
+    let found = answer(&question, &SearchPath::new(&[])).unwrap();
+    for heading in ["ONE RUN: ", "NUMERICAL ERROR NOT KNOWN: ", "OTHER DRIVE: "] {
+        let noted = found.warnings.iter().any(|w| w.starts_with(heading));
+        assert!(noted, "{heading} in {:?}", found.warnings);
+    }
+}

@@ -221,7 +221,8 @@ fn unpaired(text: &str) -> String {
         let pair = after.split_once(PAIR[1]);
         let pair = pair.filter(|(number, _)| number.parse::<f64>().is_ok());
         out += before;
-        match pair.and_then(|(number, tail)| Some((number, tail.split_once(PAIR[2])?))) {
+        let whole = pair.and_then(|(number, tail)| Some((number, tail.split_once(PAIR[2])?)));
+        match whole.filter(|(_, (unit, _))| !unit.contains('"')) {
             Some((number, (unit, tail))) => {
                 out += &format!("{number} {unit}");
                 rest = tail;

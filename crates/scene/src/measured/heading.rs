@@ -29,7 +29,8 @@ impl Heading {
         let word = |between: &str| {
             let (name, unit) = text.rsplit_once(between)?;
             let unit = unbracketed(unit);
-            let fits = !name.trim().is_empty() && is_unit(unit);
+            // Q / P is a ratio and no force in poise.
+            let fits = !name.trim().is_empty() && unit != "P" && is_unit(unit);
             fits.then(|| (name.trim(), unit))
         };
         let (name, unit) = brackets('[', ']')
@@ -199,7 +200,8 @@ mod tests {
             ("Q / (N/m)", "Q", "N/m"),
             ("Weg in \u{b5}m", "Weg", "\u{b5}m"),
             ("Q/P", "Q/P", ""),
-            ("slip in cycle", "slip in cycle", ""),
+            ("Q / P", "Q / P", ""),
+            ("slip in contact", "slip in contact", ""),
             ("mu", "mu", ""),
         ] {
             let found = Heading::parse(text);
