@@ -146,7 +146,7 @@ impl MeasuredTable {
 }
 
 /// Returns the text of a file: in UTF-8, in UTF-16 with a byte order mark, or else in Latin-1,
-/// whose bytes are the first characters of Unicode, as older instruments write `\u{b5}m`.
+/// whose bytes are the first characters of Unicode, in which older instruments write micrometres.
 fn decoded(bytes: Vec<u8>) -> String {
     let wide = |pair: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks::<2>().0.iter().map(|p| pair(*p));
