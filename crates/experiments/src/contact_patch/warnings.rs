@@ -100,16 +100,13 @@ fn of_pressure(pressure: f64, s: &Strength) -> Option<String> {
     }
     if pressure > s.shakedown {
         let traction = s.traction.filter(|_| s.shakedown < s.shakedown_rolling);
-        let (heading, at) = match traction {
-            Some(t) if t.asked => ("", format!(" at Q/P {}", number(t.ratio, 3))),
-            Some(_) => (
-                " IN FULL SLIP",
-                format!(
-                    " in full slip, and free rolling carries {}; give creepage or force for the limit of your Q/P",
-                    pascal(s.shakedown_rolling)
-                ),
+        let at = match traction {
+            Some(t) if t.asked => format!(" at Q/P {}", number(t.ratio, 3)),
+            Some(_) => format!(
+                " in full slip ({} in free rolling; give creepage or force for that at your Q/P)",
+                pascal(s.shakedown_rolling)
             ),
-            None => ("", String::new()),
+            None => String::new(),
         };
         let hardens = match s.in_service.kind {
             YieldKind::Hardened => ", although it has hardened",
@@ -120,7 +117,7 @@ fn of_pressure(pressure: f64, s: &Strength) -> Option<String> {
             YieldKind::Given => "",
         };
         return Some(format!(
-            "BEYOND SHAKEDOWN{heading}: {p} is above {}{at}; {} the surface deforms plastically in every passage{hardens}",
+            "BEYOND SHAKEDOWN: {p} is above {}{at}; {} the surface deforms plastically in every passage{hardens}",
             pascal(s.shakedown),
             with(&s.in_service)
         ));

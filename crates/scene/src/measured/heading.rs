@@ -144,6 +144,10 @@ fn begins(lines: &[&str], numeric: bool, preface: bool) -> Option<(Layout, Vec<H
     };
     let is_row = |cells: &[String]| cells.iter().all(|c| layout.number(c).is_ok());
     let first = cells(lines.first()?);
+    // A row with a gap is no heading.
+    if preface && first.iter().any(|c| layout.number(c).is_ok()) {
+        return None;
+    }
     let (headings, rows) = match is_row(&first) {
         true => {
             let names = (1..=first.len()).map(|k| Heading::parse(&k.to_string()));

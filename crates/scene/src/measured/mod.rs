@@ -267,6 +267,8 @@ mod tests {
             "{error}"
         );
         assert_eq!(error.position(), Some((3, 1)));
+        let gap = parse("a;b\n1;NaN\n3;4\n").unwrap().values(1);
+        assert_eq!(gap.unwrap_err().position(), Some((2, 1)));
         let error = table.required("c").unwrap_err();
         assert!(error.message().contains("there are a, b"), "{error}");
     }
