@@ -55,7 +55,7 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &["in `s`, not in `m`"],
     );
     reported(
-        &said(&mu("0.1 m"), ""),
+        &said(&mu("0.2, 0.1 m"), ""),
         &["m", "pure number", "with `friction` = 0.1 m of study.ron"],
     );
     reported(
