@@ -205,17 +205,14 @@ pub(crate) fn archard(coefficient: f64, hardness: &str) -> String {
         true => ", more than unlubricated metals wear (K up to 0.02)",
         false => "",
     };
-    format!(
-        ", K = k H = {} (H {hardness}){severe}",
-        number(coefficient, 3)
-    )
+    format!(", K {} (H {hardness}){severe}", number(coefficient, 3))
 }
 
 /// Returns volume, specific wear rate with `coefficient` after it, and depths as text.
 fn of_body(w: &BodyWear, volume: &str, coefficient: &str) -> String {
     let mut text = quantity(w.volume, volume);
     if let Some(k) = w.specific_rate {
-        let _ = write!(text, "; k {}{coefficient}", quantity(k, "m^3/(N m)"));
+        let _ = write!(text, ", k {}{coefficient}", quantity(k, "m^3/(N m)"));
     }
     if let (Some(mean), Some(most)) = (w.depth_mean, w.depth_max) {
         let [mean, most] = [mean, most].map(|depth| quantity(depth, "m"));

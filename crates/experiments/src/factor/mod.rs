@@ -23,7 +23,20 @@ pub struct Level {
     pub sets: Vec<String>,
 }
 
+/// Number of digits of a drawn number where it is shown with others.
+const SHOWN: i32 = 4;
+
 impl Level {
+    /// Returns the label, in which a number of many digits and without a unit has four.
+    pub fn short(&self) -> String {
+        let many = |x: &f64| self.label.len() > 7 && *x != x.trunc();
+        let number = self.label.parse().ok().filter(many);
+        number.map_or_else(
+            || self.label.clone(),
+            |x| fretwork_observe::quantity::number(x, SHOWN),
+        )
+    }
+
     /// Creates a value of some keys from its text; the number of `5 um` is in SI units.
     pub fn of(keys: &[String], text: &str) -> Self {
         let with_unit = || si_quantity(text)?.ok().map(|(value, _)| value);

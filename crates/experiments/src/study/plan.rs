@@ -236,7 +236,7 @@ impl Plan {
     pub fn words(&self, point: &Point) -> String {
         let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
         let mut words: Vec<String> = values
-            .map(|(f, v)| format!("{} {}", f.name, v.label))
+            .map(|(f, v)| format!("{} {}", f.name, v.short()))
             .collect();
         if self.seeds.len() > 1 {
             words.push(format!("seed {}", point.run.seed));

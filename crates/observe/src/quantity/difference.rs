@@ -85,7 +85,7 @@ impl Significance {
                 "these samples differ, what other seeds give is not known"
             }
             Self::NotKnownToDiffer => "not known to differ",
-            Self::NotKnown => "significance not known: no half-widths of the same cause",
+            Self::NotKnown => "significance not known: no half-width of a cause that both know",
             Self::NotTrusted => "no result to rest on: a run is not trustworthy",
             Self::NotDetermined => "not determined",
         }
@@ -191,7 +191,7 @@ mod tests {
                 0.46,
                 None,
                 Significance::NotKnown,
-                "0.06000: significance not known: no half-widths of the same cause; step known of one run only, not counted",
+                "0.06000: significance not known: no half-width of a cause that both know; step known of one run only, not counted",
             ),
             // More than a quarter of the value.
             (
@@ -251,7 +251,7 @@ mod tests {
         );
         assert_eq!(
             text(&with(0.46, "over 8 seeds", None)),
-            "0.06000: significance not known: no half-widths of the same cause; over 8 seeds, step, within this sample \
+            "0.06000: significance not known: no half-width of a cause that both know; over 8 seeds, step, within this sample \
              known of one run only, not counted"
         );
     }

@@ -19,18 +19,21 @@ const LOOK_AT: usize = 3;
 /// Ranks of the lines of a block: a line of a lower rank is shown before one of a higher rank.
 type Ranks = [usize; 4];
 
-/// Topics in the order of their blocks, with their labels and ranks: two lines of each main topic
-/// come before a line of energies.
+/// Topics in the order of their blocks, with their labels and ranks. Wear has the most lines: its
+/// volumes, and the wear rate of each body.
 const TOPICS: [(Topic, &str, Ranks); 6] = [
-    (Topic::Friction, "friction", [0, 1, 4, 6]),
-    (Topic::Wear, "wear", [0, 1, 1, 2]),
-    (Topic::Damage, "damage", [0, 1, 4, 6]),
-    (Topic::Regime, "regime", [0, 1, 6, 6]),
-    (Topic::Measures, "measures", [0, 2, 5, 5]),
-    (Topic::Energy, "energy", [3, 6, 7, 7]),
+    (Topic::Friction, "friction", [0, 3, 5, 6]),
+    (Topic::Wear, "wear", [0, 1, 2, 6]),
+    (Topic::Damage, "damage", [0, 3, 5, 6]),
+    (Topic::Regime, "regime", [0, 3, 6, 6]),
+    (Topic::Measures, "measures", [2, 4, 5, 5]),
+    (Topic::Energy, "energy", [4, 6, 7, 7]),
 ];
-const GRADE: Ranks = [0, 1, 8, 8];
-const LOOK: Ranks = [0, 2, 4, 9];
+/// Beginning of the labels of the wear of each body.
+const WEAR_OF: &str = "wear of ";
+
+const GRADE: Ranks = [0, 2, 8, 8];
+const LOOK: Ranks = [0, 3, 5, 9];
 const GIVEN: Ranks = [0, 6, 8, 8];
 
 /// Lines under a label.
@@ -120,7 +123,11 @@ impl Summary {
         };
         let mut blocks = vec![Block::of_text(None, grade, GRADE)];
         for (topic, label, ranks) in TOPICS {
-            blocks.push(Block::of_entries(label, &entries(&all, topic), ranks));
+            blocks.push(Block::of_entries(
+                label,
+                &entries(&all, topic, grade),
+                ranks,
+            ));
         }
         let given: Vec<String> = run.given.iter().map(given).collect();
         blocks.push(Block::of_entries("given", &given, GIVEN));
@@ -230,22 +237,33 @@ pub fn fitted(text: &str, columns: usize) -> String {
     format!("{} ...", kept[..end].trim_end_matches([';', ':', ',']))
 }
 
-/// Returns the results of a topic: those with half-widths first, then specific wear rates, main
-/// results before others, flows of matter last.
-fn entries(all: &Findings, topic: Topic) -> Vec<String> {
+/// Returns the place of a result of wear: volumes with half-widths, rates of bodies, others, flows.
+fn place(q: &Quantity) -> u8 {
+    match &q.wording {
+        _ if q.topic != Topic::Wear => 0,
+        _ if q.role == Role::Headline => 3,
+        Wording::Value(_) if q.estimate.is_some() => 0,
+        Wording::Sentence(label, _) if label.starts_with(WEAR_OF) || q.unit == WEAR_RATE => 1,
+        _ => 2,
+    }
+}
+
+/// Returns the results of a topic: those with half-widths first, main results before others. The
+/// causes of the half-width of the result of the `sentence` on the error are in that.
+fn entries(all: &Findings, topic: Topic, sentence: &str) -> Vec<String> {
     let own = |q: &&Quantity| {
         q.topic == topic && q.role <= Role::Secondary && q.wording != Wording::Silent
     };
     let mut list: Vec<&Quantity> = all.all().iter().filter(own).collect();
-    let flow = |q: &Quantity| q.topic == Topic::Wear && q.role == Role::Headline;
-    list.sort_by_key(|q| (q.estimate.is_none(), q.unit != WEAR_RATE, flow(q), q.role));
+    list.sort_by_key(|q| (place(q), q.estimate.is_none(), q.role));
     let dimension = all.dimension();
     let mut causes = topic != Topic::Energy;
     let mut out: Vec<String> = Vec::new();
     // Values that were shown with their half-widths.
     let mut shown: Vec<String> = Vec::new();
     for q in list {
-        let Some(mut entry) = entry(q, dimension, causes) else {
+        let known = sentence.starts_with(&format!("error of {}", q.label()));
+        let Some(mut entry) = entry(q, dimension, causes && !known) else {
             continue;
         };
         causes = false;
@@ -254,12 +272,14 @@ fn entries(all: &Findings, topic: Topic) -> Vec<String> {
                 shown.push(quantity(value, q.unit.symbol(dimension)));
             }
             (Wording::Sentence(label, text), _) => {
-                let again = shown
-                    .iter()
-                    .find_map(|value| text.strip_prefix(value.as_str()));
-                if let Some(rest) = again.and_then(|rest| rest.strip_prefix("; ")) {
-                    entry = format!("{label}: {rest}");
-                }
+                // The label of the block says what it is about.
+                let label = label.strip_prefix(WEAR_OF).unwrap_or(label);
+                let mut again = shown.iter().filter_map(|v| text.strip_prefix(v.as_str()));
+                entry = match again.find_map(|rest| rest.strip_prefix(", ")) {
+                    Some(rest) => format!("{label}: {rest}"),
+                    None if topic == Topic::Wear => format!("{label} {text}"),
+                    None => entry,
+                };
             }
             _ => {}
         }

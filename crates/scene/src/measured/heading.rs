@@ -144,8 +144,9 @@ fn begins(lines: &[&str], numeric: bool, preface: bool) -> Option<(Layout, Vec<H
     };
     let is_row = |cells: &[String]| cells.iter().all(|c| layout.number(c).is_ok());
     let first = cells(lines.first()?);
-    // A row with a gap is no heading.
-    if preface && first.iter().any(|c| layout.number(c).is_ok()) {
+    // A row with a gap is neither a heading nor one of units.
+    let has_number = |cells: &[String]| cells.iter().any(|c| layout.number(c).is_ok());
+    if preface && has_number(&first) {
         return None;
     }
     let (headings, rows) = match is_row(&first) {
@@ -156,7 +157,7 @@ fn begins(lines: &[&str], numeric: bool, preface: bool) -> Option<(Layout, Vec<H
         false => {
             let second = cells(lines.get(1)?);
             let names = fitting(layout, lines[0], &first, second.len())?;
-            match lines.len() > 2 && !is_row(&second) && are_units(&second) {
+            match lines.len() > 2 && !has_number(&second) && are_units(&second) {
                 true => {
                     let pairs = names.into_iter().zip(&second);
                     (pairs.map(|(h, unit)| h.with_unit(unit)).collect(), 2)

@@ -267,8 +267,11 @@ mod tests {
             "{error}"
         );
         assert_eq!(error.position(), Some((3, 1)));
-        let gap = parse("a;b\n1;NaN\n3;4\n").unwrap().values(1);
-        assert_eq!(gap.unwrap_err().position(), Some((2, 1)));
+        for gap in ["NaN", "-"] {
+            let table = parse(&format!("a;b\n1;{gap}\n3;4\n")).unwrap();
+            let error = table.values(1).unwrap_err();
+            assert_eq!(error.position(), Some((2, 1)), "{gap}");
+        }
         let error = table.required("c").unwrap_err();
         assert!(error.message().contains("there are a, b"), "{error}");
     }
