@@ -52,7 +52,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let title = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
     let lines = lines(&loaded, &built, !args.no_timing);
     let inputs = match args.inputs {
-        true => inputs::lines(built.simulation.view()),
+        true => inputs::lines(built.simulation.view(), &built.wear_coefficients),
         false => Vec::new(),
     };
     let inputs: String = inputs

@@ -63,8 +63,8 @@ pub struct ContactPatchArgs {
     /// Hardnesses, in place of those of the materials ('260 HBW', 2.5GPa)
     #[arg(long, value_name = "H1[,H2]", value_delimiter = ',')]
     hardness: Vec<String>,
-    /// Yield stress of the softer body; by default of its material, or the flow stress, its
-    /// hardness over 2.8
+    /// Yield stress of the softer body; by default those of its material, before and after it has
+    /// hardened, or the flow stress, its hardness over 2.8
     #[arg(long = "yield", value_name = "STRESS")]
     yield_stress: Option<String>,
     /// Friction coefficient, for slip and rolling
@@ -106,9 +106,17 @@ pub struct ContactPatchArgs {
     /// Print JSON, in SI units
     #[arg(long)]
     json: bool,
+    /// Words that belong to no option
+    #[arg(hide = true)]
+    rest: Vec<String>,
 }
 
 pub fn contact_patch(args: &ContactPatchArgs) -> Result<(), Failure> {
+    if let Some(word) = args.rest.first() {
+        return Err(Failure::Usage(format!(
+            "`{word}` belongs to no option: write a number and its unit as one word (75kN, or '75 kN'), and the values of two bodies with a comma (0.46m,flat)"
+        )));
+    }
     let question = Question {
         load: args.load.clone(),
         radius: args.radius.clone(),

@@ -31,17 +31,22 @@ pub struct MeasuredArgs {
 impl MeasuredArgs {
     /// Reads the curves.
     pub fn read(&self) -> Result<Vec<MeasuredCurve>, Failure> {
-        let depth = self.depth.as_ref().map(|text| {
-            let depth = quantity(text, "m").map_err(|e| e.message);
-            let depth = depth.and_then(|d| match d > 0.0 {
-                true => Ok(d),
-                false => Err(format!("`{text}` must be above zero")),
-            });
-            depth.map_err(|why| Failure::Usage(format!("--depth: {why}")))
-        });
-        let columns = MeasuredColumns::parse(&self.columns, depth.transpose()?);
-        let columns = columns.map_err(Failure::Usage)?;
-        read_measured(&self.measured, &columns).map_err(Failure::Usage)
+        let depth = self.depth.as_deref().map(measured_depth).transpose();
+        let columns = depth.and_then(|depth| MeasuredColumns::parse(&self.columns, depth));
+        let curves = columns.and_then(|columns| read_measured(&self.measured, &columns));
+        curves.map_err(Failure::Usage)
+    }
+}
+
+/// Parses the length (m) of a contact across the motion.
+///
+/// # Errors
+/// The text is no length above zero; in a sentence.
+pub fn measured_depth(text: &str) -> Result<f64, String> {
+    match quantity(text, "m") {
+        Ok(depth) if depth > 0.0 => Ok(depth),
+        Ok(_) => Err(format!("depth: `{text}` must be above zero")),
+        Err(e) => Err(format!("depth: {}", e.message)),
     }
 }
 

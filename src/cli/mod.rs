@@ -23,10 +23,13 @@ mod study;
 mod trade;
 
 pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
+pub use self::measured::measured_depth;
 pub use self::observers::{Added, add as add_observers};
 pub use self::report::make as make_report;
 pub use self::run::{default_folder, place as place_of};
-pub use fretwork_view::{ReportError, compare as compare_runs};
+pub use fretwork_view::{
+    MeasuredColumns, MeasuredCurve, ReportError, compare as compare_runs, read_measured,
+};
 
 use crate::certify::{CERTIFY_IN_CHILD, certify_requested};
 use crate::experiments::RunSetup;

@@ -48,7 +48,8 @@ struct StudyArgs {
     /// by default its main results
     #[arg(long = "output", value_name = "NAME")]
     outputs: Vec<String>,
-    /// Folder of the results; results/study/<study> by default
+    /// Folder of the results; results/study/<study> by default, and results/study/<case>-ranges or
+    /// <case>-seeds of a case
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Folder of the runs, which several studies may share; <out>/runs by default
@@ -165,7 +166,16 @@ fn range(text: &str) -> Result<(usize, usize), String> {
 
 impl StudyArgs {
     fn out(&self) -> PathBuf {
-        results(self.out.as_deref(), "study", &self.study)
+        let folder = results(self.out.as_deref(), "study", &self.study);
+        // The tables of one do not take the place of those of the other.
+        let kind = match (self.out.is_some(), self.ranges, self.seeds) {
+            (false, true, _) => "-ranges",
+            (false, false, Some(_)) => "-seeds",
+            _ => return folder,
+        };
+        let mut name = folder.into_os_string();
+        name.push(kind);
+        name.into()
     }
 
     fn plan(&self) -> Result<Plan, Failure> {

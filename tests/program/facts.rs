@@ -1,19 +1,11 @@
 //! Statements of pages about the program, and of its help about files, are compared with the
 //! program and the files.
 
+use crate::pages::{pages, read, root};
 use fretwork::laws::{Kind, LawLocation};
 use fretwork::shipped::built_in;
 use fretwork::shipped::search_path;
-use std::path::{Path, PathBuf};
 use std::process::Command;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
 
 /// Returns the output of a call of the program.
 fn answer(words: &[&str]) -> String {
@@ -21,23 +13,6 @@ fn answer(words: &[&str]) -> String {
     let output = command.args(words).current_dir(root()).output().unwrap();
     assert!(output.status.success(), "{words:?}: {output:?}");
     String::from_utf8(output.stdout).unwrap()
-}
-
-/// Returns all pages: README and docs.
-fn pages() -> Vec<PathBuf> {
-    let mut out = vec![root().join("README.md")];
-    let mut folders = vec![root().join("docs")];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap().flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "md") {
-                out.push(path);
-            }
-        }
-    }
-    out
 }
 
 /// Subcommands of a command, as its help lists them.

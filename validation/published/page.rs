@@ -95,13 +95,12 @@ impl Section {
     fn markdown(&self) -> String {
         let mut text = format!("## {}\n\n{}\n", self.title, self.text.trim());
         for (study, table) in &self.studies {
-            let by = if table.programs.is_empty() {
-                String::new()
-            } else {
-                format!(", by fretwork {}", table.programs.join(" and "))
+            let measured = |version: &String| {
+                format!("\nMeasured with version {version}: `validation/{study}.ron`.")
             };
+            text += &table.programs.iter().map(measured).collect::<String>();
             text += &format!(
-                "\n`validation/{study}.ron`: {} runs, {:.0} minutes of one processor{by}.\n",
+                "\n{} runs, {:.0} minutes of one processor.\n",
                 table.runs.len(),
                 table.seconds / 60.0
             );

@@ -2,7 +2,9 @@
 //! numbers in a range, and limits of accepted runs.
 
 use crate::runs::stored::Limits;
+use fretwork_scene::material::NumberSpec;
 use fretwork_scene::source::{InputError, Source};
+use fretwork_scene::units;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -28,12 +30,14 @@ pub trait Spec: DeserializeOwned {
 }
 
 impl<T: Spec> SpecFile<T> {
-    /// Reads a file and checks everything that can be checked without a case.
+    /// Reads a file and checks everything that can be checked without a case. Numbers may have
+    /// units, `low: 5 um`, where the file gives values of a case.
     ///
     /// # Errors
     /// Returns an error with file, line and column.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let source = Source::read(path)?;
+        let mut source = Source::read(path)?;
+        source.pair_quantities()?;
         let spec: T = source.parse()?;
         spec.check(&source)?;
         Ok(Self {
@@ -111,6 +115,36 @@ pub fn check_runs(source: &Source, threads: u16, limits: Limits) -> Result<(), I
         }
     }
     Ok(())
+}
+
+/// Returns the ends of a range in SI units, with the symbol of their unit there. An end without a
+/// unit is in SI units.
+///
+/// # Errors
+/// Returns the field at fault and why: a unit is unknown, or the two are of different dimensions.
+pub fn ends(low: &NumberSpec, high: &NumberSpec) -> Result<(f64, f64, String), (String, String)> {
+    let si = |key: &str, number: &NumberSpec| {
+        let unit = number.unit.as_deref().unwrap_or_default();
+        units::in_si(number.value, unit).map_err(|e| (key.to_owned(), e.message))
+    };
+    let ((from, of_low), (to, of_high)) = (si("low", low)?, si("high", high)?);
+    let unit = if of_low.is_empty() { &of_high } else { &of_low };
+    if !of_high.is_empty()
+        && let Err(e) = units::convert(1.0, &of_high, unit)
+    {
+        return Err(("high".to_owned(), e.message));
+    }
+    Ok((from, to, unit.clone()))
+}
+
+/// Reads a time (s), which may have a unit.
+///
+/// # Errors
+/// The value is no number, or its unit is not that of a time.
+pub fn seconds<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let number = NumberSpec::deserialize(deserializer)?;
+    let unit = number.unit.as_deref().unwrap_or_default();
+    units::convert(number.value, unit, "s").map_err(|e| serde::de::Error::custom(e.message))
 }
 
 /// Returns the default of one thread, or one seed.

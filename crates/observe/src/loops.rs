@@ -32,6 +32,9 @@ const PARTS: usize = 200;
 const ROUNDED: f64 = 1.36;
 /// Part of the stroke that is left out after that.
 const CORNER: f64 = 0.02;
+/// Share by which Q/P in the second quarter of a stroke may be below the straight line through the
+/// second half: by more, it still rises towards its plateau.
+const RISING: f64 = 0.03;
 
 impl Loop {
     /// Starts the next cycle at the end of the last one.
@@ -94,25 +97,34 @@ impl Loop {
     }
 
     /// Returns Q/P along the motion while the contact slides, weighted by the path; `None` before
-    /// the first reversal. Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with
-    /// the sliding amplitude delta_0 ([`Self::aperture`]). The middle of the stroke counts, where
-    /// the slopes of scars do not contribute: X. Jin, W. Sun, P. H. Shipway, Tribology
-    /// International 102 (2016) 561. That is its middle half, or less if it slides later; if it
-    /// slides in the second half alone, the second half of the part that slides. A stroke is the
-    /// path between two reversals, the longest so far (twice the path to the first reversal, before
-    /// there are two).
+    /// the first reversal. A stroke is the path between two reversals, the longest so far (twice
+    /// the path to the first reversal, before there are two).
+    ///
+    /// Of a stroke of 2 delta* the first 2 (delta* - delta_0) are elastic, with the sliding
+    /// amplitude delta_0 ([`Self::aperture`]). If the contact slides from the first quarter on, the
+    /// middle half of the stroke counts, where the slopes of scars cancel (X. Jin, W. Sun, P. H.
+    /// Shipway, Tribology International 102 (2016) 561). If Q/P still rises towards a plateau
+    /// there, as of a layer of debris, it is the second half of the part that slides.
     pub fn plateau(&self) -> Option<f64> {
         let slides = match self.crossings {
             Some([low, high]) if high > low => ((high - low) / self.stroke[1]).min(1.0),
             _ => 1.0,
         };
-        let half = (0.5 - ROUNDED * (1.0 - slides) - CORNER).min(0.25);
-        let [first, end] = match half > CORNER {
-            true => [0.5 - half, 0.5 + half],
-            false => [1.0 - 0.5 * slides, 1.0],
-        };
+        let elastic = ROUNDED * (1.0 - slides) + CORNER;
+        if elastic <= 0.25 {
+            // What a straight line through the second half is before it.
+            let [second, third, last] = [0.25, 0.5, 0.75].map(|from| self.over(from, from + 0.25));
+            if second? >= (1.0 - RISING) * (2.0 * third? - last?) {
+                return self.over(0.25, 0.75);
+            }
+        }
+        self.over(1.0 - 0.5 * slides, 1.0)
+    }
+
+    /// Returns Q/P along the motion over a part of the strokes.
+    fn over(&self, from: f64, to: f64) -> Option<f64> {
         let place = |share: f64| (share * PARTS as f64).round() as usize;
-        let parts = self.parts.iter().take(place(end)).skip(place(first));
+        let parts = self.parts.iter().take(place(to)).skip(place(from));
         let sum = |k: usize| parts.clone().map(|part| part[k]).sum::<f64>();
         let (work, load) = (sum(0), sum(1));
         (load > 0.0).then(|| work / load)
@@ -204,6 +216,38 @@ mod tests {
         }
     }
 
+    /// Returns the plateau of a rectangular loop at 0.4 with another force over the strokes, a
+    /// function of the part of the stroke.
+    fn with_force(more: impl Fn(f64) -> f64) -> f64 {
+        let (a, n, p) = (1e-5, 4000, 100.0);
+        let (mut l, mut x) = (Loop::default(), 0.0);
+        for step in 0..3 * n {
+            if step % n == 0 {
+                l.next_cycle();
+            }
+            let phase = std::f64::consts::TAU * (f64::from(step) + 1.0) / f64::from(n);
+            let to = a * phase.sin();
+            let along = (to - x as f64).signum();
+            let part = 0.5 * (1.0 + along * 0.5 * (x + to) / a);
+            l.add(to, along * p * (0.4 + more(part)), p);
+            x = to;
+        }
+        l.plateau().unwrap()
+    }
+
+    #[test]
+    fn slopes_of_a_scar_cancel_and_a_slow_rise_is_left_out() {
+        for slope in [0.05, 0.2] {
+            let found = with_force(|s| slope * (s - 0.5));
+            assert!((found - 0.4).abs() < 1e-3, "{slope}: {found}");
+            let hooked = with_force(|s| 8.0 * slope * (s - 0.5).powi(3));
+            assert!((hooked - 0.4).abs() < 1e-3, "{slope}: {hooked}");
+        }
+        // The force of a layer of debris, 0.1, 0.3 and 0.38 of the stroke behind the reversal.
+        let rises = with_force(|s| -0.6 * (-s / 0.12).exp());
+        assert!((rises - 0.4).abs() < 0.006, "{rises}");
+    }
+
     fn elastic_slider(k: f64) {
         let (a, n, mu, p) = (1e-5, 4000, 0.4, 100.0);
         let (mut l, mut x, mut q) = (Loop::default(), 0.0, 0.0_f64);
@@ -219,14 +263,12 @@ mod tests {
             path += p * (to - x).abs();
             x = to;
             l.add(x, q, p);
-            let since = (4 * step + n) % (2 * n);
-            let slip = a - mu * p / k;
             // Path since the reversal, of a stroke of 2 a.
-            let since =
-                a * (1.0 - (std::f64::consts::TAU * f64::from(since) / f64::from(4 * n)).cos());
-            let sure = (since - ROUNDED * 2.0 * (a - slip)).abs() > 0.01 * a;
-            if step > n && sure {
-                assert_eq!(l.slides(), since > ROUNDED * 2.0 * (a - slip), "{step}");
+            let since = f64::from((4 * step + n) % (2 * n)) / f64::from(4 * n);
+            let since = a * (1.0 - (std::f64::consts::TAU * since).cos());
+            let slides = ROUNDED * 2.0 * mu * p / k;
+            if step > n && since > 0.01 * a && (since - slides).abs() > 0.01 * a {
+                assert_eq!(l.slides(), since > slides, "{step}");
             }
             if step == n - 1 {
                 // The plateau counts from the first reversal.

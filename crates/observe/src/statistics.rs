@@ -28,6 +28,13 @@ impl Column {
     }
 }
 
+/// Columns that a chart of any column shows first, the first of them that a run has: friction, then
+/// damage, then wear.
+pub const UP_FIRST: [&str; 4] = ["mu", "sin_phi", "damage_ratio", "worn_first"];
+
+/// Columns that it shows beside another one.
+pub const BESIDE_FIRST: [&str; 2] = ["worn_first", "damage_ratio"];
+
 /// A table that is written row by row and read back at the end, so that memory does not grow with
 /// the length of the run.
 #[derive(Debug, Default)]

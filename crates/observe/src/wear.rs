@@ -92,7 +92,7 @@ impl WearSummary {
             let doc = format!("volume worn off `{}`", body.body);
             let added = found.add(&format!("wear.bodies.{k}.volume"), body.volume, VOLUME, doc);
             added.secondary(format!("worn off {}", body.body));
-            added.sentence(format!("wear of {}", body.body), of_body(body, volume));
+            added.sentence(format!("wear of {}", body.body), of_body(body, volume, ""));
         }
         let third = self.volume_third_body;
         found.edit("wear.volume_third_body", |q| {
@@ -156,10 +156,8 @@ impl WearSummary {
                 let doc = format!("hardness H of `{}`: {}", body.body, hard.text);
                 found.add(&format!("{at}.hardness"), hard.value, PASCAL, doc);
             }
-            let mut text = of_body(body, volume);
-            if let Some(hard) = hard {
-                text += &archard(rate * hard.value, &hard.text);
-            }
+            let hard = hard.map(|h| archard(rate * h.value, &h.text));
+            let text = of_body(body, volume, &hard.unwrap_or_default());
             found.edit(&format!("wear.bodies.{k}.volume"), |q| {
                 if let Wording::Sentence(label, _) = q.wording.clone() {
                     q.sentence(label, text);
@@ -172,11 +170,13 @@ impl WearSummary {
 /// Makes the flows results of the case, with one sentence for all.
 pub(crate) fn show_flows(found: &mut Findings) {
     let unit = MASS_FLOW.symbol(found.dimension());
-    let known = FLOWS.map(|(name, ..)| match found.number(&format!("wear.{name}")) {
-        Some(q) => format!("{name} {} {unit}", number(q, 3)),
-        None => format!("{name} not measured"),
+    let circuit = found.number("circuit.start").is_some();
+    // Without a circuit only the source is measured, and what grains carry.
+    let known = FLOWS.iter().filter_map(|(name, ..)| {
+        let q = found.number(&format!("wear.{name}"))?;
+        (circuit || q != 0.0).then(|| format!("{name} {} {unit}", number(q, 3)))
     });
-    let [source, ejected, lost, internal] = known;
+    let known: Vec<String> = known.collect();
     for (name, label, doc) in FLOWS {
         found.edit(&format!("wear.{name}"), |q| {
             if q.value.as_f64().is_some_and(|x| x != 0.0) {
@@ -186,12 +186,11 @@ pub(crate) fn show_flows(found: &mut Findings) {
         });
     }
     let any = found.number("wear.Qs").is_some_and(|q| q > 0.0);
-    let circuit = found.number("circuit.start").is_some();
     found.edit("wear.Qs", |q| {
         q.lacks = None;
         q.headline("source flow Qs").silent();
         if any || circuit {
-            q.sentence("flows", format!("{source}, {ejected}, {lost}; {internal}"));
+            q.sentence("flows", known.join(", "));
         }
     });
 }
@@ -206,25 +205,18 @@ pub(crate) fn archard(coefficient: f64, hardness: &str) -> String {
         true => ", more than unlubricated metals wear (K up to 0.02)",
         false => "",
     };
-    format!(
-        ", K = k H = {} (H {hardness}){severe}",
-        number(coefficient, 3)
-    )
+    format!(", K {} (H {hardness}){severe}", number(coefficient, 3))
 }
 
-/// Returns volume, depths and specific wear rate as text.
-fn of_body(w: &BodyWear, volume: &str) -> String {
+/// Returns volume, specific wear rate with `coefficient` after it, and depths as text.
+fn of_body(w: &BodyWear, volume: &str, coefficient: &str) -> String {
     let mut text = quantity(w.volume, volume);
-    if let (Some(mean), Some(most)) = (w.depth_mean, w.depth_max) {
-        let _ = write!(
-            text,
-            ", {} deep on average where worn, {} at most",
-            quantity(mean, "m"),
-            quantity(most, "m")
-        );
-    }
     if let Some(k) = w.specific_rate {
-        let _ = write!(text, "; k = V/(P s) = {}", quantity(k, "m^3/(N m)"));
+        let _ = write!(text, ", k {}{coefficient}", quantity(k, "m^3/(N m)"));
+    }
+    if let (Some(mean), Some(most)) = (w.depth_mean, w.depth_max) {
+        let [mean, most] = [mean, most].map(|depth| quantity(depth, "m"));
+        let _ = write!(text, "; {mean} deep on average where worn, {most} at most");
     }
     text
 }

@@ -122,11 +122,12 @@ pub struct Material {
 }
 
 /// Properties with a known unit.
-const PROPERTIES: [(&str, &str); 10] = [
+const PROPERTIES: [(&str, &str); 11] = [
     ("young", "Pa"),
     ("shear_modulus", "Pa"),
     ("bulk_modulus", "Pa"),
     ("yield_stress", "Pa"),
+    ("yield_stress_hardened", "Pa"),
     ("tensile_strength", "Pa"),
     ("poisson", ""),
     ("conductivity", "W/(m K)"),
@@ -281,6 +282,14 @@ impl MaterialLibrary {
         folders.retain(|f| f.is_dir());
         Self {
             folders,
+            own: BTreeMap::new(),
+        }
+    }
+
+    /// The files built into the program alone.
+    pub fn shipped() -> Self {
+        Self {
+            folders: Vec::new(),
             own: BTreeMap::new(),
         }
     }

@@ -1,6 +1,6 @@
 //! Numbers with units as written on a command line, and hardnesses as pressures.
 
-use super::units::{UnitError, convert, hardness};
+use super::units::{UnitError, convert, hardness, in_si};
 
 /// The unit kgf/mm² in Pa.
 const KGF_PER_SQUARE_MILLIMETRE: f64 = 9.806_65e6;
@@ -113,12 +113,46 @@ pub fn quantity(text: &str, wanted: &str) -> Result<f64, UnitError> {
             nearest: None,
         });
     };
-    convert(value, text[end..].trim(), wanted)
+    let rest = text[end..].trim();
+    if let Some(decimals) = rest.strip_prefix(',')
+        && decimals.starts_with(|c: char| c.is_ascii_digit())
+    {
+        return Err(UnitError {
+            message: format!("`{text}` has a decimal comma"),
+            expected: Some(format!("`{}.{decimals}`", &text[..end])),
+            nearest: None,
+        });
+    }
+    convert(value, rest, wanted)
+}
+
+/// Parses a number with or without a unit, and converts it to SI units, see [`in_si`]; `None` if
+/// the text is something else.
+pub fn si_quantity(text: &str) -> Option<Result<(f64, String), UnitError>> {
+    let text = text.trim();
+    let (end, all) = parts(text);
+    let value = number(&text[..end]).filter(|x| x.is_finite() && end > 0 && all == text.len())?;
+    Some(in_si(value, text[end..].trim()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_of_numbers_are_told_from_others() {
+        for (text, si, unit) in [
+            ("5um", 5e-6, "m"),
+            ("0.3", 0.3, ""),
+            ("1e3 N/m", 1e3, "N/m"),
+        ] {
+            assert_eq!(si_quantity(text), Some(Ok((si, unit.to_owned()))), "{text}");
+        }
+        for text in ["sand", "Explicit", "[1, 2]", "5 us, 3", "", "inf"] {
+            assert_eq!(si_quantity(text), None, "{text}");
+        }
+        assert!(si_quantity("5 foo").is_some_and(|r| r.is_err()));
+    }
 
     #[test]
     fn quantities_as_one_writes_them() {
@@ -135,6 +169,8 @@ mod tests {
             let got = quantity(text, wanted).unwrap();
             assert!((got / si - 1.0).abs() < 1e-15, "{text}: {got}");
         }
+        let comma = quantity("7,5kN", "N").unwrap_err();
+        assert_eq!(comma.expected.as_deref(), Some("`7.5kN`"));
         for (text, wanted) in [
             ("kN", "N"),
             ("", "m"),

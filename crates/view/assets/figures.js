@@ -20,13 +20,18 @@
   // Charts over time share their zoom, others with those over the same numbers.
   const link = (x, other) => (x.unit === "s" ? x.label : other);
 
-  const any = (host, runs) => {
+  // `opens` has the names of the columns that are shown at first, the most wanted first: across,
+  // upwards, and on the axis on the right.
+  const any = (host, runs, opens) => {
     heading(host, "Any column of the statistics", "Choose what is drawn over what.");
     const names = [...new Set(runs.flatMap((run) => [...run.columns.keys()]))];
     const varies = (name) => runs.some((run) => run.columns.get(name)?.values.some((v, _, all) => v !== all[0] && Number.isFinite(v)));
     const unit = (name) => runs.map((run) => run.columns.get(name)).find(Boolean).unit;
     const doc = element("p", { class: "meaning" });
-    let x = names[0], first = names.find((n) => unit(n) && unit(n) !== unit(x) && varies(n)) || x, second = "", chart = null;
+    const wanted = (list) => list.find((name) => names.includes(name) && varies(name));
+    let x = wanted(opens.across) || names[0], chart = null;
+    let first = wanted(opens.up) || names.find((n) => opens.units.includes(unit(n)) && varies(n)) || names.find((n) => unit(n) && unit(n) !== unit(x) && varies(n)) || x;
+    let second = wanted(opens.right.filter((name) => name !== first)) || "";
     const draw = () => {
       chart?.remove();
       const chosen = [first, second].filter(Boolean);
@@ -43,7 +48,7 @@
     const options = names.map((n) => [n, n]);
     host.append(element("div", { class: "tools" },
       select("show", options, first, (n) => { first = n; draw(); }),
-      select("and", [["", "nothing else"], ...options], "", (n) => { second = n; draw(); }),
+      select("and", [["", "nothing else"], ...options], second, (n) => { second = n; draw(); }),
       select("over", options, x, (n) => { x = n; draw(); })), doc);
     draw();
   };
@@ -54,7 +59,7 @@
     const runs = FW.data.runs.map((run) => ({ ...run, columns: new Map(run.columns.map((c) => [c.name, { ...c, values: get(c.values) }])) }));
     FW.data.figures.forEach((figure, k) => {
       const host = document.getElementById(`figure-${k}`);
-      if (figure.any) return any(host, runs);
+      if (figure.any) return any(host, runs, figure.any);
       heading(host, figure.title, figure.note);
       const field = figure.field && { ...figure.field, ...Object.fromEntries(["starts", "x", "y", "values"].map((key) => [key, get(figure.field[key])])) };
       const series = figure.series.map((s) => ({ ...s, x: get(s.x), y: get(s.y), low: get(s.low), high: get(s.high) }));

@@ -1,32 +1,34 @@
 //! The answer of `fretwork check` in at most 15 lines of 100 columns: the scene, three things to
 //! look at, and the run time.
 
-use super::{CheckLine, line_of};
-use crate::record::summary::{COLUMNS, fitted};
+use super::CheckLine;
+use crate::record::summary::{COLUMNS, cut, fitted, wrapped};
 
 /// Largest number of lines.
 const LINES: usize = 15;
 /// Number of things to look at.
 const LOOK_AT: usize = 3;
 /// Columns of the labels, with the margin.
-const MARGIN: usize = 23;
+const MARGIN: usize = 17;
+/// Number of lines of a thing to look at, if there is room.
+const LOOK_LINES: usize = 2;
 
-/// Columns before the text of a thing to look at, which is long.
-const LOOK_MARGIN: usize = 13;
-
-/// Labels of the lines on the scene, and how many of each are shown.
-const SCENE: [(&str, usize); 11] = [
-    ("steps", 1),
-    ("balls", 1),
-    ("convex pieces", 1),
-    ("deformable body", 1),
-    ("half-space", 1),
-    ("first bodies", 1),
-    ("contacts at start", 1),
-    ("interface", 3),
-    ("pressure", 1),
-    ("inertial number", 1),
-    ("solver", 1),
+/// Labels of the lines on the scene, how many of each are shown, and the labels of the lines that
+/// are added to them, each with its name there.
+const SCENE: [(&str, usize, &[(&str, &str)]); 9] = [
+    ("steps", 1, &[("solver", "solver")]),
+    ("balls", 1, &[]),
+    ("convex pieces", 1, &[]),
+    ("deformable body", 1, &[]),
+    ("half-space", 1, &[]),
+    (
+        "first bodies",
+        1,
+        &[("contacts at start", "contacts at start")],
+    ),
+    ("interface", 3, &[]),
+    ("pressure", 1, &[("inertial number", "inertial number")]),
+    ("biaxial test", 1, &[("inertial number", "inertial number")]),
 ];
 
 /// Words that mark what to look at, the worst first. A label in capitals marks its line too.
@@ -46,40 +48,109 @@ const MARKS: [&str; 11] = [
 
 /// Returns the answer from all lines, and the line of the run time.
 pub(super) fn text(title: String, lines: &[CheckLine], time: Option<CheckLine>) -> String {
-    let mut out = vec![title];
     let look = look_at(lines.iter().chain(&time));
     let open = look.len().saturating_sub(LOOK_AT);
-    let look: Vec<String> = match look.is_empty() {
-        true => vec!["  look at  nothing stands out".to_owned()],
+    let mut look: Vec<Vec<String>> = match look.is_empty() {
+        true => vec![vec!["nothing stands out".to_owned()]],
         false => {
             let look = look.iter().take(LOOK_AT).enumerate();
-            let look = look.map(|(k, text)| {
-                let label = if k == 0 { "look at" } else { "" };
-                let text = fitted(text, COLUMNS - LOOK_MARGIN);
-                format!("  {label:<9}{} {text}", k + 1)
-            });
-            look.collect()
+            look.map(|(k, text)| wrapped(&format!("{} {text}", k + 1), COLUMNS - MARGIN))
+                .collect()
         }
     };
-    let most = LINES - out.len() - look.len() - usize::from(time.is_some()) - 1;
-    let mut scene = Vec::new();
-    for (wanted, count) in SCENE {
-        let own = lines.iter().filter(|(label, _)| label == wanted);
-        let own = own.take(count).map(|(label, text)| {
-            let text = fitted(text, COLUMNS - MARGIN);
-            line_of(label, &text)
-        });
-        scene.extend(own);
+    let mut scene = scene(lines);
+    let time = time.map(|(label, text)| {
+        let kept = text
+            .split_once(": ")
+            .map_or(text.as_str(), |(kept, _)| kept);
+        labelled(&label, &fitted(kept, COLUMNS - MARGIN))
+    });
+    // Title and last line.
+    let most = LINES - 2 - usize::from(time.is_some());
+    scene.truncate(most - look.len());
+    let mut spare = most - look.len() - scene.len();
+    for lines in &mut look {
+        let shown = LOOK_LINES.min(1 + spare).min(lines.len());
+        spare -= shown - 1;
+        cut(lines, shown, COLUMNS - MARGIN);
     }
-    scene.truncate(most);
+    let look = look.into_iter().enumerate().flat_map(|(k, lines)| {
+        let label = move |line| if k + line == 0 { "look at" } else { "" };
+        let lines = lines.into_iter().enumerate();
+        lines.map(move |(line, text)| labelled(label(line), &text))
+    });
+    let mut out = vec![fitted(&title, COLUMNS)];
     out.extend(scene);
     out.extend(look);
-    out.extend(time.map(|(label, text)| line_of(&label, &fitted(&text, COLUMNS - MARGIN))));
+    out.extend(time);
     out.push(match open {
         0 => "  all lines: --verbose".to_owned(),
         n => format!("  all lines, and {n} more to look at: --verbose"),
     });
     out.join("\n")
+}
+
+fn labelled(label: &str, text: &str) -> String {
+    format!("  {label:<width$}{text}", width = MARGIN - 2)
+}
+
+/// Returns the lines on the scene.
+fn scene(lines: &[CheckLine]) -> Vec<String> {
+    let of = |wanted: &str| {
+        let own = lines.iter().filter(move |(label, _)| label == wanted);
+        own.map(|(label, text)| short(label, text))
+            .collect::<Vec<_>>()
+    };
+    let mut out = Vec::new();
+    for (wanted, count, added) in SCENE {
+        for mut text in of(wanted).into_iter().take(count) {
+            for (label, name) in added {
+                if let Some(other) = of(label).first() {
+                    text = format!("{text}; {name} {other}");
+                }
+            }
+            out.push(labelled(wanted, &fitted(&text, COLUMNS - MARGIN)));
+        }
+    }
+    out
+}
+
+/// Returns the part of a line that the answer has.
+fn short(label: &str, text: &str) -> String {
+    let before = |end: &str| text.split_once(end).map_or(text, |(before, _)| before);
+    match label {
+        // `auto (what it is), tolerance 0.5, at most 20000 iterations, tested every 10`
+        "solver" => match (text.find(" ("), text.find("), ")) {
+            (Some(begin), Some(end)) if begin < end => {
+                let rest = text[end + 1..].split(", ").skip(1).take(1);
+                let rest: Vec<&str> = rest.collect();
+                format!("{}, {}", &text[..begin], rest.join(", "))
+            }
+            _ => before(" (").to_owned(),
+        },
+        // Kinds are known by their names, but for that of wear.
+        "interface" => {
+            let kinds = ["contact ", "cohesion ", "damage "];
+            let laws = before("; ").split(", ").map(|law| {
+                let (name, law) = law
+                    .split_once(": ")
+                    .map_or(("", law), |(name, law)| (name, law));
+                let law = kinds
+                    .iter()
+                    .find_map(|kind| law.strip_prefix(kind))
+                    .unwrap_or(law);
+                match name {
+                    "" => law.to_owned(),
+                    name => format!("{name}: {law}"),
+                }
+            });
+            laws.collect::<Vec<_>>().join(", ")
+        }
+        "inertial number" => before(" ").to_owned(),
+        // What was timed follows the estimate.
+        "run time" if text.starts_with("about ") => before(": ").to_owned(),
+        _ => text.to_owned(),
+    }
 }
 
 /// Returns what stands out, the worst first, each with the label of its line.
@@ -161,13 +232,34 @@ mod tests {
     #[test]
     fn the_answer_has_at_most_15_lines_of_100_columns() {
         let long = "x ".repeat(120);
-        let mut lines: Vec<CheckLine> = SCENE.map(|(label, _)| line(label, &long)).into();
+        let mut lines: Vec<CheckLine> = SCENE.map(|(label, ..)| line(label, &long)).into();
         lines.extend((0..5).map(|_| line("interface", &long)));
         lines.extend((0..5).map(|_| line("bonds", &format!("{long}: NOT RESOLVED: {long}"))));
         let out = text("title".to_owned(), &lines, Some(line("run time", &long)));
         assert!(out.lines().count() <= LINES, "{out}");
         assert!(out.lines().all(|l| l.chars().count() <= COLUMNS), "{out}");
         assert!(out.contains("and 2 more to look at"), "{out}");
+        let scene = [
+            line("steps", "7000 of 2.5e-5 s, theta 0.5"),
+            line(
+                "solver",
+                "auto (automatic, first (one)), tolerance 5e-1, at most 20 iterations",
+            ),
+            line(
+                "interface",
+                "oxide: contact hertz-mindlin, damage mac, wear archard; bonds Start",
+            ),
+            line("pressure", "1.120e9 Pa"),
+            line("inertial number", "5.31e-3 with inertia scaled by 5.8e8"),
+        ];
+        let out = text("title".to_owned(), &scene, None);
+        for says in [
+            "steps          7000 of 2.5e-5 s, theta 0.5; solver auto, tolerance 5e-1",
+            "interface      oxide: hertz-mindlin, mac, wear archard",
+            "pressure       1.120e9 Pa; inertial number 5.31e-3",
+        ] {
+            assert!(out.contains(says), "{says}: {out}");
+        }
         let calm = text("title".to_owned(), &[line("steps", "7")], None);
         assert!(calm.contains("nothing stands out"), "{calm}");
     }

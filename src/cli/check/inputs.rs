@@ -4,13 +4,14 @@ use super::CheckLine;
 use crate::RunView;
 use crate::laws::ParameterOrigin;
 use crate::scene::law_inputs;
+use crate::scene::wear_coefficient::WearCoefficient;
 
 /// Characters of an origin that are shown.
 const WIDE: usize = 100;
 
 /// Returns a line for each parameter of each law; the first of a law has its interface, kind and
-/// name.
-pub fn lines(s: &dyn RunView) -> Vec<CheckLine> {
+/// name. A parameter that follows from Archard's K has its derivation, with the hardness.
+pub fn lines(s: &dyn RunView, wear: &[WearCoefficient]) -> Vec<CheckLine> {
     let mut out = Vec::new();
     let mut before = None;
     for input in law_inputs::of(s) {
@@ -21,7 +22,16 @@ pub fn lines(s: &dyn RunView) -> Vec<CheckLine> {
             out.push((input.interface.to_owned(), text));
             before = Some(law);
         }
+        let derived = wear.iter().find(|w| {
+            let own = (
+                input.interface,
+                plugin.name.as_str(),
+                input.field.name.as_str(),
+            );
+            own == (w.interface.as_str(), w.law.as_str(), w.parameter.as_str())
+        });
         let origin = match input.origin {
+            _ if derived.is_some() => derived.map_or("", |w| w.derivation.as_str()),
             Some(ParameterOrigin::Given(origin)) => origin,
             Some(ParameterOrigin::Default) => "default of the law",
             None => "not known",

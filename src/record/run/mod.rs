@@ -333,7 +333,7 @@ impl<'a> Recorder<'a> {
             dimension: simulation.dimension(),
             plugins: stamps(simulation.laws()),
             wear_coefficients: std::mem::take(&mut built.wear_coefficients),
-            sample: SampleFacts::of(case, simulation.view()),
+            sample: SampleFacts::of(loaded, &built.materials, simulation.view()),
             given: given_ranges(case, &built.materials, simulation.view().laws()),
             threads: options.threads,
             seed: case.seed,

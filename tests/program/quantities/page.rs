@@ -1,6 +1,7 @@
 //! The tables of docs/outputs.md list what the shipped observers declare. With
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
+use crate::pages::{read, settle};
 use fretwork::record::RunEnd;
 use fretwork::record::quantity::{Findings, Role, Topic};
 use fretwork::record::statistics::Table;
@@ -284,8 +285,7 @@ fn table(of_run: bool) -> String {
 #[test]
 fn the_page_lists_every_quantity_with_its_unit() {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(&path).unwrap();
-    let mut made = page.clone();
+    let mut made = read(path.as_ref());
     let quantities = [("results", false), ("run", true)];
     let quantities = quantities.map(|(name, of_run)| (name.to_owned(), table(of_run)));
     let cases = all_cases();
@@ -305,17 +305,5 @@ fn the_page_lists_every_quantity_with_its_unit() {
         let (from, to) = (place(&begin) + begin.len(), place(&end));
         made.replace_range(from..to, &table);
     }
-    if std::env::var_os("FRETWORK_WRITE_PAGES").is_some() {
-        std::fs::write(&path, &made).unwrap();
-        return;
-    }
-    let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
-    let (old, new) = (lines(&page), lines(&made));
-    let missing: Vec<&String> = new.iter().filter(|l| !old.contains(l)).collect();
-    let gone: Vec<&String> = old.iter().filter(|l| !new.contains(l)).collect();
-    assert!(
-        page == made,
-        "docs/outputs.md is old; write it with FRETWORK_WRITE_PAGES=1 cargo test --test program \
-         the_page_lists_every; it lacks {missing:#?} and still has {gone:#?}"
-    );
+    settle(path.as_ref(), &made, "the_page_lists_every").unwrap();
 }

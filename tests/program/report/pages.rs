@@ -117,7 +117,7 @@ fn figures_and_fields_have_the_names_units_and_words_of_the_file() {
     ] {
         assert!(names.contains(&name), "{name} in {names:?}");
     }
-    assert_eq!(figures.last().unwrap()["any"], true);
+    assert_eq!(figures.last().unwrap()["any"]["up"][0], "mu");
     assert_eq!(data["scene"]["period"][0], 0.1);
     assert_eq!(data["scene"]["times"].as_array().unwrap().len(), 7);
 }

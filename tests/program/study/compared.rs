@@ -221,3 +221,25 @@ fn figure(folder: &Folder, title: &str) -> (Value, BTreeMap<String, Vec<f32>>) {
     let figure = found.unwrap_or_else(|| panic!("no figure {title}"));
     (figure.clone(), chart_numbers(&page))
 }
+
+/// Values with units give the points of the same values in SI units.
+#[test]
+fn values_of_factors_have_units() {
+    let folder = Folder::new("units");
+    let points = |step: &str, mu: &str| {
+        let step = format!(r#"Values(name: "step", key: "time.step", values: [{step}])"#);
+        let range = format!(
+            r#"Range(name: "mu", key: "{}", {mu}, levels: 2)"#,
+            super::MU
+        );
+        folder.study(&format!("{step}, {range}"), "");
+        let words = ["check", "study.ron", "--no-timing", "--points", "--json"];
+        folder.answer(&words)
+    };
+    let units = points("500us, 0.25 ms", "low: 20 %, high: 0.4");
+    assert_eq!(units["factors"][0]["unit"], "s");
+    assert_eq!(units["points"][0]["set"][0], "time.step=500 us");
+    let plain = points("5e-4, 2.5e-4", "low: 0.2, high: 0.4");
+    assert_eq!(units["points"][3]["set"][1], plain["points"][3]["set"][1]);
+    assert_eq!(units["runs"], plain["runs"]);
+}

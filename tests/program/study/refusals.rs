@@ -48,6 +48,17 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &["in `s`, not in `ms`"],
     );
     reported(
+        &said(
+            r#"Range(name: "step", key: "time.step", low: 1 um, high: 2 um, levels: 2)"#,
+            "",
+        ),
+        &["in `s`, not in `m`"],
+    );
+    reported(
+        &said(&mu("0.2, 0.1 m"), ""),
+        &["m", "pure number", "with `friction` = 0.1 m of study.ron"],
+    );
+    reported(
         &said(&mu("0.1").replace("contact.mu", "contact.my"), ""),
         &["my", "mu"],
     );

@@ -96,7 +96,7 @@ pub enum Norm {
 impl Norm {
     /// The bound on the error of a case without `tolerance`: 1e-4 of velocities or forces, half of
     /// the heat of slip. (Absolute values of the residuals' power are summed; of the net error of
-    /// friction it is a bound by far: `docs/accuracy.md`.)
+    /// friction it is a bound by far: `docs/dev/sensitivity.md`.)
     pub fn default_tolerance(self) -> f64 {
         match self {
             Self::Power => 0.5,

@@ -29,6 +29,9 @@ const PRESSURE: f64 = 0.1;
 /// Largest ratio of the slip of a run to that of the patch, either way.
 const SLIP: f64 = 1.25;
 
+/// What to do about a run whose case is not known.
+const UNKNOWN: &str = "keep results.h5 beside summary.json, or make the run again";
+
 /// Conditions of the runs from which a friction coefficient is.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Conditions {
@@ -155,7 +158,8 @@ pub(super) fn compare(
         if let Some(doubts) = &run.doubts {
             let why = doubts.first().map_or("it gives no reason", String::as_str);
             let text = format!("{} is not trustworthy: {why}", run.folder.display());
-            found.add("untrusted", "NOT TRUSTED", text, "");
+            let advice = "mend what it names, and run it again";
+            found.add("untrusted", "NOT TRUSTED", text, advice);
         }
     }
     let Some((first, others)) = runs.list.split_first() else {
@@ -173,7 +177,8 @@ pub(super) fn compare(
                     other.folder.display(),
                     shown.collect::<Vec<_>>().join(", ")
                 );
-                found.add("inputs", "INPUTS DIFFER", text, "");
+                let advice = "give runs of one case that differ in `seed` alone";
+                found.add("inputs", "INPUTS DIFFER", text, advice);
             }
         }
     }
@@ -217,7 +222,8 @@ fn materials(question: &Question, run: &WindowRun, found: &mut Differences<'_>) 
     };
     let advice = match &run.setup {
         Ok(_) if !asked.is_empty() => "run its case with --set materials.NAME=MATERIAL",
-        _ => "",
+        Ok(_) => "",
+        Err(_) => UNKNOWN,
     };
     found.add("materials", "OTHER MATERIALS", text, advice);
 }
@@ -243,13 +249,13 @@ fn under(contact: &Contact, run: &WindowRun, found: &mut Differences<'_>) {
         }
         (_, Err(why)) => (
             format!("the mean pressure in {folder} is not known: {why}"),
-            String::new(),
+            UNKNOWN.to_owned(),
         ),
         (None, Ok(_)) => (
             format!(
                 "the mean pressure in {folder} is not known: it is no periodic window with a normal force"
             ),
-            String::new(),
+            "give its case `periodic` and a body with a normal force".to_owned(),
         ),
     };
     found.add("pressure", "OTHER PRESSURE", text, &advice);
@@ -274,7 +280,8 @@ pub(super) fn drive(
         let Some(motion) = run.motion else {
             let text =
                 format!("how {folder} moves is not known: its statistics have no displacement");
-            found.add("drive", "OTHER DRIVE", text, "");
+            let advice = "keep statistics.csv beside summary.json";
+            found.add("drive", "OTHER DRIVE", text, advice);
             continue;
         };
         let length = |x: f64| quantity(x, "m");

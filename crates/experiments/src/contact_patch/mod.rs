@@ -25,6 +25,8 @@ mod runs;
 mod setup;
 mod slip;
 mod strength;
+#[cfg(test)]
+mod tests;
 mod text;
 mod warnings;
 mod wear;
@@ -35,7 +37,7 @@ pub use question::Question;
 pub use range::Range;
 pub use regime::WearRegime;
 pub use slip::{Rolling, Tangential, Window};
-pub use strength::Strength;
+pub use strength::{Strength, Traction, Yield, YieldKind};
 pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
 
 use fretwork_core::laws::SearchPath;
@@ -107,6 +109,25 @@ struct Contact {
 }
 
 impl Contact {
+    /// Returns the bodies of a question under its load.
+    fn of(question: &Question) -> Result<Self, String> {
+        let (load, line) = question.load()?;
+        let bodies = question.bodies(line)?;
+        let modulus = patch::effective_modulus(&[bodies[0].solid, bodies[1].solid]);
+        let relative = |axis: usize| bodies[0].curvature[axis] + bodies[1].curvature[axis];
+        let theory = match line {
+            true => Theory::Line(patch::line(load, relative(0), modulus)),
+            false => Theory::Point(patch::point(load, [relative(0), relative(1)], modulus)),
+        };
+        let curvature = relative(0);
+        Ok(Self {
+            bodies,
+            load,
+            theory,
+            curvature,
+        })
+    }
+
     fn solids(&self) -> [patch::Solid; 2] {
         [self.bodies[0].solid, self.bodies[1].solid]
     }
@@ -136,26 +157,18 @@ impl Contact {
 /// # Errors
 /// Returns a sentence on invalid or missing input.
 pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> {
-    let (load, line) = question.load()?;
-    let bodies = question.bodies(line)?;
-    let modulus = patch::effective_modulus(&[bodies[0].solid, bodies[1].solid]);
-    let relative = |axis: usize| bodies[0].curvature[axis] + bodies[1].curvature[axis];
-    let theory = match line {
-        true => Theory::Line(patch::line(load, relative(0), modulus)),
-        false => Theory::Point(patch::point(load, [relative(0), relative(1)], modulus)),
-    };
-    let curvature = relative(0);
-    let contact = Contact {
-        bodies,
-        load,
-        theory,
-        curvature,
-    };
+    let contact = Contact::of(question)?;
     let runs = runs::read(&question.runs)?;
     let mut friction = Friction::of(question, &contact, &runs)?;
-    let strength = Strength::of(question, &contact, friction.as_ref())?;
     let tangential = Tangential::of(question, &contact, friction.as_ref())?;
     let rolling = Rolling::of(question, &contact, friction.as_ref())?;
+    let strength = Strength::of(
+        question,
+        &contact,
+        friction.as_ref(),
+        tangential.as_ref(),
+        rolling.as_ref(),
+    )?;
     let wear = Wear::of(
         question,
         &contact,
@@ -195,9 +208,9 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
     };
     let mut answer = Answer {
         shape,
-        load,
+        load: contact.load,
         bodies: contact.bodies.each_ref().map(|b| b.name.clone()),
-        effective_modulus: modulus,
+        effective_modulus: patch::effective_modulus(&contact.solids()),
         patch,
         strength,
         friction,

@@ -2,9 +2,11 @@
 
 use super::range::Range;
 use fretwork_elastic::patch::Solid;
+use fretwork_observe::quantity::quantity as shown;
 use fretwork_observe::quantity::unit::FORCE;
 use fretwork_scene::material::{Material, MaterialLibrary};
 use fretwork_scene::quantity::{hardness_in_pascal, quantity};
+use fretwork_scene::units::hardness as scale_of_hardness;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -27,8 +29,8 @@ pub struct Question {
     pub poisson: Vec<String>,
     /// Hardnesses, which replace those of the materials.
     pub hardness: Vec<String>,
-    /// Yield stress of the softer body; by default of its material, or the flow stress, its
-    /// hardness over 2.8.
+    /// Yield stress of the softer body; by default those of its material, before and after it has
+    /// hardened, or the flow stress, its hardness over 2.8.
     pub yield_stress: Option<String>,
     /// Friction coefficient: `0.4`, `0.40+-0.03` or `0.3..0.5`.
     pub friction: Option<String>,
@@ -51,6 +53,9 @@ pub struct Question {
     pub window: Option<String>,
 }
 
+/// Standard gravity (m/s²), for loads that are given as masses.
+const STANDARD_GRAVITY: f64 = 9.806_65;
+
 /// One of the two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
@@ -62,10 +67,10 @@ pub(super) struct Body {
     pub solid: Solid,
     /// Hardness (Pa).
     pub hardness: Option<f64>,
-    /// Yield stress of its material (Pa).
-    pub yield_stress: Option<f64>,
-    /// Source of the yield stress.
-    pub yield_source: Option<String>,
+    /// Yield stress of its material (Pa), before it is deformed, with its source.
+    pub yield_stress: Option<(f64, String)>,
+    /// Yield stress (Pa) once service has hardened it, with its source.
+    pub yield_stress_hardened: Option<(f64, String)>,
 }
 
 /// A number with a unit.
@@ -85,7 +90,28 @@ pub(super) fn positive(what: &str, text: &str, unit: &str) -> Result<f64, String
     }
 }
 
-/// Returns the friction coefficient given as a range.
+/// Smallest stress without a unit that is taken to be in pascal: below it the unit was forgotten.
+const FORGOTTEN: f64 = 1e4;
+
+/// A stress above zero. A number like `260` or `210` is meant in another unit than pascal.
+pub(super) fn stress(what: &str, text: &str) -> Result<f64, String> {
+    let pascal = positive(what, text, "Pa")?;
+    let bare = text.trim().parse::<f64>().is_ok();
+    if !bare || pascal >= FORGOTTEN {
+        return Ok(pascal);
+    }
+    let plain = text.trim();
+    let units = match what {
+        "hardness" => format!("`{plain} HBW` or `{plain} MPa`"),
+        "young" => format!("`{plain} GPa`"),
+        _ => format!("`{plain} MPa`"),
+    };
+    Err(format!(
+        "{what}: `{plain}` has no unit, and would be in pascal; write {units}, or `{plain} Pa`"
+    ))
+}
+
+/// Returns the friction coefficient or the wear coefficient given as a range.
 pub(super) fn range(what: &str, text: &str) -> Result<Range, String> {
     Range::parse(text).map_err(|e| format!("{what}: {e}"))
 }
@@ -99,6 +125,15 @@ impl Question {
             );
         }
         let [per_metre, force] = [2, 3].map(|dimension| FORCE.symbol(dimension));
+        if let Ok(mass) = quantity(&self.load, "kg")
+            && quantity(&self.load, force).is_err()
+        {
+            return Err(format!(
+                "load: `{}` is a mass, and the load is a force: give its weight, {}",
+                self.load.trim(),
+                shown(mass * STANDARD_GRAVITY, force)
+            ));
+        }
         let per_length =
             quantity(&self.load, force).is_err() && quantity(&self.load, per_metre).is_ok();
         let unit = if per_length { per_metre } else { force };
@@ -138,15 +173,20 @@ impl Question {
             let given = file.as_ref().and_then(|m| m.properties.get(name));
             given.and_then(|p| p.in_unit(unit).ok())
         };
+        let sourced = |name: &str| {
+            let given = file.as_ref()?.properties.get(name)?;
+            Some((given.in_unit("Pa").ok()?, given.source.clone()))
+        };
         let elastic = |what: &str, given: &[String], unit: &str| {
-            let own = of_side(what, given, side)?.map(|text| number(what, text, unit));
+            let own = of_side(what, given, side)?.map(|text| match unit {
+                "Pa" => stress(what, text),
+                _ => number(what, text, unit),
+            });
             own.transpose()?
                 .or(property(what, unit))
                 .ok_or_else(|| match material {
                     Some(name) => format!("{what}: the material `{name}` has none; give it here"),
-                    None => {
-                        format!("{what}: name a material of materials/, or give young and poisson")
-                    }
+                    None => "material: name the materials of both bodies, such as wheel_steel_er7,rail_steel_r260, or give young and poisson".to_owned(),
                 })
         };
         let young = elastic("young", &self.young, "Pa")?;
@@ -168,28 +208,26 @@ impl Question {
             curvature,
             solid: Solid { young, poisson },
             hardness,
-            yield_stress: property("yield_stress", "Pa"),
-            yield_source: file
-                .as_ref()
-                .and_then(|m| Some(m.properties.get("yield_stress")?.source.clone())),
+            yield_stress: sourced("yield_stress"),
+            yield_stress_hardened: sourced("yield_stress_hardened"),
         })
     }
 }
 
 /// Returns the hardness (Pa) of a text such as `260 HBW` or `2.5 GPa`.
 fn hardness(text: &str) -> Result<f64, String> {
-    let (value, unit) = match text.trim().split_once(' ') {
-        Some((value, unit)) => (value.parse().ok(), unit),
-        None => (None, ""),
-    };
-    let scaled = value.and_then(|v: f64| hardness_in_pascal(v, unit));
-    let pascal = match scaled {
-        Some(pascal) => pascal,
-        None => number("hardness", text, "Pa")?,
-    };
-    match pascal > 0.0 {
-        true => Ok(pascal),
-        false => Err(format!("hardness: `{text}` must be above zero")),
+    let plain = text.trim();
+    let digits = plain.find(|c: char| c == 'H' || c.is_whitespace());
+    let (value, unit) = plain.split_at(digits.unwrap_or(plain.len()));
+    let scaled = value.parse().ok().filter(|_| digits.is_some());
+    let scaled = scaled.and_then(|v: f64| hardness_in_pascal(v, unit.trim()));
+    match scaled {
+        Some(pascal) if pascal > 0.0 => Ok(pascal),
+        Some(_) => Err(format!("hardness: `{text}` must be above zero")),
+        None if scale_of_hardness(unit).is_some() => Err(format!(
+            "hardness: `{text}` is on a scale that is no pressure; give it in HBW or HV, or as a stress"
+        )),
+        None => stress("hardness", text),
     }
 }
 
@@ -218,7 +256,9 @@ fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
         }
         let radius = number(what, text, "m")?;
         if radius == 0.0 {
-            return Err(format!("{what}: a radius of zero; a plane is `flat`"));
+            return Err(format!(
+                "{what}: a radius of zero; a plane is `flat`, and a comma stands between two radii: write 0.46m, not 0,46m"
+            ));
         }
         *curvature = 1.0 / radius;
     }
@@ -231,7 +271,11 @@ fn read(name: &str) -> Result<Material, String> {
     let source = library.read(name).map_err(|e| match e {
         Err(error) => error.to_string(),
         Ok(missing) => {
-            let near = missing.nearest.map(|n| format!("; did you mean `{n}`?"));
+            let part = name.to_lowercase();
+            let holds = |n: &&str| n.to_lowercase().contains(&part);
+            let holds = || missing.available.split(", ").find(holds).map(str::to_owned);
+            let near = missing.nearest.clone().or_else(holds);
+            let near = near.map(|n| format!("; did you mean `{n}`?"));
             format!(
                 "material: there is no file `{name}.ron` in {}{}; there are {}",
                 missing.searched,

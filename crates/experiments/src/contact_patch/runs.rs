@@ -97,11 +97,15 @@ fn of(folder: &Path) -> Result<WindowRun, String> {
             path.display()
         )
     })?;
-    let summary: Value = serde_json::from_str(&text)
-        .map_err(|e| format!("friction of a run: {} is damaged: {e}", path.display()))?;
+    let summary: Value = serde_json::from_str(&text).map_err(|e| {
+        format!(
+            "friction of a run: {} is damaged: {e}; make the run again",
+            path.display()
+        )
+    })?;
     if !summary["stopped"].is_null() || summary["interrupted"] == true {
         return Err(format!(
-            "friction of a run: {} did not reach its end; run it again",
+            "friction of a run: {} did not reach its end; resume it, or make it again",
             folder.display()
         ));
     }

@@ -111,6 +111,9 @@ impl Rolling {
         contact: &Contact,
         friction: Option<&Friction>,
     ) -> Result<Option<Self>, String> {
+        if question.creepage.is_some() && question.displacement.is_some() {
+            return Err("creepage, displacement: one is of rolling, the other of fretting; give one of them".into());
+        }
         let requested = question.creepage.is_some() || question.speed.is_some();
         let Some(friction) = friction else {
             return match requested {
@@ -136,7 +139,7 @@ impl Rolling {
         let creepage = creepage.map(|t| number("creepage", t, "")).transpose()?;
         if let Some(xi) = creepage.filter(|xi| !(xi.abs() > 0.0 && xi.abs() < 1.0)) {
             return Err(format!(
-                "creepage: {xi} must be a share between 0 and 1 or in per cent, 0.5 %"
+                "creepage: {xi} is no share between 0 and 1; in per cent write {xi} %"
             ));
         }
         let speed = question.speed.as_ref();

@@ -1,6 +1,6 @@
 //! The answer as lines of text.
 
-use super::{Answer, Conditions, Range};
+use super::{Answer, Conditions, Range, Strength, Yield, YieldKind};
 use fretwork_observe::quantity::unit::{FORCE, Unit, VOLUME};
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
@@ -32,6 +32,45 @@ fn percent(range: &Range) -> String {
             one(range.low),
             one(range.high)
         ),
+    }
+}
+
+/// The limits of the pressure, each with the yield stress that it is from.
+fn strength_lines(s: &Strength, add: &mut impl FnMut(&str, String)) {
+    let from = |of: &Yield| format!("from {} as {}", quantity(of.yield_stress, "Pa"), of.name());
+    let source = |of: &Yield| match (&of.source, of.kind) {
+        (Some(source), _) => Some(source.clone()),
+        (None, YieldKind::Flow) => {
+            Some("an upper bound: metals that harden yield below their flow stress".to_owned())
+        }
+        (None, _) => None,
+    };
+    let first = quantity(s.first_yield, "Pa");
+    add("first yield", format!("at {first}, {}", from(&s.first)));
+    let first = source(&s.first);
+    if let Some(line) = &first {
+        add("", line.clone());
+    }
+    let free = quantity(s.shakedown_rolling, "Pa");
+    let limits = match s.traction {
+        None => format!("{free} in free rolling"),
+        Some(t) => {
+            let at = match t.asked {
+                true => format!("at Q/P {}", number(t.ratio, 3)),
+                false => "in full slip".to_owned(),
+            };
+            format!(
+                "{free} in free rolling, {} {at}",
+                quantity(s.shakedown, "Pa")
+            )
+        }
+    };
+    add(
+        "shakedown",
+        format!("up to {limits}, {}", from(&s.in_service)),
+    );
+    if let Some(line) = source(&s.in_service).filter(|line| Some(line) != first.as_ref()) {
+        add("", line);
     }
 }
 
@@ -81,24 +120,7 @@ impl Answer {
         );
         add("E*", quantity(self.effective_modulus, "Pa"));
         if let Some(s) = &self.strength {
-            add(
-                "limits of the pressure",
-                format!(
-                    "first yield {}, shakedown {}, from {} as {}",
-                    quantity(s.first_yield, "Pa"),
-                    quantity(s.shakedown, "Pa"),
-                    quantity(s.yield_stress, "Pa"),
-                    s.name()
-                ),
-            );
-            match (&s.source, s.estimated) {
-                (Some(source), _) => add("", source.clone()),
-                (None, true) => add(
-                    "",
-                    "an upper bound: metals that harden yield below their flow stress".to_owned(),
-                ),
-                (None, false) => {}
-            }
+            strength_lines(s, &mut add);
         }
         if let Some(f) = &self.friction {
             let part = |x: Option<f64>| x.map_or("not known".to_owned(), |x| number(x, 2));
@@ -186,7 +208,11 @@ impl Answer {
                 );
             }
             if let Some(slip) = &t.local_slip {
-                add("slip in the middle", format!("+-{}", ranged(slip, "m")));
+                let text = match slip.high > 0.0 {
+                    true => format!("+-{}", ranged(slip, "m")),
+                    false => "none: it sticks".to_owned(),
+                };
+                add("slip in the middle", text);
             }
         }
         if let Some(r) = &self.rolling {
@@ -293,16 +319,12 @@ impl Answer {
             ),
         );
         if let Some(slip) = &w.slip {
-            let what = match self.rolling.as_ref().and_then(|r| r.creepage) {
-                Some(_) => "a passage slips by",
-                None => "displacement",
+            let text = match self.rolling.as_ref().and_then(|r| r.creepage) {
+                _ if slip.high <= 0.0 => "none: the middle sticks".to_owned(),
+                Some(_) => format!("a passage slips by {}", ranged(slip, "m")),
+                None => format!("+-{}", ranged(slip, "m")),
             };
-            let text = if slip.high <= 0.0 {
-                "none: the middle sticks".to_owned()
-            } else {
-                ranged(slip, "m")
-            };
-            add("slip in the window", format!("{what} {text}"));
+            add("slip in the window", text);
         }
     }
 }

@@ -1,13 +1,14 @@
 //! Limits of Hertz' theory, and open points of an answer.
 
-use super::{Answer, Contact, Question, Wear};
+use super::{Answer, Contact, Question, Strength, Wear, Yield, YieldKind};
+use fretwork_observe::quantity::{number, quantity};
 
 /// Ratio of the largest semi-axis to a radius above which the parabola of Hertz' theory has an
 /// error of more than about one per cent.
 const FLAT: f64 = 0.1;
 
 pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec<String> {
-    let mut out = Vec::new();
+    let mut out = without_unit(question);
     let patch = &answer.patch;
     let axes = [Some(patch.semi_axis), patch.semi_axis_across];
     for body in &contact.bodies {
@@ -25,31 +26,9 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
             }
         }
     }
-    let giga = 1e-9;
     match &answer.strength {
-        None => out.push("NO STRENGTH: neither material has a hardness or a yield stress; whether the bodies stay elastic is not known (hardness, yield_stress)".into()),
-        Some(s) => {
-            let (of, y, p) = (s.name(), s.yield_stress * giga, patch.pressure);
-            if s.hardness.is_some_and(|h| p > h) {
-                out.push(format!(
-                    "NOT ELASTIC: {:.3} GPa is above the hardness, {:.3} GPa; the softer body is indented, and the pressure is about its hardness",
-                    p * giga,
-                    s.hardness.unwrap_or_default() * giga
-                ));
-            } else if p > s.shakedown {
-                out.push(format!(
-                    "BEYOND SHAKEDOWN: {:.3} GPa is above {:.3} GPa; with {y:.3} GPa as {of} the surface deforms plastically in every passage",
-                    p * giga,
-                    s.shakedown * giga
-                ));
-            } else if p > s.first_yield {
-                out.push(format!(
-                    "YIELDS AT FIRST: {:.3} GPa is above {:.3} GPa; with {y:.3} GPa as {of} it flows until residual stresses and hardening make it elastic, over a slightly larger patch",
-                    p * giga,
-                    s.first_yield * giga
-                ));
-            }
-        }
+        None => out.push("NO STRENGTH: neither material has a hardness or a yield stress; whether the bodies stay elastic is not known; give hardness or yield".into()),
+        Some(s) => out.extend(of_pressure(patch.pressure, s)),
     }
     let [one, other] = contact.solids();
     // Dundurs' second constant describes tangential displacements under pressure, which the
@@ -61,6 +40,9 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
         out.push(format!(
             "UNLIKE MATERIALS: Dundurs' constant is {beta:.2}; pressure alone makes the surfaces slip, which where slip begins and the creep curve leave out"
         ));
+    }
+    if question.speed.is_some() && question.creepage.is_none() {
+        out.push("SPEED NOT USED: slip per second is speed times creepage; give creepage".into());
     }
     if let Some(f) = &answer.friction {
         out.extend(f.notes.iter().cloned());
@@ -89,6 +71,64 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
     out
 }
 
+/// Radius (m) from which a number without a unit is likely to be in millimetres.
+const LARGE: f64 = 10.0;
+
+/// Returns radii without a unit that are large for metres.
+fn without_unit(question: &Question) -> Vec<String> {
+    let radii = question.radius.iter().chain(&question.across);
+    let bare = radii.filter_map(|text| Some((text.trim(), text.trim().parse::<f64>().ok()?)));
+    let large = bare.filter(|(_, x)| x.is_finite() && x.abs() >= LARGE);
+    let note = |(text, _): (&str, f64)| {
+        format!(
+            "RADIUS IN METRES: `{text}` without a unit is {text} m; if it is in millimetres write {text}mm"
+        )
+    };
+    large.map(note).collect()
+}
+
+/// Returns what a pressure does to the steel, if it does not stay elastic.
+fn of_pressure(pressure: f64, s: &Strength) -> Option<String> {
+    let pascal = |p: f64| quantity(p, "Pa");
+    let p = pascal(pressure);
+    let with = |of: &Yield| format!("with {} as {}", pascal(of.yield_stress), of.name());
+    if let Some(hardness) = s.hardness.filter(|h| pressure > *h) {
+        return Some(format!(
+            "NOT ELASTIC: {p} is above the hardness, {}; the softer body is indented, and the pressure is about its hardness",
+            pascal(hardness)
+        ));
+    }
+    if pressure > s.shakedown {
+        let traction = s.traction.filter(|_| s.shakedown < s.shakedown_rolling);
+        let at = match traction {
+            Some(t) if t.asked => format!(" at Q/P {}", number(t.ratio, 3)),
+            Some(_) => format!(
+                " in full slip ({} in free rolling; give creepage or force for that at your Q/P)",
+                pascal(s.shakedown_rolling)
+            ),
+            None => String::new(),
+        };
+        let hardens = match s.in_service.kind {
+            YieldKind::Hardened => ", although it has hardened",
+            YieldKind::Monotonic => {
+                "; that is of steel not yet deformed, and hardening in service raises the limit (its file has no yield_stress_hardened)"
+            }
+            YieldKind::Flow => ", and it yields below that",
+            YieldKind::Given => "",
+        };
+        return Some(format!(
+            "BEYOND SHAKEDOWN: {p} is above {}{at}; {} the surface deforms plastically in every passage{hardens}",
+            pascal(s.shakedown),
+            with(&s.in_service)
+        ));
+    }
+    (pressure > s.first_yield).then(|| format!(
+        "YIELDS AT FIRST: {p} is above {}; {} it flows until residual stresses and hardening make it elastic, over a slightly larger patch",
+        pascal(s.first_yield),
+        with(&s.first)
+    ))
+}
+
 /// Returns where wear is not mild, or its map is that of other steels.
 fn of_wear(question: &Question, contact: &Contact, wear: &Wear) -> Vec<String> {
     let mut out = Vec::new();
@@ -96,7 +136,7 @@ fn of_wear(question: &Question, contact: &Contact, wear: &Wear) -> Vec<String> {
         let [low, high] = regime.coefficient;
         let asked = question.wear.as_ref().map(|k| format!(", not {k}"));
         out.push(format!(
-            "SEVERE WEAR: at this slip speed and pressure wear is {} in Jendel's chart of wheel and rail steels (Wear 253 (2002) 89-99): K is {low:e} to {high:e}{}",
+            "SEVERE WEAR: Jendel's chart of wheel and rail steels (Wear 253 (2002) 89-99) has {} at this slip speed and pressure: K is {low:e} to {high:e}{}",
             regime.words(),
             asked.unwrap_or_default()
         ));
@@ -112,7 +152,7 @@ fn of_wear(question: &Question, contact: &Contact, wear: &Wear) -> Vec<String> {
         .filter(|m| m.same_rail != Some(true))
     {
         out.push(format!(
-            "MAP OF ANOTHER PAIR: T gamma/A was measured on {}, and {} has not its hardness, 260 to 300 HBW; the program has no map of other grades (tests: P. Christoforou, D. Fletcher, R. Lewis, Wear 436-437 (2019) 202990; J. F. Santa et al., Wear 432-433 (2019) 102916)",
+            "MAP OF ANOTHER PAIR: T gamma/A was measured on {}, and {} has not its hardness, 260 to 300 HBW; the program has no map of other grades (measured: P. Christoforou, D. Fletcher, R. Lewis, Wear 436-437 (2019) 202990; J. F. Santa et al., Wear 432-433 (2019) 102916)",
             map.measured_on,
             super::wear::rail(contact).name
         ));

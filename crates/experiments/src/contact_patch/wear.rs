@@ -7,6 +7,8 @@ use super::regime::WearRegime;
 use super::runs::{self, WindowRun};
 use super::{Contact, Friction, Rolling, Theory};
 use fretwork_core::laws::{Kind, Plugin, SearchPath};
+use fretwork_observe::quantity::{number, quantity as shown};
+use fretwork_scene::quantity::quantity;
 use serde::Serialize;
 
 /// Wear while rolling with a creepage.
@@ -86,7 +88,7 @@ impl Wear {
         laws: &SearchPath,
     ) -> Result<Option<Self>, String> {
         let given = question.wear.as_ref();
-        let k = given.map(|t| range("wear", t)).transpose()?;
+        let k = given.map(|t| coefficient(t, contact)).transpose()?;
         let energy = rolling.and_then(|r| r.energy);
         let (Some(energy), Some(friction)) = (energy, friction) else {
             return match k {
@@ -96,9 +98,6 @@ impl Wear {
                 None => Ok(None),
             };
         };
-        if let Some(k) = k.filter(|k| k.high > 1.0) {
-            return Err(format!("wear: K = {} is above 1", k.high));
-        }
         // Within the interval of the friction coefficient, energy over coefficient is the load
         // times the slip.
         let slipped = Range {
@@ -125,6 +124,32 @@ impl Wear {
             window,
             regime,
         }))
+    }
+}
+
+/// Smallest K of metals: well lubricated they wear with 1e-7 or so, and 1e-13 is a k in 1/Pa.
+const LEAST: f64 = 1e-10;
+
+/// Returns Archard's K of a text.
+///
+/// # Errors
+/// It is no range of numbers up to 1, or k = K/H, whose unit is one over a pressure.
+fn coefficient(text: &str, contact: &Contact) -> Result<Range, String> {
+    let of_pressure = |k: f64| {
+        let hardness = contact.bodies.iter().filter_map(|b| b.hardness);
+        let times = hardness.reduce(f64::min).map_or(String::new(), |h| {
+            format!(": {} with {}", number(k * h, 3), shown(h, "Pa"))
+        });
+        format!(
+            "wear: `{text}` looks like k in 1/Pa, and K is k times the hardness, a pure number{times}"
+        )
+    };
+    let with_unit = || quantity(text, "1/Pa").ok().filter(|k| *k > 0.0);
+    let k = range("wear", text).map_err(|why| with_unit().map_or(why, of_pressure))?;
+    match k.high {
+        high if high > 1.0 => Err(format!("wear: K = {high} is above 1")),
+        high if high < LEAST => Err(of_pressure(k.value)),
+        _ => Ok(k),
     }
 }
 

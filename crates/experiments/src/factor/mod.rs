@@ -7,6 +7,7 @@ pub use spec::FactorSpec;
 
 use crate::expression::number;
 use fretwork_math::design::scale::Scale;
+use fretwork_scene::quantity::si_quantity;
 
 /// Label of the value of the case, where its file does not give it.
 pub const AS_IN_THE_CASE: &str = "as in the case";
@@ -22,12 +23,27 @@ pub struct Level {
     pub sets: Vec<String>,
 }
 
+/// Number of digits of a drawn number where it is shown with others.
+const SHOWN: i32 = 4;
+
 impl Level {
-    /// Creates a value of some keys from its text.
+    /// Returns the label, in which a number of many digits and without a unit has four.
+    pub fn short(&self) -> String {
+        let many = |x: &f64| self.label.len() > 7 && *x != x.trunc();
+        let number = self.label.parse().ok().filter(many);
+        number.map_or_else(
+            || self.label.clone(),
+            |x| fretwork_observe::quantity::number(x, SHOWN),
+        )
+    }
+
+    /// Creates a value of some keys from its text; the number of `5 um` is in SI units.
     pub fn of(keys: &[String], text: &str) -> Self {
+        let with_unit = || si_quantity(text)?.ok().map(|(value, _)| value);
+        let plain = text.parse().ok().filter(|x: &f64| x.is_finite());
         Self {
             label: text.trim_matches('"').to_owned(),
-            number: text.parse().ok().filter(|x: &f64| x.is_finite()),
+            number: plain.or_else(with_unit),
             sets: keys.iter().map(|key| format!("{key}={text}")).collect(),
         }
     }
@@ -64,6 +80,9 @@ pub enum Values {
         scale: Scale,
         /// Number of levels in designs of levels.
         levels: Option<u16>,
+        /// SI unit that the file gives with the ends, by which the case checks their dimension;
+        /// empty if it gives none.
+        unit: String,
     },
     /// Listed values.
     Listed(Vec<Level>),
@@ -102,7 +121,7 @@ impl Factor {
     pub fn levels(&self) -> Option<Vec<Level>> {
         match &self.values {
             Values::Listed(values) => Some(values.clone()),
-            Values::Range { scale, levels } => {
+            Values::Range { scale, levels, .. } => {
                 let numbers = scale.levels(usize::from((*levels)?));
                 Some(numbers.into_iter().map(|x| self.value(x)).collect())
             }
@@ -170,7 +189,7 @@ impl Factor {
             Values::Range {
                 scale: Scale::Integer { .. },
                 ..
-            } => Level::of(&self.keys, &format!("{rounded:.0}")),
+            } => self.of_number(&format!("{rounded:.0}")),
             _ => self.exactly(rounded),
         }
     }
@@ -179,8 +198,20 @@ impl Factor {
     pub fn exactly(&self, x: f64) -> Level {
         // A field of floats takes a number with a point.
         match number(x) {
-            text if text.contains(['.', 'e']) => Level::of(&self.keys, &text),
-            whole => Level::of(&self.keys, &format!("{whole}.0")),
+            text if text.contains(['.', 'e']) => self.of_number(&text),
+            whole => self.of_number(&format!("{whole}.0")),
+        }
+    }
+
+    /// Returns the level of a number in the unit of the range.
+    fn of_number(&self, text: &str) -> Level {
+        let level = Level::of(&self.keys, text);
+        match &self.values {
+            Values::Range { unit, .. } if !unit.is_empty() => Level {
+                sets: level.sets.iter().map(|s| format!("{s} {unit}")).collect(),
+                ..level
+            },
+            _ => level,
         }
     }
 }
@@ -197,6 +228,7 @@ mod tests {
             values: Values::Range {
                 scale,
                 levels: Some(levels),
+                unit: String::new(),
             },
         }
     }
@@ -219,6 +251,22 @@ mod tests {
         let one = &range(LINEAR, 3).levels().unwrap()[1];
         assert_eq!(one.sets, ["a=0.5", "b=0.5"]);
         assert_eq!(one.number, Some(0.5));
+    }
+
+    #[test]
+    fn values_with_units_have_numbers_in_si() {
+        let keys = vec!["a".to_owned()];
+        let level = Level::of(&keys, "5 um");
+        assert_eq!((level.label.as_str(), level.number), ("5 um", Some(5e-6)));
+        assert_eq!(level.sets, ["a=5 um"]);
+        assert!(level.equals(&Level::of(&keys, "5e-6")));
+        let mut factor = range(LINEAR, 3);
+        if let Values::Range { unit, .. } = &mut factor.values {
+            *unit = "m".into();
+        }
+        let middle = factor.at(0.5);
+        assert_eq!((middle.label.as_str(), middle.number), ("0.5", Some(0.5)));
+        assert_eq!(middle.sets, ["a=0.5 m", "b=0.5 m"]);
     }
 
     /// Whole numbers and listed values have equal parts of the interval from 0 to 1.

@@ -1,9 +1,12 @@
 //! Factors in the file of a study.
 
 use super::{Factor, Level, Values};
-use crate::spec::{CaseKeys, RangeScale};
+use crate::spec::{CaseKeys, RangeScale, ends};
 use fretwork_math::design::scale::Scale;
+use fretwork_scene::material::NumberSpec;
+use fretwork_scene::quantity::si_quantity;
 use fretwork_scene::source::Source;
+use fretwork_scene::units::{self, UnitError};
 use fretwork_scene::{InputError, invisible_characters};
 use ron::value::RawValue;
 use serde::Deserialize;
@@ -21,7 +24,7 @@ pub enum FactorSpec {
         /// name in `set`.
         #[serde(default)]
         key: CaseKeys,
-        /// Values, as a case has them.
+        /// Values, as a case has them, with units or without.
         values: Vec<Box<RawValue>>,
         /// SI unit of a factor without a key.
         #[serde(default)]
@@ -36,10 +39,10 @@ pub enum FactorSpec {
         /// name in `set`.
         #[serde(default)]
         key: CaseKeys,
-        /// Lower end.
-        low: f64,
+        /// Lower end, with a unit or in SI units.
+        low: NumberSpec,
         /// Upper end.
-        high: f64,
+        high: NumberSpec,
         /// Distribution of the numbers.
         #[serde(default)]
         scale: RangeScale,
@@ -98,13 +101,53 @@ impl FactorSpec {
         if let Some(reason) = invisible_characters(name).filter(|_| !options) {
             return Err(source.error_at(path, reason));
         }
-        let values = self.values(&keys);
+        let located = |(key, why): Wrong| source.error_at(&format!("{path}{key}"), why);
+        let values = self.values(&keys).map_err(located)?;
+        let written = self.unit().map_err(located)?;
+        let unit = match unit {
+            Some(own) if !written.is_empty() => {
+                let fits = units::convert(1.0, &written, &own);
+                if fits.map_err(|e| located((".unit".to_owned(), e.message)))? != 1.0 {
+                    let why = format!("tables have the values in SI units, in `{written}`");
+                    return Err(located((".unit".to_owned(), why)));
+                }
+                own
+            }
+            own => own.unwrap_or(written),
+        };
         Ok(Factor {
-            values: values.map_err(|(key, why)| source.error_at(&format!("{path}{key}"), why))?,
+            values,
             name: name.clone(),
             keys,
-            unit: unit.unwrap_or_default(),
+            unit,
         })
+    }
+
+    /// Returns the SI unit of the values, if they have units.
+    fn unit(&self) -> Result<String, Wrong> {
+        match self {
+            Self::Options { .. } => Ok(String::new()),
+            Self::Range { low, high, .. } => {
+                let found = ends(low, high);
+                Ok(found.map_err(|(key, why)| (format!(".{key}"), why))?.2)
+            }
+            Self::Values { values, .. } => {
+                let mut unit = String::new();
+                for (k, value) in values.iter().enumerate() {
+                    let wrong = |e: UnitError| (format!(".values.{k}"), e.message);
+                    let Some(found) = si_quantity(&unpaired(value.get_ron())) else {
+                        continue;
+                    };
+                    let (_, own) = found.map_err(wrong)?;
+                    if unit.is_empty() {
+                        unit = own;
+                    } else if !own.is_empty() {
+                        units::convert(1.0, &own, &unit).map_err(wrong)?;
+                    }
+                }
+                Ok(unit)
+            }
+        }
     }
 
     fn values(&self, keys: &[String]) -> Result<Values, Wrong> {
@@ -114,7 +157,7 @@ impl FactorSpec {
                 if values.is_empty() {
                     return wrong(".values", "a factor takes one value or more");
                 }
-                let texts: Vec<&str> = values.iter().map(|v| v.get_ron().trim()).collect();
+                let texts: Vec<String> = values.iter().map(|v| unpaired(v.get_ron())).collect();
                 let listed: Vec<Level> = texts.iter().map(|t| Level::of(keys, t)).collect();
                 match repeated(&listed, Level::equals) {
                     None => Ok(Values::Listed(listed)),
@@ -135,10 +178,12 @@ impl FactorSpec {
                 levels,
                 ..
             } => {
+                let found = ends(low, high);
+                let (low, high, unit) = found.map_err(|(key, why)| (format!(".{key}"), why))?;
                 if *scale == RangeScale::Integer && (low.fract() != 0.0 || high.fract() != 0.0) {
                     return wrong(".low", "a range of whole numbers has whole ends");
                 }
-                let scale = scale.between(*low, *high);
+                let scale = scale.between(low, high);
                 scale
                     .check()
                     .map_err(|e| (".low".to_owned(), e.to_string()))?;
@@ -148,6 +193,7 @@ impl FactorSpec {
                 Ok(Values::Range {
                     scale,
                     levels: *levels,
+                    unit,
                 })
             }
             Self::Options { options, .. } => {
@@ -163,6 +209,31 @@ impl FactorSpec {
             }
         }
     }
+}
+
+/// Returns the text of a value as it was written: numbers with units, which the reader of the file
+/// made into pairs, `(value: 5, unit: "um")`, are `5 um` again.
+fn unpaired(text: &str) -> String {
+    const PAIR: [&str; 3] = ["(value: ", ", unit: \"", "\")"];
+    let mut out = String::new();
+    let mut rest = text.trim();
+    while let Some((before, after)) = rest.split_once(PAIR[0]) {
+        let pair = after.split_once(PAIR[1]);
+        let pair = pair.filter(|(number, _)| number.parse::<f64>().is_ok());
+        out += before;
+        let whole = pair.and_then(|(number, tail)| Some((number, tail.split_once(PAIR[2])?)));
+        match whole.filter(|(_, (unit, _))| !unit.contains('"')) {
+            Some((number, (unit, tail))) => {
+                out += &format!("{number} {unit}");
+                rest = tail;
+            }
+            None => {
+                out += PAIR[0];
+                rest = after;
+            }
+        }
+    }
+    out + rest
 }
 
 /// Returns the positions of the first two equal elements.
@@ -187,6 +258,80 @@ impl RangeScale {
                 from: low as i64,
                 to: high as i64,
             },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_become_the_numbers_as_written() {
+        for (text, written) in [
+            ("(value: 5, unit: \"um\")", "5 um"),
+            (" [(value: 0, unit: \"m/s\"), 1] ", "[0 m/s, 1]"),
+            (
+                "Force(Constant((value: -5e2, unit: \"kN\")))",
+                "Force(Constant(-5e2 kN))",
+            ),
+            (
+                "(value: 5, unit: \"um\", source: \"a\")",
+                "(value: 5, unit: \"um\", source: \"a\")",
+            ),
+            ("\"sand\"", "\"sand\""),
+            ("0.3", "0.3"),
+        ] {
+            assert_eq!(unpaired(text), written);
+        }
+    }
+
+    #[test]
+    fn values_and_ends_have_units() {
+        let factor = |text: &str| {
+            let mut source = Source::from_text("study.ron", text);
+            source.pair_quantities()?;
+            source.parse::<FactorSpec>()?.factor(&source, "")
+        };
+        let listed =
+            factor(r#"Values(name: "d", key: "a.b", values: [5um, 10 um, 2e-5])"#).unwrap();
+        let numbers = listed
+            .levels()
+            .unwrap()
+            .into_iter()
+            .map(|l| l.number.unwrap());
+        assert_eq!(numbers.collect::<Vec<_>>(), [5e-6, 10e-6, 2e-5]);
+        assert_eq!(listed.unit, "m");
+        assert_eq!(listed.at(0.0).sets, ["a.b=5 um"]);
+        let range = factor(r#"Range(name: "d", key: "a.b", low: 0, high: 20 um)"#).unwrap();
+        assert_eq!(
+            (range.at(1.0).number, range.unit.as_str()),
+            (Some(2e-5), "m")
+        );
+        for (text, words) in [
+            (
+                r#"Values(name: "d", values: [5um, 10 ms])"#,
+                "does not measure the same",
+            ),
+            (
+                r#"Range(name: "d", low: 1 um, high: 2 s)"#,
+                "does not measure the same",
+            ),
+            (
+                r#"Values(name: "d", values: [5 mss])"#,
+                "is not a known unit",
+            ),
+            (
+                r#"Range(name: "d", low: 1um, high: 2um, unit: "s")"#,
+                "does not measure the same",
+            ),
+            (
+                r#"Values(name: "d", values: [5um, 5e-6])"#,
+                "are the same value",
+            ),
+        ] {
+            let error = factor(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }

@@ -16,6 +16,8 @@ use fretwork_core::laws::SearchPath;
 use fretwork_math::fit::bounds::{Bounds, Parameter};
 use fretwork_math::fit::residuals::{Curve, Measurement, Target};
 use fretwork_scene::InputError;
+use fretwork_scene::material::NumberSpec;
+use fretwork_scene::units::{convert, in_si};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -128,17 +130,26 @@ impl Tests {
                     available
                         .check(&quantity)
                         .map_err(|why| at(".output", why))?;
-                    units.push(TestUnits {
-                        x: String::new(),
-                        value: available.unit(&quantity),
-                    });
+                    let unit = available.unit(&quantity);
+                    let given = |key: &str, number: &NumberSpec| {
+                        let own = number.unit.as_deref().unwrap_or_default();
+                        let value = match unit.as_str() {
+                            "" => in_si(number.value, own).map(|(value, _)| value),
+                            unit => convert(number.value, own, unit),
+                        };
+                        value.map_err(|e| at(key, e.message))
+                    };
                     let single = Measurement {
                         name: name.to_owned(),
                         x: vec![0.0],
-                        y: vec![*measured],
-                        sigma: vec![*sigma],
+                        y: vec![given(".measured", measured)?],
+                        sigma: vec![given(".sigma", sigma)?],
                         weight: 1.0,
                     };
+                    units.push(TestUnits {
+                        x: String::new(),
+                        value: unit,
+                    });
                     (Simulated::Value(quantity), single)
                 }
             };
@@ -330,7 +341,10 @@ fn bounds(read: &FitFile) -> Result<Bounds, InputError> {
     let spec = &read.spec;
     let parameters = spec.parameters.iter().map(|p| Parameter {
         name: p.name.clone(),
-        scale: p.scale.between(p.low, p.high),
+        scale: {
+            let [low, high] = p.limits();
+            p.scale.between(low, high)
+        },
     });
     let place = |name: &String| {
         let place = spec.parameters.iter().position(|p| p.name == *name);

@@ -73,7 +73,7 @@ fn json(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Outcome) 
         .enumerate()
         .map(|(place, (e, spec))| {
             json!({
-                "half_step": half(place), "name": e.name, "value": e.value, "unit": spec.unit, "low": e.interval.low, "high": e.interval.high,
+                "half_step": half(place), "name": e.name, "value": e.value, "unit": spec.shown_unit(), "low": e.interval.low, "high": e.interval.high,
                 "simultaneous_low": e.simultaneous.low, "simultaneous_high": e.simultaneous.high,
                 "determined": e.determined, "open_below": e.open_below, "open_above": e.open_above, "at": e.at,
             })

@@ -29,7 +29,8 @@ pub fn consists_of(read: &FitFile, tests: &Tests) -> String {
         );
     }
     for p in &read.spec.parameters {
-        let _ = writeln!(out, "  {}: {} to {} {}", p.name, p.low, p.high, p.unit);
+        let [low, high] = p.limits();
+        let _ = writeln!(out, "  {}: {low} to {high} {}", p.name, p.shown_unit());
     }
     let seeds = match tests.random {
         true => format!(
@@ -95,7 +96,7 @@ fn verdict(read: &FitFile, found: &SearchResult, outcome: &Outcome) -> Vec<Strin
         Some(HalfStep::Moves { parameters, beyond }) => {
             for &i in beyond {
                 let e = &known.estimates[i];
-                let unit = &read.spec.parameters[i].unit;
+                let unit = &read.spec.parameters[i].shown_unit();
                 let half = parameters[i].map_or(String::new(), moved_text);
                 out.push(format!(
                     "STEP NOT SMALL: with half the step {} would be {half} instead of {} {unit}, a change by more than an eighth of the half-width of its interval; take a smaller step (`time.step` in `set` of the tests)",
@@ -168,7 +169,7 @@ pub fn answer(read: &FitFile, tests: &Tests, found: &SearchResult, outcome: &Out
         found.ended
     );
     for (e, p) in known.estimates.iter().zip(&read.spec.parameters) {
-        let _ = writeln!(out, "  {:<16} {}", e.name, value_text(e, &p.unit));
+        let _ = writeln!(out, "  {:<16} {}", e.name, value_text(e, &p.shown_unit()));
     }
     let _ = writeln!(
         out,
@@ -280,10 +281,13 @@ fn parameter_blocks(read: &FitFile, found: &SearchResult, outcome: &Outcome) -> 
             );
             vec![
                 e.name.clone(),
-                value_text(e, &p.unit),
+                value_text(e, &p.shown_unit()),
                 both,
                 half,
-                format!("{} to {} {}", p.low, p.high, p.unit),
+                {
+                    let [low, high] = p.limits();
+                    format!("{low} to {high} {}", p.shown_unit())
+                },
             ]
         });
     let note = "Values with intervals of 95 % for each parameter alone, and such that all of them hold at once in 95 %.";

@@ -3,8 +3,11 @@
 use crate::changes::Changes;
 use crate::factor::{Factor, Values};
 use crate::runs::stored::Limits;
-use crate::spec::{CaseKeys, RangeScale, Spec, SpecFile, check_runs, one, one_percent};
+use crate::spec::{
+    CaseKeys, RangeScale, Spec, SpecFile, check_runs, ends, one, one_percent, seconds,
+};
 use fretwork_scene::invisible_characters;
+use fretwork_scene::material::NumberSpec;
 use fretwork_scene::source::{InputError, Source};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -95,10 +98,10 @@ pub enum TestSpec {
         set: Vec<String>,
         /// Output: a number of `summary.json`, or `statistics.COLUMN`.
         output: String,
-        /// Measured value.
-        measured: f64,
+        /// Measured value, with a unit or in that of the output.
+        measured: NumberSpec,
         /// Standard deviation of the measured value.
-        sigma: f64,
+        sigma: NumberSpec,
     },
 }
 
@@ -171,9 +174,12 @@ pub enum RowsSpec {
     #[default]
     All,
     /// Rows from a time on (s).
-    From(f64),
+    From(#[serde(deserialize_with = "seconds")] f64),
     /// Rows between two times (s).
-    Between(f64, f64),
+    Between(
+        #[serde(deserialize_with = "seconds")] f64,
+        #[serde(deserialize_with = "seconds")] f64,
+    ),
     /// Rows of the last complete cycle of a friction test.
     LastCycle,
 }
@@ -199,28 +205,51 @@ pub struct ParameterSpec {
     /// is used by its name in `set` of the tests.
     #[serde(default)]
     pub key: CaseKeys,
-    /// Lower limit.
-    pub low: f64,
+    /// Lower limit, with a unit or in SI units.
+    pub low: NumberSpec,
     /// Upper limit.
-    pub high: f64,
+    pub high: NumberSpec,
     /// Distribution of its values.
     #[serde(default)]
     pub scale: RangeScale,
-    /// Unit for display.
+    /// Unit for display; by default that of the limits in SI.
     #[serde(default)]
     pub unit: String,
 }
 
 impl ParameterSpec {
+    /// Returns the limits in SI units, with the symbol of their unit. A file is refused if they
+    /// have none.
+    fn ends(&self) -> (f64, f64, String) {
+        let none = (f64::NAN, f64::NAN, String::new());
+        ends(&self.low, &self.high).unwrap_or(none)
+    }
+
+    /// Returns the limits in SI units.
+    pub fn limits(&self) -> [f64; 2] {
+        let (low, high, _) = self.ends();
+        [low, high]
+    }
+
+    /// Returns the unit for display.
+    pub fn shown_unit(&self) -> String {
+        match self.unit.as_str() {
+            "" => self.ends().2,
+            own => own.to_owned(),
+        }
+    }
+
     /// Returns the parameter as a factor.
     pub fn factor(&self) -> Factor {
+        let (low, high, unit) = self.ends();
         Factor {
             name: self.name.clone(),
             keys: self.key.0.clone(),
-            unit: self.unit.clone(),
+            unit: self.shown_unit(),
             values: Values::Range {
-                scale: self.scale.between(self.low, self.high),
+                scale: self.scale.between(low, high),
                 levels: None,
+                unit,
             },
         }
     }
@@ -305,6 +334,9 @@ impl Spec for FitSpec {
                 .any(|p| p.name == parameter.name)
             {
                 return fail(&path, "two parameters have this name");
+            }
+            if let Err((key, why)) = ends(&parameter.low, &parameter.high) {
+                return fail(&format!("parameters.{k}.{key}"), &why);
             }
             if parameter.key.0.is_empty() && !used[k] {
                 return fail(

@@ -9,8 +9,9 @@ use crate::duration::seconds;
 use crate::factor::Level;
 use crate::runs::stored::summary;
 use crate::table::Cell;
+use fretwork_math::sensitivity::ranks::rank_correlations;
 use fretwork_math::statistics::interval::Mean;
-use fretwork_observe::quantity::{quantity, with_half_width};
+use fretwork_observe::quantity::{DETERMINED, number, quantity, with_half_width};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -78,7 +79,7 @@ pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: 
 }
 
 /// The smallest and the largest value of a factor of numbers.
-fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
+fn ends(plan: &Plan, factor: usize) -> Option<(String, String)> {
     if !plan.is_numeric(factor) {
         return None;
     }
@@ -87,7 +88,7 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
     let number = |v: &&Level| v.number.unwrap_or(f64::NAN);
     let low = values().min_by(|a, b| number(a).total_cmp(&number(b)))?;
     let high = values().max_by(|a, b| number(a).total_cmp(&number(b)))?;
-    Some((&low.label, &high.label))
+    Some((low.short(), high.short()))
 }
 
 /// Lists each run with its changes of the case.
@@ -162,27 +163,30 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     out
 }
 
+/// Probability below which a rank correlation is not by chance.
+const BY_CHANCE: f64 = 0.05;
+
 /// Returns the interval of each output of a study whose runs are one sample: seeds of one setting,
-/// or points drawn over ranges.
+/// or points drawn over ranges, with the input that it follows most.
 fn intervals(plan: &Plan, rows: &Rows) -> Vec<String> {
     let drawn = matches!(
         plan.design,
         DesignSpec::LatinHypercube { .. } | DesignSpec::Sobol { .. }
     );
     let line = |(name, unit): (&String, &String)| {
-        let values: Vec<f64> = rows.trusted(name).into_iter().flatten().collect();
+        let all = rows.trusted(name);
+        let values: Vec<f64> = all.iter().copied().flatten().collect();
         let mean = Mean::of(&values)?;
         if plan.settings.len() == 1 {
-            let half = mean.half_width?;
-            let text = with_half_width(mean.mean, half, unit);
-            return Some(format!("{name}: {text} over {} seeds (95 %)", mean.count));
+            return Some(format!("{name}: {}", over_seeds(&mean, unit)?));
         }
         let shown = |x: f64| quantity(x, unit);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let follows = followed(plan, &all);
         (drawn && values.len() > 1).then(|| {
             format!(
-                "{name}: {} to {} over {} runs within the ranges of the inputs, mean {}",
+                "{name}: {} to {} over {} runs within the ranges of the inputs, mean {}{follows}",
                 shown(low),
                 shown(high),
                 values.len(),
@@ -191,11 +195,57 @@ fn intervals(plan: &Plan, rows: &Rows) -> Vec<String> {
         })
     };
     let names: Vec<String> = plan.outputs.iter().map(|o| o.name.clone()).collect();
-    names
+    let mut out: Vec<String> = names
         .iter()
         .zip(&plan.output_units)
         .filter_map(line)
-        .collect()
+        .collect();
+    let doubted = rows.doubted();
+    if doubted > 0 {
+        out.push(format!(
+            "{doubted} of the runs are not trustworthy (`not_trustworthy` in the table says why)"
+        ));
+    }
+    out
+}
+
+/// Returns a mean over seeds with its half-width, and whether that determines it; `None` for one
+/// seed.
+fn over_seeds(mean: &Mean, unit: &str) -> Option<String> {
+    let half = mean.half_width?;
+    let text = with_half_width(mean.mean, half, unit);
+    let text = format!("{text} over {} seeds (95 %)", mean.count);
+    let share = half / mean.mean.abs();
+    Some(match share <= DETERMINED {
+        true => text,
+        false => format!("not determined: {text}; more seeds narrow it"),
+    })
+}
+
+/// Names the input whose ranks an output follows most, with the correlation; empty where that may
+/// be by chance.
+fn followed(plan: &Plan, outputs: &[Option<f64>]) -> String {
+    let points = plan.points().map(|p| numbers(plan, &p));
+    let Some(points) = points.collect::<Option<Vec<Vec<f64>>>>() else {
+        return String::new();
+    };
+    let ranks = rank_correlations(&points, outputs).unwrap_or_default();
+    let ranks = ranks.iter().zip(&plan.factors);
+    let real = ranks.filter(|(rank, _)| rank.p.is_some_and(|p| p < BY_CHANCE));
+    let most = real.max_by(|a, b| a.0.value.abs().total_cmp(&b.0.value.abs()));
+    most.map_or(String::new(), |(rank, factor)| {
+        format!(
+            "; it follows {} most (rank correlation {})",
+            factor.name,
+            number(rank.value, 2)
+        )
+    })
+}
+
+/// Returns the numbers of the factors at a point; `None` where one is no number.
+fn numbers(plan: &Plan, point: &Point) -> Option<Vec<f64>> {
+    let levels = plan.settings[point.setting - 1].iter();
+    levels.map(|level| level.number).collect()
 }
 
 /// Returns the names of the texts in the summary of the first completed run, which `regimes` may

@@ -3,10 +3,13 @@
 use super::plan::{Plan, Point};
 use crate::load;
 use crate::runs::trial::{RunTime, Trial};
-use fretwork_core::laws::SearchPath;
+use fretwork_core::laws::{Kind, SearchPath};
 
 /// Duration of a run outside its steps: start, reading, files (s).
 const STARTING: f64 = 0.1;
+/// Duration of the check of the laws of an interface whose bonds may break, and of the comparison
+/// of its broken bonds with pulls on the bench at the end of a run (s).
+const PULLED: f64 = 0.7;
 
 /// Number of points that are tried.
 const TRIED: usize = 3;
@@ -65,13 +68,16 @@ impl Forecast {
                 ..Self::default()
             };
         }
+        let interfaces = plan.base.case.interfaces.iter();
+        let bonded = interfaces.filter(|i| i.law(Kind::DAMAGE).is_some()).count();
+        let besides = STARTING + PULLED * bonded as f64;
         let mean =
             |f: &dyn Fn(&RunTime) -> f64| tried.iter().map(f).sum::<f64>() / tried.len() as f64;
         let about: Option<Vec<f64>> = tried.iter().map(|t| t.about).collect();
         Self {
-            about: about.map(|a| count * (STARTING + a.iter().sum::<f64>() / a.len() as f64)),
+            about: about.map(|a| count * (besides + a.iter().sum::<f64>() / a.len() as f64)),
             least: count * mean(&|t| t.least),
-            most: count * (STARTING + mean(&|t| t.most)),
+            most: count * (besides + mean(&|t| t.most)),
             measured: false,
         }
     }

@@ -10,6 +10,7 @@ use crate::runs::output::OutputName;
 use crate::{Error, RunSetup, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
+use fretwork_scene::units::convert;
 use fretwork_scene::{Built, InputError, LoadedCase};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -235,7 +236,7 @@ impl Plan {
     pub fn words(&self, point: &Point) -> String {
         let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
         let mut words: Vec<String> = values
-            .map(|(f, v)| format!("{} {}", f.name, v.label))
+            .map(|(f, v)| format!("{} {}", f.name, v.short()))
             .collect();
         if self.seeds.len() > 1 {
             words.push(format!("seed {}", point.run.seed));
@@ -312,11 +313,19 @@ fn units(
         let known = known.map_or("", |i| i.unit);
         match (known, factor.unit.as_str()) {
             ("", own) => Ok(own.to_owned()),
-            (known, own) if own.is_empty() || own == known => Ok(known.to_owned()),
-            (known, own) => Err(read.source.error_at(
-                &format!("factors.{k}.unit"),
-                format!("the case has its key in `{known}`, not in `{own}`; leave the unit out"),
-            )),
+            (known, own) if own.is_empty() || convert(1.0, own, known) == Ok(1.0) => {
+                Ok(known.to_owned())
+            }
+            (known, own) => {
+                let path = format!("factors.{k}.unit");
+                let written = read.source.position_of(&path).is_some();
+                let (path, help) = match written {
+                    true => (path, "; leave the unit out"),
+                    false => (format!("factors.{k}"), ""),
+                };
+                let why = format!("the case has its key in `{known}`, not in `{own}`{help}");
+                Err(read.source.error_at(&path, why))
+            }
         }
     };
     factors.iter().enumerate().map(of).collect()
@@ -371,8 +380,8 @@ fn outputs(
     Ok((all, units))
 }
 
-/// Builds the first setting, and reads the case with each level separately, and builds it if there
-/// are few, so that an invalid level is refused before any run.
+/// Reads the case with each level separately, and builds it if there are few, so that an invalid
+/// level is refused before any run; then builds the first setting.
 fn check_levels(
     read: &StudyFile,
     base: &LoadedCase,
@@ -384,7 +393,6 @@ fn check_levels(
         Values::Listed(values) => values.clone(),
         Values::Range { .. } => vec![f.at(0.0), f.at(1.0)],
     };
-    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;
     for factor in factors {
         for value in levels(factor).into_iter().filter(|v| !v.sets.is_empty()) {
@@ -403,5 +411,6 @@ fn check_levels(
             })?;
         }
     }
+    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     Ok(())
 }

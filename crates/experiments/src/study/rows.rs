@@ -138,6 +138,12 @@ impl Rows {
         (0..self.statuses.len()).filter(|k| self.is_done(*k))
     }
 
+    /// Returns the number of completed runs that are not trustworthy.
+    pub fn doubted(&self) -> usize {
+        let doubted = |k: &usize| !self.table.text("not_trustworthy", *k).is_empty();
+        self.done().filter(doubted).count()
+    }
+
     /// Returns the columns among `names` that are empty in all completed runs.
     pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
         let empty = |name: &&str| self.done().all(|run| self.table.text(name, run).is_empty());

@@ -29,10 +29,10 @@ pub(super) fn listed(loaded: &LoadedCase, tolerance: f64, argument: &str) -> Res
     if key.trim().is_empty() || values.len() < 2 || values.iter().any(String::is_empty) {
         return Err(form());
     }
+    let keys = [key.trim().to_owned()];
     let level = |value: &String| Level {
         label: value.clone(),
-        sets: vec![format!("{}={value}", key.trim())],
-        number: value.parse().ok(),
+        ..Level::of(&keys, value)
     };
     let levels: Vec<Level> = values.iter().map(level).collect();
     let before = loaded.source.sets();

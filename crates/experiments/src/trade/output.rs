@@ -4,6 +4,8 @@ use crate::Error;
 use crate::runs::output::OutputName;
 use crate::runs::unit::heading;
 use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
+use fretwork_scene::quantity::si_quantity;
+use fretwork_scene::units::convert;
 
 /// The wanted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +26,13 @@ pub struct Output {
     /// Exact value, for example from a closed form; if absent, errors are measured against the
     /// reference.
     pub exact: Option<f64>,
-    /// SI unit of the number, `1` for pure numbers; empty until the case is known, or if only its
-    /// runs give it.
+    /// SI unit of the number, `1` for pure numbers; until the case is known that of the wanted
+    /// error, which is empty if it has none, or if only the runs of the case give it.
     pub unit: String,
 }
 
 impl Output {
-    /// Parses `name=1%`, `name=0.003` (in its unit) or `name` (1 %).
+    /// Parses `name=1%`, `name=0.003` (in its SI unit), `name=3 um` or `name` (1 %).
     ///
     /// # Errors
     /// A sentence.
@@ -46,10 +48,12 @@ impl Output {
             Some(digits) => (digits, true),
             None => (wanted, false),
         };
-        let value: f64 = digits
-            .trim()
-            .parse()
-            .map_err(|_| wrong(&format!("`{wanted}` is not a valid error")))?;
+        let (value, unit) = match digits.trim().parse() {
+            Ok(value) => (value, String::new()),
+            Err(_) if share => return Err(wrong(&format!("`{wanted}` is not a valid error"))),
+            Err(_) => absolute(digits).map_err(|why| wrong(&why))?,
+        };
+        let value: f64 = value;
         if !(value > 0.0 && value.is_finite()) {
             return Err(wrong("the wanted error must be a number above zero"));
         }
@@ -78,8 +82,21 @@ impl Output {
                 ErrorTarget::Absolute(value)
             },
             exact,
-            unit: String::new(),
+            unit,
         })
+    }
+
+    /// Takes the unit of the output once the case is known.
+    ///
+    /// # Errors
+    /// The wanted error is of another dimension; in a sentence.
+    pub fn take_unit(&mut self, unit: String) -> Result<(), String> {
+        if unit.is_empty() {
+            return Ok(());
+        }
+        convert(1.0, &self.unit, &unit).map_err(|e| e.message)?;
+        self.unit = unit;
+        Ok(())
     }
 
     /// Returns the name of the output.
@@ -102,6 +119,14 @@ impl Output {
     }
 }
 
+/// Returns an error with a unit in SI units, and the symbol of its unit there.
+fn absolute(text: &str) -> Result<(f64, String), String> {
+    let refused = || format!("`{}` is not a valid error", text.trim());
+    si_quantity(text)
+        .ok_or_else(refused)?
+        .map_err(|e| e.message)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,6 +141,10 @@ mod tests {
         );
         let absolute = Output::parse("energy_residual_relative=1e-3").unwrap();
         assert_eq!(absolute.wanted, ErrorTarget::Absolute(1e-3));
+        let mut with_unit = Output::parse("wear.volume=5 mm^3").unwrap();
+        assert_eq!(with_unit.wanted, ErrorTarget::Absolute(5e-9));
+        assert!(with_unit.take_unit("m".into()).is_err());
+        assert_eq!(with_unit.take_unit("m^3".into()), Ok(()));
         for wrong in [
             "a=",
             "a=b%",

@@ -9,6 +9,7 @@ use crate::runs::available::AvailableQuantities;
 use crate::runs::trial::Trial;
 use fretwork_scene::Built;
 use fretwork_scene::case::Case;
+use fretwork_scene::quantity::quantity;
 
 /// Returns the requested outputs, or the default ones, with their exact values where given; an
 /// error if the case does not have one.
@@ -40,7 +41,9 @@ pub fn outputs(request: &Request, available: &AvailableQuantities) -> Result<Vec
             .map_err(|why| output.refused(&why))?;
     }
     for output in &mut outputs {
-        output.unit = available.unit(&output.quantity);
+        let unit = available.unit(&output.quantity);
+        let taken = output.take_unit(unit);
+        taken.map_err(|why| output.refused(&why))?;
     }
     for text in &request.exact {
         let wrong = |why: &str| {
@@ -51,16 +54,10 @@ pub fn outputs(request: &Request, available: &AvailableQuantities) -> Result<Vec
         let (name, value) = text
             .split_once('=')
             .ok_or_else(|| wrong("there is no `=`"))?;
-        let value: f64 = value
-            .trim()
-            .parse()
-            .ok()
-            .filter(|v: &f64| v.is_finite())
-            .ok_or_else(|| wrong("the value is not a number"))?;
         let found = outputs.iter_mut().find(|o| o.name() == name.trim());
-        found
-            .ok_or_else(|| wrong("no --output has this name"))?
-            .exact = Some(value);
+        let output = found.ok_or_else(|| wrong("no --output has this name"))?;
+        let value = quantity(value, &output.unit).map_err(|e| wrong(&e.message))?;
+        output.exact = Some(value);
     }
     Ok(outputs)
 }

@@ -2,7 +2,7 @@
 
 use crate::chart::{Chart, Series, Style, quantity};
 use crate::friction::Cycles;
-use crate::quantity::number;
+use crate::quantity::{below_digits, number};
 use crate::summary::Estimate;
 
 /// Adds a result with its half-widths to the line under the heading.
@@ -14,7 +14,8 @@ pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &
             quantity(x, unit, digits)
         }
     };
-    let shown = |x: f64| digits(x, 2);
+    let of = known.value.unwrap_or(0.0);
+    let shown = |x: f64| below_digits(x, of).map_or_else(|| digits(x, 2), str::to_owned);
     let settings = known.from_settings(shown);
     let scatter = known
         .scatter

@@ -108,8 +108,38 @@ pub fn quantity(value: f64, unit: &str) -> String {
     shown.after(shown.number(value, 4))
 }
 
-/// Formats a value with its half-width in one unit: `0.4020 +- 0.012`, `23.00 +- 0.40 um`.
+/// Largest half-width, as a share of its value, that four digits of the value do not show.
+const UNSEEN: f64 = 5e-4;
+
+const BELOW: &str = "< 0.1 %";
+
+/// Returns how a half-width is shown that four digits of its value do not show; `None` for others.
+pub fn below_digits(half_width: f64, value: f64) -> Option<&'static str> {
+    (half_width < UNSEEN * value.abs()).then_some(BELOW)
+}
+
+/// Formats a half-width as a share of its value in percent.
+pub fn percent(share: f64) -> String {
+    let shown = || format!("{} %", number(100.0 * share, 2));
+    below_digits(share, 1.0).map_or_else(shown, str::to_owned)
+}
+
+/// Formats a half-width of a value in its unit, and in percent where four digits of the value do
+/// not show it.
+pub fn half_width(half_width: f64, value: f64, unit: &str) -> String {
+    match (below_digits(half_width, value), unit) {
+        (Some(below), _) => below.to_owned(),
+        (None, "1") => number(half_width, 2),
+        (None, unit) => quantity(half_width, unit),
+    }
+}
+
+/// Formats a value with its half-width in one unit: `0.4020 +- 0.012`, `23.00 +- 0.40 um`; a
+/// half-width that the digits of the value do not show as `0.4020 +- < 0.1 %`.
 pub fn with_half_width(value: f64, half_width: f64, unit: &str) -> String {
+    if let Some(below) = below_digits(half_width, value) {
+        return format!("{} +- {below}", quantity(value, unit));
+    }
     let shown = ShownUnit::of(value, unit);
     let numbers = [shown.number(value, 4), shown.number(half_width, 2)];
     shown.after(numbers.join(" +- "))
@@ -144,5 +174,13 @@ mod tests {
             "0.002229 +- 0.00065 mm3/m"
         );
         assert_eq!(with_half_width(4.5e-9, 1e-9, "kg/s"), "4.500 +- 1.0 ug/s");
+        assert_eq!(with_half_width(0.4, 1.6e-16, "1"), "0.4000 +- < 0.1 %");
+        assert_eq!(with_half_width(-2e-5, 0.0, "m"), "-20.00 um +- < 0.1 %");
+        assert_eq!(half_width(4e-7, 2.3e-5, "m"), "400.0 nm");
+        assert_eq!(half_width(0.0, 2.3e-5, "m"), "< 0.1 %");
+        assert_eq!(
+            (percent(3.5e-16), percent(0.0262)),
+            ("< 0.1 %".to_owned(), "2.6 %".to_owned())
+        );
     }
 }

@@ -17,7 +17,7 @@ pub use described::{Described, Field, Schema, field, part, parts, values};
 pub use difference::{Compared, Difference, Significance};
 pub use estimate::{DETERMINED, Estimate};
 pub use findings::{Expected, Findings};
-pub use format::{number, quantity, with_half_width};
+pub use format::{below_digits, half_width, number, percent, quantity, with_half_width};
 pub use fretwork_core::unit::{self, Unit};
 pub use path::{find, renamed};
 

@@ -118,7 +118,7 @@ impl SolverSummary {
             format!(
                 "the residuals of the steps make {:.1} times the heat of slip: slow sliding, and with it friction, may be wrong although \
                  the steps reached solver.tolerance; take a smaller one, or compliant contacts \
-                 (docs/compliant.md, docs/accuracy.md)",
+                 (docs/compliant.md, docs/dev/sensitivity.md)",
                 parts.contact_law
             )
         })

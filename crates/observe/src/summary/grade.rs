@@ -2,7 +2,7 @@
 //! known of the error of its headline.
 
 use super::SampleFacts;
-use crate::quantity::{Estimate, Findings, Quantity, Role, number};
+use crate::quantity::{Estimate, Findings, Quantity, Role, percent};
 use serde::Serialize;
 
 /// Largest error of a headline that counts as small, as a share of its value.
@@ -122,7 +122,6 @@ impl HeadlineError {
         if self.label.is_empty() {
             return "the run has no headline result whose error could be known".to_owned();
         }
-        let percent = |share: f64| format!("{} %", number(100.0 * share, 2));
         let known = self.known.iter();
         let known: Vec<String> = known
             .map(|(of, share)| format!("{of} {}", percent(*share)))

@@ -10,7 +10,7 @@ mod sliding;
 mod text;
 mod time_spent;
 
-pub use self::brief::{COLUMNS, fitted};
+pub use self::brief::{COLUMNS, cut, fitted, wrapped};
 pub use self::course::{Course, RELATIVE_RESIDUAL, residual};
 pub use self::estimate::{Estimate, Uncertainty};
 pub use self::grade::{Grade, HeadlineError};

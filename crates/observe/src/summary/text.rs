@@ -2,7 +2,7 @@
 //! observers, by topic.
 
 use super::Summary;
-use crate::quantity::{Findings, Quantity, Role, Topic, Wording, number, quantity};
+use crate::quantity::{Findings, Quantity, Role, Topic, Wording, half_width, quantity};
 use std::fmt::Write as _;
 
 impl Summary {
@@ -66,10 +66,8 @@ fn with_remark(q: &Quantity, remark: &str, dimension: usize) -> Option<String> {
     let Some(estimate) = &q.estimate else {
         return Some(value + &remark);
     };
-    let half = |h: f64| match unit {
-        "1" => number(h, 2),
-        unit => quantity(h, unit),
-    };
+    let of = estimate.value.or(q.value.as_f64()).unwrap_or(0.0);
+    let half = |h: f64| half_width(h, of, unit);
     let settings = estimate.from_settings(half);
     let open = match estimate.is_determined() {
         Some(false) => "not determined: ",

@@ -25,7 +25,8 @@ pub struct Layout {
     pub decimal_comma: bool,
 }
 
-/// Returns the lines of a text that are neither empty nor a comment (`#`), with their bytes.
+/// Returns the lines of a text that are neither empty nor a comment (`#`), with their bytes. A
+/// spreadsheet writes empty rows as delimiters alone.
 pub fn lines(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     let skipped = text.len() - text.trim_start_matches('\u{feff}').len();
     let mut at = skipped;
@@ -38,7 +39,8 @@ pub fn lines(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
             let content = line.trim_end_matches(['\r', '\n']);
             let shown = content.trim();
             let span = start..start + content.trim_end().len();
-            (!shown.is_empty() && !shown.starts_with('#')).then_some((span, content))
+            let empty = shown.chars().all(|c| matches!(c, ';' | ',' | '\t' | ' '));
+            (!empty && !shown.starts_with('#')).then_some((span, content))
         })
 }
 
@@ -48,7 +50,12 @@ impl Layout {
     /// if blanks separate the columns, or within quotes.
     pub fn of(text: &str) -> Self {
         let all: Vec<&str> = lines(text).map(|(_, line)| line).collect();
-        let body = if all.len() > 1 { &all[1..] } else { &all[..] };
+        Self::of_lines(&all)
+    }
+
+    /// Determines the layout of the lines of a table, as [`Layout::of`].
+    pub fn of_lines(all: &[&str]) -> Self {
+        let body = if all.len() > 1 { &all[1..] } else { all };
         let any = |c: char| body.iter().any(|line| line.contains(c));
         let delimiter = if any(';') {
             Delimiter::Semicolon

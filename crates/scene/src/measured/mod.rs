@@ -2,46 +2,20 @@
 //! spreadsheets write them.
 //!
 //! Columns are separated by commas, semicolons, tabs or blanks; numbers have a decimal point or a
-//! decimal comma; lines that begin with `#` are comments. A heading is a name with its unit in
-//! brackets: `delta (um)`, `Q [N]`, `mu`. Without headings columns are called `1`, `2`, ...
+//! decimal comma; lines that begin with `#` are comments. A heading is a name with its unit: `delta
+//! (um)`, `Q [N]`, `delta / um`, `mu`; units may also stand in a row below the names. Without
+//! headings columns are called `1`, `2`, ... Lines of another form above the headings, as
+//! instruments write them, are skipped.
 
+mod heading;
 mod layout;
 
+pub use heading::Heading;
 pub use layout::{Delimiter, Layout, lines};
 
-use crate::source::{InputError, nearest, read_text};
+use crate::source::{InputError, MAX_BYTES, nearest, read_bytes};
 use std::ops::Range;
 use std::path::Path;
-
-/// Heading of a column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Heading {
-    /// The heading as in the file, `stress [MPa]`.
-    pub text: String,
-    /// Name without the unit.
-    pub name: String,
-    /// Unit; empty if there is none.
-    pub unit: String,
-}
-
-impl Heading {
-    /// Splits a heading into its name and its unit in brackets at the end.
-    pub fn parse(text: &str) -> Self {
-        let text = text.trim();
-        let split = |open: char, close: char| {
-            let (name, unit) = text.strip_suffix(close)?.rsplit_once(open)?;
-            (!name.trim().is_empty()).then(|| (name.trim(), unit.trim()))
-        };
-        let (name, unit) = split('[', ']')
-            .or_else(|| split('(', ')'))
-            .unwrap_or((text, ""));
-        Self {
-            text: text.to_owned(),
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-        }
-    }
-}
 
 /// A table of measured values.
 #[derive(Clone, Debug)]
@@ -61,7 +35,10 @@ impl MeasuredTable {
     /// The file cannot be read, has no row, or has rows of other lengths than its headings; the
     /// error is located at the line.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        Self::parse(&path.display().to_string(), read_text(path)?)
+        Self::parse(
+            &path.display().to_string(),
+            decoded(read_bytes(path, MAX_BYTES)?),
+        )
     }
 
     /// Reads the text of a table; `name` is that of its file, for errors.
@@ -69,23 +46,25 @@ impl MeasuredTable {
     /// # Errors
     /// Those of [`MeasuredTable::read`].
     pub fn parse(name: &str, text: String) -> Result<Self, InputError> {
-        let layout = Layout::of(&text);
-        let mut rows = lines(&text).map(|(span, line)| {
-            let cells = layout.cells(line).into_iter();
-            (span, cells.map(|c| c.into_owned()).collect::<Vec<_>>())
-        });
-        let Some((span, first)) = rows.next() else {
+        let all: Vec<(Range<usize>, &str)> = lines(&text).collect();
+        if all.is_empty() {
             return Err(InputError::about(name, "there is no line with values"));
+        }
+        let cells_of = |layout: Layout, (span, line): &(Range<usize>, &str)| {
+            let cells = layout.cells(line).into_iter();
+            let cells = cells.map(|c| c.into_owned()).collect::<Vec<_>>();
+            (span.clone(), cells)
         };
-        let numbers = first.iter().all(|cell| layout.number(cell).is_ok());
-        let (headings, before) = match numbers {
-            true => {
-                let names = (1..=first.len()).map(|k| Heading::parse(&k.to_string()));
-                (names.collect(), Some((span, first)))
+        let (layout, headings, first) = match heading::find(&all) {
+            Some(found) => (found.layout, found.headings, found.first),
+            None => {
+                let layout = Layout::of(&text);
+                let (_, first) = cells_of(layout, &all[0]);
+                (layout, heading::headings(layout, &first), 1)
             }
-            false => (headings(layout, first), None),
         };
-        let rows: Vec<_> = before.into_iter().chain(rows).collect();
+        let rows = all[first..].iter().map(|line| cells_of(layout, line));
+        let rows: Vec<(Range<usize>, Vec<String>)> = rows.collect();
         let columns = headings.len();
         for (span, cells) in &rows {
             if cells.len() != columns {
@@ -95,6 +74,8 @@ impl MeasuredTable {
                     match layout.delimiter {
                         Delimiter::Comma if cells.len() > columns =>
                             "; if commas stand for decimal points, separate the columns by semicolons or tabs",
+                        Delimiter::Comma =>
+                            "; commas separate the columns, also in headings: write units in brackets",
                         Delimiter::Blanks =>
                             "; blanks separate the columns, also in headings: write names without blanks, or separate by semicolons or tabs",
                         _ => "",
@@ -164,17 +145,22 @@ impl MeasuredTable {
     }
 }
 
-/// Returns the headings of a table; between blanks, a unit in brackets belongs to the word before.
-fn headings(layout: Layout, cells: Vec<String>) -> Vec<Heading> {
-    let mut texts: Vec<String> = Vec::new();
-    for cell in cells {
-        let unit = layout.delimiter == Delimiter::Blanks && cell.starts_with(['(', '[']);
-        match texts.last_mut().filter(|_| unit) {
-            Some(before) => *before = format!("{before} {cell}"),
-            None => texts.push(cell),
-        }
+/// Returns the text of a file: in UTF-8, in UTF-16 with a byte order mark, or else in Latin-1,
+/// whose bytes are the first characters of Unicode, in which older instruments write micrometres.
+fn decoded(bytes: Vec<u8>) -> String {
+    let wide = |pair: fn([u8; 2]) -> u16| {
+        let units = bytes[2..].as_chunks::<2>().0.iter().map(|p| pair(*p));
+        char::decode_utf16(units)
+            .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
+            .collect()
+    };
+    match bytes.get(..2) {
+        Some([0xff, 0xfe]) => return wide(u16::from_le_bytes),
+        Some([0xfe, 0xff]) => return wide(u16::from_be_bytes),
+        _ => {}
     }
-    texts.iter().map(|t| Heading::parse(t)).collect()
+    String::from_utf8(bytes)
+        .unwrap_or_else(|e| e.as_bytes().iter().map(|b| char::from(*b)).collect())
 }
 
 #[cfg(test)]
@@ -215,6 +201,47 @@ mod tests {
     }
 
     #[test]
+    fn lines_of_an_instrument_above_the_headings_are_skipped() {
+        for text in [
+            "Rig 7\nDate: 2024-05-03; operator X\n\nTest;12\ndelta;Q\n(um);(N)\n0,5;1\n-1,5;2\n\n\n",
+            "DATA FILE\nVersion 2.1\n[Data]\ndelta [um]\tQ [N]\n0.5\t1\n-1.5\t2\n",
+            "a rig, of 1998\ndelta / um,Q / N\n0.5,1\n-1.5,2\n,\n",
+            "delta;Q\num;N\n0.5;1\n-1.5;2\n;\n",
+            "Channel  Value\n\ndelta (um)  Q [N]\n 0,5  1\n-1,5  2\n",
+        ] {
+            let table = parse(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let units = table.headings.iter();
+            let units = units.map(|h| (h.name.as_str(), h.unit.as_str()));
+            assert_eq!(
+                units.collect::<Vec<_>>(),
+                [("delta", "um"), ("Q", "N")],
+                "{text}"
+            );
+            assert_eq!(table.values(0).unwrap(), [0.5, -1.5], "{text}");
+        }
+        let spaced = parse("Cycle number  Friction coefficient\n1  0.41\n2  0.43\n").unwrap();
+        assert_eq!(spaced.headings[1].name, "Friction coefficient");
+    }
+
+    #[test]
+    fn texts_of_other_encodings_are_read() {
+        let text = "delta (\u{b5}m);Q\n1;2\n";
+        let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        let wide = |pair: fn(u16) -> [u8; 2]| -> Vec<u8> {
+            let all = format!("\u{feff}{text}");
+            all.encode_utf16().flat_map(pair).collect()
+        };
+        for bytes in [
+            text.as_bytes().to_vec(),
+            latin,
+            wide(u16::to_le_bytes),
+            wide(u16::to_be_bytes),
+        ] {
+            assert_eq!(decoded(bytes), text);
+        }
+    }
+
+    #[test]
     fn what_cannot_be_read_is_located() {
         for (text, line, says) in [
             ("# nothing\n", 0, "no line with values"),
@@ -240,6 +267,11 @@ mod tests {
             "{error}"
         );
         assert_eq!(error.position(), Some((3, 1)));
+        for gap in ["NaN", "-"] {
+            let table = parse(&format!("a;b\n1;{gap}\n3;4\n")).unwrap();
+            let error = table.values(1).unwrap_err();
+            assert_eq!(error.position(), Some((2, 1)), "{gap}");
+        }
         let error = table.required("c").unwrap_err();
         assert!(error.message().contains("there are a, b"), "{error}");
     }

@@ -58,6 +58,15 @@ impl Source {
         false
     }
 
+    /// Replaces each number with a unit, `5 um`, by `(value: 5, unit: "um")`, for a schema that
+    /// takes such pairs.
+    ///
+    /// # Errors
+    /// A unit is unknown, or given twice.
+    pub fn pair_quantities(&mut self) -> Result<(), InputError> {
+        self.replace_quantities(|_| Wanted::Pair)
+    }
+
     /// Replaces the numbers with units by those that the schema takes, as `wanted` says for each
     /// position. Errors of the parser keep their positions in the file.
     ///

@@ -53,6 +53,16 @@ pub enum ResumeError {
         /// Version of this program, with its checkpoint format.
         ours: String,
     },
+    /// The file was written by another build of this version.
+    #[error(
+        "{} was written by another build of this version of Fretwork, and results of two builds may differ in their bits: resume with the \
+         program that started it, or start again with --force in place of --resume",
+        path.display()
+    )]
+    Build {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file belongs to another case.
     #[error(
         "{} belongs to another case: {what}; resume with the same case and --set options, or choose another folder with \
@@ -93,6 +103,7 @@ impl ResumeError {
         matches!(
             self,
             Self::Version { .. }
+                | Self::Build { .. }
                 | Self::Other { .. }
                 | Self::Longer { .. }
                 | Self::Lock(LockError::Held { .. })

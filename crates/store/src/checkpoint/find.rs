@@ -141,6 +141,9 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<FolderContent
     if let Some(what) = theirs.differs(identity) {
         return Err(ResumeError::Other { path, what });
     }
+    if theirs.is_of_another_build(identity) {
+        return Err(ResumeError::Build { path });
+    }
     let later = theirs.ends_later(identity);
     let name = frame.identity.clone();
     // The results file is marked as complete, and the summary of this run shows that all other

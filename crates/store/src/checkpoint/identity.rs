@@ -17,6 +17,32 @@ const FREE: [&str; 2] = ["output.checkpoint", "output.figures"];
 /// Key whose value may increase in a resumed run.
 const END: &str = "time.end";
 
+/// Where the code of a law comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum LawCode {
+    /// A library with this SHA-256.
+    Library(String),
+    /// The program itself, whose file has this SHA-256.
+    Program(String),
+}
+
+impl LawCode {
+    /// Whether `now` is the same code, or the shipped law of another build of the program.
+    fn is_input(&self, now: &Self) -> bool {
+        let program = |code: &Self| matches!(code, Self::Program(_));
+        self == now || (program(self) && program(now))
+    }
+
+    /// Says where the code comes from, with the beginning of its SHA-256.
+    fn said(&self) -> String {
+        let (of, sum) = match self {
+            Self::Library(sum) => ("", sum),
+            Self::Program(sum) => ("program of ", sum),
+        };
+        format!("{of}SHA-256 {}...", sum.get(..12).unwrap_or(sum))
+    }
+}
+
 /// Identity of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
@@ -28,8 +54,8 @@ pub struct Identity {
     end: f64,
     /// Material files: name and text.
     materials: Vec<(String, String)>,
-    /// Libraries of laws: kind with name, and SHA-256.
-    plugins: Vec<(String, String)>,
+    /// Laws: kind with name, and where their code comes from.
+    laws: Vec<(String, LawCode)>,
     /// SHA-256 of the built scene without the depths of its thermal half-spaces. It includes the
     /// effect of files named in the case (profiles, meshes, samples).
     scene: String,
@@ -41,12 +67,17 @@ impl Identity {
     /// # Errors
     /// The scene cannot be serialized.
     pub fn of(loaded: &LoadedCase, built: &Built) -> Result<Self, EncodingError> {
-        let mut plugins: Vec<(String, String)> = Vec::new();
+        let mut laws: Vec<(String, LawCode)> = Vec::new();
         for law in built.simulation.laws().iter().flat_map(|l| l.loaded()) {
             let p = &law.plugin;
-            let stamp = (format!("{} law `{}`", p.kind, p.name), p.sha256.clone());
-            if !plugins.contains(&stamp) {
-                plugins.push(stamp);
+            let sum = p.sha256.clone();
+            let code = match p.built_in {
+                true => LawCode::Program(sum),
+                false => LawCode::Library(sum),
+            };
+            let stamp = (format!("{} law `{}`", p.kind, p.name), code);
+            if !laws.contains(&stamp) {
+                laws.push(stamp);
             }
         }
         let mut hash = HashWriter(Sha256::new());
@@ -60,9 +91,17 @@ impl Identity {
             case: loaded.source.text().to_owned(),
             end: loaded.case.time.end,
             materials: built.materials.clone(),
-            plugins,
+            laws,
             scene: hex(&hash.0.finalize()),
         })
+    }
+
+    /// Whether shipped laws are those of another build of the program than in `now`.
+    pub fn is_of_another_build(&self, now: &Self) -> bool {
+        let other = |(name, code): &(String, LawCode)| {
+            find(&self.laws, name).is_some_and(|old| old.is_input(code) && old != code)
+        };
+        now.laws.iter().any(other)
     }
 
     /// Name of a serialized identity: its SHA-256.
@@ -80,8 +119,8 @@ impl Identity {
         now.end > self.end
     }
 
-    /// Describes the first relevant difference from `now`; `None` if there is none and `now` ends
-    /// no earlier.
+    /// Describes the first relevant difference of the inputs from those of `now`; `None` if there
+    /// is none and `now` ends no earlier. Shipped laws are part of the program, whatever its build.
     pub fn differs(&self, now: &Self) -> Option<String> {
         if self.case != now.case {
             let [a, b] = [&self.case, &now.case].map(|t| Source::from_text("case", t.clone()));
@@ -99,31 +138,28 @@ impl Identity {
                 ));
             }
         }
-        let find = |list: &[(String, String)], name: &str| -> Option<String> {
-            list.iter().find(|l| l.0 == name).map(|l| l.1.clone())
-        };
         for (name, text) in &now.materials {
             match find(&self.materials, name) {
                 None => return Some(format!("it does not use the material `{name}`")),
-                Some(old) if old != *text => {
+                Some(old) if old != text => {
                     return Some(format!("the material file `{name}` has changed since"));
                 }
                 Some(_) => {}
             }
         }
-        for (name, sha) in &now.plugins {
-            match find(&self.plugins, name) {
+        for (name, code) in &now.laws {
+            match find(&self.laws, name) {
                 None => return Some(format!("it does not use the {name}")),
-                Some(old) if old != *sha => {
-                    let [old, new] = [&old, sha].map(|s| s.get(..12).unwrap_or(s).to_owned());
+                Some(old) if !old.is_input(code) => {
+                    let [old, new] = [old, code].map(LawCode::said);
                     return Some(format!(
-                        "the library of the {name} has changed (SHA-256 {old}... in the original run, {new}... now)"
+                        "the library of the {name} has changed ({old} in the original run, {new} now)"
                     ));
                 }
                 Some(_) => {}
             }
         }
-        if (self.materials.len(), self.plugins.len()) != (now.materials.len(), now.plugins.len()) {
+        if (self.materials.len(), self.laws.len()) != (now.materials.len(), now.laws.len()) {
             return Some("it uses other materials or laws".to_owned());
         }
         (self.scene != now.scene || self.dimension != now.dimension).then(|| {
@@ -131,6 +167,10 @@ impl Identity {
                 .to_owned()
         })
     }
+}
+
+fn find<'a, T>(list: &'a [(String, T)], name: &str) -> Option<&'a T> {
+    list.iter().find(|l| l.0 == name).map(|l| &l.1)
 }
 
 /// Returns a state whose thermal half-spaces have no depth. Their grids follow from the rest of an
@@ -170,5 +210,42 @@ impl Write for HashWriter {
     fn write_str(&mut self, text: &str) -> std::fmt::Result {
         self.0.update(text.as_bytes());
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(laws: &[(&str, LawCode)]) -> Identity {
+        let laws = laws.iter();
+        Identity {
+            dimension: 2,
+            case: String::new(),
+            end: 1.0,
+            materials: Vec::new(),
+            laws: laws
+                .map(|(name, code)| ((*name).to_owned(), code.clone()))
+                .collect(),
+            scene: String::new(),
+        }
+    }
+
+    #[test]
+    fn shipped_laws_are_no_inputs_whatever_the_build_of_the_program() {
+        let program = |sum: &str| LawCode::Program(sum.to_owned());
+        let library = |sum: &str| LawCode::Library(sum.to_owned());
+        let old = of(&[("contact law `coulomb`", program("a"))]);
+        let rebuilt = of(&[("contact law `coulomb`", program("b"))]);
+        assert_eq!(old.differs(&rebuilt), None);
+        assert!(old.is_of_another_build(&rebuilt) && !old.is_of_another_build(&old));
+        // A library is an input, and so is a law of that name in place of the shipped one.
+        for other in [library("a"), library("b")] {
+            let mine = of(&[("contact law `coulomb`", other)]);
+            let says = old.differs(&mine).unwrap();
+            assert!(says.contains("(program of SHA-256 a... in"), "{says}");
+        }
+        let mine = |sum| of(&[("wear law `mine`", library(sum))]);
+        assert!(mine("a").differs(&mine("b")).is_some());
     }
 }

@@ -20,8 +20,8 @@ pub struct Occupied {
 
 /// Returns the results in a folder that a run with this identity would replace and not give again:
 /// those of other inputs or of another version, of a run that is not at its end, of one with
-/// another end, and files that cannot be read. The same finished run, and a run that recorded
-/// nothing, may be replaced. The folder should be locked.
+/// another end, and files that cannot be read. The same finished run, also of another build of the
+/// program, and a run that recorded nothing, may be replaced. The folder should be locked.
 pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
     let path = folder.join("results.h5");
     if !path.exists() {
@@ -49,8 +49,8 @@ pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
     let Some(last) = frames.iter().max_by_key(|f| f.number) else {
         return unreadable("its checkpoints are damaged".to_owned());
     };
-    let continues = frames.iter().any(|f| f.kind == FrameKind::State);
-    if !continues && last.kind == FrameKind::Begun && !results.has_rows() {
+    let state = frames.iter().any(|f| f.kind == FrameKind::State);
+    if !state && last.kind == FrameKind::Begun && !results.has_rows() {
         return None;
     }
     let ours = env!("CARGO_PKG_VERSION");
@@ -70,6 +70,7 @@ pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
     if let Some(difference) = theirs.differs(identity) {
         return holds(format!("a run of other inputs: {difference}"), false);
     }
+    let continues = state && !theirs.is_of_another_build(identity);
     if theirs.ends_later(identity) {
         let end = theirs.end();
         return holds(

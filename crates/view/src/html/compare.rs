@@ -2,21 +2,27 @@
 
 use crate::html::arrays::Arrays;
 use crate::html::folder::RunFolder;
-use crate::html::page::{Page, difference_table, escape, footer, item, section, table, value};
+use crate::html::page::{
+    Page, difference_table, differing, escape, footer, item, section, table, value,
+};
 use crate::html::results::{self, ResultRow};
 use crate::html::statistics::Statistics;
 use crate::html::{ReportError, Written, figures, pictures, write};
 use crate::measured::{self, MeasuredCurve};
 use fretwork_observe::chart::Figure;
 use fretwork_observe::quantity::Role;
+use fretwork_observe::summary::{COLUMNS, SlidingTest, fitted};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Number of rows of the statistics of a run in the page.
 const ROWS: usize = 3000;
 
-/// Returns the main results of runs, each in a line: the values, and the difference of each run
-/// from the first with its significance.
+/// Number of inputs that differ that the terminal names.
+const NAMED: usize = 6;
+
+/// Returns what the terminal says of runs: the verdict on each, the inputs that differ, and the
+/// main results, with the difference of each run from the first and its significance.
 ///
 /// # Errors
 /// A folder holds no run.
@@ -25,29 +31,59 @@ pub fn differences(folders: &[PathBuf]) -> Result<Vec<String>, ReportError> {
         .iter()
         .map(|f| RunFolder::open(f))
         .collect::<Result<_, _>>()?;
+    let names = names(&runs);
+    let width = names.iter().map(|name| name.chars().count()).max();
+    let width = width.unwrap_or(0);
     let mut lines = Vec::new();
-    for line in lines_of(&runs) {
-        let main = line.rows.iter().flatten().any(|r| r.role == Role::Headline);
-        let (Some(base), true) = (&line.rows[0], main) else {
-            continue;
+    for (run, name) in runs.iter().zip(&names) {
+        let verdict = crate::html::page::Verdict::of(run).words();
+        let text = match run.summary["reasons"][0].as_str() {
+            Some(reason) => format!("{verdict}: {reason}"),
+            None => format!("{verdict}, {}", run.title),
         };
-        let others = line.rows[1..].iter().zip(names(&runs).into_iter().skip(1));
-        let others: Vec<String> = others
-            .map(|(row, name)| {
-                let value = row.as_ref().map_or("none", |r| r.value.as_str());
-                let less = row.as_ref().and_then(|r| r.less(base));
-                let less = less.map_or(String::new(), |less| format!(" (difference {less})"));
-                format!("{name} {value}{less}")
-            })
-            .collect();
-        lines.push(format!(
-            "{}: {}; {}",
-            line.label,
-            base.value,
-            others.join("; ")
-        ));
+        lines.push(fitted(&format!("{name:<width$}  {text}"), COLUMNS));
+    }
+    lines.extend(inputs_that_differ(&runs));
+    for line in lines_of(&runs) {
+        if line.rows.iter().flatten().all(|r| r.role != Role::Headline) {
+            continue;
+        }
+        lines.push(format!("{}:", line.label));
+        for ((k, name), run) in names.iter().enumerate().zip(&runs) {
+            let row = line.rows[k].as_ref();
+            let value = row.map_or_else(|| line.none(run), |row| row.short.clone());
+            lines.push(format!("  {name:<width$}  {value}"));
+            let base = line.rows[0].as_ref().filter(|_| k > 0);
+            if let Some(less) = base.and_then(|base| row?.less(base)) {
+                lines.push(format!("  {:<width$}  less {}: {less}", "", names[0]));
+            }
+        }
     }
     Ok(lines)
+}
+
+/// Says which inputs of runs differ, and what follows from another dimension.
+fn inputs_that_differ(runs: &[RunFolder]) -> Vec<String> {
+    let paths = differing(runs);
+    let named: Vec<&str> = paths.iter().take(NAMED).map(String::as_str).collect();
+    let more = match paths.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    let text = match paths.is_empty() {
+        true => "all inputs are the same".to_owned(),
+        false => format!("inputs that differ: {}{more}", named.join(", ")),
+    };
+    let mut out = vec![fitted(&text, COLUMNS)];
+    out.extend(in_two_dimensions(runs));
+    out
+}
+
+/// Says what runs in 2D and 3D have in common.
+fn in_two_dimensions(runs: &[RunFolder]) -> Option<String> {
+    let of = |run: &RunFolder| run.summary["dimension"].as_u64();
+    let other = runs.iter().any(|run| of(run) != of(&runs[0]));
+    other.then(|| "2D and 3D: what 2D runs give per metre of depth has no difference".to_owned())
 }
 
 /// Makes a page of several runs side by side, with measured curves in the figures of their kind,
@@ -137,7 +173,7 @@ fn page(
     let mut overlaid = figures::overlaid(&drawn);
     measured::add(&mut overlaid, curves).map_err(|reason| ReportError::Measured { reason })?;
     let mut figures = figures::json(&overlaid, &mut numbers);
-    figures.push(json!({"any": true}));
+    figures.push(figures::of_any_column());
     let frames: String = (0..figures.len())
         .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
         .collect();
@@ -195,6 +231,21 @@ struct ResultLine {
     rows: Vec<Option<ResultRow>>,
 }
 
+impl ResultLine {
+    /// Says that a run has no such result, and why if it is known.
+    fn none(&self, run: &RunFolder) -> String {
+        let paths = self.rows.iter().flatten().map(|row| row.path.as_str());
+        let mut paths = paths.filter(|path| *path == SlidingTest::COEFFICIENT);
+        let why = paths
+            .next()
+            .and_then(|_| SlidingTest::of(&run.summary).err());
+        why.map_or("none".to_owned(), |why| {
+            let why = why.split(';').next().unwrap_or_default();
+            format!("none: {why}")
+        })
+    }
+}
+
 /// Returns the results of all runs, each once.
 fn lines_of(runs: &[RunFolder]) -> Vec<ResultLine> {
     let all: Vec<Vec<(&'static str, ResultRow)>> = runs
@@ -245,14 +296,14 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
             );
         }
         rows += &format!("<tr><th scope=\"row\">{}</th>", escape(&line.label));
-        for row in &line.rows {
+        for (row, run) in line.rows.iter().zip(runs) {
             rows += &match row {
                 Some(r) => format!(
                     "<td>{} <span class=\"interval\">{}</span></td>",
                     value(&r.value),
                     escape(&r.interval)
                 ),
-                None => "<td>none</td>".to_owned(),
+                None => format!("<td>{}</td>", escape(&line.none(run))),
             };
         }
         for row in &line.rows[1..] {
@@ -280,9 +331,11 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
         }
         false => "",
     };
+    let dimensions = in_two_dimensions(runs).map_or(String::new(), |text| format!(" {text}."));
     format!(
         "<p class=\"lead\">Half-widths are of 95 % intervals, by cause. A difference is significant \
          (<em>they differ</em>) where it exceeds the half-widths of both, as the root of the sum of their \
-         squares.{seeds}</p>\n{table}"
+         squares, of the causes that both have. Runs that are not trustworthy, and results that are not \
+         determined, have no significant difference.{seeds}{dimensions}</p>\n{table}"
     )
 }

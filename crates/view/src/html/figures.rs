@@ -8,6 +8,7 @@ use fretwork_observe::chart::{
     Axis, AxisRange, Chart, Colours, DARK_PALETTE, FieldMap, Figure, GRADIENT, PALETTE, Series,
     Style,
 };
+use fretwork_observe::statistics::{BESIDE_FIRST, UP_FIRST};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
@@ -223,4 +224,15 @@ pub(crate) fn columns(
         })
         .collect();
     json!({"name": name, "rows": statistics.rows, "every": statistics.every, "columns": columns})
+}
+
+/// Returns the figure of any column for the scripts: friction, damage or a force over time, with
+/// wear beside it, where a run has them.
+pub(crate) fn of_any_column() -> Value {
+    json!({"any": {
+        "across": ["time"],
+        "up": UP_FIRST,
+        "units": ["N", "N/m"],
+        "right": BESIDE_FIRST,
+    }})
 }

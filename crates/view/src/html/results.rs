@@ -1,16 +1,22 @@
 //! Results of a run with their uncertainty and their definitions.
 
 use crate::html::folder::RunFolder;
-use fretwork_observe::quantity::{Catalogue, Compared, Difference, Entry, Estimate, Role, Topic};
+use fretwork_observe::quantity::{
+    Catalogue, Compared, Difference, Entry, Estimate, Role, Topic, half_width, with_half_width,
+};
 use serde_json::Value;
 
 /// A result.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResultRow {
+    /// Path in the summary.
+    pub path: String,
     /// Name of the result.
     pub label: String,
     /// Value with unit.
     pub value: String,
+    /// Value with its half-width of all causes, and their names.
+    pub short: String,
     /// Half-widths of the 95 % interval by cause; empty if not estimated.
     pub interval: String,
     /// Definition in one sentence.
@@ -23,10 +29,13 @@ pub(crate) struct ResultRow {
 
 impl ResultRow {
     /// Returns the difference from a base with its significance; `None` where one of the two has no
-    /// number, or their units differ.
+    /// number. Numbers of different units have none.
     pub fn less(&self, base: &Self) -> Option<String> {
         let ((own, unit), (base, same)) = (self.number.as_ref()?, base.number.as_ref()?);
-        (unit == same).then(|| shown(&Difference::new(own, base).text(unit)))
+        Some(match unit == same {
+            true => shown(&Difference::new(own, base).text(unit)),
+            false => shown(&format!("not comparable: {unit}, and {same}")),
+        })
     }
 }
 
@@ -41,8 +50,12 @@ pub(crate) type ResultGroup = (&'static str, Vec<ResultRow>);
 
 /// Formats a number with four digits, a suitable prefix and its unit.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
-    let text = fretwork_observe::quantity::quantity(value, unit);
-    let (number, unit) = text.split_once(' ').unwrap_or((&text, ""));
+    typeset(&fretwork_observe::quantity::quantity(value, unit))
+}
+
+/// Returns a number with its unit as a page shows it.
+fn typeset(text: &str) -> String {
+    let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
     let micro = unit
         .strip_prefix('u')
         .filter(|rest| rest.starts_with(['m', 'N', 's', 'J', 'g', 'P', 'W']));
@@ -74,9 +87,14 @@ fn trimmed(digits: &str) -> &str {
 /// Returns the main results of a run by topic, in the order in which the run lists them.
 pub(crate) fn groups(run: &RunFolder) -> Vec<ResultGroup> {
     let catalogue = Catalogue::of(&run.summary);
+    let trusted = run.summary["trustworthy"] == true;
+    let random = run.summary["sample"]["random"] == true;
     let mut groups: Vec<(Topic, Vec<ResultRow>)> = Vec::new();
     for (entry, value) in catalogue.shown(&run.summary, Role::Secondary) {
-        let row = row(entry, value);
+        let mut row = row(entry, value);
+        if let Some((number, _)) = &mut row.number {
+            (number.trusted, number.random) = (trusted, random);
+        }
         match groups.iter_mut().find(|g| g.0 == entry.topic) {
             Some(group) => group.1.push(row),
             None => groups.push((entry.topic, vec![row])),
@@ -97,13 +115,10 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
         "1" | "" => number(x),
         unit => quantity(x, unit),
     };
-    let half = |h: f64| match unit {
-        "1" => fretwork_observe::quantity::number(h, 2),
-        unit => quantity(h, unit),
-    };
     let own = value.as_f64();
     let estimate = entry.estimate.as_ref();
     let mean = estimate.and_then(|e| e.value).or(own);
+    let half = |h: f64| typeset(&half_width(h, mean.unwrap_or(0.0), unit));
     let text = value.as_str().map(str::to_owned);
     let shown_value = mean.map(shown).or(text);
     // If an estimate is that of a mean, the value itself is shown beside it.
@@ -114,12 +129,21 @@ fn row(entry: &Entry, value: &Value) -> ResultRow {
         });
     let open = estimate.and_then(Estimate::is_determined) == Some(false);
     let shown_value = shown_value.unwrap_or_else(|| value.to_string());
+    let marked = |text: String| match open {
+        true => format!("not determined: {text}"),
+        false => text,
+    };
+    let all = estimate.and_then(|e| Some((e.half_width()?, e)));
+    let short = all.map(|(half, estimate)| {
+        let causes: Vec<String> = estimate.shares().into_iter().map(|s| s.0).collect();
+        let text = with_half_width(mean.unwrap_or(0.0), half, unit);
+        self::shown(&format!("{text} ({})", causes.join(", ")))
+    });
     ResultRow {
+        path: entry.path.clone(),
         label: entry.label.clone(),
-        value: match open {
-            true => format!("not determined: {shown_value}"),
-            false => shown_value,
-        },
+        short: marked(short.unwrap_or_else(|| shown_value.clone())),
+        value: marked(shown_value),
         role: entry.role,
         number: own.map(|own| (Compared::new(own, estimate), unit.to_owned())),
         interval: estimate.map_or(String::new(), |e| interval(e, half)),

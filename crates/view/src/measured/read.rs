@@ -31,6 +31,7 @@ const ROLES: [(Role, &[&str]); 6] = [
             "coefficient of friction",
             "cof",
             "q/p",
+            "q / p",
         ],
     ),
     (Role::Cycle, &["cycle", "cycles", "cycle number", "n"]),

@@ -6,6 +6,7 @@ use super::analysis::{Analysis, OutputAnalysis};
 use super::figures::{regime_chart, response_chart};
 use super::plan::Plan;
 use super::rows::{DONE, NOT_RUN, Rows};
+use crate::factor::Level;
 use crate::page::{section, table};
 use effects::{alternatives_table, effect_block, pairs_table};
 use fretwork_math::statistics::interval::Mean;
@@ -99,7 +100,7 @@ fn settings_section(plan: &Plan, runs: &Rows, analysis: &Analysis) -> Section {
     heads.extend(analysis.regimes.iter().map(|r| title_of(&r.name)));
     let row = |(k, setting): (usize, &super::design::Setting)| {
         let mut row = vec![(k + 1).to_string()];
-        row.extend(setting.iter().map(|v| v.label.clone()));
+        row.extend(setting.iter().map(Level::short));
         row.extend(analysis.outputs.iter().map(|o| match &o.means[k] {
             Some(mean) => mean_text(mean, &o.unit),
             None => runs.without_result(k, plan.seeds.len()),

@@ -61,30 +61,58 @@ fn text(run: &RunFolder) -> String {
     )
 }
 
+/// Inputs of several runs.
+struct InputsOfRuns {
+    /// Paths in their order.
+    paths: Vec<String>,
+    /// Inputs of each run, by path.
+    values: Vec<BTreeMap<String, Input>>,
+}
+
+impl InputsOfRuns {
+    fn of(runs: &[RunFolder]) -> Self {
+        let mut paths: Vec<String> = Vec::new();
+        let mut values: Vec<BTreeMap<String, Input>> = Vec::new();
+        for run in runs {
+            let mut own = BTreeMap::new();
+            for input in of(&run.case_text).unwrap_or_default() {
+                if !paths.contains(&input.path) {
+                    paths.push(input.path.clone());
+                }
+                own.insert(input.path.clone(), input);
+            }
+            values.push(own);
+        }
+        Self { paths, values }
+    }
+
+    /// Returns an input of a run as text; empty where it is not set.
+    fn shown(&self, run: usize, path: &str) -> String {
+        let input = self.values[run].get(path);
+        input.map(|i| i.value.clone()).unwrap_or_default()
+    }
+
+    /// Returns the paths of those that differ.
+    fn differing(&self) -> impl Iterator<Item = &String> {
+        let differs = |path: &&String| {
+            (1..self.values.len()).any(|k| self.shown(k, path) != self.shown(0, path))
+        };
+        self.paths.iter().filter(differs)
+    }
+}
+
+/// Returns the paths of the inputs that differ between runs.
+pub(crate) fn differing(runs: &[RunFolder]) -> Vec<String> {
+    InputsOfRuns::of(runs).differing().cloned().collect()
+}
+
 /// Table of the inputs that differ between runs, one column per run.
 pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
-    let mut paths: Vec<String> = Vec::new();
-    let mut values: Vec<BTreeMap<String, Input>> = Vec::new();
-    for run in runs {
-        let mut own = BTreeMap::new();
-        for input in of(&run.case_text).unwrap_or_default() {
-            if !paths.contains(&input.path) {
-                paths.push(input.path.clone());
-            }
-            own.insert(input.path.clone(), input);
-        }
-        values.push(own);
-    }
-    let shown = |k: usize, path: &str| {
-        values[k]
-            .get(path)
-            .map(|i| i.value.clone())
-            .unwrap_or_default()
-    };
-    let differ = |path: &&String| (1..runs.len()).any(|k| shown(k, path) != shown(0, path));
+    let inputs = InputsOfRuns::of(runs);
     let mut rows = String::new();
-    for path in paths.iter().filter(differ) {
-        let unit = values
+    for path in inputs.differing() {
+        let unit = inputs
+            .values
             .iter()
             .find_map(|v| v.get(path.as_str()))
             .map_or("", |i| i.unit);
@@ -94,7 +122,7 @@ pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
             escape(unit)
         );
         for k in 0..runs.len() {
-            let value = shown(k, path);
+            let value = inputs.shown(k, path);
             let value = if value.is_empty() {
                 "not set".to_owned()
             } else {

@@ -9,7 +9,7 @@ mod verdict;
 
 pub(crate) use verdict::{Verdict, item};
 
-pub(crate) use inputs::difference_table;
+pub(crate) use inputs::{difference_table, differing};
 pub(crate) use results::value;
 
 use base64::Engine as _;

@@ -92,7 +92,7 @@ fn numbers(
         gaps.push(format!("A measured curve is missing: {reason}."));
     }
     let mut list = figures::json(&drawn, &mut numbers);
-    list.extend((statistics.columns.len() > 1).then(|| json!({"any": true})));
+    list.extend((statistics.columns.len() > 1).then(figures::of_any_column));
     let data = json!({"runs": [columns], "figures": list, "palette": figures::palette()});
     (statistics, data, numbers.packed())
 }

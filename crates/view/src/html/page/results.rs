@@ -56,9 +56,12 @@ pub(crate) fn headline(run: &RunFolder) -> String {
 /// Returns the last row of the statistics, for a run without results.
 fn last_row(series: &Statistics) -> String {
     let row = |column: &Column| {
+        let value = results::quantity(*column.values.last()?, &column.unit);
         Some(ResultRow {
+            path: column.name.clone(),
             label: column.name.clone(),
-            value: results::quantity(*column.values.last()?, &column.unit),
+            short: value.clone(),
+            value,
             interval: String::new(),
             meaning: column.doc.clone(),
             role: Role::Detail,
