@@ -17,7 +17,7 @@ const BESIDE_NUMBERS: [&str; 7] = [
 
 /// Each layer, the layers that it may name, and libraries that must not be among its direct or
 /// indirect dependencies.
-const LAYERS: [(&str, &[&str], &[&str]); 9] = [
+const LAYERS: [(&str, &[&str], &[&str]); 10] = [
     ("math", &[], &BESIDE_NUMBERS),
     (
         "core",
@@ -38,6 +38,11 @@ const LAYERS: [(&str, &[&str], &[&str]); 9] = [
     (
         "elastic",
         &["core"],
+        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "tiny-skia"],
+    ),
+    (
+        "rolling",
+        &["elastic", "math"],
         &["rust-hdf5", "clap", "ron", "ariadne", "csv", "tiny-skia"],
     ),
     (

@@ -48,6 +48,16 @@ impl CellGrid {
         self.size[..dimension - 1].iter().product()
     }
 
+    /// Returns whether one of these numbers, one per cell, is positive on the border (3D).
+    pub fn on_border(&self, values: &[f64]) -> bool {
+        let [columns, rows] = self.cells;
+        let border = |cell: usize| {
+            let [i, j] = self.place(cell);
+            i == 0 || j == 0 || i + 1 == columns || j + 1 == rows
+        };
+        (0..self.len()).any(|cell| values[cell] > 0.0 && border(cell))
+    }
+
     /// Returns the lengths of the sides of the grid (m).
     pub fn extent(&self) -> [f64; 2] {
         [0, 1].map(|k| self.cells[k] as f64 * self.size[k])

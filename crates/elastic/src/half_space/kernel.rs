@@ -3,10 +3,10 @@
 
 use super::grid::CellGrid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
+use super::transforms::{Transforms, smooth};
 use crate::material::Elasticity;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 /// Extent of a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -270,72 +270,6 @@ fn waves(
         }
     }
     out
-}
-
-/// Returns the next number without prime factors above 5, for which transforms are fast.
-fn smooth(from: usize) -> usize {
-    let simple = |mut n: usize| {
-        for p in [2, 3, 5] {
-            while n.is_multiple_of(p) {
-                n /= p;
-            }
-        }
-        n == 1
-    };
-    (from..).find(|n| simple(*n)).unwrap_or(from)
-}
-
-/// Fourier transforms over a table.
-struct Transforms {
-    table: [usize; 2],
-    forward: [Arc<dyn Fft<f64>>; 2],
-    backward: [Arc<dyn Fft<f64>>; 2],
-}
-
-impl std::fmt::Debug for Transforms {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Transforms")
-            .field("table", &self.table)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Transforms {
-    fn new(table: [usize; 2]) -> Self {
-        let mut planner = FftPlanner::new();
-        Self {
-            table,
-            forward: table.map(|n| planner.plan_fft_forward(n)),
-            backward: table.map(|n| planner.plan_fft_inverse(n)),
-        }
-    }
-
-    fn forward(&self, values: &mut [Complex64]) {
-        self.both(&self.forward, values);
-    }
-
-    fn backward(&self, values: &mut [Complex64]) {
-        self.both(&self.backward, values);
-    }
-
-    /// Transforms along the rows, then along the columns.
-    fn both(&self, transforms: &[Arc<dyn Fft<f64>>; 2], values: &mut [Complex64]) {
-        let [columns, rows] = self.table;
-        transforms[0].process(values);
-        if rows == 1 {
-            return;
-        }
-        let mut column = vec![Complex64::ZERO; rows];
-        for i in 0..columns {
-            for (j, value) in column.iter_mut().enumerate() {
-                *value = values[j * columns + i];
-            }
-            transforms[1].process(&mut column);
-            for (j, value) in column.iter().enumerate() {
-                values[j * columns + i] = *value;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -22,14 +22,16 @@
 mod dynamics;
 mod error;
 mod grid;
-mod influence;
+pub mod influence;
 mod kernel;
 mod profile;
+mod transforms;
 
 pub use error::HalfSpaceError;
 pub use grid::CellGrid;
 pub use kernel::{Kernel, Reach};
 pub use profile::Profile;
+pub use transforms::{Complex64, Transforms, smooth};
 
 use crate::material::Elasticity;
 use crate::touching_surface::open_surface;

@@ -7,12 +7,14 @@
 
 mod ellipse;
 mod hertz;
+mod kalker;
 mod partial_slip;
 mod rolling;
 
 pub use hertz::{LinePatch, PointPatch, line, point};
+pub use kalker::Kalker;
 pub use partial_slip::{PartialSlip, stuck_strip};
-pub use rolling::{Creep, kalker_c11};
+pub use rolling::Creep;
 
 /// An isotropic elastic body.
 #[derive(Clone, Copy, Debug, PartialEq)]

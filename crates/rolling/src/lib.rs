@@ -1,0 +1,36 @@
+//! The contact patch of two elastic bodies that roll, slide or fret: pressure, traction and slip over
+//! a grid of cells, from numbers to numbers.
+//!
+//! Both bodies are half-spaces as far as their deformation goes (J. J. Kalker, Three-dimensional
+//! elastic bodies in rolling contact, 1990). The axes are x along the rolling, in which material
+//! enters the patch at large x and leaves it at small x, and y across it. Tractions act on the first
+//! body and slip is that of the first body relative to the second one, so that traction opposes
+//! slip.
+//!
+//! ```text
+//! normal       e = h + u_z(p_n) - delta >= 0,  p_n >= 0,  p_n e = 0
+//! tangential   |p| <= g,  S = 0 where |p| < g,  p = -g S/|S| otherwise
+//! slip         S = w + B p    (B: displacement of a cell less that of the one before, upstream)
+//! ```
+
+pub mod convolution;
+pub mod fastsim;
+pub mod fields;
+pub mod friction;
+mod gmres;
+pub mod motion;
+pub mod normal;
+pub mod patch;
+pub mod profile;
+pub mod surfaces;
+pub mod tangential;
+pub mod temperature;
+
+pub use fastsim::Fastsim;
+pub use fields::{Field, Vector};
+pub use friction::{Bound, Coulomb, Falling, Friction};
+pub use motion::{Creepage, Motion};
+pub use normal::{NormalError, Pressure, normal};
+pub use patch::{Patch, PatchError, Refined, Rolling};
+pub use surfaces::Surfaces;
+pub use tangential::{Tractions, tangential};

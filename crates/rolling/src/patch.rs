@@ -1,0 +1,250 @@
+//! A patch from its undeformed distance, load and motion, with the error of its grid.
+
+use crate::fields::{Field, Vector, length};
+use crate::friction::Friction;
+use crate::motion::{Creepage, Motion};
+use crate::normal::{NormalError, Pressure, normal};
+use crate::surfaces::Surfaces;
+use crate::tangential::{TangentialError, Tractions, tangential};
+use fretwork_elastic::Elasticity;
+use fretwork_elastic::half_space::CellGrid;
+
+/// Two bodies that touch.
+#[derive(Clone, Copy)]
+pub struct Patch<'a> {
+    /// Elasticity of both bodies.
+    pub bodies: [Elasticity; 2],
+    /// Thickness over shear modulus of an elastic layer between them (m/Pa).
+    pub layer: f64,
+    /// Undeformed distance of the bodies at a place (m).
+    pub distance: &'a dyn Fn([f64; 2]) -> f64,
+    /// Load (N).
+    pub load: f64,
+}
+
+/// Steady rolling of a patch.
+#[derive(Clone, Debug)]
+pub struct Rolling {
+    /// The cells.
+    pub grid: CellGrid,
+    /// Pressures.
+    pub pressure: Pressure,
+    /// Tractions and slips.
+    pub tractions: Tractions,
+    /// Forces on the first body along x and y (N).
+    pub force: Vector,
+    /// Moment on it about the normal through the origin (N m).
+    pub moment: f64,
+    /// Energy dissipated by slip over the distance rolled (N).
+    pub dissipation: f64,
+    /// Energy supplied by the creepages over the distance rolled (N), T gamma: -(F_x xi + F_y eta +
+    /// M_z phi).
+    pub t_gamma: f64,
+    /// Force against rolling by pressures that are larger on the side on which material enters (N),
+    /// the integral of p dh/dx: none for like bodies. With T gamma it is the dissipation, but for
+    /// an error that vanishes with the cells.
+    pub resistance: f64,
+}
+
+/// Results with the error of the grid, from this grid and two of cells twice as large that are half a
+/// cell of theirs apart: the patch has its edge at other places of the cells.
+#[derive(Clone, Debug)]
+pub struct Refined {
+    /// On the fine grid.
+    pub fine: Rolling,
+    /// Force extrapolated to cells of no size, to first order (N).
+    pub force: Vector,
+    /// Error of the force of the fine grid (N): its difference to the extrapolated one, and half of
+    /// the difference of the coarse grids.
+    pub error: Vector,
+}
+
+/// Reason why a patch has no solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PatchError {
+    /// The normal problem.
+    #[error(transparent)]
+    Normal(#[from] NormalError),
+    /// The tangential problem.
+    #[error(transparent)]
+    Tangential(#[from] TangentialError),
+    /// Pressures and tractions of unlike bodies do not settle.
+    #[error("pressures and tractions of unlike bodies did not settle in {0} rounds")]
+    Coupled(usize),
+}
+
+/// Residual of the tangential problem over the largest bound.
+const TOLERANCE: f64 = 1e-7;
+/// Largest number of rounds between pressures and tractions, and the change of the pressures over
+/// the largest one at which they end.
+const ROUNDS: (usize, f64) = (50, 1e-7);
+/// Number of cells along a side above which a coarser grid is solved first.
+const COARSEST: usize = 24;
+
+impl Patch<'_> {
+    /// Solves steady rolling over a grid, at a speed (m/s); grids of many cells begin with the
+    /// tractions of a coarser one.
+    ///
+    /// # Errors
+    /// The patch has no solution on this grid.
+    pub fn rolls(
+        &self,
+        grid: CellGrid,
+        creepage: &Creepage,
+        law: &dyn Friction,
+        speed: f64,
+    ) -> Result<Rolling, PatchError> {
+        let start = match halved(&grid) {
+            Some(coarse) => Some(self.rolls(coarse, creepage, law, speed)?),
+            None => None,
+        };
+        self.rolls_from(grid, start.as_ref(), creepage, law, speed)
+    }
+
+    /// Solves steady rolling over a grid and over one of cells twice as large.
+    ///
+    /// # Errors
+    /// The patch has no solution on one of the grids, or the number of cells is not even.
+    pub fn refined(
+        &self,
+        grid: CellGrid,
+        creepage: &Creepage,
+        law: &dyn Friction,
+        speed: f64,
+    ) -> Result<Refined, PatchError> {
+        let coarse = self.rolls(twice(&grid), creepage, law, speed)?;
+        let other = self.rolls_from(displaced(&coarse.grid), None, creepage, law, speed)?;
+        let fine = self.rolls_from(grid, Some(&coarse), creepage, law, speed)?;
+        let pairs = [0, 1].map(|k| [coarse.force[k], other.force[k]]);
+        let change = [0, 1].map(|k| fine.force[k] - 0.5 * (pairs[k][0] + pairs[k][1]));
+        let apart = pairs.map(|[a, b]| 0.5 * (a - b).abs());
+        Ok(Refined {
+            force: [0, 1].map(|k| fine.force[k] + change[k]),
+            error: [0, 1].map(|k| change[k].abs() + apart[k]),
+            fine,
+        })
+    }
+
+    fn rolls_from(
+        &self,
+        grid: CellGrid,
+        coarse: Option<&Rolling>,
+        creepage: &Creepage,
+        law: &dyn Friction,
+        speed: f64,
+    ) -> Result<Rolling, PatchError> {
+        let surfaces = Surfaces::new(grid, self.bodies, self.layer);
+        let distance: Vec<f64> = (0..grid.len())
+            .map(|cell| (self.distance)(grid.middle(cell)))
+            .collect();
+        let finer = |values: &[f64]| prolonged(values, &grid);
+        let start = coarse.map(|c| finer(&c.pressure.pressure));
+        let mut pressure = normal(&surfaces, &distance, self.load, start.as_deref())?;
+        let start: Option<Field> = coarse.map(|c| prolonged(&c.tractions.traction, &grid));
+        let motion = Motion::Steady(*creepage);
+        let solve = |pressure: &Pressure, start: Option<&[Vector]>| {
+            let p = &pressure.pressure;
+            tangential(&surfaces, p, &motion, (law, speed), start, TOLERANCE)
+        };
+        let mut tractions = solve(&pressure, start.as_deref())?;
+        if surfaces.couple() {
+            let mut settled = false;
+            for _ in 0..ROUNDS.0 {
+                let opened = surfaces.normal_by_traction(&tractions.traction);
+                let gap: Vec<f64> = distance.iter().zip(opened).map(|(h, u)| h + u).collect();
+                let next = normal(&surfaces, &gap, self.load, Some(&pressure.pressure))?;
+                let pairs = next.pressure.iter().zip(&pressure.pressure);
+                let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                pressure = next;
+                tractions = solve(&pressure, Some(&tractions.traction))?;
+                if change <= ROUNDS.1 * pressure.largest() {
+                    settled = true;
+                    break;
+                }
+            }
+            if !settled {
+                return Err(PatchError::Coupled(ROUNDS.0));
+            }
+        }
+        let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
+        let half = 0.5 * grid.size[0];
+        let slope = |[x, y]: [f64; 2]| {
+            ((self.distance)([x + half, y]) - (self.distance)([x - half, y])) / (2.0 * half)
+        };
+        let pressures = rolling.pressure.pressure.iter().enumerate();
+        let sum: f64 = pressures
+            .map(|(cell, p)| p * slope(grid.middle(cell)))
+            .sum();
+        rolling.resistance = sum * grid.area(3);
+        Ok(rolling)
+    }
+}
+
+impl Rolling {
+    fn new(grid: CellGrid, pressure: Pressure, tractions: Tractions, creepage: &Creepage) -> Self {
+        let area = grid.area(3);
+        let (mut force, mut moment, mut dissipation) = ([0.0; 2], 0.0, 0.0);
+        for (cell, (p, s)) in tractions.traction.iter().zip(&tractions.slip).enumerate() {
+            let [x, y] = grid.middle(cell);
+            force = [force[0] + p[0] * area, force[1] + p[1] * area];
+            moment += (x * p[1] - y * p[0]) * area;
+            dissipation -= (p[0] * s[0] + p[1] * s[1]) * area / grid.size[0];
+        }
+        let t_gamma =
+            -(force[0] * creepage.along + force[1] * creepage.across + moment * creepage.spin);
+        Self {
+            grid,
+            pressure,
+            tractions,
+            force,
+            moment,
+            dissipation,
+            t_gamma,
+            resistance: 0.0,
+        }
+    }
+
+    /// Returns the adhesion: the force over the load.
+    pub fn adhesion(&self) -> f64 {
+        let load = self.pressure.pressure.iter().sum::<f64>() * self.grid.area(3);
+        length(self.force) / load
+    }
+}
+
+/// Returns a grid of cells twice as large, for even numbers of cells that are not few.
+fn halved(grid: &CellGrid) -> Option<CellGrid> {
+    let even = grid.cells.iter().all(|n| n.is_multiple_of(2));
+    let many = grid.cells.iter().all(|n| *n >= 2 * COARSEST);
+    (even && many).then(|| twice(grid))
+}
+
+/// Returns a grid of the same extent with half the number of cells along each side, rounded up.
+fn twice(grid: &CellGrid) -> CellGrid {
+    let cells = grid.cells.map(|n| n.div_ceil(2));
+    CellGrid {
+        from: grid.from,
+        size: [0, 1].map(|k| grid.extent()[k] / cells[k] as f64),
+        cells,
+    }
+}
+
+/// Returns a grid that begins half a cell before another one, and is a cell larger.
+fn displaced(grid: &CellGrid) -> CellGrid {
+    CellGrid {
+        from: [0, 1].map(|k| grid.from[k] - 0.5 * grid.size[k]),
+        size: grid.size,
+        cells: grid.cells.map(|n| n + 1),
+    }
+}
+
+/// Returns the values of a coarser grid of the same extent at the cells of a grid.
+fn prolonged<T: Copy>(values: &[T], grid: &CellGrid) -> Vec<T> {
+    let coarse = twice(grid).cells;
+    (0..grid.len())
+        .map(|cell| {
+            let place = grid.place(cell);
+            let [i, j] = [0, 1].map(|k| place[k] * coarse[k] / grid.cells[k]);
+            values[j * coarse[0] + i]
+        })
+        .collect()
+}

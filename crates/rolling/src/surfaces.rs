@@ -1,0 +1,259 @@
+//! Two elastic half-spaces that touch over a grid of cells: relative displacements of their surfaces
+//! by tractions that are uniform in each cell.
+
+use crate::convolution::{Convolution, Spectrum};
+use crate::fields::{Field, Vector};
+use crate::motion::Motion;
+use fretwork_elastic::Elasticity;
+use fretwork_elastic::half_space::influence::{Influence, rectangle};
+use fretwork_elastic::half_space::{CellGrid, Complex64};
+
+/// What passes from one step of a motion to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passage {
+    /// Steady rolling: in a step material moves by one cell, in a field that stays as it is.
+    Steady,
+    /// A shift: all tractions are those of this step.
+    Shift,
+}
+
+/// The surfaces of two bodies.
+#[derive(Debug)]
+pub struct Surfaces {
+    /// The cells.
+    pub grid: CellGrid,
+    /// Compliance of an elastic layer between the bodies, its thickness over its shear modulus
+    /// (m/Pa).
+    pub layer: f64,
+    bodies: [Elasticity; 2],
+    convolution: Convolution,
+    /// Normal displacement by pressure (m/Pa).
+    normal: Spectrum,
+}
+
+impl Surfaces {
+    /// Creates the surfaces over a grid.
+    pub fn new(grid: CellGrid, bodies: [Elasticity; 2], layer: f64) -> Self {
+        let convolution = Convolution::new(&grid);
+        let [normal] = convolution.spectra(|at| [of_cell(&grid, &bodies, at)[2][2]]);
+        Self {
+            grid,
+            layer,
+            bodies,
+            convolution,
+            normal,
+        }
+    }
+
+    /// Returns the sum of the normal displacements of both surfaces by pressures (m).
+    pub fn normal(&self, pressure: &[f64]) -> Vec<f64> {
+        let field: Field = pressure.iter().map(|p| [*p, 0.0]).collect();
+        let moved = self
+            .convolution
+            .apply(&field, |k, [p, _]| [self.normal[k] * p, Complex64::ZERO]);
+        moved.into_iter().map(|u| u[0]).collect()
+    }
+
+    /// Returns whether pressures move the surfaces along each other, and tractions apart.
+    pub fn couple(&self) -> bool {
+        let [one, other] = self.bodies.map(|b| (1.0 - 2.0 * b.poisson) / b.shear());
+        (one - other).abs() > 1e-12 * (one.abs() + other.abs())
+    }
+
+    /// Returns the slip by pressures in a motion (m): in rolling the displacement less that one cell
+    /// upstream, in a shift under constant pressures none.
+    pub fn slip_by_pressure(&self, pressure: &[f64], motion: &Motion) -> Field {
+        if matches!(motion, Motion::Shift { .. }) {
+            return vec![[0.0; 2]; pressure.len()];
+        }
+        let [x, y] = self.convolution.spectra(|at| {
+            let [here, there] =
+                [0.0, 1.0].map(|ahead| of_cell(&self.grid, &self.bodies, [at[0] + ahead, at[1]]));
+            [0, 1].map(|k| here[k][2] - there[k][2])
+        });
+        let field: Field = pressure.iter().map(|p| [*p, 0.0]).collect();
+        self.convolution
+            .apply(&field, |k, [p, _]| [x[k] * p, y[k] * p])
+    }
+
+    /// Returns the normal displacements by tractions (m), which open the gap.
+    pub fn normal_by_traction(&self, traction: &[Vector]) -> Vec<f64> {
+        let [x, y] = self.convolution.spectra(|at| {
+            let here = of_cell(&self.grid, &self.bodies, at);
+            [here[2][0], here[2][1]]
+        });
+        let moved = self
+            .convolution
+            .apply(traction, |k, [p, q]| [x[k] * p + y[k] * q, Complex64::ZERO]);
+        moved.into_iter().map(|u| u[0]).collect()
+    }
+
+    /// Returns the tangential displacements by tractions (m), including that of the layer, at places
+    /// that lie `ahead` cells upstream of each cell.
+    pub fn displacement(&self, traction: &[Vector], ahead: usize) -> Field {
+        let [xx, yy, xy] = self.convolution.spectra(|at| {
+            let there = [at[0] + ahead as f64, at[1]];
+            let u = of_cell(&self.grid, &self.bodies, there);
+            let own = if there == [0.0; 2] { self.layer } else { 0.0 };
+            [u[0][0] + own, u[1][1] + own, u[0][1]]
+        });
+        self.convolution.apply(traction, |k, [x, y]| {
+            [xx[k] * x + xy[k] * y, xy[k] * x + yy[k] * y]
+        })
+    }
+
+    /// Returns the map from tractions to slip.
+    pub fn slip(&self, passage: Passage) -> Slip<'_> {
+        Slip::new(self, passage)
+    }
+}
+
+/// Returns the relative displacement at a distance in cells by unit tractions on a cell (m/Pa).
+///
+/// Tractions act on the first body, and opposite ones on the second; normals point into each body.
+fn of_cell(grid: &CellGrid, bodies: &[Elasticity; 2], at: [f64; 2]) -> Influence {
+    let [x, y] = [at[0] * grid.size[0], at[1] * grid.size[1]];
+    let area = grid.size[0] * grid.size[1];
+    let [one, other] = bodies.map(|body| rectangle(&body, grid.size, x, y));
+    let mut out = Influence::default();
+    for a in 0..3 {
+        for b in 0..3 {
+            // The second body has the opposite traction along the surface, and the same along its
+            // normal.
+            let sign = if (a == 2) == (b == 2) { 1.0 } else { -1.0 };
+            out[a][b] = area * (one[a][b] + sign * other[a][b]);
+        }
+    }
+    out
+}
+
+fn upstream(at: [f64; 2], passage: Passage) -> Option<[f64; 2]> {
+    match passage {
+        Passage::Steady => Some([at[0] + 1.0, at[1]]),
+        Passage::Shift => None,
+    }
+}
+
+/// The linear map from tractions to slip in a step, S = B p (m by Pa), and an approximate inverse.
+#[derive(Debug)]
+pub struct Slip<'a> {
+    surfaces: &'a Surfaces,
+    passage: Passage,
+    /// Entries xx, yy and xy of B by wave number.
+    map: [Spectrum; 3],
+    /// Inverse of the displacement by waves of traction (Pa/m).
+    inverse: [Vec<f64>; 3],
+    /// Slip of a cell by its own traction along x (m/Pa).
+    pub own: f64,
+}
+
+impl<'a> Slip<'a> {
+    fn new(surfaces: &'a Surfaces, passage: Passage) -> Self {
+        let (grid, layer) = (&surfaces.grid, surfaces.layer);
+        let entries = |u: Influence| [u[0][0], u[1][1], u[0][1]];
+        let slip = |at: [f64; 2]| {
+            let moved = |at| entries(of_cell(grid, &surfaces.bodies, at));
+            let mut sum = moved(at);
+            if let Some(upstream) = upstream(at, passage) {
+                let there = moved(upstream);
+                (0..3).for_each(|k| sum[k] -= there[k]);
+            }
+            // The layer: flex (p_I - p_I+), with the second part in steady rolling alone.
+            let sign = match at {
+                [0.0, 0.0] => 1.0,
+                [-1.0, 0.0] if passage == Passage::Steady => -1.0,
+                _ => 0.0,
+            };
+            sum[0] += sign * layer;
+            sum[1] += sign * layer;
+            sum
+        };
+        let own = slip([0.0; 2])[0];
+        Self {
+            surfaces,
+            passage,
+            map: surfaces.convolution.spectra(slip),
+            inverse: stiffness_of_waves(surfaces),
+            own,
+        }
+    }
+
+    /// Returns the slip by tractions (m), without the rigid one.
+    pub fn by(&self, traction: &[Vector]) -> Field {
+        let [xx, yy, xy] = &self.map;
+        self.surfaces.convolution.apply(traction, |k, [x, y]| {
+            [xx[k] * x + xy[k] * y, xy[k] * x + yy[k] * y]
+        })
+    }
+
+    /// Returns about the tractions that give a slip where `sticks` is set (Pa), and the slip as it is
+    /// elsewhere.
+    ///
+    /// In steady rolling the slip along a row is the difference of displacements of neighbours: it
+    /// is summed up from the leading edge of each part that sticks. The inverse of the displacement
+    /// is that of waves, which have no ends.
+    pub fn about_inverse(&self, slip: &[Vector], sticks: impl Fn(usize) -> bool) -> Field {
+        let columns = self.surfaces.grid.cells[0];
+        let mut moved = vec![[0.0; 2]; slip.len()];
+        for start in (0..slip.len()).step_by(columns) {
+            let mut sum = [0.0; 2];
+            for cell in (start..start + columns).rev() {
+                if !sticks(cell) || self.passage == Passage::Shift {
+                    sum = [0.0; 2];
+                }
+                if sticks(cell) {
+                    sum = [sum[0] + slip[cell][0], sum[1] + slip[cell][1]];
+                    moved[cell] = sum;
+                }
+            }
+        }
+        let [xx, yy, xy] = &self.inverse;
+        let mut out = self.surfaces.convolution.apply(&moved, |k, [x, y]| {
+            [x * xx[k] + y * xy[k], x * xy[k] + y * yy[k]]
+        });
+        for (cell, out) in out.iter_mut().enumerate() {
+            if !sticks(cell) {
+                *out = slip[cell];
+            }
+        }
+        out
+    }
+}
+
+/// Returns the traction per displacement of waves (Pa/m), entries xx, yy and xy: a half-space has
+/// the compliance (1 - nu)/(G k) along the wave vector and 1/(G k) across it (K. L. Johnson, Contact
+/// Mechanics, 1985, 13.2, for plane strain).
+fn stiffness_of_waves(surfaces: &Surfaces) -> [Vec<f64>; 3] {
+    let size = surfaces.grid.size;
+    let sum = |of: fn(&Elasticity) -> f64| surfaces.bodies.iter().map(of).sum::<f64>();
+    let along = sum(|b| (1.0 - b.poisson) / b.shear());
+    let across = sum(|b| 1.0 / b.shear());
+    // The mean traction of a patch acts on waves as long as the table.
+    let longest = [0, 1].map(|k| {
+        let extent = 2.0 * surfaces.grid.cells[k] as f64 * size[k];
+        std::f64::consts::TAU / extent
+    });
+    let lowest = 0.5 * longest[0].min(longest[1]);
+    surfaces.convolution.waves(|wave| {
+        let k = [wave[0] / size[0], wave[1] / size[1]];
+        let number = k[0].hypot(k[1]);
+        let stiffness = |compliance: f64| {
+            let waves = compliance / number.max(lowest);
+            1.0 / (waves + surfaces.layer)
+        };
+        let (along, across) = (stiffness(along), stiffness(across));
+        let [x, y] = match number > 0.0 {
+            true => k.map(|k| k / number),
+            false => [std::f64::consts::FRAC_1_SQRT_2; 2],
+        };
+        let odd = match number > 0.0 {
+            true => (along - across) * x * y,
+            false => 0.0,
+        };
+        [
+            along * x * x + across * y * y,
+            along * y * y + across * x * x,
+            odd,
+        ]
+    })
+}
