@@ -76,7 +76,7 @@ fn damaged_contact_problems() {
 /// Returns the bytes of the results of a run of the case.
 fn results(case: &Path, folder: &Path) -> Vec<u8> {
     let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-        .args(["run", case.to_str().unwrap(), "--out"])
+        .args(["run", case.to_str().unwrap(), "--force", "--out"])
         .arg(folder.join("out"))
         .env_remove("FRETWORK_PLUGIN_PATH")
         .output()

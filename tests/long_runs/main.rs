@@ -91,9 +91,10 @@ fn followed(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
     (seen, state)
 }
 
-/// Largest number of bytes held in the last thousand of a number of steps.
+/// Largest number of bytes held in the last thousand of a number of steps, but for the very last:
+/// at the end of a run the state from which it can go on is held too.
 fn most(seen: &[usize], steps: usize) -> usize {
-    seen[steps - 1000..steps].iter().copied().max().unwrap()
+    seen[steps - 1000..steps - 1].iter().copied().max().unwrap()
 }
 
 /// Memory that the list of cycles may take: each cycle is written at the end, so it must be kept.

@@ -154,9 +154,10 @@ impl Rolls<'_> {
             let rows = end.pressure.pressure.chunks(columns).zip(&slip);
             for (row, (pressures, slip)) in rows.enumerate() {
                 let sum = pressures.iter().sum::<f64>() * slip;
-                for k in 0..2 {
-                    worn.depth[k][row] += rates[k] * sum;
-                    worn.volume[k] += rates[k] * sum * self.surfaces.grid.size[1];
+                let bodies = worn.depth.iter_mut().zip(&mut worn.volume);
+                for ((depth, volume), rate) in bodies.zip(rates) {
+                    depth[row] += rate * sum;
+                    *volume += rate * sum * self.surfaces.grid.size[1];
                 }
             }
         }

@@ -43,7 +43,7 @@ fn sphere(cells: usize) -> Sphere {
         })
         .collect();
     let surfaces = Surfaces::new(grid, [body; 2], 0.0);
-    let pressure = normal(&surfaces, &distance, LOAD, None).unwrap();
+    let pressure = normal(&surfaces, &distance, LOAD, None).unwrap_or_else(|e| panic!("{e}"));
     // delta = (3 mu P/(16 a)) sum (2 - nu)/G.
     let gross = 3.0 * MU * LOAD / (16.0 * hertz.along) * 2.0 * 2.0 / solid.shear();
     Sphere {
@@ -62,7 +62,8 @@ impl Sphere {
         };
         let start = Some(&from.traction[..]);
         let p = &self.pressure.pressure;
-        tangential(&self.surfaces, p, &motion, (&Coulomb(MU), 1.0), start, 1e-8).unwrap()
+        tangential(&self.surfaces, p, &motion, (&Coulomb(MU), 1.0), start, 1e-8)
+            .unwrap_or_else(|e| panic!("{e}"))
     }
 
     fn at_rest(&self) -> Tractions {

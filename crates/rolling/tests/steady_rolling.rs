@@ -49,7 +49,7 @@ impl Patch {
             })
             .collect();
         let surfaces = Surfaces::new(grid, [steel; 2], layer);
-        let pressure = normal(&surfaces, &distance, LOAD, None).unwrap();
+        let pressure = normal(&surfaces, &distance, LOAD, None).unwrap_or_else(|e| panic!("{e}"));
         let close = |a: f64, b: f64, by: f64| assert!((a / b - 1.0).abs() < by, "{a} {b}");
         close(pressure.approach, hertz.approach, 1e-3);
         close(pressure.largest(), hertz.pressure, 2e-3);
@@ -64,7 +64,8 @@ impl Patch {
             spin,
         });
         let pressure = &self.pressure.pressure;
-        tangential(&self.surfaces, pressure, &motion, (law, speed), None, 1e-6).unwrap()
+        tangential(&self.surfaces, pressure, &motion, (law, speed), None, 1e-6)
+            .unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// Forces over mu P.

@@ -45,7 +45,7 @@ fn worn(passages: f64, share: f64, half: f64) -> (Worn, Vec<Worn>, CellGrid) {
     let mut all = Vec::new();
     let end = rolls
         .wear(passages, share, &mut |w| all.push(w.clone()))
-        .unwrap();
+        .unwrap_or_else(|e| panic!("{e}"));
     (end, all, grid)
 }
 

@@ -24,6 +24,9 @@ impl From<ValidationError> for InterfaceError {
     }
 }
 
+/// Parameters of a law by name: value, and where it comes from.
+type Origins<'a> = Vec<(&'a str, (f64, String))>;
+
 /// Properties of the two materials of an interface, in its order.
 pub(super) type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
 
@@ -35,7 +38,7 @@ pub(super) fn properties_of_sides<'a>(
     given: &BTreeMap<&str, (f64, String)>,
     sides: &Sides<'_>,
     spec: &InterfaceSpec,
-) -> Result<Vec<(&'a str, (f64, String))>, ValidationError> {
+) -> Result<Origins<'a>, ValidationError> {
     let mut out = Vec::new();
     let names = [&spec.between.0, &spec.between.1];
     for field in &plugin.parameters {

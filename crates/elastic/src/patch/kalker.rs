@@ -18,6 +18,10 @@ pub struct Kalker {
 type Row = [f64; 3];
 
 /// C11, C22 and C23 for the ratio a/b = 0.1, 0.2, .. 1.
+#[expect(
+    clippy::approx_constant,
+    reason = "3.14 is an entry of the table, not pi"
+)]
 const SHORT: [[Row; 10]; 3] = [
     [
         [2.51, 3.31, 4.85],
