@@ -220,14 +220,14 @@ mod tests {
     /// function of the part of the stroke.
     fn with_force(more: impl Fn(f64) -> f64) -> f64 {
         let (a, n, p) = (1e-5, 4000, 100.0);
-        let (mut l, mut x) = (Loop::default(), 0.0);
+        let (mut l, mut x) = (Loop::default(), 0.0_f64);
         for step in 0..3 * n {
             if step % n == 0 {
                 l.next_cycle();
             }
             let phase = std::f64::consts::TAU * (f64::from(step) + 1.0) / f64::from(n);
             let to = a * phase.sin();
-            let along = (to - x as f64).signum();
+            let along = (to - x).signum();
             let part = 0.5 * (1.0 + along * 0.5 * (x + to) / a);
             l.add(to, along * p * (0.4 + more(part)), p);
             x = to;

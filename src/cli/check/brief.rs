@@ -13,9 +13,12 @@ const MARGIN: usize = 17;
 /// Number of lines of a thing to look at, if there is room.
 const LOOK_LINES: usize = 2;
 
-/// Labels of the lines on the scene, how many of each are shown, and the labels of the lines that
-/// are added to them, each with its name there.
-const SCENE: [(&str, usize, &[(&str, &str)]); 9] = [
+/// Label of lines on the scene, how many of them are shown, and the labels of the lines that are
+/// added to them, each with its name there.
+type SceneLine = (&'static str, usize, &'static [(&'static str, &'static str)]);
+
+/// The lines on the scene.
+const SCENE: [SceneLine; 9] = [
     ("steps", 1, &[("solver", "solver")]),
     ("balls", 1, &[]),
     ("convex pieces", 1, &[]),

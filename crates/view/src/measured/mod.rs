@@ -257,7 +257,7 @@ mod tests {
         let mut figures = [Figure::new(Figure::LOOPS, [chart], 2)];
         let newtons = curve(Kind::Loop, ["um", "N"], &[(1.0, 1.0)]);
         assert!(
-            add(&mut figures, &[newtons.clone()])
+            add(&mut figures, std::slice::from_ref(&newtons))
                 .unwrap_err()
                 .contains("--depth")
         );
