@@ -14,7 +14,10 @@ use std::time::{Duration, Instant};
 /// Processor time for which steps are timed, at the start and again under load.
 const WATCHED: Duration = Duration::from_millis(500);
 
-/// Wall time in which these steps end: a busy machine gives the processor to others too.
+/// Wall time after which no further step is timed: a busy machine gives the processor to others.
+const WATCHED_AT_MOST: Duration = Duration::from_secs(1);
+
+/// Wall time in which these steps end.
 const WATCHED_WITHIN: Duration = Duration::from_secs(2);
 
 /// Wall time that the first step of a scene with deformable bodies may take before the timing: it
@@ -128,19 +131,19 @@ fn work(
         })
     };
     let watch = |run: &mut dyn RunControl, most: u64| {
-        let mut begun = ThreadTime::now();
+        let mut begun = (ThreadTime::now(), Instant::now());
         for k in 0..most {
             let step = timed(run);
             let failed = step.is_err();
             let sent = sender.send(step.map_or_else(Progress::Failed, Progress::Step));
             if k == 0 {
                 // The first step forms what later ones keep.
-                begun = ThreadTime::now();
+                begun = (ThreadTime::now(), Instant::now());
             }
             if failed || sent.is_err() {
                 return None;
             }
-            if begun.elapsed() > WATCHED {
+            if begun.0.elapsed() > WATCHED || begun.1.elapsed() > WATCHED_AT_MOST {
                 break;
             }
         }
