@@ -1,5 +1,5 @@
-//! Convolutions over the cells of a patch by Fourier transforms: two components at once, as real and
-//! imaginary part.
+//! Convolutions over the cells of a patch by Fourier transforms: two components at once, as real
+//! and imaginary part.
 
 use crate::fields::{Field, Vector};
 use fretwork_elastic::half_space::{CellGrid, Complex64, Transforms, smooth};

@@ -1,5 +1,5 @@
-//! FASTSIM, the simplified theory of rolling contact: a patch on springs, whose compliances are such
-//! that small creepages give Kalker's forces (J. J. Kalker, Vehicle System Dynamics 11, 1982).
+//! FASTSIM, the simplified theory of rolling contact: a patch on springs, whose compliances are
+//! such that small creepages give Kalker's forces (J. J. Kalker, Vehicle System Dynamics 11, 1982).
 
 use crate::fields::{Vector, length};
 use crate::motion::Creepage;
@@ -18,8 +18,8 @@ pub struct Fastsim {
 }
 
 impl Fastsim {
-    /// Returns the patch of two bodies by Hertz; `None` outside Kalker's table. The compliances are L1
-    /// = 8 a/(3 C11 G), L2 = 8 a/(3 C22 G), L3 = pi a sqrt(a/b)/(4 C23 G).
+    /// Returns the patch of two bodies by Hertz; `None` outside Kalker's table. The compliances are
+    /// L1 = 8 a/(3 C11 G), L2 = 8 a/(3 C22 G), L3 = pi a sqrt(a/b)/(4 C23 G).
     pub fn new(patch: &PointPatch, load: f64, bodies: &[Solid; 2]) -> Option<Self> {
         let like = like_bodies(bodies);
         let kalker = Kalker::new(patch.along / patch.across, like.poisson)?;
@@ -86,7 +86,8 @@ mod tests {
         Fastsim::new(&hertz, 106.7e3, &[steel; 2]).unwrap()
     }
 
-    /// The series `tractcurv_fastsim` of the program CONTACT (github eve70a/CONTACT, commit d431cdb).
+    /// The series `tractcurv_fastsim` of the program CONTACT (github eve70a/CONTACT, commit
+    /// d431cdb).
     #[test]
     fn forces_are_those_of_contacts_fastsim() {
         let fastsim = patch();

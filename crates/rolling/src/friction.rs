@@ -26,8 +26,8 @@ pub struct Cells<'a> {
 
 /// A law of friction.
 pub trait Friction {
-    /// Returns the bounds for slips of the cells in a step (m). Material enters each row at its last
-    /// cell.
+    /// Returns the bounds for slips of the cells in a step (m). Material enters each row at its
+    /// last cell.
     fn bounds(&self, cells: Cells<'_>, slip: &[Vector]) -> Vec<Bound>;
 }
 

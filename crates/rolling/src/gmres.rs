@@ -21,7 +21,8 @@ pub fn solve(
         |v: &[Vector], by: f64| -> Field { v.iter().map(|v| [v[0] / by, v[1] / by]).collect() };
     let mut basis = vec![scaled(right, size)];
     let mut searched: Vec<Field> = Vec::new();
-    // Columns of the triangular factor, the rotations that made it, and the rotated right-hand side.
+    // Columns of the triangular factor, the rotations that made it, and the rotated right-hand
+    // side.
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut turns: Vec<[f64; 2]> = Vec::new();
     let mut rest = vec![size];

@@ -1,11 +1,11 @@
-//! The contact patch of two elastic bodies that roll, slide or fret: pressure, traction and slip over
-//! a grid of cells, from numbers to numbers.
+//! The contact patch of two elastic bodies that roll, slide or fret: pressure, traction and slip
+//! over a grid of cells, from numbers to numbers.
 //!
 //! Both bodies are half-spaces as far as their deformation goes (J. J. Kalker, Three-dimensional
 //! elastic bodies in rolling contact, 1990). The axes are x along the rolling, in which material
-//! enters the patch at large x and leaves it at small x, and y across it. Tractions act on the first
-//! body and slip is that of the first body relative to the second one, so that traction opposes
-//! slip.
+//! enters the patch at large x and leaves it at small x, and y across it. Tractions act on the
+//! first body and slip is that of the first body relative to the second one, so that traction
+//! opposes slip.
 //!
 //! ```text
 //! normal       e = h + u_z(p_n) - delta >= 0,  p_n >= 0,  p_n e = 0

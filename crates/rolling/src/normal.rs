@@ -71,9 +71,9 @@ pub fn normal(
 }
 
 /// Returns the pressures of bodies that wear under them: `worn` has, for each row of cells, the
-/// depth that goes by one pascal in one of its cells (m/Pa), which adds to the distance of the whole
-/// row. By conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231, 1999), which begin anew where a
-/// cell comes into contact.
+/// depth that goes by one pascal in one of its cells (m/Pa), which adds to the distance of the
+/// whole row. By conjugate gradients (I. A. Polonsky, L. M. Keer, Wear 231, 1999), which begin anew
+/// where a cell comes into contact.
 ///
 /// # Errors
 /// Those of [`normal`].

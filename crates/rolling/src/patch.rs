@@ -46,8 +46,8 @@ pub struct Rolling {
     pub resistance: f64,
 }
 
-/// Results with the error of the grid, from this grid and two of cells twice as large that are half a
-/// cell of theirs apart: the patch has its edge at other places of the cells.
+/// Results with the error of the grid, from this grid and two of cells twice as large that are half
+/// a cell of theirs apart: the patch has its edge at other places of the cells.
 #[derive(Clone, Debug)]
 pub struct Refined {
     /// On the fine grid.

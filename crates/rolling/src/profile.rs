@@ -1,9 +1,9 @@
 //! Profiles that wear as bodies roll over each other many times.
 //!
 //! Every point of a row passes through the whole row of the patch, so that a passage takes the same
-//! depth everywhere along the rolling, k sum p |S| over the row, and the profile changes across it. A
-//! jump of N passages is implicit: the pressures at its end are those of the bodies that they have
-//! worn,
+//! depth everywhere along the rolling, k sum p |S| over the row, and the profile changes across it.
+//! A jump of N passages is implicit: the pressures at its end are those of the bodies that they
+//! have worn,
 //!
 //! ```text
 //! e = h + N k S_row sum_x p + u_z(p) - delta
@@ -26,8 +26,8 @@ use serde::Serialize;
 pub struct Wear {
     /// Wear coefficients of both bodies (1/Pa, m^3/J): depth over pressure and slip.
     pub coefficients: [f64; 2],
-    /// Passages of each body's points for one passage of the patch: 1 for a rail, and for a wheel that
-    /// runs over other rail each time, the share of its passages that are counted.
+    /// Passages of each body's points for one passage of the patch: 1 for a rail, and for a wheel
+    /// that runs over other rail each time, the share of its passages that are counted.
     pub passages: [f64; 2],
 }
 
@@ -87,8 +87,8 @@ const FIRST: f64 = 10.0;
 const SMALLEST: f64 = 1.0;
 
 impl Rolls<'_> {
-    /// Wears both bodies over a number of passages, in jumps whose error in depth is at most a share
-    /// of what they wear; `follow` gets the profile after each of them.
+    /// Wears both bodies over a number of passages, in jumps whose error in depth is at most a
+    /// share of what they wear; `follow` gets the profile after each of them.
     ///
     /// # Errors
     /// The patch has no solution.

@@ -1,5 +1,5 @@
-//! Two elastic half-spaces that touch over a grid of cells: relative displacements of their surfaces
-//! by tractions that are uniform in each cell.
+//! Two elastic half-spaces that touch over a grid of cells: relative displacements of their
+//! surfaces by tractions that are uniform in each cell.
 
 use crate::convolution::{Convolution, Spectrum};
 use crate::fields::{Field, Vector};
@@ -60,8 +60,8 @@ impl Surfaces {
         (one - other).abs() > 1e-12 * (one.abs() + other.abs())
     }
 
-    /// Returns the slip by pressures in a motion (m): in rolling the displacement less that one cell
-    /// upstream, in a shift under constant pressures none.
+    /// Returns the slip by pressures in a motion (m): in rolling the displacement less that one
+    /// cell upstream, in a shift under constant pressures none.
     pub fn slip_by_pressure(&self, pressure: &[f64], motion: &Motion) -> Field {
         if matches!(motion, Motion::Shift { .. }) {
             return vec![[0.0; 2]; pressure.len()];
@@ -88,8 +88,8 @@ impl Surfaces {
         moved.into_iter().map(|u| u[0]).collect()
     }
 
-    /// Returns the tangential displacements by tractions (m), including that of the layer, at places
-    /// that lie `ahead` cells upstream of each cell.
+    /// Returns the tangential displacements by tractions (m), including that of the layer, at
+    /// places that lie `ahead` cells upstream of each cell.
     pub fn displacement(&self, traction: &[Vector], ahead: usize) -> Field {
         let [xx, yy, xy] = self.convolution.spectra(|at| {
             let there = [at[0] + ahead as f64, at[1]];
@@ -186,8 +186,8 @@ impl<'a> Slip<'a> {
         })
     }
 
-    /// Returns about the tractions that give a slip where `sticks` is set (Pa), and the slip as it is
-    /// elsewhere.
+    /// Returns about the tractions that give a slip where `sticks` is set (Pa), and the slip as it
+    /// is elsewhere.
     ///
     /// In steady rolling the slip along a row is the difference of displacements of neighbours: it
     /// is summed up from the leading edge of each part that sticks. The inverse of the displacement
@@ -221,8 +221,8 @@ impl<'a> Slip<'a> {
 }
 
 /// Returns the traction per displacement of waves (Pa/m), entries xx, yy and xy: a half-space has
-/// the compliance (1 - nu)/(G k) along the wave vector and 1/(G k) across it (K. L. Johnson, Contact
-/// Mechanics, 1985, 13.2, for plane strain).
+/// the compliance (1 - nu)/(G k) along the wave vector and 1/(G k) across it (K. L. Johnson,
+/// Contact Mechanics, 1985, 13.2, for plane strain).
 fn stiffness_of_waves(surfaces: &Surfaces) -> [Vec<f64>; 3] {
     let size = surfaces.grid.size;
     let sum = |of: fn(&Elasticity) -> f64| surfaces.bodies.iter().map(of).sum::<f64>();

@@ -1,9 +1,9 @@
 //! The tangential problem: tractions of cells that stick or slip, by Newton's method on the field.
 //!
 //! The tractions solve p - proj(p - r S(p)) = 0, where proj shortens a vector to the bound g and r
-//! is one over the slip of a cell by its own traction. The derivative is applied by convolution, and
-//! its equations are solved by generalised minimal residuals, preconditioned with the stiffness of
-//! waves in the part that sticks.
+//! is one over the slip of a cell by its own traction. The derivative is applied by convolution,
+//! and its equations are solved by generalised minimal residuals, preconditioned with the stiffness
+//! of waves in the part that sticks.
 
 use crate::fields::{Field, Vector, add, dot, length};
 use crate::friction::{Bound, Cells, Friction};

@@ -1,6 +1,6 @@
-//! Temperature of the surfaces of a patch that rolls fast: heat flows into the depth alone, and each
-//! row of cells has the temperature of a half-space under a flux that passes over it (M. Ertz, K.
-//! Knothe, Wear 253, 2002).
+//! Temperature of the surfaces of a patch that rolls fast: heat flows into the depth alone, and
+//! each row of cells has the temperature of a half-space under a flux that passes over it (M. Ertz,
+//! K. Knothe, Wear 253, 2002).
 
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_math::diffusion::Conductor;
@@ -75,8 +75,8 @@ mod tests {
     }
 
     fn hottest(cells: usize, bulk: [f64; 2]) -> f64 {
-        // The case `ertz_temperature` of the program CONTACT (commit d431cdb): a 5.88 mm, b 10.54 mm,
-        // 100 kN, mu 0.3, slip of 1 m/s at 30 m/s, in the middle row.
+        // The case `ertz_temperature` of the program CONTACT (commit d431cdb): a 5.88 mm, b 10.54
+        // mm, 100 kN, mu 0.3, slip of 1 m/s at 30 m/s, in the middle row.
         let (a, b) = (5.88e-3, 10.54e-3);
         let largest = 0.3 * 1.5 * 100e3 / (PI * a * b);
         let grid = row(cells, a);
@@ -91,9 +91,9 @@ mod tests {
         found.into_iter().fold(0.0, f64::max)
     }
 
-    /// The largest rise under a semi-elliptic flux is 150.3 K, from the maximum over x of the integral
-    /// of sqrt(1 - s²)/sqrt(s - x) from x to 1. (CONTACT gives 166.8 K by a rule of its own for the
-    /// integral.)
+    /// The largest rise under a semi-elliptic flux is 150.3 K, from the maximum over x of the
+    /// integral of sqrt(1 - s²)/sqrt(s - x) from x to 1. (CONTACT gives 166.8 K by a rule of its
+    /// own for the integral.)
     #[test]
     fn a_sliding_ellipse_has_the_temperature_of_the_closed_form() {
         let integral = |x: f64| {

@@ -1,6 +1,6 @@
-//! Shifts of a sphere on a flat against Cattaneo's and Mindlin's closed forms (K. L. Johnson, Contact
-//! Mechanics, 1985, 7.2 and 7.4), exact at nu = 0, where tractions along the shift do not move
-//! surfaces across it.
+//! Shifts of a sphere on a flat against Cattaneo's and Mindlin's closed forms (K. L. Johnson,
+//! Contact Mechanics, 1985, 7.2 and 7.4), exact at nu = 0, where tractions along the shift do not
+//! move surfaces across it.
 
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
@@ -123,7 +123,8 @@ fn a_loop_has_mindlins_energy_in_any_number_of_steps() {
         }
         energies.push(dissipated / (MU * LOAD * sphere.gross));
     }
-    // On loading Q/(mu P) = 1 - (1 - d)^(3/2), and after a reversal twice that at half the distance.
+    // On loading Q/(mu P) = 1 - (1 - d)^(3/2), and after a reversal twice that at half the
+    // distance.
     let loading = |d: f64| 1.0 - (1.0 - d).powf(1.5);
     let n = 100_000;
     let most = loading(0.8);

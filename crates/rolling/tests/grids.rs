@@ -13,8 +13,8 @@ fn grid(cells: usize, half: [f64; 2]) -> CellGrid {
     }
 }
 
-/// Extrapolated forces of two grids agree within the error of the coarser one, in partial slip, with
-/// spin and for unlike bodies.
+/// Extrapolated forces of two grids agree within the error of the coarser one, in partial slip,
+/// with spin and for unlike bodies.
 #[test]
 fn the_error_of_the_grid_covers_finer_ones() {
     let elasticity = |young: f64, poisson: f64| Elasticity {

@@ -1,9 +1,9 @@
 //! Kalker's coefficients: forces of small creepages on an elliptic patch without slip.
 
-/// Kalker's coefficients of an elliptic patch with the semi-axes a along the rolling and b across it,
-/// of like bodies: F_x = -G a b C11 xi, F_y = -G a b (C22 eta + sqrt(a b) C23 phi) (J. J. Kalker,
-/// Three-dimensional elastic bodies in rolling contact, 1990, table E3; first in his thesis, Delft
-/// 1967).
+/// Kalker's coefficients of an elliptic patch with the semi-axes a along the rolling and b across
+/// it, of like bodies: F_x = -G a b C11 xi, F_y = -G a b (C22 eta + sqrt(a b) C23 phi) (J. J.
+/// Kalker, Three-dimensional elastic bodies in rolling contact, 1990, table E3; first in his
+/// thesis, Delft 1967).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kalker {
     /// Along the rolling.
@@ -103,8 +103,8 @@ const LONG: [[Row; 10]; 3] = [
 
 impl Kalker {
     /// Returns the coefficients for a ratio of semi-axes, along over across, from 0.1 to 10, and
-    /// Poisson's ratio from 0 to 0.5; `None` outside. They are linear between rows, and a parabola of
-    /// their inverse through the three Poisson's ratios.
+    /// Poisson's ratio from 0 to 0.5; `None` outside. They are linear between rows, and a parabola
+    /// of their inverse through the three Poisson's ratios.
     pub fn new(ratio: f64, poisson: f64) -> Option<Self> {
         if !(0.0..=0.5).contains(&poisson) || !(0.1..=10.0).contains(&ratio) {
             return None;
