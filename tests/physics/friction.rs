@@ -92,3 +92,52 @@ fn partial_slip_has_no_coefficient_of_sliding() {
         assert!(energetic < 0.9 * mu, "{amplitude}: {energetic}");
     }
 }
+
+const COARSE: [&str; 4] = [
+    "half_spaces.0.x.size=1.2e-4",
+    "half_spaces.0.y.size=1.2e-4",
+    "half_spaces.1.x.size=1.2e-4",
+    "half_spaces.1.y.size=1.2e-4",
+];
+
+/// The specific wear rate is the k of the law for any stroke, though a part of each is elastic.
+#[test]
+fn the_wear_rate_of_an_elastic_contact_is_that_of_its_law() {
+    for amplitude in ["2e-6", "6e-6"] {
+        let drive = format!(
+            "half_spaces.1.dofs.x=Displacement(Sine(amplitude:{amplitude},frequency:20.0,start:0.01))"
+        );
+        let wear = [
+            "interfaces.contact.wear=archard",
+            "interfaces.contact.parameters.wear={\"k\":1e-13}",
+            &drive,
+        ];
+        let found = ran(
+            "sphere_on_flat_fretting",
+            &[&COARSE[..], &wear[..]].concat(),
+        );
+        let rate = number(&found, "wear.bodies.0.specific_rate");
+        assert!((rate / 1e-13 - 1.0).abs() < 0.03, "{amplitude}: {rate}");
+    }
+}
+
+/// A stroke of the flat is one of the sphere; a motion to and fro without a known period has no
+/// coefficient of sliding.
+#[test]
+fn the_period_is_that_of_what_moves() {
+    let sine = "Displacement(Sine(amplitude:3e-6,frequency:20.0,start:0.01))";
+    let flat = format!("half_spaces.0.dofs=(x:{sine})");
+    let found = ran(
+        "sphere_on_flat_fretting",
+        &[&COARSE[..], &[&flat, "half_spaces.1.dofs.x=Fixed"][..]].concat(),
+    );
+    let mu = number(&found, "friction_coefficient");
+    assert!((mu / 0.6 - 1.0).abs() < 0.01, "{mu}");
+    assert_eq!(found.found.number("cycles.1.cycle"), Some(2.0));
+    let table = "half_spaces.1.dofs.x=Displacement(Table([(0.01,0.0),(0.0225,3e-6),(0.0475,-3e-6),(0.0725,3e-6),(0.0975,-3e-6),(0.11,0.0)]))";
+    let found = ran(
+        "sphere_on_flat_fretting",
+        &[&COARSE[..], &[table][..]].concat(),
+    );
+    assert_eq!(found.found.number("friction_coefficient"), None);
+}

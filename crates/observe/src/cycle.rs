@@ -13,6 +13,10 @@ pub const TRANSITION_ENERGY_RATIO: f64 = 0.2;
 /// 7.4.
 pub const SLIDING_SLIP_RATIO: f64 = 0.5;
 
+/// Slope of the tangential force at the ends of the strokes, relative to that after the reversals,
+/// below which the whole contact slides: of an elastic sphere it is below only from 0.9999 mu P on.
+pub const SLIDING_STIFFNESS: f64 = 0.05;
+
 /// How a contact slides.
 ///
 /// # Examples
@@ -22,9 +26,12 @@ pub const SLIDING_SLIP_RATIO: f64 = 0.5;
 /// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
 /// let (q, delta) = (30.0, 5e-6);
 /// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(SlipRegime::of(dissipated / (4.0 * q * delta), 1.0), SlipRegime::Gross);
-/// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(SlipRegime::of(0.05, 0.1), SlipRegime::Partial);
+/// let ratio = dissipated / (4.0 * q * delta);
+/// assert_eq!(SlipRegime::of(ratio, 1.0, None), SlipRegime::Gross);
+/// // A thin loop: most of the displacement is elastic, and the force rises to its end.
+/// assert_eq!(SlipRegime::of(0.05, 0.1, Some(0.6)), SlipRegime::Partial);
+/// // An elastic body between the drive and a contact that slides at the end.
+/// assert_eq!(SlipRegime::of(0.13, 0.15, Some(0.0)), SlipRegime::Gross);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -39,13 +46,17 @@ pub enum SlipRegime {
 }
 
 impl SlipRegime {
-    /// Returns the regime of one cycle by its energy ratio, and by its slip ratio where impacts
-    /// raise the largest force: a contact that slips over half of the stroke slides.
-    pub fn of(energy_ratio: f64, slip_ratio: f64) -> Self {
-        if energy_ratio < TRANSITION_ENERGY_RATIO && slip_ratio < SLIDING_SLIP_RATIO {
-            Self::Partial
-        } else {
-            Self::Gross
+    /// Returns the regime of one cycle by its energy ratio; by its slip ratio where impacts raise
+    /// the largest force: a contact that slips over half of the stroke slides; and by the stiffness
+    /// at the end of its strokes, where elastic bodies between the drive and the contact make the
+    /// loop thin: a force that does not rise any more is that of sliding.
+    pub fn of(energy_ratio: f64, slip_ratio: f64, end_stiffness: Option<f64>) -> Self {
+        let slides = energy_ratio >= TRANSITION_ENERGY_RATIO
+            || slip_ratio >= SLIDING_SLIP_RATIO
+            || end_stiffness.is_some_and(|k| k < SLIDING_STIFFNESS);
+        match slides {
+            true => Self::Gross,
+            false => Self::Partial,
         }
     }
 
@@ -100,7 +111,8 @@ crate::described! {
         pub slip_ratio: f64 => ONE,
         /// Mean of |Q|/P at the reversals of the motion.
         pub reversal_ratio: f64 => ONE,
-        /// Partial or gross slip, from energy ratio and slip ratio.
+        /// Partial or gross slip, from energy ratio, slip ratio, and the stiffness at the end of the
+        /// strokes.
         pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,
@@ -111,13 +123,16 @@ crate::described! {
 }
 
 impl Cycle {
-    /// Returns normal force times the path of slip (J; J/m in 2D), of one cycle: the elastic part
-    /// of the path of a reciprocating motion is left out.
-    pub fn slip_load_path(&self, reciprocates: bool) -> f64 {
-        match reciprocates {
-            true => self.load_path * self.slip_ratio,
-            false => self.load_path,
-        }
+    /// Returns normal force times the path of slip (J; J/m in 2D) of one cycle of a reciprocating
+    /// motion with a coefficient of sliding: E_d over the coefficient, which leaves out what is
+    /// elastic, whatever the shape of the loop.
+    pub fn slip_load_path(&self, coefficient: f64) -> f64 {
+        self.work / coefficient
+    }
+
+    /// Returns whether the motion turns back over more than a twentieth of its path.
+    pub fn reverses(&self) -> bool {
+        2.0 * self.amplitude < 0.95 * self.path
     }
 
     /// Returns the largest |Q| over the mean P; `None` if the body was not pressed.

@@ -1,6 +1,7 @@
 //! Wear of the individual first bodies.
 
 use super::quantity::unit::{METRE, ONE, PASCAL, VOLUME, WEAR_RATE, WORD};
+use fretwork_core::laws::Kind;
 use fretwork_core::view::RunView;
 use fretwork_scene::LoadedCase;
 use serde::Serialize;
@@ -28,7 +29,8 @@ crate::described! {
     }
 }
 
-/// Hardness of the material of a first body.
+/// Hardness with which the wear of a first body is expressed: that of its material, or of a softer
+/// one that it wears with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyHardness {
     /// Name of the body.
@@ -58,8 +60,24 @@ impl WearMaterials {
         let elastic = case.elastic.iter().map(|b| (&b.name, &b.material));
         let half_spaces = case.half_spaces.iter().map(|b| (&b.name, &b.material));
         let all = bodies.clone().chain(elastic).chain(half_spaces);
+        // A law with K takes the hardness of the softer material of its interface.
+        let worn = case
+            .interfaces
+            .iter()
+            .filter(|i| i.laws.get(Kind::WEAR).is_some());
+        let pairs: Vec<_> = worn.map(|i| &i.between).collect();
+        let softest = |material: &String| {
+            let others = pairs.iter().filter_map(|(a, b)| match material {
+                m if m == a => Some(b),
+                m if m == b => Some(a),
+                _ => None,
+            });
+            let all = others.chain([material]).filter_map(|m| loaded.hardness(m));
+            all.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
         let hardness = all.filter_map(|(body, material)| {
-            let (value, text) = loaded.hardness(material)?;
+            loaded.hardness(material)?;
+            let (value, text) = softest(material)?;
             Some(BodyHardness {
                 body: body.clone(),
                 value,

@@ -105,7 +105,7 @@ mod tests {
             work,
             wear_volume,
             energy_ratio,
-            regime: SlipRegime::of(energy_ratio, 0.0),
+            regime: SlipRegime::of(energy_ratio, 0.0, None),
             ..Cycle::default()
         }
     }

@@ -212,11 +212,17 @@ impl Cycles {
         cycle.sliding = self.shape.aperture();
         cycle.slip_ratio = over(cycle.sliding, amplitude).min(1.0);
         cycle.reversal_ratio = self.shape.reversal();
-        cycle.regime = SlipRegime::of(cycle.energy_ratio, cycle.slip_ratio);
+        cycle.regime = SlipRegime::of(
+            cycle.energy_ratio,
+            cycle.slip_ratio,
+            self.shape.end_stiffness(),
+        );
         let clock = &self.clock;
         cycle.friction_coefficient = match clock.period {
             Some(_) if cycle.regime == SlipRegime::Gross => self.shape.plateau(),
             Some(_) => None,
+            // Without a period elastic travel after reversals cannot be told from sliding.
+            None if cycle.reverses() => None,
             None => (cycle.load_path > 0.0).then_some(cycle.energetic_coefficient),
         };
         let end = clock
@@ -232,22 +238,21 @@ impl Cycles {
     }
 
     /// Returns normal force times the path of slip over all cycles, those jumped over included (J;
-    /// J/m in 2D). A cycle that is not complete has the slip ratio of the one before.
-    pub fn slip_load_path(&self) -> f64 {
-        let reciprocates = self.oscillates();
-        let mut ratio = 1.0;
+    /// J/m in 2D); `None` where no cycle has a coefficient of sliding. A cycle without one has that
+    /// of the one before, or of the first that has one.
+    pub fn slip_load_path(&self) -> Option<f64> {
+        let jumps = |c: &Cycle| f64::from(1 + c.jumped);
+        if !self.oscillates() {
+            let reverses = self.list.iter().any(Cycle::reverses);
+            return (!reverses).then(|| self.load_path());
+        }
+        let known = |c: &Cycle| c.friction_coefficient.filter(|mu| c.complete && *mu > 0.0);
+        let mut coefficient = self.list.iter().find_map(known)?;
         let of = |c: &Cycle| {
-            if c.complete {
-                ratio = c.slip_ratio;
-            }
-            let path = match c.complete {
-                true => c.slip_load_path(reciprocates),
-                false if reciprocates => c.load_path * ratio,
-                false => c.load_path,
-            };
-            path * f64::from(1 + c.jumped)
+            coefficient = known(c).unwrap_or(coefficient);
+            c.slip_load_path(coefficient) * jumps(c)
         };
-        self.list.iter().map(of).sum()
+        Some(self.list.iter().map(of).sum())
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.

@@ -1,6 +1,6 @@
 //! Results of a friction test at its end.
 
-use super::cycle::Cycle;
+use super::cycle::{Cycle, SlipRegime};
 use super::fretting;
 use super::friction::Cycles;
 use super::quantity::unit::{ENERGY, ONE};
@@ -118,7 +118,7 @@ fn show(
         (_, false) => "over the completed part of the evaluated time".to_owned(),
     };
     let none = last.friction_coefficient.is_none();
-    let text = no_sliding(friction, fretting.is_some());
+    let text = no_sliding(friction, last);
     found.edit("friction_coefficient", |q| {
         q.headline("friction coefficient");
         match none {
@@ -208,20 +208,21 @@ fn show(
             .sentence("sliding regime", text);
     });
     if let Some(alpha) = f.alpha {
-        let half = alpha
-            .half_width
-            .map_or(String::new(), |h| format!(" +- {}", number(1e9 * h, 2)));
-        let text = format!(
-            "{}{half} mm3/J over all cycles (95 %, jackknife)",
-            number(1e9 * alpha.value, 4)
-        );
+        let value = number(1e9 * alpha.value, 4);
+        let text = match alpha.half_width {
+            Some(h) => format!(
+                "{value} +- {} mm3/J over all cycles (95 %, jackknife)",
+                number(1e9 * h, 2)
+            ),
+            None => format!("{value} mm3/J"),
+        };
         found.edit("fretting.alpha.value", |q| {
             q.about(Topic::Wear).secondary("wear per energy");
             q.sentence("wear per energy", text);
             q.estimate = Some(super::quantity::Estimate {
                 value: Some(alpha.value),
                 scatter: alpha.half_width,
-                method: Some("95 %, jackknife over all cycles".to_owned()),
+                method: (alpha.half_width).map(|_| "95 %, jackknife over all cycles".to_owned()),
                 ..super::quantity::Estimate::default()
             });
         });
@@ -237,13 +238,21 @@ fn coefficient(cycle: &Cycle) -> String {
 }
 
 /// Returns why there is no coefficient of sliding, with what describes the contact instead.
-fn no_sliding(friction: &Friction, reciprocates: bool) -> String {
-    if !reciprocates {
-        return "none: nothing slid under a load".to_owned();
+fn no_sliding(friction: &Friction, last: &Cycle) -> String {
+    if !friction.oscillates {
+        return match last.reverses() {
+            true => "none: the motion turns back, and its period is not known; give `period` of `friction`".to_owned(),
+            false => "none: nothing slid under a load".to_owned(),
+        };
     }
     let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |x| number(x, 3));
+    let why = match (last.complete, last.regime) {
+        (false, _) => "no cycle is complete",
+        (true, SlipRegime::Partial) => "partial slip",
+        (true, _) => "the motion does not turn back within its period",
+    };
     format!(
-        "none, partial slip: Q*/P {}, slip ratio {}, A = E_d/(4 Q* delta*) {}",
+        "none, {why}: Q*/P {}, slip ratio {}, A = E_d/(4 Q* delta*) {}",
         known(friction.peak_friction),
         known(friction.slip_ratio),
         known(friction.energy_ratio)

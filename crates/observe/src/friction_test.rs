@@ -179,15 +179,19 @@ impl Observer for FrictionTest {
     }
 
     fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
-        let path = self.state.load_path + self.state.cycles.slip_load_path();
-        let doc = "normal force times distance of slip: the integral of P |ds| over the run, without the elastic part of reciprocating strokes";
+        let before = self.state.load_path;
+        let path = self.state.cycles.slip_load_path().map(|p| before + p);
+        let doc = "normal force times distance of slip: the integral of P |ds| over the run; of a reciprocating motion the energy of the cycles over the coefficient of sliding, without what is elastic";
         found.keep(LoadPath {
             slip: path,
-            imposed: self.state.load_path + self.state.cycles.load_path(),
+            imposed: before + self.state.cycles.load_path(),
         });
         found.begin(Topic::Wear, Role::Detail);
         found.add("wear.load_path", path, LOAD_PATH, doc);
-        if let Some(mut wear) = found.get::<WearSummary>().cloned().filter(|_| path > 0.0) {
+        if let (Some(path), Some(mut wear)) = (
+            path.filter(|p| *p > 0.0),
+            found.get::<WearSummary>().cloned(),
+        ) {
             wear.rate(path, found);
         }
         Observer::report_so_far(self, found);

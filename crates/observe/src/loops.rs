@@ -20,6 +20,8 @@ pub struct Loop {
     turns: u32,
     /// Path from the last reversal to Q = 0 (m).
     unloaded: Option<f64>,
+    /// Sum of these paths in the cycle, and their number.
+    unloading: (f64, u32),
     /// Work of Q, and integral of P over the path (J), in equal parts of the strokes.
     parts: Vec<[f64; 2]>,
 }
@@ -41,6 +43,7 @@ impl Loop {
     pub fn next_cycle(&mut self) {
         self.crossings = None;
         self.reversals = (0.0, 0);
+        self.unloading = (0.0, 0);
         self.parts = vec![[0.0; 2]; PARTS];
     }
 
@@ -64,6 +67,10 @@ impl Loop {
             self.add_to_stroke(motion, turns, q, p);
             if self.unloaded.is_none() && q * motion > 0.0 {
                 self.unloaded = Some(self.stroke[0]);
+                if self.turns > 0 {
+                    self.unloading.0 += self.stroke[0];
+                    self.unloading.1 += 1;
+                }
             }
             if motion != 0.0 {
                 self.motion = motion;
@@ -130,6 +137,17 @@ impl Loop {
         (load > 0.0).then(|| work / load)
     }
 
+    /// Returns the slope of Q over the end of the strokes, relative to that after the reversals: 0
+    /// where the whole contact slides, (1 - Q*/mu P)^(1/3) of a sphere in partial slip (K. L. Johnson,
+    /// Contact Mechanics, 1985, 7.4). `None` where no stroke was complete.
+    pub fn end_stiffness(&self) -> Option<f64> {
+        const END: [f64; 3] = [0.92, 0.96, 1.0];
+        let [before, last] = [self.over(END[0], END[1])?, self.over(END[1], END[2])?];
+        let end = (last - before) / (END[2] - END[1]);
+        let path = self.unloading.0 / f64::from(self.unloading.1.max(1)) / self.stroke[1];
+        (self.turns > 1 && path > 0.0).then(|| end * path / self.reversal())
+    }
+
     /// Returns whether the contact slides at the last sample: from the reversal to Q = 0 it is half
     /// of its elastic travel that has passed. `false` before the first reversal.
     pub fn slides(&self) -> bool {
@@ -192,6 +210,8 @@ mod tests {
             assert!((found - ratio).abs() < 6e-5, "{found} for {ratio}");
             assert!((l.aperture() / aperture - 1.0).abs() < 1e-4);
             assert!((l.reversal() / (share * 0.5) - 1.0).abs() < 1e-5);
+            // The stiffness at half the unloading is that of the mean force.
+            assert!(l.end_stiffness().unwrap() > 0.3, "{share}");
         }
     }
 
@@ -276,6 +296,7 @@ mod tests {
             }
             if step == 3 * n - 1 {
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
+                assert!(l.end_stiffness().unwrap().abs() < 1e-9);
                 // The energetic coefficient: 4 mu P (a - mu P/k) over 4 a P.
                 let expected = mu * (1.0 - mu * p / k / a);
                 assert!((work / path / expected - 1.0).abs() < 1e-2);

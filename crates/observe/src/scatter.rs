@@ -9,6 +9,8 @@ use super::steady::{self, MeanFlow};
 
 /// Smallest number of cycles for an interval.
 const FEWEST: usize = 3;
+/// Range of values over their mean that is due to rounding.
+const ROUNDING: f64 = 1e-9;
 /// Number of cycles from which their correlation is tested.
 const CORRELATED: usize = 8;
 
@@ -28,7 +30,12 @@ pub struct Scatter {
 impl Scatter {
     fn new(values: &[f64], over: String, of: &'static str) -> Option<Self> {
         let finite = values.iter().all(|v| v.is_finite());
-        let flow = steady::of_blocks(values).filter(|_| finite && values.len() >= FEWEST)?;
+        let mut flow = steady::of_blocks(values).filter(|_| finite && values.len() >= FEWEST)?;
+        // A trend of rounding errors is none.
+        let ends = values
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(*v), b.max(*v)]);
+        flow.steady |= ends[1] - ends[0] <= ROUNDING * flow.mean.abs();
         Some(Self {
             flow,
             count: values.len(),
@@ -142,6 +149,13 @@ mod tests {
                 .method()
                 .contains("cycles 11 to 20 still show a trend")
         );
+    }
+
+    #[test]
+    fn a_trend_of_rounding_errors_is_none() {
+        let rising: Vec<f64> = (0..20).map(|k| 0.4 + 1e-15 * f64::from(k)).collect();
+        let scatter = over_cycles(&cycles(&rising), |c| c.friction_coefficient).unwrap();
+        assert!(scatter.half_width().unwrap() < 1e-12);
     }
 
     #[test]

@@ -224,8 +224,8 @@ fn of_body(w: &BodyWear, volume: &str, coefficient: &str) -> String {
 /// Normal force times distance over a run, by its friction test (J; J/m in 2D).
 #[derive(Clone, Copy, Debug)]
 pub struct LoadPath {
-    /// Of slip.
-    pub slip: f64,
+    /// Of slip; `None` where it is not known, in partial slip and before a cycle is complete.
+    pub slip: Option<f64>,
     /// Of the whole path, the elastic part included.
     pub imposed: f64,
 }

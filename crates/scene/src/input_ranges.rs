@@ -124,39 +124,6 @@ fn resolved(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load_text;
-    use std::collections::BTreeMap;
-    use std::path::Path;
-
-    const CASE: &str = r#"(
-        name: "two", dimension: 2, time: (step: 1e-4, end: 1e-3), materials: {"oxide": "stone"},
-        interfaces: [
-            (name: "a", between: ("oxide", "oxide"), parameters_from: "laws", contact: "coulomb", parameters: (contact: {})),
-        ],
-    )"#;
-
-    /// Files and interfaces without laws: a value of the file has no unit of a law, and is not
-    /// used.
-    #[test]
-    fn a_range_belongs_to_a_law_that_the_case_uses_and_does_not_replace() {
-        let laws = r#"(contact: {"coulomb": {"mu": (value: 0.4, range: (0.1, 0.73), source: "s")}, "other": {"mu": (value: 0.4, range: (0.1, 0.73), source: "s")}})"#;
-        let files = [("laws".to_owned(), laws.to_owned())];
-        let of = |sets: &[String]| {
-            let loaded = load_text("case.ron", CASE, Path::new(""), sets);
-            let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-            let spec = &loaded.case.interfaces[0];
-            let (file, parameters) = file_of(&loaded.case, spec, &files).unwrap();
-            assert_eq!(file, "laws");
-            let given: &BTreeMap<String, Sourced> =
-                &parameters.slots.get(Kind::CONTACT).unwrap()["coulomb"];
-            let number = &given["mu"];
-            assert_eq!(number.range, Some((0.1, 0.73)));
-            let own = spec.parameters.get(Kind::CONTACT);
-            own.is_some_and(|own| own.contains_key("mu"))
-        };
-        assert!(!of(&[]));
-        assert!(of(&["interfaces.a.parameters.contact.mu=0.5".to_owned()]));
-    }
 
     #[test]
     fn a_range_contains_its_value() {

@@ -27,10 +27,11 @@ impl FrictionTest {
     pub fn of(case: &Case, s: &dyn RunView) -> Option<Self> {
         let test = case.friction.as_ref()?;
         let (rubbed, dof) = rubbed(case, s)?;
-        let period = test
-            .period
-            .or(dof.function().and_then(TimeFunction::period));
-        let start = match dof.function() {
+        // What it rubs against may move instead of the body itself.
+        let own = dof.function().filter(|f| f.period().is_some());
+        let moves = own.or_else(|| others(case, s, test.along));
+        let period = test.period.or(moves.and_then(TimeFunction::period));
+        let start = match moves {
             Some(TimeFunction::Sine { start, .. }) => test.start.max(*start),
             _ => test.start,
         };
@@ -44,6 +45,23 @@ impl FrictionTest {
             start,
         })
     }
+}
+
+/// Returns the motion of the first body that moves to and fro along an axis, or turns so.
+fn others<'a>(case: &'a Case, s: &'a dyn RunView, along: usize) -> Option<&'a TimeFunction> {
+    let dimension = s.dimension();
+    let driven = s.bodies().driven.iter().flat_map(move |d| {
+        let turns = d.dofs.iter().skip(dimension);
+        d.dofs.get(along).into_iter().chain(turns)
+    });
+    let half_spaces = case.half_spaces.iter().filter_map(move |b| {
+        let dofs = &b.dofs;
+        [&dofs.x, &dofs.y, &dofs.z][along].as_ref()
+    });
+    let elastic = case.elastic.iter().flat_map(|b| &b.supports);
+    let elastic = elastic.filter_map(move |s| [&s.x, &s.y, &s.z][along].as_ref());
+    let all = driven.chain(half_spaces).chain(elastic);
+    all.filter_map(Dof::function).find(|f| f.period().is_some())
 }
 
 /// Returns the rubbed body of the test of a case in its scene, and its drive.

@@ -38,7 +38,10 @@ impl WornGrains {
         found: &mut Findings,
     ) {
         // The elastic part of strokes is that of the friction test.
-        let share = found.get::<LoadPath>().map_or(1.0, |p| p.slip / p.imposed);
+        let slips = found.get::<LoadPath>().copied();
+        let Some(share) = slips.and_then(|p| Some(p.slip? / p.imposed)) else {
+            return;
+        };
         let path = load_path * share;
         let Some(density) = self.density(run).filter(|_| path > 0.0 && mass > 0.0) else {
             return;
