@@ -117,7 +117,7 @@ fn the_wear_rate_of_an_elastic_contact_is_that_of_its_law() {
             &[&COARSE[..], &wear[..]].concat(),
         );
         let rate = number(&found, "wear.bodies.0.specific_rate");
-        assert!((rate / 1e-13 - 1.0).abs() < 0.03, "{amplitude}: {rate}");
+        assert!((rate / 1e-13 - 1.0).abs() < 0.05, "{amplitude}: {rate}");
     }
 }
 

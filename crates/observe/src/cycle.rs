@@ -111,8 +111,8 @@ crate::described! {
         pub slip_ratio: f64 => ONE,
         /// Mean of |Q|/P at the reversals of the motion.
         pub reversal_ratio: f64 => ONE,
-        /// Partial or gross slip, from energy ratio, slip ratio, and the stiffness at the end of the
-        /// strokes.
+        /// Partial or gross slip, from energy ratio, slip ratio, and the stiffness at the end of
+        /// the strokes.
         pub regime: SlipRegime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,

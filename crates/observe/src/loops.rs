@@ -138,8 +138,8 @@ impl Loop {
     }
 
     /// Returns the slope of Q over the end of the strokes, relative to that after the reversals: 0
-    /// where the whole contact slides, (1 - Q*/mu P)^(1/3) of a sphere in partial slip (K. L. Johnson,
-    /// Contact Mechanics, 1985, 7.4). `None` where no stroke was complete.
+    /// where the whole contact slides, (1 - Q*/mu P)^(1/3) of a sphere in partial slip (K. L.
+    /// Johnson, Contact Mechanics, 1985, 7.4). `None` where no stroke was complete.
     pub fn end_stiffness(&self) -> Option<f64> {
         const END: [f64; 3] = [0.92, 0.96, 1.0];
         let [before, last] = [self.over(END[0], END[1])?, self.over(END[1], END[2])?];

@@ -329,7 +329,8 @@ pub struct FrictionSpec {
     /// Time from which the motion counts (s).
     #[serde(default)]
     pub start: f64,
-    /// Length of a cycle (s); by default the period of the body's sine.
+    /// Length of a cycle (s); by default the period of the sine of the body, or else of another one
+    /// along the same axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
 }
