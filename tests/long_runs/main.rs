@@ -116,6 +116,9 @@ fn a_rubbed_layer_holds_no_more_but_its_cycles() {
     }
     let cycles = of_cycles(long) - of_cycles(SHORT);
     assert!(late <= early + cycles + SLACK, "{early} to {late}");
+    // The state of the end: in its frame, and as it is written.
+    let end = seen[long - 1];
+    assert!(end <= late + 3 * large + SLACK, "{late} to {end}");
     let cycles = (long - SHORT) / 100 * size_of::<Cycle>();
     assert!(large <= small + cycles + SLACK, "{small} to {large}");
 }
