@@ -100,8 +100,8 @@ const COARSE: [&str; 4] = [
     "half_spaces.1.y.size=1.2e-4",
 ];
 
-/// The specific wear rate is the k of the law for any stroke, though a part of each is elastic: over
-/// ten cycles, since the first one also stores the elastic energy with which the others begin.
+/// The specific wear rate is the k of the law for any stroke, though a part of each is elastic:
+/// over ten cycles, since the first one also stores the elastic energy with which the others begin.
 #[test]
 fn the_wear_rate_of_an_elastic_contact_is_that_of_its_law() {
     for amplitude in ["2e-6", "6e-6"] {
