@@ -100,16 +100,17 @@ const COARSE: [&str; 4] = [
     "half_spaces.1.y.size=1.2e-4",
 ];
 
-/// The specific wear rate is the k of the law for any stroke, though a part of each is elastic:
-/// over ten cycles, since the first one also stores the elastic energy with which the others begin.
+/// The specific wear rate is the k of the law for any stroke and number of cycles, though a part of
+/// each stroke is elastic, and the first cycle stores elastic energy.
 #[test]
 fn the_wear_rate_of_an_elastic_contact_is_that_of_its_law() {
-    for amplitude in ["2e-6", "6e-6"] {
+    for (amplitude, end) in [("2e-6", "0.11"), ("6e-6", "0.11"), ("2e-6", "0.51")] {
         let drive = format!(
             "half_spaces.1.dofs.x=Displacement(Sine(amplitude:{amplitude},frequency:20.0,start:0.01))"
         );
+        let end = format!("time.end={end}");
         let wear = [
-            "time.end=0.51",
+            &end,
             "interfaces.contact.wear=archard",
             "interfaces.contact.parameters.wear={\"k\":1e-13}",
             &drive,
@@ -142,4 +143,110 @@ fn the_period_is_that_of_what_moves() {
         &[&COARSE[..], &[table][..]].concat(),
     );
     assert_eq!(found.found.number("friction_coefficient"), None);
+}
+
+/// A ramp in partial slip has no coefficient of sliding, and no wear rate; one to beyond gross slip
+/// (delta* = 1.47 um, by Mindlin) has the mu put in, and the k of its law.
+#[test]
+fn a_ramp_has_a_coefficient_once_it_slides() {
+    let ramp = |to: &str| {
+        let x = format!(
+            "half_spaces.1.dofs.x=Displacement(Ramp(from:0.0,to:{to},start:0.01,end:0.11))"
+        );
+        let wear = [
+            "interfaces.contact.wear=archard",
+            "interfaces.contact.parameters.wear={\"k\":1e-13}",
+            &x,
+        ];
+        let sets = [&COARSE[..], &wear[..]].concat();
+        ran("sphere_on_flat_fretting", &sets)
+    };
+    for to in ["0.5e-6", "1e-6", "1.4e-6"] {
+        let found = ramp(to);
+        assert_eq!(found.found.number("friction_coefficient"), None, "{to}");
+        let rate = found.found.number("wear.bodies.0.specific_rate");
+        assert_eq!(rate, None, "{to}");
+    }
+    for (to, within) in [("3e-6", 0.01), ("1e-5", 1e-3)] {
+        let found = ramp(to);
+        let mu = number(&found, "friction_coefficient");
+        assert!((mu / 0.6 - 1.0).abs() < within, "{to}: {mu}");
+        let rate = number(&found, "wear.bodies.0.specific_rate");
+        assert!((rate / 1e-13 - 1.0).abs() < 0.04, "{to}: {rate}");
+    }
+}
+
+/// Two pins on opposite sides of a disc slide in opposite directions. mu is that of each, and each
+/// body wears by the k of the law over the path of its own contacts, whichever is tested and
+/// whether along its motion or not.
+#[test]
+fn contacts_that_slide_in_opposite_directions_do_not_cancel() {
+    let pin = |name: &str, x: f64| {
+        format!(
+            "(name: \"{name}\", material: \"steel\", mass: 0.01, position: [{x}, 0.0, 0.003], \
+             shapes: [Balls([([0.0, 0.0, 0.0], 0.003)])], dofs: (z: Force(-10.0)))"
+        )
+    };
+    let bodies = format!(
+        "bodies=[(name: \"disc\", material: \"steel\", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])], \
+         dofs: (rz: Velocity(6.283185307179586))), {}, {}]",
+        pin("pin", 0.01),
+        pin("other", -0.01)
+    );
+    for (body, along) in [("disc", "1"), ("pin", "1"), ("pin", "0")] {
+        let [of, axis] = [
+            format!("friction.body={body}"),
+            format!("friction.along={along}"),
+        ];
+        let found = ran(
+            "verification/pin_on_disc",
+            &[&bodies, "time.end=0.5", &of, &axis],
+        );
+        if along == "1" {
+            for name in [
+                "friction_coefficient",
+                "energetic_coefficient",
+                "friction_from_dissipation",
+            ] {
+                let mu = number(&found, name);
+                // The ledger has the contacts of the other pin too.
+                if body == "disc" || name != "friction_from_dissipation" {
+                    assert!((mu / 0.4 - 1.0).abs() < 5e-3, "{body}: {name} {mu}");
+                }
+            }
+        } else {
+            assert_eq!(found.found.number("friction_coefficient"), None);
+        }
+        let rates: Vec<f64> = (0..3)
+            .filter_map(|k| {
+                found
+                    .found
+                    .number(&format!("wear.bodies.{k}.specific_rate"))
+            })
+            .collect();
+        assert!(!rates.is_empty());
+        for rate in rates {
+            assert!((rate / 1e-13 - 1.0).abs() < 5e-3, "{body} {along}: {rate}");
+        }
+    }
+}
+
+/// A free ball on a vibrating plate rolls and is carried: there is no sliding to be in a regime.
+#[test]
+fn a_free_ball_on_a_vibrating_plate_is_not_in_gross_slip() {
+    let bodies = "bodies=[(name: \"plate\", material: \"steel\", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])], \
+         dofs: (x: Displacement(Sine(amplitude: 1e-4, frequency: 10.0, start: 0.0)))), \
+         (name: \"ball\", material: \"steel\", mass: 0.01, position: [0.01, 0.0, 0.003], \
+         shapes: [Balls([([0.0, 0.0, 0.0], 0.003)])], dofs: (x: Free, z: Free))]";
+    let sets = [
+        bodies,
+        "gravity=[0.0,0.0,-9.81]",
+        "time.end=0.5",
+        "friction.body=plate",
+        "friction.along=0",
+    ];
+    let found = ran("verification/pin_on_disc", &sets);
+    assert_eq!(found.found.number("friction_coefficient"), None);
+    // In the first cycle the plate starts at once, and the ball slides until it rolls.
+    assert_eq!(found.found.text("cycles.4.regime"), Some("partial"));
 }

@@ -17,6 +17,10 @@ pub const SLIDING_SLIP_RATIO: f64 = 0.5;
 /// below which the whole contact slides: of an elastic sphere it is below only from 0.9999 mu P on.
 pub const SLIDING_STIFFNESS: f64 = 0.05;
 
+/// Sliding path relative to the motion of the bodies below which they move together: a free ball on
+/// a vibrating plate rolls or is carried.
+const TOGETHER: f64 = 1e-3;
+
 /// How a contact slides.
 ///
 /// # Examples
@@ -80,12 +84,18 @@ crate::described! {
         pub complete: bool => WORD,
         /// Work of the tangential force over the cycle, E_d.
         pub work: f64 => ENERGY,
+        /// Elastic energy that the tangential force stores over the cycle, of a reciprocating
+        /// motion: a first cycle from rest stores what the later ones begin with.
+        pub stored: f64 => ENERGY,
         /// Mean normal force.
         pub normal_force: f64 => FORCE,
         /// Largest tangential force.
         pub tangential_amplitude: f64 => FORCE,
         /// Length of the sliding path.
         pub path: f64 => METRE,
+        /// Length of the path of the body along the axis, or of what it rubs against if that is
+        /// longer: they move together where the sliding path is far shorter.
+        pub moved: f64 => METRE,
         /// Integral of P |d delta|: normal force times the path.
         pub load_path: f64 => LOAD_PATH,
         /// Coefficient of sliding: |Q|/P while the contact slides, weighted by the path; null in
@@ -124,10 +134,15 @@ crate::described! {
 
 impl Cycle {
     /// Returns normal force times the path of slip (J; J/m in 2D) of one cycle of a reciprocating
-    /// motion with a coefficient of sliding: E_d over the coefficient, which leaves out what is
-    /// elastic, whatever the shape of the loop.
+    /// motion with a coefficient of sliding: E_d without the energy that stays stored, over the
+    /// coefficient. It leaves out what is elastic, whatever the shape of the loop.
     pub fn slip_load_path(&self, coefficient: f64) -> f64 {
-        self.work / coefficient
+        (self.work - self.stored) / coefficient
+    }
+
+    /// Returns whether the body and what it rubs against move together, without sliding.
+    pub fn moves_together(&self) -> bool {
+        self.path < TOGETHER * self.moved
     }
 
     /// Returns whether the motion turns back over more than a twentieth of its path.

@@ -1,13 +1,17 @@
 //! Friction test: Q-delta loops, and the friction coefficients of each cycle from forces and from
 //! dissipation.
 
-use super::cycle::{Cycle, SlipRegime};
+use super::cycle::{Cycle, SLIDING_STIFFNESS, SlipRegime};
 use super::layer::Balance;
 use super::loops::Loop;
+use super::onset::Onset;
 use super::scatter::{self, Scatter};
 use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
+
+/// Share of the path along the axis of a test below which the contacts slide across it.
+const ACROSS: f64 = 1e-3;
 
 /// Measurements of one step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,8 +24,10 @@ pub struct Sample {
     pub p: f64,
     /// Signed sliding distance in the step (m).
     pub slide: f64,
-    /// Velocity of what the body rubs against (m/s).
-    pub counter: f64,
+    /// Distance in the step over which the contacts slide, in any direction (m).
+    pub travel: f64,
+    /// Distance in the step that the body moves, or what it rubs against if that is more (m).
+    pub moved: f64,
     /// Work of sliding over the step (J).
     pub work: f64,
 }
@@ -46,6 +52,12 @@ pub struct Cycles {
     /// Integrals of Q d delta and P |d delta| over blocks of equal time, for tests without a
     /// period.
     blocks: Vec<(f64, f64)>,
+    /// Rise of Q/P from the start on, for these tests.
+    onset: Onset,
+    /// Elastic energy stored at the start of the cycle (J).
+    stored: f64,
+    /// Integrals of P |ds| over all cycles: along the axis, and in the plane of the contacts (J).
+    load_paths: [f64; 2],
 }
 
 /// Cumulative quantities of a run at the end of a step.
@@ -91,6 +103,9 @@ impl Cycles {
             place: 0.0,
             sliding: Vec::new(),
             blocks: vec![(0.0, 0.0); if clock.period.is_some() { 0 } else { BLOCKS }],
+            onset: Onset::default(),
+            stored: 0.0,
+            load_paths: [0.0; 2],
         }
     }
 
@@ -150,6 +165,9 @@ impl Cycles {
         after: FrictionTotals,
         damage: f64,
     ) {
+        if !self.oscillates() && sample.time > self.start() {
+            self.onset.add(sample.slide.abs(), sample.q, sample.p);
+        }
         let number = self.number(sample.time);
         if number == 0 {
             return;
@@ -165,6 +183,7 @@ impl Cycles {
             (self.pressure_time, self.time) = (0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
+            self.stored = self.shape.stored();
             self.shape.next_cycle();
         }
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
@@ -185,6 +204,9 @@ impl Cycles {
         self.lowest = self.lowest.min(self.position);
         self.highest = self.highest.max(self.position);
         cycle.path += sample.slide.abs();
+        cycle.moved += sample.moved;
+        self.load_paths[0] += sample.p * sample.slide.abs();
+        self.load_paths[1] += sample.p * sample.travel;
         cycle.load_path += sample.p * sample.slide.abs();
         cycle.work += sample.work;
         cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
@@ -212,23 +234,39 @@ impl Cycles {
         cycle.sliding = self.shape.aperture();
         cycle.slip_ratio = over(cycle.sliding, amplitude).min(1.0);
         cycle.reversal_ratio = self.shape.reversal();
-        cycle.regime = SlipRegime::of(
-            cycle.energy_ratio,
-            cycle.slip_ratio,
-            self.shape.end_stiffness(),
-        );
         let clock = &self.clock;
-        cycle.friction_coefficient = match clock.period {
-            Some(_) if cycle.regime == SlipRegime::Gross => self.shape.plateau(),
-            Some(_) => None,
+        let reciprocates = clock.period.is_some();
+        let stiffness = match reciprocates {
+            true => self.shape.end_stiffness(),
+            false => stiffness(&self.blocks, &self.onset, cycle.normal_force),
+        };
+        cycle.stored = match reciprocates {
+            true => self.shape.stored() - self.stored,
+            false => 0.0,
+        };
+        cycle.regime = match stiffness {
+            _ if reciprocates && cycle.moves_together() => SlipRegime::Partial,
+            _ if reciprocates => SlipRegime::of(cycle.energy_ratio, cycle.slip_ratio, stiffness),
+            Some(k) if k >= SLIDING_STIFFNESS => SlipRegime::Partial,
+            _ => SlipRegime::Gross,
+        };
+        let slides = cycle.regime == SlipRegime::Gross;
+        cycle.friction_coefficient = match reciprocates {
+            true if slides => self.shape.plateau(),
+            true => None,
             // Without a period elastic travel after reversals cannot be told from sliding.
-            None if cycle.reverses() => None,
-            None => (cycle.load_path > 0.0).then_some(cycle.energetic_coefficient),
+            false if cycle.reverses() || across(self.load_paths) => None,
+            false => (cycle.load_path > 0.0 && slides).then_some(cycle.energetic_coefficient),
         };
         let end = clock
             .period
             .map_or(self.end, |p| clock.start + f64::from(number) * p);
         cycle.complete = sample.time >= end - 1e-6 * h;
+    }
+
+    /// Returns whether the contacts slide across the axis of the test alone.
+    pub fn across(&self) -> bool {
+        across(self.load_paths)
     }
 
     /// Returns normal force times path over all cycles, those jumped over included (J; J/m in 2D).
@@ -238,13 +276,18 @@ impl Cycles {
     }
 
     /// Returns normal force times the path of slip over all cycles, those jumped over included (J;
-    /// J/m in 2D); `None` where no cycle has a coefficient of sliding. A cycle without one has that
-    /// of the one before, or of the first that has one.
+    /// J/m in 2D), in the plane of the contacts; `None` where no cycle has a coefficient of
+    /// sliding. A cycle without one has that of the one before, or of the first that has one.
     pub fn slip_load_path(&self) -> Option<f64> {
         let jumps = |c: &Cycle| f64::from(1 + c.jumped);
+        let [along, whole] = self.load_paths;
         if !self.oscillates() {
-            let reverses = self.list.iter().any(Cycle::reverses);
-            return (!reverses).then(|| self.load_path());
+            if self.across() {
+                return Some(whole);
+            }
+            let cycle = self.list.last()?;
+            let elastic = self.onset.elastic_path(cycle.friction_coefficient?);
+            return Some(whole - cycle.normal_force * elastic);
         }
         let known = |c: &Cycle| c.friction_coefficient.filter(|mu| c.complete && *mu > 0.0);
         let mut coefficient = self.list.iter().find_map(known)?;
@@ -252,7 +295,7 @@ impl Cycles {
             coefficient = known(c).unwrap_or(coefficient);
             c.slip_load_path(coefficient) * jumps(c)
         };
-        Some(self.list.iter().map(of).sum())
+        Some(self.list.iter().map(of).sum::<f64>() * whole / along)
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.
@@ -263,6 +306,31 @@ impl Cycles {
             .find(|c| c.complete)
             .or(self.list.last())
     }
+}
+
+/// Returns whether the contacts slide across an axis alone, by P |ds| along it and as a whole (J).
+fn across([along, whole]: [f64; 2]) -> bool {
+    along < ACROSS * whole
+}
+
+/// Returns how fast Q/P still rises over the evaluated path, relative to its rise from the first
+/// motion to half of its last value: 0 where the contact slides, 1 of a spring that doesn't. Over a
+/// ramp of a sphere in partial slip it is 0.55 or more, and 0.04 if it moves half as far again as
+/// to gross slip, where the mean over the second half is 0.99 of the coefficient (K. L. Johnson,
+/// Contact Mechanics, 1985, 7.4). `None` before there are two blocks.
+fn stiffness(blocks: &[(f64, f64)], onset: &Onset, normal_force: f64) -> Option<f64> {
+    let loaded: Vec<_> = blocks.iter().filter(|b| b.1 > 0.0).copied().collect();
+    let (first, last) = loaded.split_at(loaded.len() / 2);
+    let sum = |blocks: &[(f64, f64)]| {
+        let sum = |of: fn(&(f64, f64)) -> f64| blocks.iter().map(of).sum::<f64>();
+        [sum(|b| b.0), sum(|b| b.1)]
+    };
+    let ([work, load], [last_work, last_load]) = (sum(first), sum(last));
+    let [before, after] = [work / load, last_work / last_load];
+    let distance = 0.5 * (load + last_load) / normal_force;
+    let half = onset.path_to(0.5 * after)?;
+    let relative = (after - before) / distance * half / (0.5 * after);
+    relative.is_finite().then_some(relative)
 }
 
 #[cfg(test)]
@@ -290,7 +358,8 @@ mod tests {
                 q: measured * q,
                 p,
                 slide: v * h,
-                counter: 0.0,
+                travel: v.abs() * h,
+                moved: v.abs() * h,
                 work: measured * q * v * h,
             };
             let [before, after] = [before, balance].map(|balance| FrictionTotals {

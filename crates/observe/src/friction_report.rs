@@ -35,6 +35,9 @@ crate::described! {
         /// Cycles of the test.
         #[serde(skip)]
         pub cycles: Vec<Cycle>,
+        /// Whether the contacts slide across the axis of the test alone.
+        #[serde(skip)]
+        pub across: bool,
         /// Whether the motion is reciprocating.
         #[serde(skip)]
         pub oscillates: bool,
@@ -74,6 +77,11 @@ fn add(friction: &Friction, fretting: Option<&fretting::FrettingOutcome>, found:
     found.parts::<fretting::FrettingOutcome>("fretting", &fretting, doc);
 }
 
+/// Returns whether a cycle has a coefficient of sliding.
+fn slides(cycle: &Cycle) -> bool {
+    cycle.friction_coefficient.is_some()
+}
+
 /// Adds friction, cycles and the evaluation of a fretting test.
 pub(super) fn report(
     cycles: &Cycles,
@@ -82,15 +90,20 @@ pub(super) fn report(
 ) {
     let last = cycles.last();
     let of_strokes = last.filter(|_| cycles.oscillates());
+    let along = last.filter(|_| !cycles.across());
     let friction = Friction {
         friction_coefficient: last.and_then(|c| c.friction_coefficient),
-        energetic_coefficient: last.map(|c| c.energetic_coefficient),
-        friction_from_dissipation: last.map(|c| c.friction_from_dissipation),
+        energetic_coefficient: along.map(|c| c.energetic_coefficient),
+        friction_from_dissipation: along.map(|c| c.friction_from_dissipation),
         peak_friction: last.and_then(Cycle::peak_ratio),
         slip_ratio: of_strokes.map(|c| c.slip_ratio),
         energy_ratio: of_strokes.map(|c| c.energy_ratio),
-        scatter: cycles.scatter(),
+        // What still rises as in partial slip has no interval.
+        scatter: cycles
+            .scatter()
+            .filter(|_| cycles.oscillates() || along.is_some_and(slides)),
         cycles: cycles.list.clone(),
+        across: cycles.across(),
         oscillates: cycles.oscillates(),
         sliding: cycles.sliding().map(<[_]>::to_vec),
     };
@@ -239,15 +252,29 @@ fn coefficient(cycle: &Cycle) -> String {
 
 /// Returns why there is no coefficient of sliding, with what describes the contact instead.
 fn no_sliding(friction: &Friction, last: &Cycle) -> String {
+    let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |x| number(x, 3));
+    if friction.across {
+        return "none: the contacts slide across the axis of the test, not along it; give the other one as `along` of `friction`".to_owned();
+    }
     if !friction.oscillates {
-        return match last.reverses() {
-            true => "none: the motion turns back, and its period is not known; give `period` of `friction`".to_owned(),
-            false => "none: nothing slid under a load".to_owned(),
+        return match (last.reverses(), last.regime) {
+            (true, _) => "none: the motion turns back, and its period is not known; give `period` of `friction`".to_owned(),
+            (false, SlipRegime::Partial) => format!(
+                "none, partial slip: Q rises to the end as that of elastic bodies, to Q*/P {}",
+                known(friction.peak_friction)
+            ),
+            (false, _) => "none: nothing slid under a load".to_owned(),
         };
     }
-    let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |x| number(x, 3));
     let why = match (last.complete, last.regime) {
         (false, _) => "no cycle is complete",
+        (true, _) if last.moves_together() => {
+            return format!(
+                "none, the bodies move together: they slide {} of their path, Q*/P {}",
+                number(last.path / last.moved, 2),
+                known(friction.peak_friction)
+            );
+        }
         (true, SlipRegime::Partial) => "partial slip",
         (true, _) => "the motion does not turn back within its period",
     };

@@ -14,10 +14,11 @@ use super::statistics::Column;
 use super::wear::{LoadPath, WearSummary};
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
-use fretwork_core::process::sliding::SlidingBody;
+use fretwork_core::process::sliding::{SlidingBody, SlidingPart};
 use fretwork_core::step::StepReport;
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Observes a friction test.
 #[derive(Debug)]
@@ -41,6 +42,9 @@ struct FrictionTestState {
     worn: f64,
     /// Normal force times sliding distance before the first cycle (N m; N).
     load_path: f64,
+    /// The same of each first body by its name, over all of its contacts, where there are more than
+    /// two (J; J/m).
+    paths: BTreeMap<String, f64>,
 }
 
 impl FrictionTest {
@@ -64,6 +68,7 @@ impl FrictionTest {
                 force: 0.0,
                 worn: 0.0,
                 load_path: 0.0,
+                paths: BTreeMap::new(),
             },
         }
     }
@@ -77,6 +82,21 @@ impl FrictionTest {
         }
     }
 
+    /// Returns the path of a first body under its loads relative to that of the rubbed one; 1 where
+    /// there are no others than these two.
+    fn share(&self, run: &dyn RunView, body: &str) -> f64 {
+        let own = match self.body.part {
+            SlidingPart::Driven(place) => Some(run.bodies().driven[place].name.clone()),
+            SlidingPart::System { system, .. } => run.system(system).map(|s| s.name().to_owned()),
+        };
+        let of = |name: &str| self.state.paths.get(name).copied();
+        let own = own.and_then(|own| of(&own)).filter(|path| *path > 0.0);
+        match (of(body), own) {
+            (Some(path), Some(own)) => path / own,
+            _ => 1.0,
+        }
+    }
+
     /// Returns Q, P and the sliding distance of the last step.
     fn measure(&self, run: &dyn RunView) -> Sample {
         let (drive, normal) = run.rubbing(&self.body);
@@ -85,10 +105,16 @@ impl FrictionTest {
             q: drive.force,
             p: normal,
             slide: drive.slide,
-            counter: drive.counter,
+            travel: drive.travel,
+            moved: drive.moved,
             work: drive.work(self.state.force),
         }
     }
+}
+
+/// Returns the number of first bodies of a run.
+fn first_bodies(run: &dyn RunView) -> usize {
+    run.bodies().driven.len() + run.system_count()
 }
 
 impl Observer for FrictionTest {
@@ -110,7 +136,6 @@ impl Observer for FrictionTest {
         let test = Rubbing {
             body,
             work: sample.work,
-            counter: sample.counter,
         };
         self.state.layer.follow(run, Some(test));
         self.state.worn += report.totals.worn_first;
@@ -119,7 +144,7 @@ impl Observer for FrictionTest {
         let (sample, state) = (&self.sample, &mut self.state);
         state.slide += sample.slide;
         if state.cycles.number(run.time()) == 0 {
-            state.load_path += sample.p * sample.slide.abs();
+            state.load_path += sample.p * sample.travel;
         }
         state.cycles.add(
             sample,
@@ -128,6 +153,12 @@ impl Observer for FrictionTest {
             after,
             damage_ratio(run),
         );
+        if first_bodies(run) > 2 {
+            let multiplier = run.cycle_multiplier() as f64;
+            for (name, path) in run.first_body_paths(self.body.normal) {
+                *state.paths.entry(name.to_owned()).or_default() += multiplier * path;
+            }
+        }
         // The current cycle may represent several, see the process of cycle jumps.
         let number = state.cycles.number(run.time());
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
@@ -178,7 +209,7 @@ impl Observer for FrictionTest {
         caption
     }
 
-    fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
+    fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         let before = self.state.load_path;
         let path = self.state.cycles.slip_load_path().map(|p| before + p);
         let doc = "normal force times distance of slip: the integral of P |ds| over the run; of a reciprocating motion the energy of the cycles over the coefficient of sliding, without what is elastic";
@@ -192,7 +223,7 @@ impl Observer for FrictionTest {
             path.filter(|p| *p > 0.0),
             found.get::<WearSummary>().cloned(),
         ) {
-            wear.rate(path, found);
+            wear.rate(|body| path * self.share(end.simulation, body), found);
         }
         Observer::report_so_far(self, found);
     }

@@ -27,9 +27,6 @@ pub struct Rubbing<'a> {
     pub body: &'a SlidingBody,
     /// Work of sliding over the step (J; J/m in 2D).
     pub work: f64,
-    /// Velocity of what the body rubs against (m/s), see
-    /// [`SlidingStep::counter`](fretwork_core::process::sliding::SlidingStep::counter).
-    pub counter: f64,
 }
 
 /// Observer of the balance.
@@ -61,9 +58,10 @@ impl LayerBalance {
     pub fn follow(&mut self, run: &dyn RunView, test: Option<Rubbing<'_>>) {
         let external = run.energies().external_work;
         let deforms = test.filter(|t| matches!(t.body.part, SlidingPart::System { .. }));
-        if let Some(test) = deforms {
-            self.other += external - self.external - test.work;
+        if deforms.is_some() {
+            self.other += external - self.external;
         }
+        self.other -= test.map_or(0.0, |t| t.work);
         self.external = external;
         let (h, theta) = (run.options().scheme.h, run.options().scheme.theta);
         let now = velocities(run);
@@ -79,10 +77,6 @@ impl LayerBalance {
             );
             if deforms.is_none() {
                 self.other -= impulse.dot(&v) + moment.dot(&w);
-            }
-            if let Some(t) = test.filter(|t| t.body.part == SlidingPart::Driven(d)) {
-                let along = t.body.along;
-                self.other += impulse[along] * (v[along] - t.counter);
             }
             let (dv, dw) = (*v1 - v0, *w1 - w0);
             self.apart -= h * bodies.mass[b] * gravity.dot(&v);

@@ -32,6 +32,7 @@ pub mod measure;
 pub mod mesh_fields;
 pub mod nearest_places;
 pub mod observer;
+mod onset;
 pub mod output;
 pub mod picture;
 pub use fretwork_core::view::placement;

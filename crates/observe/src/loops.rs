@@ -22,6 +22,11 @@ pub struct Loop {
     unloaded: Option<f64>,
     /// Sum of these paths in the cycle, and their number.
     unloading: (f64, u32),
+    /// Work that the contact gives back from the last reversal to Q = 0 (J), and the sum of this
+    /// work in the cycle.
+    given_back: [f64; 2],
+    /// Q/P of the last sample.
+    ratio: f64,
     /// Work of Q, and integral of P over the path (J), in equal parts of the strokes.
     parts: Vec<[f64; 2]>,
 }
@@ -44,6 +49,7 @@ impl Loop {
         self.crossings = None;
         self.reversals = (0.0, 0);
         self.unloading = (0.0, 0);
+        self.given_back[1] = 0.0;
         self.parts = vec![[0.0; 2]; PARTS];
     }
 
@@ -59,6 +65,10 @@ impl Loop {
             let turns = motion * self.motion < 0.0;
             if turns {
                 self.unloaded = None;
+                self.given_back[0] = 0.0;
+            }
+            if self.unloaded.is_none() {
+                self.given_back[0] -= (q * motion).min(0.0);
             }
             if turns && p0 > 0.0 {
                 self.reversals.0 += q0.abs() / p0;
@@ -70,13 +80,27 @@ impl Loop {
                 if self.turns > 0 {
                     self.unloading.0 += self.stroke[0];
                     self.unloading.1 += 1;
+                    self.given_back[1] += self.given_back[0];
                 }
             }
             if motion != 0.0 {
                 self.motion = motion;
             }
         }
+        self.ratio = if p > 0.0 { q.abs() / p } else { 0.0 };
         self.last = Some([displacement, q, p]);
+    }
+
+    /// Returns the elastic energy that the tangential force keeps stored at the last sample (J; J/m
+    /// in 2D): what the contact gives back after the reversals of the cycle, times the square of
+    /// the force relative to that at these reversals.
+    pub fn stored(&self) -> f64 {
+        let relative = self.ratio / self.reversal();
+        let given_back = self.given_back[1] / f64::from(self.unloading.1.max(1));
+        match relative.is_finite() {
+            true => given_back * relative.min(1.0).powi(2),
+            false => 0.0,
+        }
     }
 
     fn add_to_stroke(&mut self, motion: f64, turns: bool, q: f64, p: f64) {
@@ -295,6 +319,9 @@ mod tests {
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
             }
             if step == 3 * n - 1 {
+                let stored = 0.5 * q * q / k;
+                let off = l.stored() / stored - 1.0;
+                assert!(off.abs() < 1e-2, "{k}: {off}");
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
                 assert!(l.end_stiffness().unwrap().abs() < 1e-9);
                 // The energetic coefficient: 4 mu P (a - mu P/k) over 4 a P.

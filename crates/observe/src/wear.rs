@@ -131,12 +131,16 @@ impl WearSummary {
 }
 
 impl WearSummary {
-    /// Sets the specific wear rates of the bodies, by the integral of P |ds|.
-    pub(crate) fn rate(&mut self, load_path: f64, found: &mut Findings) {
+    /// Sets the specific wear rates of the bodies, by the integral of P |ds| of each; those that
+    /// did not slide have none.
+    pub(crate) fn rate(&mut self, load_path: impl Fn(&str) -> f64, found: &mut Findings) {
         let volume = VOLUME.symbol(found.dimension());
         let materials = found.get::<WearMaterials>().cloned().unwrap_or_default();
         for (k, body) in self.bodies.iter_mut().enumerate() {
-            let rate = body.volume / load_path;
+            let rate = body.volume / load_path(&body.body);
+            if !rate.is_finite() {
+                continue;
+            }
             body.specific_rate = Some(rate);
             let hard = materials.hardness.iter().find(|h| h.body == body.body);
             let doc = format!("specific wear rate k = V/(P s) of `{}`", body.body);

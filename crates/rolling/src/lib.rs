@@ -14,6 +14,7 @@
 //! ```
 
 pub mod convolution;
+pub mod creep;
 pub mod fastsim;
 pub mod fields;
 pub mod friction;
@@ -26,6 +27,7 @@ pub mod surfaces;
 pub mod tangential;
 pub mod temperature;
 
+pub use creep::{Creep, Share};
 pub use fastsim::Fastsim;
 pub use fields::{Field, Vector};
 pub use friction::{Bound, Coulomb, Falling, Friction};

@@ -14,7 +14,7 @@ use crate::laws::Interface;
 use crate::momentum::Momentum;
 use crate::process::expansion::ThermalExpansion;
 use crate::process::jump::{JumpSummary, Jumps};
-use crate::process::sliding::{SlidingBody, SlidingStep};
+use crate::process::sliding::{self, SlidingBody, SlidingStep};
 use crate::solve;
 use crate::step::control::{GravityDrive, StartedPhase, StepBounds};
 use crate::step::fields::GrainPart;
@@ -97,6 +97,9 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     /// Returns force and sliding distance of the drive of a rubbed body in the last step, and the
     /// mean normal force of its contacts over the step (N; N/m in 2D), positive in compression.
     fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64);
+    /// Returns the normal force, along this axis, times the distance of sliding of every first body
+    /// over the last step (J; J/m in 2D), with its name.
+    fn first_body_paths(&self, normal: usize) -> Vec<(&str, f64)>;
     /// Returns the summary of the cycle jumps so far; `None` where the case has none.
     fn jump_summary(&self) -> Option<JumpSummary>;
     /// Returns the process of a type, the first where there are several; see
@@ -227,6 +230,9 @@ impl<S: Space> RunView for Simulation<S> {
 
     fn rubbing(&self, body: &SlidingBody) -> (SlidingStep, f64) {
         (body.drive(self), body.normal_force(self))
+    }
+    fn first_body_paths(&self, normal: usize) -> Vec<(&str, f64)> {
+        sliding::first_body_paths(self, normal)
     }
     fn jump_summary(&self) -> Option<JumpSummary> {
         Some(self.process::<Jumps>()?.outcome(self))

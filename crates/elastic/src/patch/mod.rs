@@ -14,7 +14,7 @@ mod rolling;
 pub use hertz::{LinePatch, PointPatch, line, point};
 pub use kalker::Kalker;
 pub use partial_slip::{PartialSlip, stuck_strip};
-pub use rolling::Creep;
+pub use rolling::StripCreep;
 
 /// An isotropic elastic body.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,6 +21,7 @@ mod friction;
 mod question;
 mod range;
 mod regime;
+mod rolling;
 mod runs;
 mod setup;
 mod slip;
@@ -36,7 +37,8 @@ pub use friction::Friction;
 pub use question::Question;
 pub use range::Range;
 pub use regime::WearRegime;
-pub use slip::{Rolling, Tangential, Window};
+pub use rolling::Rolling;
+pub use slip::{Tangential, Window};
 pub use strength::{Strength, Traction, Yield, YieldKind};
 pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
 
@@ -104,8 +106,8 @@ struct Contact {
     /// Load (N; N/m).
     load: f64,
     theory: Theory,
-    /// Relative curvature along the motion (1/m).
-    curvature: f64,
+    /// Relative curvatures along the motion and across it (1/m).
+    curvature: [f64; 2],
 }
 
 impl Contact {
@@ -119,7 +121,7 @@ impl Contact {
             true => Theory::Line(patch::line(load, relative(0), modulus)),
             false => Theory::Point(patch::point(load, [relative(0), relative(1)], modulus)),
         };
-        let curvature = relative(0);
+        let curvature = [relative(0), relative(1)];
         Ok(Self {
             bodies,
             load,

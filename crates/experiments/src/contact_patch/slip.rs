@@ -1,10 +1,9 @@
-//! Slip of the patch: under a tangential force or displacement, in rolling, and in the window of a
-//! third body.
+//! Slip of the patch under a tangential force or displacement, and in the window of a third body.
 
 use super::question::{Question, number, positive};
 use super::range::Range;
-use super::{Contact, Friction, Theory};
-use fretwork_elastic::patch::{Creep, PartialSlip, stuck_strip};
+use super::{Contact, Friction, Rolling, Theory};
+use fretwork_elastic::patch::{PartialSlip, stuck_strip};
 use fretwork_observe::quantity::unit::FORCE;
 use serde::Serialize;
 
@@ -86,79 +85,6 @@ impl Tangential {
     }
 }
 
-/// Rolling with a longitudinal creepage.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rolling {
-    /// Creepage above which the whole patch slips.
-    pub saturation: Range,
-    /// Requested creepage.
-    pub creepage: Option<f64>,
-    /// Tangential force over load at this creepage.
-    pub adhesion: Option<Range>,
-    /// Tangential force (N; N/m).
-    pub force: Option<Range>,
-    /// Work of friction per metre rolled (J/m; J/m²): force times creepage, T gamma.
-    pub energy: Option<Range>,
-    /// Slip velocity (m/s), as a mean weighted by the pressure.
-    pub slip_speed: Option<Range>,
-    /// Slip of a point as it passes the patch (m), as a mean weighted by the pressure.
-    pub slip_distance: Option<Range>,
-}
-
-impl Rolling {
-    pub(super) fn of(
-        question: &Question,
-        contact: &Contact,
-        friction: Option<&Friction>,
-    ) -> Result<Option<Self>, String> {
-        if question.creepage.is_some() && question.displacement.is_some() {
-            return Err("creepage, displacement: one is of rolling, the other of fretting; give one of them".into());
-        }
-        let requested = question.creepage.is_some() || question.speed.is_some();
-        let Some(friction) = friction else {
-            return match requested {
-                true => Err(
-                    "creepage, speed: rolling needs the friction coefficient; give friction".into(),
-                ),
-                false => Ok(None),
-            };
-        };
-        let (load, mu, solids) = (contact.load, friction.coefficient, contact.solids());
-        let creep = |mu: f64| match &contact.theory {
-            Theory::Line(line) => Some(Creep::of_line(line, contact.curvature, mu)),
-            Theory::Point(point) => Creep::of_point(point, load, mu, &solids),
-        };
-        if creep(mu.value).is_none() {
-            return match requested {
-                true => Err("creepage: the patch is more than ten times as long in one direction as in the other, beyond Kalker's table; give the load per length for a line contact".into()),
-                false => Ok(None),
-            };
-        }
-        let share = |mu: f64, xi: f64| creep(mu).map_or(f64::NAN, |c| c.share(xi));
-        let creepage = question.creepage.as_ref();
-        let creepage = creepage.map(|t| number("creepage", t, "")).transpose()?;
-        if let Some(xi) = creepage.filter(|xi| !(xi.abs() > 0.0 && xi.abs() < 1.0)) {
-            return Err(format!(
-                "creepage: {xi} is no share between 0 and 1; in per cent write {xi} %"
-            ));
-        }
-        let speed = question.speed.as_ref();
-        let speed = speed.map(|t| positive("speed", t, "m/s")).transpose()?;
-        let xi = creepage.map(f64::abs);
-        let adhesion = xi.map(|xi| mu.map(|mu| mu * share(mu, xi)));
-        let slip = xi.map(|xi| mu.map(|mu| share(mu, xi) * xi));
-        Ok(Some(Self {
-            saturation: mu.map(|mu| creep(mu).map_or(f64::NAN, |c| c.saturation)),
-            creepage,
-            adhesion,
-            force: adhesion.map(|a| a.map(|a| a * load)),
-            energy: adhesion.zip(xi).map(|(a, xi)| a.map(|a| a * load * xi)),
-            slip_speed: slip.zip(speed).map(|(s, v)| s.map(|s| s * v)),
-            slip_distance: slip.map(|s| s.map(|s| s * 2.0 * contact.semi_axis())),
-        }))
-    }
-}
-
 /// A window of a third body in the middle of the patch: periodic along the motion, under the
 /// largest pressure.
 #[derive(Clone, Debug, Serialize)]
@@ -203,7 +129,7 @@ impl Window {
             pressure,
             load: pressure * width,
             pressure_drop: 1.0 - (1.0 - (width / (2.0 * a)).powi(2)).sqrt(),
-            gap: contact.curvature * width * width / 8.0,
+            gap: contact.curvature[0] * width * width / 8.0,
             slip: fretting.or_else(|| rolling.and_then(|r| r.slip_distance)),
         })
     }
