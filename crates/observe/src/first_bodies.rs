@@ -48,8 +48,8 @@ pub struct WearMaterials {
     pub density: f64,
     /// Hardnesses, of the first bodies whose materials have one.
     pub hardness: Vec<BodyHardness>,
-    /// Hardnesses of the first bodies by their own materials, with which the wear of grains that break
-    /// off is expressed.
+    /// Hardnesses of the first bodies by their own materials, with which the wear of grains that
+    /// break off is expressed.
     pub own_hardness: Vec<BodyHardness>,
     /// Densities of the materials of the case in their order (kg/m^3).
     pub densities: Vec<f64>,

@@ -151,7 +151,7 @@ pub trait Observer: Debug + Send {
     }
 
     /// Adds its results at the end of a run: quantities and warnings. Observers are called in their
-    /// order, but for [`Observer::reads_results_of`], so that results of earlier ones are available.
+    /// order, but for [`Observer::reads_results_of`]: results of earlier ones are available.
     fn report(&self, _: &RunEnd<'_>, _: &mut Findings) {}
 
     /// Adds results that need no simulation, as of its last [`Observer::before_step`]: for a run

@@ -237,7 +237,8 @@ pub(crate) fn show_flows(found: &mut Findings) {
 /// Proc. R. Soc. A 236 (1956) 397, measured 2e-7 to 2e-2.
 const MOST_SEVERE: f64 = 2e-2;
 
-/// Returns Archard's coefficient as text, with its half-width where that is known, and the hardness.
+/// Returns Archard's coefficient as text, with its half-width where that is known, and with the
+/// hardness.
 pub(crate) fn archard(coefficient: f64, half: Option<f64>, hardness: &str) -> String {
     let severe = match coefficient > MOST_SEVERE {
         true => ", more than unlubricated metals wear (K up to 0.02)",

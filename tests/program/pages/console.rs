@@ -7,7 +7,8 @@
 //! ```
 //!
 //! A version with the day on which the program printed this (ISO 8601, UTC) says that the command
-//! takes too long to be run by every test. `...` alone on a line stands for lines that are left out.
+//! takes too long to be run by every test. `...` alone on a line stands for lines that are left
+//! out.
 
 use std::ops::{Range, RangeInclusive};
 

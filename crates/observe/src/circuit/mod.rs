@@ -166,7 +166,7 @@ struct CircuitObserverState {
     load_path: f64,
     /// What each first body lost.
     losses: Vec<Loss>,
-    /// Time, accumulated flows, the mass in the contact, and the load path (J; J/m), at each update.
+    /// Time, accumulated flows, mass in the contact, and load path (J; J/m), at each update.
     series: DecimatedSeries<(f64, Flows, f64, f64)>,
 }
 

@@ -104,8 +104,8 @@ crate::described! {
         /// since the start of the account; null without a friction test, or with grains of several
         /// materials.
         pub specific_rate: Option<f64> => WEAR_RATE,
-        /// Archard's coefficient K = k H of these grains, with the hardness H of the first body from
-        /// which they came loose; null where that has none, and where several lost grains.
+        /// Archard's coefficient K = k H of these grains, with the hardness H of the first body
+        /// that lost them; null where that has none, and where several lost grains.
         pub archard_coefficient: Option<f64> => ONE,
         /// Number of debris pieces that came loose.
         pub pieces: u64 => ONE,

@@ -137,9 +137,9 @@ impl WornGrains {
         })
     }
 
-    /// Adds k = V/(P s) of what came loose since the start of the account, and K = k H of each first
-    /// body with its own hardness. The friction test, which reports before, says which part of the
-    /// path is slip.
+    /// Adds k = V/(P s) of what came loose since the start of the account, and K = k H of each
+    /// first body with its own hardness. The friction test, which reports before, says which part
+    /// of the path is slip.
     pub(super) fn report(&self, loose: &LooseGrains<'_>, run: &dyn RunView, found: &mut Findings) {
         let slips = found.get::<LoadPath>().copied();
         let Some(share) = slips.and_then(|p| Some(p.slip? / p.imposed)) else {
