@@ -112,9 +112,8 @@ class Cylinder(Pair):
         return 8 * total
 
 
-def run(shape, load, delta, name):
-    """The last cycle of a run in its summary."""
-    folder = f"{out}/{name}"
+def summary(shape, load, delta, folder):
+    """The summary of a run in a folder."""
     sets = [
         f"{shape.along}=Displacement(Sine(amplitude: {delta:e}, frequency: {FREQUENCY}, start: 0.01))",
         f"{shape.down}=Force(Ramp(from: 0.0, to: {-load:e}, start: 0.0, end: 8e-3))",
@@ -127,29 +126,39 @@ def run(shape, load, delta, name):
         words += ["--set", each]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with open(f"{folder}/summary.json", encoding="utf-8") as file:
-        return json.load(file)["cycles"][-1]
+        return json.load(file)
 
 
-words = sys.argv[1:]
-shape = Cylinder if "--cylinder" in words else Sphere
-words = [w for w in words if w != "--cylinder"]
-out = words[0] if words else f"results/fretting_map_{shape.__name__.lower()}"
-force, energy = shape.unit
-print(f"load ({force})  delta (um)  delta/delta*  Q/(mu P), closed form  A, closed form  loop ({energy}), closed form  regime")
-for load in shape.loads:
-    closed = shape(load)
-    if shape is Cylinder:
-        for share in (0.2, 0.6, 0.95):
-            assert abs(closed.check(share) / closed.loop(share) - 1) < 1e-3, share
-        print(f"compliance of the bodies: pi E* C = {closed.compliance / closed.local:.3f}, A at the end of partial slip {closed.loop(1.0) / (4 * MU * load * closed.limit):.3f}")
-    for ratio in RATIOS:
-        delta = ratio * closed.limit
-        cycle = run(shape, load, delta, f"{load:g}_{ratio:g}")
-        share = closed.share(delta)
-        loop = closed.loop(share) + 4 * MU * load * max(0.0, delta - closed.limit)
-        found = cycle["tangential_amplitude"] / (MU * cycle["normal_force"])
-        print(
-            f"{load:9g}  {delta * 1e6:10.3f}  {ratio:12.2f}  {found:8.4f}  {share:11.4f}  {cycle['energy_ratio']:5.3f}  {loop / (4 * share * MU * load * delta):6.3f}"
-            f"  {cycle['work'] * 1e6:12.3f}  {loop * 1e6:12.3f}  {cycle['regime']}",
-            flush=True,
-        )
+def run(shape, load, delta, name):
+    """The last cycle of a run in its summary."""
+    return summary(shape, load, delta, f"{shape.out}/{name}")["cycles"][-1]
+
+
+def main():
+    words = sys.argv[1:]
+    shape = Cylinder if "--cylinder" in words else Sphere
+    words = [w for w in words if w != "--cylinder"]
+    shape.out = words[0] if words else f"results/fretting_map_{shape.__name__.lower()}"
+    force, energy = shape.unit
+    print(f"load ({force})  delta (um)  delta/delta*  Q/(mu P), closed form  A, closed form  loop ({energy}), closed form  regime")
+    for load in shape.loads:
+        closed = shape(load)
+        if shape is Cylinder:
+            for share in (0.2, 0.6, 0.95):
+                assert abs(closed.check(share) / closed.loop(share) - 1) < 1e-3, share
+            print(f"compliance of the bodies: pi E* C = {closed.compliance / closed.local:.3f}, A at the end of partial slip {closed.loop(1.0) / (4 * MU * load * closed.limit):.3f}")
+        for ratio in RATIOS:
+            delta = ratio * closed.limit
+            cycle = run(shape, load, delta, f"{load:g}_{ratio:g}")
+            share = closed.share(delta)
+            loop = closed.loop(share) + 4 * MU * load * max(0.0, delta - closed.limit)
+            found = cycle["tangential_amplitude"] / (MU * cycle["normal_force"])
+            print(
+                f"{load:9g}  {delta * 1e6:10.3f}  {ratio:12.2f}  {found:8.4f}  {share:11.4f}  {cycle['energy_ratio']:5.3f}  {loop / (4 * share * MU * load * delta):6.3f}"
+                f"  {cycle['work'] * 1e6:12.3f}  {loop * 1e6:12.3f}  {cycle['regime']}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()

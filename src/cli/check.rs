@@ -21,7 +21,7 @@ use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{SolverRequirements, SolverSupport};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Built, LoadedCase, law_inputs, load, sampling};
+use crate::scene::{Built, LoadedCase, law_inputs, load, sampling, wear_motion};
 use crate::solve::local::solver::Method;
 use crate::{AnySimulation, RunView};
 use clap::Args;
@@ -180,6 +180,9 @@ pub fn lines(loaded: &LoadedCase, built: &Built, timed: bool) -> Vec<CheckLine> 
     }
     for text in law_inputs::unmeasured(case, s) {
         line("NO WEAR RATE", text);
+    }
+    for text in wear_motion::measured_otherwise(loaded, s) {
+        line("OTHER MOTION", text);
     }
     let load = Load::of(case, simulation);
     groups(loaded, simulation, largest, &mut line);

@@ -97,6 +97,7 @@ fn bits<S: Space>(through_text: bool) -> Vec<u64> {
                 value: 3000.0,
                 unit: String::new(),
                 range: None,
+                motion: None,
                 source: String::new(),
             },
             properties: Default::default(),

@@ -111,3 +111,32 @@ fn a_powder_without_a_measured_coefficient_has_no_wear_rate() {
         );
     }
 }
+
+/// Coefficients of wear that were measured in another motion than that of the case are named, with
+/// those of their file that fit.
+#[test]
+fn coefficients_of_another_motion_are_named() {
+    let said = |case: &str, sets: &[&str]| {
+        let case = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(["check", &case, "--no-timing", "--verbose"])
+            .args(sets.iter().flat_map(|set| ["--set", set]))
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let fretting = said("wheel_rail_fretting", &[]);
+    let rolling = "OTHER MOTION `K` of the wear law `archard` (rail_oxide, wheel_oxide) was measured in rolling, and this case moves to and fro; for fretting materials/oxide_third_body.ron has `alpha` of `dissipated-energy`";
+    assert!(fretting.contains(rolling), "{fretting}");
+    let creep = said("wheel_rail_creep", &[]);
+    let of_fretting = "was measured in fretting, and this case moves in one direction; for sliding or rolling materials/oxide_third_body.ron has `K` of `archard`";
+    assert!(creep.contains(of_fretting), "{creep}");
+    assert!(!creep.contains("was measured in rolling"), "{creep}");
+    // What the case gives is not that of the file.
+    let own = ["rail_oxide", "wheel_oxide"]
+        .map(|i| format!("interfaces.{i}.parameters.wear={{\"K\": 1e-5}}"));
+    let given = said("wheel_rail_fretting", &own.each_ref().map(String::as_str));
+    assert!(!given.contains("OTHER MOTION"), "{given}");
+}

@@ -26,6 +26,7 @@ fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<B
             value,
             unit: unit.to_owned(),
             range: None,
+            motion: None,
             source: "test".to_owned(),
         };
         let given = hardness.map(|(value, unit)| ("hardness".to_owned(), sourced(value, unit)));

@@ -3,7 +3,7 @@
 use super::quantity::unit::{METRE, ONE, PASCAL, VOLUME, WEAR_RATE, WORD};
 use fretwork_core::laws::Kind;
 use fretwork_core::view::RunView;
-use fretwork_scene::LoadedCase;
+use fretwork_scene::{LoadedCase, wear_motion};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -48,13 +48,23 @@ pub struct WearMaterials {
     pub density: f64,
     /// Hardnesses, of the first bodies whose materials have one.
     pub hardness: Vec<BodyHardness>,
+    /// Hardnesses of the first bodies by their own materials, with which the wear of grains that
+    /// break off is expressed.
+    pub own_hardness: Vec<BodyHardness>,
     /// Densities of the materials of the case in their order (kg/m^3).
     pub densities: Vec<f64>,
+    /// First bodies without a surface in a case without grains, which wear each other in contacts
+    /// that belong to no surface; empty with grains.
+    pub without_surface: Vec<String>,
+    /// Whether no body of the case has a surface.
+    pub no_surface: bool,
+    /// Coefficients that were measured in another motion than that of the case, in sentences.
+    pub other_motion: Vec<String>,
 }
 
 impl WearMaterials {
     /// Returns those of a case; `any` is whether it has first bodies.
-    pub fn of(loaded: &LoadedCase, any: bool) -> Self {
+    pub fn of(loaded: &LoadedCase, run: &dyn RunView, any: bool) -> Self {
         let case = &loaded.case;
         let bodies = case.bodies.iter().map(|b| (&b.name, &b.material));
         let elastic = case.elastic.iter().map(|b| (&b.name, &b.material));
@@ -75,6 +85,14 @@ impl WearMaterials {
             let all = others.chain([material]).filter_map(|m| loaded.hardness(m));
             all.min_by(|a, b| a.0.total_cmp(&b.0))
         };
+        let own = all.clone().filter_map(|(body, material)| {
+            let (value, text) = loaded.hardness(material)?;
+            Some(BodyHardness {
+                body: body.clone(),
+                value,
+                text,
+            })
+        });
         let hardness = all.filter_map(|(body, material)| {
             loaded.hardness(material)?;
             let (value, text) = softest(material)?;
@@ -88,10 +106,35 @@ impl WearMaterials {
         let first = bodies.map(|b| b.1).next().filter(|_| any);
         Self {
             density: first.map_or(0.0, density),
+            own_hardness: own.collect(),
             hardness: hardness.collect(),
             densities: case.materials.keys().map(density).collect(),
+            without_surface: without_surface(run),
+            no_surface: run.surfaces().is_empty() && run.system_count() == 0,
+            other_motion: wear_motion::measured_otherwise(loaded, run),
         }
     }
+}
+
+impl WearMaterials {
+    /// Returns what wears in contacts without a surface, as the end of a sentence.
+    pub(crate) fn without_surface(&self) -> String {
+        match self.without_surface.is_empty() {
+            true => "between grains".to_owned(),
+            false => format!("of {} together", self.without_surface.join(", ")),
+        }
+    }
+}
+
+/// Returns the first bodies without a surface of a case without grains.
+fn without_surface(run: &dyn RunView) -> Vec<String> {
+    if run.grain_flags().contains(&true) {
+        return Vec::new();
+    }
+    let surfaces = run.surfaces();
+    let driven = run.bodies().driven.iter();
+    let bare = driven.filter(|d| surfaces.iter().all(|s| s.body != d.body));
+    bare.map(|d| d.name.clone()).collect()
 }
 
 /// Returns the loss of each first body: volume and depths of its scars. A friction test adds the
@@ -119,7 +162,7 @@ pub fn wear(run: &dyn RunView) -> Vec<BodyWear> {
         }
     }
     let summary = |(body, worn): (u32, WornBody)| BodyWear {
-        body: name(run, body),
+        body: name_of(run, body),
         volume: worn.volume,
         depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
         depth_max: worn.scarred.then_some(worn.depth),
@@ -140,7 +183,8 @@ struct WornBody {
     scarred: bool,
 }
 
-fn name(run: &dyn RunView, body: u32) -> String {
+/// Returns the name of a first body by its index.
+pub(crate) fn name_of(run: &dyn RunView, body: u32) -> String {
     let bodies = run.bodies();
     let driven = bodies.driven.iter().find(|d| d.body == body);
     let carrier = bodies.carrier(body as usize);

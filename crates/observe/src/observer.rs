@@ -144,8 +144,14 @@ pub trait Observer: Debug + Send {
         Vec::new()
     }
 
+    /// Returns the names of the observers whose results [`Observer::report`] reads: they report
+    /// before, wherever they stand.
+    fn reads_results_of(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Adds its results at the end of a run: quantities and warnings. Observers are called in their
-    /// order, so that results of earlier ones are available.
+    /// order, but for [`Observer::reads_results_of`]: results of earlier ones are available.
     fn report(&self, _: &RunEnd<'_>, _: &mut Findings) {}
 
     /// Adds results that need no simulation, as of its last [`Observer::before_step`]: for a run
@@ -346,12 +352,28 @@ impl Observers {
     /// Returns the results of all observers, see [`Observer::report`].
     pub fn report(&self, end: &RunEnd<'_>) -> Findings {
         let mut found = Findings::new(end.simulation.dimension());
-        for observer in &self.list {
+        for observer in self.in_order_of_reports() {
             found.begin_observer(&observer.name());
             observer.report(end, &mut found);
         }
         found.begin_observer("");
         found
+    }
+
+    /// Returns the observers in their order, each after those whose results it reads; where two
+    /// read each other's, in their order.
+    fn in_order_of_reports(&self) -> Vec<&dyn Observer> {
+        let mut waiting: Vec<&dyn Observer> = self.list.iter().map(AsRef::as_ref).collect();
+        let mut out = Vec::with_capacity(waiting.len());
+        while !waiting.is_empty() {
+            let names: Vec<String> = waiting.iter().map(|o| o.name()).collect();
+            let ready = waiting.iter().position(|o| {
+                let mut reads = o.reads_results_of().iter();
+                reads.all(|name| !names.iter().any(|n| n == name))
+            });
+            out.push(waiting.remove(ready.unwrap_or(0)));
+        }
+        out
     }
 
     /// Returns the results that need no simulation, see [`Observer::report_so_far`].
@@ -416,5 +438,43 @@ impl Observers {
     pub fn set_end(&mut self, end: f64, later: bool) -> Result<(), &'static str> {
         let mut list = self.list.iter_mut();
         list.try_for_each(|o| o.set_end(end, later))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug)]
+    struct Named(&'static str, &'static [&'static str]);
+
+    impl Observer for Named {
+        fn name(&self) -> String {
+            self.0.to_owned()
+        }
+
+        fn reads_results_of(&self) -> &'static [&'static str] {
+            self.1
+        }
+    }
+
+    fn order(list: &[(&'static str, &'static [&'static str])]) -> Vec<String> {
+        let mut all = Observers::default();
+        for &(name, reads) in list {
+            all.push(Box::new(Named(name, reads)));
+        }
+        let found = all.in_order_of_reports();
+        found.iter().map(|o| o.name()).collect()
+    }
+
+    #[test]
+    fn observers_report_after_those_whose_results_they_read() {
+        assert_eq!(order(&[("a", &[]), ("b", &["a"])]), ["a", "b"]);
+        assert_eq!(
+            order(&[("b", &["a", "none"]), ("c", &[]), ("a", &["c"])]),
+            ["c", "a", "b"]
+        );
+        // Two that read each other's results keep their order.
+        assert_eq!(order(&[("a", &["b"]), ("b", &["a"])]), ["a", "b"]);
     }
 }

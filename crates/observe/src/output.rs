@@ -6,6 +6,20 @@ use crate::chart::{Chart, Figure};
 /// Name of the report of a run in its folder.
 pub const REPORT: &str = "report.html";
 
+/// End of the names of pictures of figures with measured curves, `fretting_loops_measured.png`.
+const MEASURED: &str = "_measured.png";
+
+/// Returns the name of the picture of a figure with measured curves.
+pub fn measured_picture(figure: &str) -> String {
+    format!("{figure}{MEASURED}")
+}
+
+/// Whether a file is the picture of a figure with measured curves, of those that can have some.
+pub fn is_measured_picture(name: &str) -> bool {
+    let figure = name.strip_suffix(MEASURED);
+    figure.is_some_and(|f| [Figure::LOOPS, Figure::FRICTION].contains(&f) || f.starts_with("scar_"))
+}
+
 /// An output of an observer.
 #[derive(Clone, Debug)]
 pub enum Output {

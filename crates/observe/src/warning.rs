@@ -78,6 +78,7 @@ const ORDER: [&str; 45] = [
     "COARSE DRIVE",
     "LAW DEFAULT",
     "NO WEAR RATE",
+    "OTHER MOTION",
     "POSITION CORRECTION",
     "ACCURACY NOT SHOWN",
     "ESTIMATED ERROR",

@@ -6,8 +6,9 @@ use super::figures::history;
 use super::first_bodies::{self, BodyWear, WearMaterials};
 use super::output::Output;
 use super::quantity::unit::{LOAD_PATH, MASS_FLOW, ONE, PASCAL, SECOND, VOLUME, WEAR_RATE, WORD};
-use super::quantity::{Findings, Role, Topic, Wording, number, parts, quantity};
+use super::quantity::{Findings, Role, Topic, Wording, number, parts, quantity, with_half_width};
 use super::statistics::Column;
+use super::warning::Warning;
 use crate::observer::{Observer, RunEnd};
 use fretwork_core::encoding::{EncodingError, decode, encode};
 use fretwork_core::process::jump::Jumps;
@@ -38,8 +39,12 @@ crate::described! {
         pub Qw: Option<f64> => MASS_FLOW,
         /// Volume worn off first bodies by the wear law.
         pub volume_first_bodies: f64 => VOLUME,
-        /// Volume worn between grains.
+        /// Volume worn in contacts without a surface of a first body: between grains, and of first
+        /// bodies without a surface, balls and blocks.
         pub volume_third_body: f64 => VOLUME,
+        /// Specific wear rate of `volume_third_body` in a case without grains, where it is of first
+        /// bodies; null with grains, which slip by other paths than the friction test.
+        pub rate_third_body: Option<f64> => WEAR_RATE,
         /// Normal force times distance of slip: the integral of P |ds| over the run, without the
         /// elastic part of reciprocating strokes; null without a friction test.
         pub load_path: Option<f64> => LOAD_PATH,
@@ -78,8 +83,9 @@ const FLOWS: [(&str, &str, &str); 4] = [
 ];
 
 impl WearSummary {
-    /// Adds wear and flows; `wears` says whether the case has a wear law.
-    pub(crate) fn report(&self, wears: bool, found: &mut Findings) {
+    /// Adds wear and flows; `wears` says whether the case has a wear law, `without_surface` names
+    /// what wears in contacts without a surface.
+    pub(crate) fn report(&self, wears: bool, without_surface: &str, found: &mut Findings) {
         found.begin(Topic::Wear, Role::Detail);
         found.part("wear", self, "wear and mean flows of matter");
         let volume = VOLUME.symbol(found.dimension());
@@ -97,7 +103,7 @@ impl WearSummary {
         let third = self.volume_third_body;
         found.edit("wear.volume_third_body", |q| {
             if third > 0.0 {
-                q.secondary("wear between grains");
+                q.secondary(format!("wear {without_surface}"));
             }
             if !wears {
                 q.lacks(NO_WEAR);
@@ -136,6 +142,25 @@ impl WearSummary {
     pub(crate) fn rate(&mut self, load_path: impl Fn(&str) -> f64, found: &mut Findings) {
         let volume = VOLUME.symbol(found.dimension());
         let materials = found.get::<WearMaterials>().cloned().unwrap_or_default();
+        let third = self.volume_third_body;
+        // Each contact counts in the paths of both of its bodies.
+        let bare = materials.without_surface.iter();
+        let path = 0.5 * bare.map(|body| load_path(body)).sum::<f64>();
+        if third > 0.0 && path > 0.0 && materials.no_surface {
+            let rate = third / path;
+            self.rate_third_body = Some(rate);
+            let doc = "specific wear rate k = V/(P s) of first bodies without a surface";
+            found.add("wear.rate_third_body", rate, WEAR_RATE, doc);
+            let text = format!(
+                "{}, k {}; which of the bodies of a contact loses it is not told",
+                quantity(third, volume),
+                quantity(rate, WEAR_RATE.symbol(found.dimension()))
+            );
+            let label = format!("wear {}", materials.without_surface());
+            found.edit("wear.volume_third_body", |q| {
+                q.sentence(label, text);
+            });
+        }
         for (k, body) in self.bodies.iter_mut().enumerate() {
             let rate = body.volume / load_path(&body.body);
             if !rate.is_finite() {
@@ -160,7 +185,16 @@ impl WearSummary {
                 let doc = format!("hardness H of `{}`: {}", body.body, hard.text);
                 found.add(&format!("{at}.hardness"), hard.value, PASCAL, doc);
             }
-            let hard = hard.map(|h| archard(rate * h.value, &h.text));
+            let mut own = materials.own_hardness.iter();
+            let own = own.find(|h| h.body == body.body);
+            let softer = hard.zip(own).is_some_and(|(h, own)| h.value < own.value);
+            let booked = match softer {
+                true => {
+                    "; booked to it as the body with the surface, though its counterpart is softer"
+                }
+                false => "",
+            };
+            let hard = hard.map(|h| archard(rate * h.value, None, &h.text) + booked);
             let text = of_body(body, volume, &hard.unwrap_or_default());
             found.edit(&format!("wear.bodies.{k}.volume"), |q| {
                 if let Wording::Sentence(label, _) = q.wording.clone() {
@@ -203,13 +237,18 @@ pub(crate) fn show_flows(found: &mut Findings) {
 /// Proc. R. Soc. A 236 (1956) 397, measured 2e-7 to 2e-2.
 const MOST_SEVERE: f64 = 2e-2;
 
-/// Returns Archard's coefficient as text, with the hardness.
-pub(crate) fn archard(coefficient: f64, hardness: &str) -> String {
+/// Returns Archard's coefficient as text, with its half-width where that is known, and with the
+/// hardness.
+pub(crate) fn archard(coefficient: f64, half: Option<f64>, hardness: &str) -> String {
     let severe = match coefficient > MOST_SEVERE {
         true => ", more than unlubricated metals wear (K up to 0.02)",
         false => "",
     };
-    format!(", K {} (H {hardness}){severe}", number(coefficient, 3))
+    let value = match half {
+        Some(half) => with_half_width(coefficient, half, ""),
+        None => number(coefficient, 3),
+    };
+    format!(", K {value} (H {hardness}){severe}")
 }
 
 /// Returns volume, specific wear rate with `coefficient` after it, and depths as text.
@@ -299,7 +338,11 @@ impl Observer for Wear {
     fn columns(&self) -> Vec<Column> {
         vec![
             Column::new("worn_first", VOLUME, "volume worn off first bodies"),
-            Column::new("worn_third", VOLUME, "volume worn between grains"),
+            Column::new(
+                "worn_third",
+                VOLUME,
+                "volume worn in contacts without a surface of a first body",
+            ),
         ]
     }
 
@@ -323,10 +366,15 @@ impl Observer for Wear {
             Qw: closed,
             volume_first_bodies: state.volumes.0,
             volume_third_body: state.volumes.1,
+            rate_third_body: None,
             load_path: None,
             bodies: first_bodies::wear(run),
         };
-        summary.report(self.wears, found);
+        summary.report(self.wears, &self.materials.without_surface(), found);
+        let elsewhere = &self.materials.other_motion;
+        found.warn(
+            (!elsewhere.is_empty()).then(|| Warning::note("OTHER MOTION", elsewhere.join("; "))),
+        );
         found.keep(self.materials.clone());
     }
 
@@ -337,9 +385,10 @@ impl Observer for Wear {
     fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let own = end.simulation.scars().into_iter();
         let own = own.map(|scar| (scar.name, format!("{}_worn", scar.name)));
+        let elsewhere = self.materials.without_surface();
         let all = [
             ("first bodies", "worn_first"),
-            ("between grains", "worn_third"),
+            (elsewhere.as_str(), "worn_third"),
         ];
         let all = all.map(|(label, column)| (label, column.to_owned()));
         // A single scar contains all wear of first bodies.

@@ -41,7 +41,8 @@ pub fn given_ranges(
 ) -> Vec<GivenRange> {
     let mut out: Vec<GivenRange> = Vec::new();
     for spec in &case.interfaces {
-        let Some((file, parameters)) = file_of(case, spec, files) else {
+        let read = |name: &str| files.iter().find(|f| f.0 == name).map(|f| f.1.clone());
+        let Some((file, parameters)) = parameters_of(case, spec, read) else {
             continue;
         };
         let built = laws.iter().find(|law| law.name == spec.name);
@@ -77,16 +78,17 @@ pub fn given_ranges(
     out
 }
 
-/// Returns the name and the parameters of the file from which an interface takes them.
-fn file_of(
+/// Returns the name and the parameters of the file from which an interface takes them; `read` gives
+/// the text of a file by its name.
+pub(super) fn parameters_of(
     case: &Case,
     spec: &InterfaceSpec,
-    files: &[(String, String)],
+    read: impl Fn(&str) -> Option<String>,
 ) -> Option<(String, InterfaceParameters)> {
     let name = spec.parameters_from.as_ref()?;
     let of_material = case.materials.get(name);
     let file = of_material.unwrap_or(name);
-    let text = files.iter().find(|f| f.0 == *file).map(|f| f.1.as_str())?;
+    let text = read(file)?;
     let source = Source::from_text(format!("{file}.ron"), text);
     let parameters = match of_material {
         Some(_) => source.parse::<Material>().ok()?.laws?,

@@ -46,6 +46,7 @@ pub mod source;
 pub mod standard;
 pub mod units;
 pub mod wear_coefficient;
+pub mod wear_motion;
 
 pub use build::{Built, LoadedCase, load, load_reader, load_text};
 pub use builder::CaseBuilder;

@@ -23,8 +23,38 @@ pub struct Sourced {
     /// Smallest and largest value in the source, in the same unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<(f64, f64)>,
+    /// Motion in which it was measured, of a coefficient that is not that of another motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MeasuredMotion>,
     /// Source: paper, standard or table.
     pub source: String,
+}
+
+/// Motion of a test of friction or wear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum MeasuredMotion {
+    /// To and fro, by less than the width of the contact.
+    Fretting,
+    /// In one direction, or to and fro by far more than the width of the contact.
+    Sliding,
+    /// Rolling with slip.
+    Rolling,
+}
+
+impl MeasuredMotion {
+    /// Returns whether it goes to and fro within the contact.
+    pub fn is_fretting(self) -> bool {
+        self == Self::Fretting
+    }
+
+    /// Returns its name within a sentence.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fretting => "fretting",
+            Self::Sliding => "sliding",
+            Self::Rolling => "rolling",
+        }
+    }
 }
 
 impl Sourced {

@@ -158,6 +158,7 @@ mod tests {
             value,
             unit: unit.to_owned(),
             range: None,
+            motion: None,
             source: "test".to_owned(),
         }
     }

@@ -1,11 +1,12 @@
 //! Removal of an older run's files that the new run would not overwrite: the report, pictures of
 //! the scene, problems, the pictures and files that observers name (`picture_names`, `file_names`),
-//! and those of observers that only some cases have. No other files are removed.
+//! those of observers that only some cases have, and pictures with measured curves. No other files
+//! are removed.
 
 use super::{RunError, unwritable};
 use fretwork_observe::Observers;
 use fretwork_observe::chart::Figure;
-use fretwork_observe::output::REPORT;
+use fretwork_observe::output::{REPORT, is_measured_picture};
 use fretwork_observe::standard::{figures_of_some_cases, pictures_of_some_cases};
 use std::path::Path;
 
@@ -42,7 +43,7 @@ pub(super) fn clear(folder: &Path, observers: &Observers) -> Result<(), RunError
     remove(folder, &|name| {
         let of_observers = files.iter().any(|f| f == name) && !OWN.contains(&name);
         let of_another_case = figures_of_some_cases().any(|f| f == name);
-        name == REPORT || of_observers || of_another_case
+        name == REPORT || is_measured_picture(name) || of_observers || of_another_case
     })
 }
 

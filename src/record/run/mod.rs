@@ -238,7 +238,7 @@ pub fn stopped(
 /// Returns the observers that a run of a case has, for a program that steps without a run.
 pub fn run_observers(loaded: &LoadedCase, s: &dyn RunView) -> Observers {
     let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
-    standard::observers(&loaded.case, s, &WearMaterials::of(loaded, any))
+    standard::observers(&loaded.case, s, &WearMaterials::of(loaded, s, any))
 }
 
 /// Returns the columns of the statistics that a run of a case has.

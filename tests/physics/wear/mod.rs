@@ -1,5 +1,6 @@
 //! The tribological circuit: breaks of bonds are reported with the spending of their energy.
 
+mod booked;
 mod circuit;
 mod events;
 mod jump;

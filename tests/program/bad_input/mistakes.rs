@@ -59,6 +59,11 @@ const MISTAKES: &[(&str, &str, &[&str])] = &[
     ("step: 1e-3", "step: 1‸/1000", &["without arithmetic"]),
     (
         "step: 1e-3",
+        "step: 2.0‸/kHz",
+        &["begins with 1 here: write `2.0 1/kHz`"],
+    ),
+    (
+        "step: 1e-3",
         "step: ‸1.0e",
         &["found the number `1.0e`; expected a number"],
     ),
@@ -154,6 +159,19 @@ const MISTAKES: &[(&str, &str, &[&str])] = &[
         "{\"mu\": 0.3}",
         "‸(\"mu\": 0.3)",
         &["expected a map `{...}`"],
+    ),
+    (
+        "\"mu\": 0.3",
+        "\"mu\": ‸r#x",
+        &[
+            "wrong type for `interfaces.",
+            "found the word `r#x`; expected a number",
+        ],
+    ),
+    (
+        "\"mu\": 0.3",
+        "\"mu\": 0.3‸/Pa",
+        &["begins with 1 here: write `0.3 1/Pa`"],
     ),
     (
         "\"mu\": 0.3",

@@ -2,6 +2,14 @@
 
 use super::{patch, said};
 
+/// Expects that a question is refused in these words.
+fn refused(base: &[&str], arguments: &[&str], words: &str) {
+    let output = patch(&[base, arguments].concat());
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+    assert!(text.contains(words), "{arguments:?}: {text}");
+}
+
 #[test]
 fn wrong_questions_are_refused_with_what_to_change() {
     let base = ["--radius", "1m", "--material", "rail_steel_r260"];
@@ -40,45 +48,6 @@ fn wrong_questions_are_refused_with_what_to_change() {
         (
             &[
                 "--load",
-                "1N",
-                "--friction",
-                "0.3",
-                "--creepage",
-                "2%",
-                "--displacement",
-                "1um",
-            ],
-            "one is of rolling, the other of fretting",
-        ),
-        (
-            &[
-                "--load",
-                "1N",
-                "--friction",
-                "0.3",
-                "--creepage",
-                "2%",
-                "--wear",
-                "1e-13 1/Pa",
-            ],
-            "K is k times the hardness, a pure number: 0.000255 with",
-        ),
-        (
-            &[
-                "--load",
-                "1N",
-                "--friction",
-                "0.3",
-                "--creepage",
-                "2%",
-                "--wear",
-                "1e-13",
-            ],
-            "looks like k in 1/Pa",
-        ),
-        (
-            &[
-                "--load",
                 "1N/m",
                 "--friction",
                 "0.3",
@@ -88,24 +57,29 @@ fn wrong_questions_are_refused_with_what_to_change() {
             "line contact",
         ),
     ] {
-        let output = patch(&[&base[..], arguments].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
-        assert!(text.contains(words), "{arguments:?}: {text}");
+        refused(&base, arguments, words);
     }
-    let output = patch(&[
-        "--load",
-        "1N",
-        "--radius",
-        "1m",
-        "--material",
-        "rail_steel_r26",
-    ]);
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(text.contains("did you mean `rail_steel_r260`"), "{text}");
+    let rolls = ["--load", "1N", "--friction", "0.3", "--creepage", "2%"];
+    for (more, words) in [
+        (
+            ["--displacement", "1um"],
+            "one is of rolling, the other of fretting",
+        ),
+        (
+            ["--wear", "1e-13 1/Pa"],
+            "K is k times the hardness, a pure number: 0.000255 with",
+        ),
+        (["--wear", "1e-13"], "looks like k in 1/Pa"),
+    ] {
+        refused(&base, &[&rolls[..], &more].concat(), words);
+    }
     for (arguments, words) in [
         (
-            &["--radius", "1m", "--material", "ER7"][..],
+            &["--radius", "1m", "--material", "rail_steel_r26"][..],
+            "did you mean `rail_steel_r260`",
+        ),
+        (
+            &["--radius", "1m", "--material", "ER7"],
             "did you mean `wheel_steel_er7`",
         ),
         (
@@ -117,10 +91,7 @@ fn wrong_questions_are_refused_with_what_to_change() {
             "write 0.46m",
         ),
     ] {
-        let output = patch(&[&["--load", "1kN"], arguments].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
-        assert!(text.contains(words), "{arguments:?}: {text}");
+        refused(&["--load", "1kN"], arguments, words);
     }
     let text = said(&["--help"]);
     assert!(text.contains("A wheel on a rail") && text.contains("--creepage"));

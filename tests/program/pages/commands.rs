@@ -1,10 +1,11 @@
 //! The commands of the pages are run, and print what the pages show.
 
-use super::console::{Block, blocks, is_timed, renewed};
+use super::console::{Block, blocks, day_of, is_timed, renewed};
 use super::{Mode, mode, pages, read, root, settle, versions};
 use crate::temp::TempFolder;
 use std::path::Path;
 use std::process::Command;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Folders that commands of pages read.
 const READ: [&str; 7] = [
@@ -42,9 +43,11 @@ fn printed(words: &[String], folder: &Path) -> Vec<String> {
 fn today(block: &Block, lines: &[&str], folder: &Path) -> Vec<String> {
     let command = lines[block.command.clone()].iter();
     let mut out: Vec<String> = command.map(|l| (*l).to_owned()).collect();
-    if let (Some(version), Some(last)) = (&block.version, out.last_mut()) {
-        let (call, _) = last.rsplit_once(version.as_str()).unwrap();
-        *last = format!("{call}{}", env!("CARGO_PKG_VERSION"));
+    if let (Some(_), Some(last)) = (&block.version, out.last_mut()) {
+        let (call, _) = last.rsplit_once("# version ").unwrap();
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap();
+        let (version, day) = (env!("CARGO_PKG_VERSION"), day_of(now.as_secs()));
+        *last = format!("{call}# version {version}, {day}");
     }
     let output = printed(&block.words, folder);
     let output: Vec<&str> = output.iter().map(String::as_str).collect();
@@ -92,7 +95,8 @@ fn blocks_name_versions_that_there_were_and_no_times() {
         let blocks = blocks(&page).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         for block in blocks {
             let place = format!("{}:{}", path.display(), block.line);
-            if let Some(version) = &block.version {
+            if let Some(printed) = &block.version {
+                let version = &printed.version;
                 assert!(known.contains(version), "{place}: version {version}");
             }
             for line in &lines[block.output] {

@@ -1,15 +1,16 @@
 //! Blocks of pages that show a command and what it prints.
 //!
 //! ```text
-//! $ fretwork check CASE --no-timing     # version 0.1.0
+//! $ fretwork check CASE --no-timing     # version 0.1.0, 2026-11-29
 //! what it prints
 //! ...
 //! ```
 //!
-//! The version says that the command takes too long to be run by every test. `...` alone on a line
-//! stands for lines that are left out.
+//! A version with the day on which the program printed this (ISO 8601, UTC) says that the command
+//! takes too long to be run by every test. `...` alone on a line stands for lines that are left
+//! out.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// What stands for lines that are left out.
 const LEFT_OUT: &str = "...";
@@ -32,8 +33,59 @@ pub(super) struct Block {
     pub command: Range<usize>,
     /// Words after `fretwork`.
     pub words: Vec<String>,
-    /// Version of the program that printed the output, of a command that takes long.
-    pub version: Option<String>,
+    /// What printed the output, of a command that takes long.
+    pub version: Option<Printed>,
+}
+
+/// By which program an output was printed, and when.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Printed {
+    /// Version of the program.
+    pub version: String,
+    /// Day, `2026-11-29`.
+    pub day: String,
+}
+
+impl Printed {
+    /// Reads what follows `version` in a comment: `0.1.0, 2026-11-29`.
+    fn parse(text: &str) -> Option<Self> {
+        let (version, day) = text.split_once(", ")?;
+        is_day(day).then(|| Self {
+            version: version.to_owned(),
+            day: day.to_owned(),
+        })
+    }
+}
+
+/// Whether a text is a day of a month that there is, `2026-11-29`.
+pub(super) fn is_day(text: &str) -> bool {
+    let form = |(k, b): (usize, &u8)| match k {
+        4 | 7 => *b == b'-',
+        _ => b.is_ascii_digit(),
+    };
+    let within = |range: Range<usize>, of: RangeInclusive<u8>| {
+        let number: Option<u8> = text.get(range).and_then(|t| t.parse().ok());
+        number.is_some_and(|n| of.contains(&n))
+    };
+    let whole = text.len() == 10 && text.bytes().enumerate().all(|(k, b)| form((k, &b)));
+    whole && within(5..7, 1..=12) && within(8..10, 1..=31)
+}
+
+/// The day of a time in seconds since 1970 (UTC), by the Gregorian calendar: H. Hinnant's
+/// `civil_from_days`, in which years begin in March.
+pub(super) fn day_of(seconds: u64) -> String {
+    const ERA: u64 = 146_097;
+    let days = seconds / 86_400 + 719_468;
+    let (era, day) = (days / ERA, days % ERA);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let of_year = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let of_month = of_year - (153 * month + 2) / 5 + 1;
+    let (month, next) = match month {
+        0..10 => (month + 3, 0),
+        _ => (month - 9, 1),
+    };
+    format!("{:04}-{month:02}-{of_month:02}", 400 * era + year + next)
 }
 
 /// The words of a command of a shell up to a comment, and the comment.
@@ -87,11 +139,14 @@ pub(super) fn blocks(page: &str) -> Result<Vec<Block>, String> {
         let call = command.strip_prefix("$ fretwork ");
         let call = call.ok_or(format!("line {}: no `$ fretwork` but {command}", begin + 1))?;
         let (words, comment) = words(call)?;
-        let version = match comment.as_deref().map(|c| c.strip_prefix("version ")) {
-            None => None,
-            Some(Some(version)) => Some(version.to_owned()),
-            Some(None) => return Err(format!("line {}: a comment: {command}", begin + 1)),
-        };
+        let version = comment.map(|comment| {
+            let printed = comment.strip_prefix("version ").and_then(Printed::parse);
+            printed.ok_or_else(|| {
+                let line = begin + 1;
+                format!("line {line}: no comment `# version 0.1.0, 2026-11-29`: {command}")
+            })
+        });
+        let version = version.transpose()?;
         out.push(Block {
             line: begin + 1,
             output: output..end,
@@ -195,7 +250,7 @@ mod tests {
 
     #[test]
     fn blocks_are_found_with_their_commands() {
-        let page = "text\n```console\n$ fretwork run a.ron --set 'b=C(d: 1)' \\\n    --out e   # version 0.1.0\none\n...\n```\n```text\n$ no\n```\n";
+        let page = "text\n```console\n$ fretwork run a.ron --set 'b=C(d: 1)' \\\n    --out e   # version 0.1.0, 2026-11-29\none\n...\n```\n```text\n$ no\n```\n";
         let found = blocks(page).unwrap();
         assert_eq!(found.len(), 1);
         let block = &found[0];
@@ -203,7 +258,8 @@ mod tests {
             block.words,
             ["run", "a.ron", "--set", "b=C(d: 1)", "--out", "e"]
         );
-        assert_eq!(block.version.as_deref(), Some("0.1.0"));
+        let printed = block.version.as_ref().unwrap();
+        assert_eq!((&*printed.version, &*printed.day), ("0.1.0", "2026-11-29"));
         assert_eq!(
             (block.line, block.command.clone(), block.output.clone()),
             (3, 2..4, 4..6)
@@ -211,6 +267,30 @@ mod tests {
         assert!(blocks("```console\n$ fretwork a > b\n```\n").is_err());
         assert!(blocks("```console\n$ ls\n```\n").is_err());
         assert!(blocks("```console\n$ fretwork a\n").is_err());
+        for comment in [
+            "0.1.0",
+            "0.1.0, today",
+            "0.1.0, 2026-13-01",
+            "0.1.0, 2026-1-1",
+        ] {
+            let page = format!("```console\n$ fretwork a   # version {comment}\n```\n");
+            assert!(blocks(&page).is_err(), "{comment}");
+        }
+    }
+
+    #[test]
+    fn days_follow_the_calendar() {
+        for (seconds, day) in [
+            (0, "1970-01-01"),
+            (951_782_399, "2000-02-28"),
+            (951_782_400, "2000-02-29"),
+            (1_709_251_200, "2024-03-01"),
+            (1_798_675_199, "2026-12-30"),
+            (4_107_542_400, "2100-03-01"),
+        ] {
+            assert_eq!(day_of(seconds), day);
+            assert!(is_day(day));
+        }
     }
 
     #[test]

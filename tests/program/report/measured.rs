@@ -53,6 +53,10 @@ fn loops_and_friction_by_cycle_are_drawn_beside_those_of_the_run() {
     // Without measured curves the page has none.
     assert!(trial.call(&["report", "out"]).status.success());
     assert!(measured(&trial.page("out/report.html")).is_empty());
+    for name in ["fretting_loops", "friction_coefficient"] {
+        assert!(!trial.path(&format!("out/{name}_measured.png")).exists());
+        assert!(trial.path(&format!("out/{name}.png")).exists(), "{name}");
+    }
     trial.run("two", &["seed=6"]);
     let args = ["compare", "out", "two", "--out", "both.html"];
     let output = trial.call(&[&args[..], &files, &depth].concat());
@@ -100,7 +104,12 @@ fn what_does_not_fit_is_refused_with_what_to_change() {
         (
             "delta [um];Q [N/m]\n1.000,5;2\n",
             &[],
-            "marks between thousands",
+            "line 2: the value of `delta` `1.000,5` has a point and a comma",
+        ),
+        (
+            "delta [um];Q [N/m]\n1.234,5;2.345,5\n0,5;1\n",
+            &[],
+            "line 2: the value of `delta` `1.234,5` has a point and a comma",
         ),
         ("delta,mu\n1,5,0,4\n", &[], "semicolons or tabs"),
         ("x [mm];depth [um]\n1;2\n", &[], "no scar"),

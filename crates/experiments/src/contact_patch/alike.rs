@@ -261,7 +261,9 @@ fn under(contact: &Contact, run: &WindowRun, found: &mut Differences<'_>) {
     found.add("pressure", "OTHER PRESSURE", text, &advice);
 }
 
-/// Compares the motion of the runs with the slip of the patch; returns warnings.
+/// Compares the motion of the runs with the slip of the patch; of a patch without creepage or
+/// displacement, the motions of the runs with each other, and their direction with that of rolling.
+/// Returns warnings.
 ///
 /// # Errors
 /// A difference that the question does not accept.
@@ -271,10 +273,13 @@ pub(super) fn drive(
     window: &Window,
 ) -> Result<Vec<String>, String> {
     let mut found = Differences::new(question)?;
-    let Some(slip) = &window.slip else {
-        return Ok(Vec::new());
-    };
     let rolls = question.creepage.is_some();
+    let Some(slip) = &window.slip else {
+        among_themselves(question, runs, &mut found);
+        let mut notes = found.decide()?;
+        notes.extend(not_compared(runs));
+        return Ok(notes);
+    };
     for run in distinct(runs) {
         let folder = run.folder.display();
         let Some(motion) = run.motion else {
@@ -284,20 +289,11 @@ pub(super) fn drive(
             found.add("drive", "OTHER DRIVE", text, advice);
             continue;
         };
-        let length = |x: f64| quantity(x, "m");
-        let ways = |reciprocates: bool| match reciprocates {
-            true => "to and fro by +-",
-            false => "one way by ",
-        };
-        let ratio = motion.slip / slip.value;
-        let near = ratio < SLIP && ratio > 1.0 / SLIP;
-        if motion.reciprocates == rolls || !near {
+        if motion.reciprocates == rolls || !near(motion.slip, slip.value) {
             let text = format!(
-                "{folder} slips {}{}, the patch {}{}",
-                ways(motion.reciprocates),
-                length(motion.slip),
-                ways(!rolls),
-                length(slip.value)
+                "{folder} slips {}, the patch {}",
+                way(motion.reciprocates, motion.slip),
+                way(!rolls, slip.value)
             );
             found.add(
                 "drive",
@@ -308,6 +304,61 @@ pub(super) fn drive(
         }
     }
     found.decide()
+}
+
+/// Whether two slips (m) are the same but for [`SLIP`].
+fn near(one: f64, other: f64) -> bool {
+    let ratio = one / other;
+    ratio < SLIP && ratio > 1.0 / SLIP
+}
+
+/// Returns a slip (m) with its direction in words.
+fn way(reciprocates: bool, slip: f64) -> String {
+    let length = quantity(slip, "m");
+    match reciprocates {
+        true => format!("to and fro by +-{length}"),
+        false => format!("one way by {length}"),
+    }
+}
+
+/// Compares the motions of runs with each other, and those to and fro with a patch that rolls.
+fn among_themselves(question: &Question, runs: &Runs, found: &mut Differences<'_>) {
+    let heading = "OTHER DRIVE";
+    let moving: Vec<_> = distinct(runs)
+        .filter_map(|run| Some((run.folder.display(), run.motion?)))
+        .collect();
+    if question.speed.is_some() {
+        for (folder, motion) in moving.iter().filter(|(_, m)| m.reciprocates) {
+            let moves = way(true, motion.slip);
+            let text = format!("{folder} slips {moves}, and the patch rolls in one direction");
+            found.add("drive", heading, text, "give runs that slip one way");
+        }
+    }
+    let Some(((first, one), others)) = moving.split_first() else {
+        return;
+    };
+    for (other, two) in others {
+        if one.reciprocates != two.reciprocates || !near(one.slip, two.slip) {
+            let text = format!(
+                "{first} slips {}, {other} {}",
+                way(one.reciprocates, one.slip),
+                way(two.reciprocates, two.slip)
+            );
+            let advice = "give runs of one motion, or the patch its creepage or displacement";
+            found.add("drive", heading, text, advice);
+        }
+    }
+}
+
+/// Returns a note that the motion of runs was not compared with a patch whose own is not given.
+fn not_compared(runs: &Runs) -> Option<String> {
+    let run = runs.list.first()?;
+    let moves = run.motion.map(|m| way(m.reciprocates, m.slip));
+    Some(format!(
+        "DRIVE NOT COMPARED: the patch has neither creepage nor displacement, and {} slips {}; give one of them",
+        run.folder.display(),
+        moves.as_deref().unwrap_or("in a way that is not known"),
+    ))
 }
 
 impl Contact {

@@ -250,6 +250,61 @@ fn materials_and_pressure_are_those_of_the_patch() {
     }
 }
 
+/// A patch without creepage and displacement has runs that move alike, and says that they were not
+/// compared with it.
+#[test]
+fn motions_are_compared_with_each_other_where_the_patch_has_none() {
+    let folder = Folder::new("among");
+    let [one, two] = ["a", "b"].map(|name| folder.run(name, &json!({})));
+    let window = Window {
+        width: 4e-4,
+        pressure: 1.12e9,
+        load: 4.5e5,
+        pressure_drop: 0.0,
+        gap: 0.0,
+        slip: None,
+    };
+    let still = Question {
+        creepage: None,
+        ..wheel()
+    };
+    let both = |second: &str| {
+        let mut runs = of_case(&[one.clone(), two.clone()], CASE);
+        runs.list[1].setup = Setup::of(second);
+        runs
+    };
+    let other = CASE.replace("end: 0.1", "end: 0.2");
+    let notes = alike::drive(&still, &both(&other), &window).unwrap();
+    let said = notes.concat();
+    let words = "DRIVE NOT COMPARED: the patch has neither creepage nor displacement";
+    assert!(notes.len() == 1 && said.starts_with(words), "{notes:?}");
+    assert!(said.contains("slips one way by 62.00 um"), "{said}");
+    assert_eq!(
+        alike::drive(&still, &Runs::default(), &window),
+        Ok(Vec::new())
+    );
+    let mut unlike = both(&other);
+    let motion = unlike.list[1].motion.as_mut().unwrap();
+    (motion.reciprocates, motion.slip) = (true, 5e-6);
+    let words = [
+        "slips one way by 62.00 um",
+        "give runs of one motion",
+        "OTHER DRIVE",
+    ];
+    let compare = |q: &Question| alike::drive(q, &unlike, &window);
+    refused(&still, compare, "drive", words);
+    let rolls = Question {
+        speed: Some("30 m/s".into()),
+        ..still
+    };
+    let words = [
+        "to and fro by +-5.000 um, and the patch rolls",
+        "give runs that slip one way",
+        "OTHER DRIVE",
+    ];
+    refused(&rolls, compare, "drive", words);
+}
+
 #[test]
 fn the_motion_is_that_of_the_patch() {
     let folder = Folder::new("drive");

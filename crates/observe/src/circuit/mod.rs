@@ -7,6 +7,7 @@ mod worn;
 pub(crate) use summary::report_none;
 pub use summary::{Base, CircuitSummary, Rates};
 pub use worn::WornGrains;
+use worn::{LooseGrains, Loss, READS};
 
 use super::figures;
 use super::observer::{Event, EventTable};
@@ -163,8 +164,10 @@ struct CircuitObserverState {
     largest: usize,
     /// Normal force times the path of the rubbed body since the start of the account (J; J/m).
     load_path: f64,
-    /// Time, accumulated flows, and the mass in the contact, at each update.
-    series: DecimatedSeries<(f64, Flows, f64)>,
+    /// What each first body lost.
+    losses: Vec<Loss>,
+    /// Time, accumulated flows, mass in the contact, and load path (J; J/m), at each update.
+    series: DecimatedSeries<(f64, Flows, f64, f64)>,
 }
 
 /// Returns the circuit of a simulation; `None` before its start.
@@ -192,6 +195,7 @@ impl CircuitAccount {
     fn event(&mut self, run: &dyn RunView, d: &Debris) -> Event {
         self.state.pieces += 1;
         self.state.largest = self.state.largest.max(d.grains.len());
+        Loss::add(&mut self.state.losses, d);
         let at = d.place;
         Event {
             table: "debris",
@@ -241,7 +245,7 @@ impl CircuitAccount {
                 .state
                 .series
                 .points()
-                .map(|(t, f, m)| (*t, of(f, *m)))
+                .map(|(t, f, m, _)| (*t, of(f, *m)))
                 .collect();
             steady::flow(&points, middle, end)
         };
@@ -255,6 +259,9 @@ impl CircuitAccount {
         let bases = circuit.bases().iter().map(|b| Base {
             name: name(*b).unwrap_or_default(),
             grains: circuit.tied_to(*b),
+            specific_rate: None,
+            archard_coefficient: None,
+            hardness: None,
         });
         Some(CircuitSummary {
             start: self.start,
@@ -285,6 +292,10 @@ impl CircuitAccount {
 impl Observer for CircuitAccount {
     fn name(&self) -> String {
         "tribological circuit".to_owned()
+    }
+
+    fn reads_results_of(&self) -> &'static [&'static str] {
+        &READS
     }
 
     fn reads_statistics(&self) -> bool {
@@ -332,7 +343,10 @@ impl Observer for CircuitAccount {
         };
         let ledger = &circuit.ledger;
         let contact = ledger.contents.contact.mass;
-        self.state.series.add((run.time(), ledger.flows, contact));
+        let path = self.state.load_path;
+        self.state
+            .series
+            .add((run.time(), ledger.flows, contact, path));
         let pieces = circuit.debris.iter();
         pieces.map(|d| self.event(run, d)).collect()
     }
@@ -417,8 +431,16 @@ impl Observer for CircuitAccount {
             });
         }
         circuit.report(found);
-        let mass = circuit.flows.source.mass;
-        self.worn.report(self.state.load_path, mass, run, found);
+        let points = self.state.series.points();
+        let mut history: Vec<(f64, f64)> = points.map(|(_, f, _, p)| (*p, f.source.mass)).collect();
+        history.push((self.state.load_path, circuit.flows.source.mass));
+        let bases: Vec<u32> = self::circuit(run).map_or(Vec::new(), |c| c.bases().to_vec());
+        let loose = LooseGrains {
+            losses: &self.state.losses,
+            bases: &bases,
+            history: &history,
+        };
+        self.worn.report(&loose, run, found);
         show_flows(found);
     }
 

@@ -1,6 +1,6 @@
 //! Summary of the tribological circuit at the end of a run.
 
-use crate::quantity::unit::{MASS, ONE, SECOND, WEAR_RATE, WORD};
+use crate::quantity::unit::{MASS, ONE, PASCAL, SECOND, WEAR_RATE, WORD};
 use crate::quantity::{Field, Findings, Role, Schema, Topic, field, part, parts, values};
 use crate::steady::MeanFlow;
 use crate::warning::Warning;
@@ -39,6 +39,13 @@ crate::described! {
         pub name: String => WORD,
         /// Number of grains attached to it at the end.
         pub grains: usize => ONE,
+        /// Specific wear rate k = V/(P s) of its grains that came loose; null without one of the
+        /// circuit, or where none came loose.
+        pub specific_rate: Option<f64> => WEAR_RATE,
+        /// Archard's coefficient K = k H of these grains, with its own hardness.
+        pub archard_coefficient: Option<f64> => ONE,
+        /// Its hardness H; null where its material has none.
+        pub hardness: Option<f64> => PASCAL,
     }
 }
 
@@ -97,8 +104,8 @@ crate::described! {
         /// since the start of the account; null without a friction test, or with grains of several
         /// materials.
         pub specific_rate: Option<f64> => WEAR_RATE,
-        /// Archard's coefficient K = k H of these grains, with the hardness H of the softest first
-        /// body; null without one.
+        /// Archard's coefficient K = k H of these grains, with the hardness H of the first body
+        /// that lost them; null where that has none, and where several lost grains.
         pub archard_coefficient: Option<f64> => ONE,
         /// Number of debris pieces that came loose.
         pub pieces: u64 => ONE,

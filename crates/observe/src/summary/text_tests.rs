@@ -55,7 +55,7 @@ fn fretting() -> Summary {
         bodies: vec![body("rail", 3e-14), body("wheel", 2e-14)],
         ..WearSummary::default()
     };
-    wear.report(true, &mut found);
+    wear.report(true, "between grains", &mut found);
     friction_report::report(
         &cycles,
         fretting::FrettingOutcome::new(&cycles.list),

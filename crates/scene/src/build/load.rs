@@ -132,7 +132,7 @@ impl LoadedCase {
     }
 
     /// Returns the library in which material files are searched.
-    pub(super) fn material_library(&self) -> MaterialLibrary {
+    pub(crate) fn material_library(&self) -> MaterialLibrary {
         MaterialLibrary::beside(&self.path).with_own(&self.own_files)
     }
 }

@@ -180,6 +180,7 @@ impl CaseBuilder {
                 value: density,
                 unit: "kg/m^3".to_owned(),
                 range: None,
+                motion: None,
                 source: source.into(),
             },
             properties: BTreeMap::new(),

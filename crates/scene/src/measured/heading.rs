@@ -144,12 +144,12 @@ fn begins(lines: &[&str], numeric: bool, preface: bool) -> Option<(Layout, Vec<H
     };
     let is_row = |cells: &[String]| cells.iter().all(|c| layout.number(c).is_ok());
     let first = cells(lines.first()?);
-    // A row with a gap is neither a heading nor one of units.
-    let has_number = |cells: &[String]| cells.iter().any(|c| layout.number(c).is_ok());
+    // A row with a gap, or with marks between thousands, is neither a heading nor one of units.
+    let has_number = |cells: &[String]| cells.iter().any(|c| is_like_number(c));
     if preface && has_number(&first) {
         return None;
     }
-    let (headings, rows) = match is_row(&first) {
+    let (headings, rows) = match first.iter().all(|c| is_like_number(c)) {
         true => {
             let names = (1..=first.len()).map(|k| Heading::parse(&k.to_string()));
             (names.collect(), 0)
@@ -173,6 +173,14 @@ fn begins(lines: &[&str], numeric: bool, preface: bool) -> Option<(Layout, Vec<H
     }
     let whole = rest.iter().all(|line| cells(line).len() == columns);
     whole.then_some((layout, headings, rows))
+}
+
+/// Whether a cell is meant as a number, also one that is not read: `1.234,5`.
+fn is_like_number(cell: &str) -> bool {
+    let of_numbers = |c: char| c.is_ascii_digit() || "+-.,eE\u{2212}'\u{2019}\u{a0} ".contains(c);
+    cell.starts_with(|c: char| c.is_ascii_digit() || "+-.,\u{2212}".contains(c))
+        && cell.chars().all(of_numbers)
+        && cell.contains(|c: char| c.is_ascii_digit())
 }
 
 /// Returns the headings of a line, if it has this number of them.

@@ -272,6 +272,14 @@ mod tests {
             let error = table.values(1).unwrap_err();
             assert_eq!(error.position(), Some((2, 1)), "{gap}");
         }
+        // Marks between thousands make a row no heading.
+        for text in ["a;b\n1.234,5;2.345,5\n0,5;1\n", "1.234,5;2.345,5\n0,5;1\n"] {
+            let table = parse(text).unwrap();
+            let error = table.values(0).unwrap_err();
+            let says = format!("value of `{}` `1.234,5` has a", table.headings[0].name);
+            assert!(error.message().contains(&says), "{error}");
+            assert!(["a", "1"].contains(&&*table.headings[0].name), "{text}");
+        }
         let error = table.required("c").unwrap_err();
         assert!(error.message().contains("there are a, b"), "{error}");
     }

@@ -91,6 +91,11 @@ impl Source {
                 self.missing(field, outer.as_deref(), end)
             }
             RonError::InvalidValueForType { expected, found } => {
+                let written = self.tree.ending_at(end).or_else(|| self.tree.around(end));
+                // ron reads a name as a value of the type of no fields.
+                if let Some(node) = written.filter(|n| matches!(n.kind, ValueKind::Word)) {
+                    return self.wrong_type(node, expected);
+                }
                 let message = format!("wrong value: found {}", shorten(found));
                 self.error_in(&self.validated_span(start, end), message)
                     .expected(expected.clone())

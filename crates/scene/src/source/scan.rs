@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind};
-use crate::quantity;
+use crate::{quantity, units};
 
 /// Scans `text`; the first malformed position is recorded and scanning continues.
 pub(super) fn scan(text: &str) -> Tree {
@@ -413,9 +413,7 @@ impl<'a> Scanner<'a> {
         let symbol = matches!(next, Some('=' | ';' | '#'));
         let message = match (next, name) {
             (Some(c), _) if symbol => return self.skip_unexpected(c),
-            (Some('/' | '*'), _) if number => {
-                "a value is one number, without arithmetic: write the result".to_owned()
-            }
+            (Some(sign @ ('/' | '*')), _) if number => self.after_number(sign, written),
             (Some(c), Some(name)) if named && begins_value(c) => {
                 format!("a colon is missing after `{name}`")
             }
@@ -431,6 +429,23 @@ impl<'a> Scanner<'a> {
             _ => "a comma is missing before this".to_owned(),
         };
         self.fault(self.here(), message);
+    }
+
+    /// Says what to write for a number with an operation after it, `1e-13/Pa` or `1/1000`.
+    fn after_number(&self, sign: char, number: Option<&str>) -> String {
+        let number = number.unwrap_or_default();
+        let rest = &self.rest()[1..];
+        let word = match rest.starts_with('(') {
+            true => rest.find(')').map(|end| end + 1),
+            false => rest.find(|c: char| is_blank(c) || "()[]{},:\"'/*".contains(c)),
+        };
+        let unit = &rest[..word.unwrap_or(rest.len())];
+        match sign == '/' && units::known(&format!("1/{unit}")).is_ok() && !unit.is_empty() {
+            true => format!(
+                "a unit stands after a blank, and begins with 1 here: write `{number} 1/{unit}`"
+            ),
+            false => "a value is one number, without arithmetic: write the result".to_owned(),
+        }
     }
 
     /// Records a decimal comma, `step: 0,001`: digits follow it directly where a name must follow.

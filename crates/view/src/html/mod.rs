@@ -30,6 +30,7 @@ use fretwork_observe::chart::Figure;
 use std::path::{Path, PathBuf};
 
 pub use fretwork_observe::output::REPORT as FILE;
+use fretwork_observe::output::{is_measured_picture, measured_picture};
 
 /// Default size of a page in bytes.
 pub const DEFAULT_BYTES: usize = 5_000_000;
@@ -99,7 +100,8 @@ pub struct Written {
 }
 
 /// Writes the report of the run in a folder as `report.html` in that folder, and figures with
-/// measured curves as PNG files beside it, `NAME_measured.png`.
+/// measured curves as PNG files beside it, `NAME_measured.png`; those of an older report are
+/// removed.
 ///
 /// # Errors
 /// The folder holds no run, a measured curve does not fit to it, or a file cannot be written.
@@ -109,12 +111,26 @@ pub fn report(folder: &Path, options: &Options<'_>) -> Result<Written, ReportErr
     let html = page::report::page(&run, options);
     let page = folder.join(FILE);
     write(&page, &html)?;
-    let name = |figure: &str| folder.join(format!("{figure}_measured.png"));
+    let pictures = pictures(&figures, |figure| folder.join(measured_picture(figure)))?;
+    remove_older(folder, &pictures)?;
     Ok(Written {
         page,
         bytes: html.len(),
-        pictures: pictures(&figures, name)?,
+        pictures,
     })
+}
+
+/// Removes pictures with measured curves from a folder, but for those just written.
+fn remove_older(folder: &Path, written: &[PathBuf]) -> Result<(), ReportError> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let older = entries.filter(|e| e.file_name().to_str().is_some_and(is_measured_picture));
+    for path in older.map(|e| e.path()).filter(|p| !written.contains(p)) {
+        std::fs::remove_file(&path).map_err(|e| ReportError::Unwritable {
+            reason: e.to_string(),
+            path,
+        })?;
+    }
+    Ok(())
 }
 
 /// Draws the figures with measured curves as PNG files of these names.

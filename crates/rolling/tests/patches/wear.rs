@@ -1,32 +1,18 @@
 //! Profiles that wear.
 
-use fretwork_elastic::Elasticity;
+use super::pressed::{centred, distance, steel};
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_rolling::profile::{Rolls, Wear, Worn};
 use fretwork_rolling::{Coulomb, Creepage, Surfaces};
-
-const STEEL: Elasticity = Elasticity {
-    young: 2.0 * 80.8e9 * 1.3,
-    poisson: 0.3,
-    density: 7800.0,
-};
 
 const COEFFICIENT: f64 = 1.24e-13;
 
 /// A rail head of 0.3 m across under a wheel of 0.46 m, 75 kN, creepage 0.5 %.
 fn worn(passages: f64, share: f64, half: f64) -> (Worn, Vec<Worn>, CellGrid) {
-    let grid = CellGrid {
-        from: [-7.8e-3, -half],
-        size: [15.6e-3 / 32.0, half / 22.0],
-        cells: [32, 44],
-    };
-    let distance: Vec<f64> = (0..grid.len())
-        .map(|c| {
-            let [x, y] = grid.middle(c);
-            x * x / 0.92 + y * y / 0.6
-        })
-        .collect();
-    let surfaces = Surfaces::new(grid, [STEEL; 2], 0.0);
+    let grid = centred([32, 44], [7.8e-3, half]);
+    let distance = distance(&grid, [2.0 / 0.92, 2.0 / 0.6]);
+    let body = steel(2.0 * 80.8e9 * 1.3, 0.3);
+    let surfaces = Surfaces::new(grid, [body; 2], 0.0);
     let rolls = Rolls {
         surfaces: &surfaces,
         distance: &distance,

@@ -2,10 +2,8 @@
 //! Contact Mechanics, 1985, 7.2 and 7.4), exact at nu = 0, where tractions along the shift do not
 //! move surfaces across it.
 
-use fretwork_elastic::Elasticity;
-use fretwork_elastic::half_space::CellGrid;
-use fretwork_elastic::patch::{Solid, effective_modulus, point};
-use fretwork_rolling::{Coulomb, Motion, Pressure, Surfaces, Tractions, normal, tangential};
+use super::pressed::{pressed, steel};
+use fretwork_rolling::{Coulomb, Motion, Pressure, Surfaces, Tractions, tangential};
 
 const MU: f64 = 0.6;
 const LOAD: f64 = 100.0;
@@ -20,32 +18,11 @@ struct Sphere {
 }
 
 fn sphere(cells: usize) -> Sphere {
-    let solid = Solid {
-        young: 200e9,
-        poisson: 0.0,
-    };
-    let hertz = point(LOAD, [CURVATURE; 2], effective_modulus(&[solid; 2]));
-    let body = Elasticity {
-        young: solid.young,
-        poisson: solid.poisson,
-        density: 7800.0,
-    };
-    let half = 1.1 * hertz.along;
-    let grid = CellGrid {
-        from: [-half; 2],
-        size: [2.0 * half / cells as f64; 2],
-        cells: [cells; 2],
-    };
-    let distance: Vec<f64> = (0..grid.len())
-        .map(|c| {
-            let [x, y] = grid.middle(c);
-            0.5 * CURVATURE * (x * x + y * y)
-        })
-        .collect();
-    let surfaces = Surfaces::new(grid, [body; 2], 0.0);
-    let pressure = normal(&surfaces, &distance, LOAD, None).unwrap_or_else(|e| panic!("{e}"));
-    // delta = (3 mu P/(16 a)) sum (2 - nu)/G.
-    let gross = 3.0 * MU * LOAD / (16.0 * hertz.along) * 2.0 * 2.0 / solid.shear();
+    let body = steel(200e9, 0.0);
+    let load = (LOAD, [CURVATURE; 2]);
+    let (surfaces, pressure, hertz) = pressed(body, 0.0, load, [cells; 2]);
+    // delta = (3 mu P/(16 a)) sum (2 - nu)/G, with G = E/2 at nu = 0.
+    let gross = 3.0 * MU * LOAD / (16.0 * hertz.along) * 2.0 * 2.0 / (0.5 * body.young);
     Sphere {
         surfaces,
         pressure,

@@ -1,39 +1,20 @@
 //! What the results of a patch depend on: cells, first guess, units.
 
-use fretwork_elastic::Elasticity;
-use fretwork_elastic::half_space::CellGrid;
-use fretwork_elastic::patch::{Solid, effective_modulus, point};
+use super::pressed::{centred, hertz, steel};
 use fretwork_rolling::{Coulomb, Creepage, Patch};
-
-fn grid(cells: usize, half: [f64; 2]) -> CellGrid {
-    CellGrid {
-        from: half.map(|h| -h),
-        size: half.map(|h| 2.0 * h / cells as f64),
-        cells: [cells; 2],
-    }
-}
 
 /// Extrapolated forces of two grids agree within the error of the coarser one, in partial slip,
 /// with spin and for unlike bodies.
 #[test]
 fn the_error_of_the_grid_covers_finer_ones() {
-    let elasticity = |young: f64, poisson: f64| Elasticity {
-        young,
-        poisson,
-        density: 7800.0,
-    };
     let curvatures = [2.2, 3.3];
     let distance = |[x, y]: [f64; 2]| 0.5 * (curvatures[0] * x * x + curvatures[1] * y * y);
     let (load, mu) = (75e3, 0.4);
     for bodies in [
-        [elasticity(210e9, 0.3); 2],
-        [elasticity(210e9, 0.3), elasticity(3e9, 0.45)],
+        [steel(210e9, 0.3); 2],
+        [steel(210e9, 0.3), steel(3e9, 0.45)],
     ] {
-        let solids = bodies.map(|b| Solid {
-            young: b.young,
-            poisson: b.poisson,
-        });
-        let hertz = point(load, curvatures, effective_modulus(&solids));
+        let hertz = hertz(bodies, load, curvatures);
         let half = [1.2 * hertz.along, 1.2 * hertz.across];
         let patch = Patch {
             bodies,
@@ -55,7 +36,7 @@ fn the_error_of_the_grid_covers_finer_ones() {
             },
         ] {
             let of = |cells| {
-                let found = patch.refined(grid(cells, half), &creepage, &Coulomb(mu), 1.0);
+                let found = patch.refined(centred([cells; 2], half), &creepage, &Coulomb(mu), 1.0);
                 found.unwrap_or_else(|e| panic!("{bodies:?} {creepage:?} {cells}: {e}"))
             };
             let [coarse, fine] = [32, 64].map(of);

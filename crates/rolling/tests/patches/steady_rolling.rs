@@ -1,11 +1,9 @@
 //! Steady rolling against the program CONTACT (E. A. H. Vollebregt, github eve70a/CONTACT, commit
 //! d431cdb): its reference output `tractcurv`, and Kalker's table of coefficients.
 
-use fretwork_elastic::Elasticity;
-use fretwork_elastic::half_space::CellGrid;
-use fretwork_elastic::patch::{Solid, effective_modulus, point};
+use super::pressed::{centred, pressed, steel};
 use fretwork_rolling::{
-    Coulomb, Creepage, Falling, Friction, Motion, Pressure, Surfaces, Tractions, normal, tangential,
+    Coulomb, Creepage, Falling, Friction, Motion, Pressure, Surfaces, Tractions, tangential,
 };
 
 const MU: f64 = 0.33;
@@ -17,39 +15,13 @@ struct Patch {
     pressure: Pressure,
 }
 
-fn grid(cells: [usize; 2], half: [f64; 2]) -> CellGrid {
-    let size = [0, 1].map(|k| 2.0 * half[k] / cells[k] as f64);
-    CellGrid {
-        from: half.map(|h| -h),
-        size,
-        cells,
-    }
-}
-
 impl Patch {
     fn new(cells: [usize; 2], layer: f64) -> Self {
-        let solid = Solid {
-            young: 2.0 * 82e9 * 1.28,
-            poisson: 0.28,
-        };
-        let steel = Elasticity {
-            young: solid.young,
-            poisson: solid.poisson,
-            density: 7800.0,
-        };
+        let body = steel(2.0 * 82e9 * 1.28, 0.28);
         // The curvature across, for which a/b is one half.
-        let curvatures = [1.6, 0.562_829_829];
-        let hertz = point(LOAD, curvatures, effective_modulus(&[solid; 2]));
+        let load = (LOAD, [1.6, 0.562_829_829]);
+        let (surfaces, pressure, hertz) = pressed(body, layer, load, cells);
         assert!((hertz.along / hertz.across - 0.5).abs() < 1e-4, "{hertz:?}");
-        let grid = grid(cells, [1.1 * hertz.along, 1.1 * hertz.across]);
-        let distance: Vec<f64> = (0..grid.len())
-            .map(|c| {
-                let [x, y] = grid.middle(c);
-                0.5 * (curvatures[0] * x * x + curvatures[1] * y * y)
-            })
-            .collect();
-        let surfaces = Surfaces::new(grid, [steel; 2], layer);
-        let pressure = normal(&surfaces, &distance, LOAD, None).unwrap_or_else(|e| panic!("{e}"));
         let close = |a: f64, b: f64, by: f64| assert!((a / b - 1.0).abs() < by, "{a} {b}");
         close(pressure.approach, hertz.approach, 1e-3);
         close(pressure.largest(), hertz.pressure, 2e-3);
@@ -162,11 +134,7 @@ fn falling_friction_with_a_layer_is_that_of_contact() {
 #[test]
 fn small_creepages_give_kalkers_coefficients() {
     let (shear, n) = (80e9, 40);
-    let body = Elasticity {
-        young: 2.0 * shear * 1.25,
-        poisson: 0.25,
-        density: 7800.0,
-    };
+    let body = steel(2.0 * shear * 1.25, 0.25);
     for (ratio, expected) in [
         (0.2, [3.37, 2.63, 0.603]),
         (0.5, [3.62, 3.01, 0.929]),
@@ -174,7 +142,7 @@ fn small_creepages_give_kalkers_coefficients() {
         (2.0, [5.10, 4.90, 2.62]),
     ] {
         let [a, b] = [5e-3 * f64::sqrt(ratio), 5e-3 / f64::sqrt(ratio)];
-        let grid = grid([n, n], [1.02 * a, 1.02 * b]);
+        let grid = centred([n, n], [1.02 * a, 1.02 * b]);
         let pressure: Vec<f64> = (0..grid.len())
             .map(|c| {
                 let [x, y] = grid.middle(c);
