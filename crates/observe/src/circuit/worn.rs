@@ -96,7 +96,7 @@ impl Spread {
             },
             false => Self {
                 share: blocks,
-                scope: format!("within this sample ({} blocks of slip)", steady::BLOCKS),
+                scope: format!("within this sample (slip in {} blocks)", steady::BLOCKS),
             },
         }
     }
@@ -322,6 +322,6 @@ mod tests {
         assert!(even.scope.contains("counting") && even.share < 0.02);
         // All comes loose in the first half.
         let early = Spread::of(loss, &line(&|s| 1e4 * (2.0 * s).min(1.0)));
-        assert!(early.scope.contains("10 blocks of slip") && early.share > 0.5);
+        assert!(early.scope.contains("10 blocks") && early.share > 0.5);
     }
 }
