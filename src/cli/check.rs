@@ -67,6 +67,10 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     for (label, text) in lines {
         let _ = write!(out, "\n{}", line_of(&label, &text));
     }
+    if !args.inputs {
+        let text = "each parameter of the laws with its origin: --inputs";
+        let _ = write!(out, "\n{}", line_of("inputs", text));
+    }
     out += &inputs;
     answer(&out)?;
     if !args.no_timing {

@@ -127,7 +127,14 @@ fn a_study_of_a_case_varies_its_seeds_or_the_ranges_of_its_inputs() {
     assert_eq!(keys.len(), 3, "{keys:?}");
     assert_eq!(keys[0], "interfaces.third_body.parameters.contact.mu");
     assert_eq!(ranges["settings"], 10 * factors.len());
+    // The wear rate is compared unasked.
     let seeds = check(&["--seeds", "8"]);
+    for outputs in [&ranges["outputs"], &seeds["outputs"]] {
+        let names = outputs.to_string();
+        for name in ["friction_coefficient", "wear.specific_rate"] {
+            assert!(names.contains(name), "{names}");
+        }
+    }
     assert_eq!(
         (&seeds["settings"], &seeds["runs"]["all"]),
         (&1.into(), &8.into())

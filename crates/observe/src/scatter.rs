@@ -1,5 +1,6 @@
 //! Scatter of a quantity within one run: Student's 95 % confidence interval of its mean over the
-//! later half of the cycles, or over blocks of equal time if there are no cycles.
+//! later half of the cycles, or of a ratio of sums over blocks of equal time if there are no
+//! cycles.
 //!
 //! Cycles are used as batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). If they
 //! show a trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
@@ -89,12 +90,25 @@ pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> Option<f64>) -> O
     Scatter::new(&values?, format!("cycles {first} to {last}"), "cycles")
 }
 
-/// Returns the scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
+/// Returns the ratio of the sums over blocks of dividends and divisors, with its scatter; `None` if
+/// a divisor is zero.
+///
+/// The interval is that of the mean of a + (x - a y)/Y, where a is the ratio of the sums and Y the
+/// mean divisor: the ratio to first order in its deviations (A. M. Law, Simulation Modeling and
+/// Analysis, section 9.5.3). The trend is that of these values.
 pub fn over_blocks(blocks: &[(f64, f64)]) -> Option<Scatter> {
-    let ratio = |b: &(f64, f64)| (b.1 > 0.0).then(|| b.0 / b.1);
-    let values: Option<Vec<f64>> = blocks.iter().map(ratio).collect();
+    let count = blocks.len() as f64;
+    let positive = blocks.iter().all(|b| b.1 > 0.0);
+    let (dividend, divisor) = blocks
+        .iter()
+        .fold((0.0, 0.0), |(x, y), b| (x + b.0, y + b.1));
+    let ratio = dividend / divisor;
+    let value = |b: &(f64, f64)| ratio + (b.0 - ratio * b.1) / (divisor / count);
+    let values: Vec<f64> = blocks.iter().map(value).collect();
     let over = format!("{} blocks of equal time", blocks.len());
-    Scatter::new(&values?, over, "blocks of time")
+    let mut scatter = Scatter::new(&values, over, "blocks").filter(|_| positive)?;
+    scatter.flow.mean = ratio;
+    Some(scatter)
 }
 
 #[cfg(test)]
@@ -156,6 +170,20 @@ mod tests {
         let rising: Vec<f64> = (0..20).map(|k| 0.4 + 1e-15 * f64::from(k)).collect();
         let scatter = over_cycles(&cycles(&rising), |c| c.friction_coefficient).unwrap();
         assert!(scatter.half_width().unwrap() < 1e-12);
+    }
+
+    #[test]
+    fn blocks_count_by_their_divisors() {
+        // 1 of 1, 1 of 2, 1 of 5: the ratio of the sums is 3/8, the mean of the ratios 0.567.
+        let blocks = [(1.0, 1.0), (1.0, 2.0), (1.0, 5.0)];
+        let scatter = over_blocks(&blocks).unwrap();
+        assert!((scatter.flow.mean - 0.375).abs() < 1e-15);
+        assert_eq!(scatter.scope(), "within this sample (3 blocks)");
+        // (x - 3/8 y) 3/8 is 0.234375, 0.09375 and -0.328125.
+        let deviations = [0.234_375, 0.093_75, -0.328_125_f64];
+        let square: f64 = deviations.iter().map(|d| d * d).sum();
+        let half = 4.302_653 * (square / 2.0 / 3.0).sqrt();
+        assert!((scatter.half_width().unwrap() / half - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -43,10 +43,16 @@ crate::described! {
         /// Normal force times distance of slip: the integral of P |ds| over the run, without the
         /// elastic part of reciprocating strokes; null without a friction test.
         pub load_path: Option<f64> => LOAD_PATH,
+        /// Specific wear rate k = V/(P s) of all first bodies, the sum of those of each; null where
+        /// none is known.
+        pub specific_rate: Option<f64> => WEAR_RATE,
         /// Wear of the first bodies that lost material.
         pub bodies: Vec<BodyWear> = parts::<BodyWear>(),
     }
 }
+
+/// Path of the specific wear rate of all first bodies.
+const RATE: &str = "wear.specific_rate";
 
 /// Why a case has no wear.
 pub(crate) const NO_WEAR: &str = "no interface of the case has a wear law";
@@ -115,6 +121,11 @@ impl WearSummary {
                 q.lacks(NO_WEAR);
             }
         });
+        let no_test = found.quantity("friction_coefficient").and_then(|q| q.lacks);
+        found.edit(RATE, |q| {
+            q.headline("specific wear rate").silent();
+            q.lacks = no_test.or((!wears).then_some(NO_WEAR));
+        });
         if wears {
             show_flows(found);
         } else {
@@ -136,11 +147,13 @@ impl WearSummary {
     pub(crate) fn rate(&mut self, load_path: impl Fn(&str) -> f64, found: &mut Findings) {
         let volume = VOLUME.symbol(found.dimension());
         let materials = found.get::<WearMaterials>().cloned().unwrap_or_default();
+        let mut total = None;
         for (k, body) in self.bodies.iter_mut().enumerate() {
             let rate = body.volume / load_path(&body.body);
             if !rate.is_finite() {
                 continue;
             }
+            *total.get_or_insert(0.0) += rate;
             body.specific_rate = Some(rate);
             let hard = materials.hardness.iter().find(|h| h.body == body.body);
             let doc = format!("specific wear rate k = V/(P s) of `{}`", body.body);
@@ -167,6 +180,10 @@ impl WearSummary {
                     q.sentence(label, text);
                 }
             });
+        }
+        self.specific_rate = total;
+        if let Some(total) = total {
+            found.edit(RATE, |q| q.value = total.into());
         }
     }
 }
@@ -324,6 +341,7 @@ impl Observer for Wear {
             volume_first_bodies: state.volumes.0,
             volume_third_body: state.volumes.1,
             load_path: None,
+            specific_rate: None,
             bodies: first_bodies::wear(run),
         };
         summary.report(self.wears, found);

@@ -70,9 +70,9 @@ pub fn unmeasured(case: &Case, s: &dyn RunView) -> Vec<String> {
 }
 
 /// Whether the main results follow from a parameter, so that its default is a guess at the answer:
-/// friction coefficients of contact laws, which decide friction, and all parameters of wear laws.
+/// what laws declare as friction coefficients, and all parameters of wear laws.
 fn decides(kind: Kind, field: &LawField) -> bool {
-    kind == Kind::WEAR || (kind == Kind::CONTACT && field.doc.contains("friction coefficient"))
+    kind == Kind::WEAR || field.friction
 }
 
 /// Returns a sentence for each law with parameters on which the main results depend, and which have

@@ -98,6 +98,11 @@ extern "C" {
  * Transport laws have them without the flag. Since 1.1. */
 #define FW_FLAG_TEMPERATURE (UINT64_C(1) << 9)
 
+/* Flag of a variable: it is written to the results. */
+#define FW_FIELD_OUTPUT (UINT64_C(1) << 0)
+/* Flag of a parameter: it is a friction coefficient, on which the results of a case depend. */
+#define FW_FIELD_FRICTION (UINT64_C(1) << 1)
+
 /* Describes one parameter or one internal variable. Frozen within a major version. */
 typedef struct fw_field {
     const char *name; /* Name, NUL-terminated, [a-z][a-z0-9_]*. */
@@ -106,7 +111,7 @@ typedef struct fw_field {
     double default_value; /* Default value of a parameter, initial value of a variable. */
     double minimum; /* Smallest accepted value (may be minus infinity). */
     double maximum; /* Largest accepted value (may be infinity). */
-    uint64_t flags; /* For a variable: 1 to write it to the results. Otherwise 0. */
+    uint64_t flags; /* FW_FIELD_... */
 } fw_field;
 
 /* The host's buffer for an error message. */

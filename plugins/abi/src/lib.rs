@@ -85,6 +85,11 @@ pub const FLAGS: u64 = FLAG_2D_ONLY
     | FLAG_COMPLIANT
     | FLAG_TEMPERATURE;
 
+/// Flag of a variable: it is written to the results.
+pub const FIELD_OUTPUT: u64 = 1;
+/// Flag of a parameter: it is a friction coefficient, on which the results of a case depend.
+pub const FIELD_FRICTION: u64 = 1 << 1;
+
 /// Describes one parameter or one internal variable. Frozen within a major version.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -101,7 +106,7 @@ pub struct FwField {
     pub minimum: f64,
     /// Largest accepted value (may be infinity).
     pub maximum: f64,
-    /// For a variable: 1 to write it to the results. Otherwise 0.
+    /// [`FIELD_OUTPUT`] of a variable, [`FIELD_FRICTION`] of a parameter; otherwise 0.
     pub flags: u64,
 }
 

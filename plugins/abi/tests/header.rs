@@ -145,6 +145,8 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_BAD_PARAMETER", STATUS_BAD_PARAMETER as u64),
         ("FW_REDUCE_STEP", STATUS_REDUCE_STEP as u64),
         ("FW_PANIC", STATUS_PANIC as u64),
+        ("FW_FIELD_OUTPUT", FIELD_OUTPUT),
+        ("FW_FIELD_FRICTION", FIELD_FRICTION),
         ("FW_FLAG_2D_ONLY", FLAG_2D_ONLY),
         ("FW_FLAG_3D_ONLY", FLAG_3D_ONLY),
         ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY),

@@ -36,11 +36,14 @@ pub const fn terminated<const N: usize>(text: &str) -> [u8; N] {
     out
 }
 
-/// Declares the parameters of a law: `name: "unit" = default, minimum, maximum, "doc";`.
+/// Declares the parameters of a law: `name: "unit" = default, minimum, maximum, "doc";`. A friction
+/// coefficient, on which the results of a case depend, ends with `"doc", friction;`.
 #[macro_export]
 macro_rules! parameters {
+    (@flag) => { 0 };
+    (@flag friction) => { $crate::abi::FIELD_FRICTION };
     ($(#[$meta:meta])* pub struct $law:ident {
-        $($name:ident : $unit:literal = $default:expr, $min:expr, $max:expr, $doc:literal;)*
+        $($name:ident : $unit:literal = $default:expr, $min:expr, $max:expr, $doc:literal $(, $role:ident)?;)*
     }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug)]
@@ -57,7 +60,7 @@ macro_rules! parameters {
                     default: $default,
                     minimum: $min,
                     maximum: $max,
-                    flags: 0,
+                    flags: $crate::parameters!(@flag $($role)?),
                 },)*
             ];
             const PACKAGE_VERSION: &'static str = env!("CARGO_PKG_VERSION");
@@ -165,3 +168,24 @@ pub struct Fields<const N: usize>(pub [fretwork_abi::FwField; N]);
 
 // SAFETY: the schema is never written; its pointers refer to static text.
 unsafe impl<const N: usize> Sync for Fields<N> {}
+
+#[cfg(test)]
+mod tests {
+    use crate::Parameters;
+    use fretwork_abi::FIELD_FRICTION;
+
+    crate::parameters! {
+        /// Friction of a stiff contact.
+        pub struct Sliding {
+            mu: "" = 0.3, 0.0, 1.0, "largest tangential over normal force", friction;
+            k: "Pa/m" = 1.0, 0.0, 2.0, "stiffness";
+        }
+    }
+
+    #[test]
+    fn a_friction_coefficient_is_declared_as_one() {
+        let flags: Vec<u64> = Sliding::FIELDS.iter().map(|field| field.flags).collect();
+        assert_eq!(flags, [FIELD_FRICTION, 0]);
+        assert_eq!(Sliding::default().mu, 0.3);
+    }
+}

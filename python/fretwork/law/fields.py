@@ -15,14 +15,17 @@ class Parameter:
         range: smallest and largest value that the law accepts; may be infinite.
         unit: SI unit, ``""`` for a pure number.
         doc: one line for the user of the law.
+        friction: whether it is a friction coefficient, on which the results of a case depend: a run notes where a case leaves
+            it to its default.
 
-    >>> def friction(mu=Parameter(0.3, range=(0.0, 10.0), unit="", doc="friction coefficient")): ...
+    >>> def friction(mu=Parameter(0.3, range=(0.0, 10.0), unit="", doc="friction coefficient", friction=True)): ...
     """
 
     default: float
     range: tuple[float, float] | None = None
     unit: str = ""
     doc: str = ""
+    friction: bool = False
 
     def problem(self) -> str | None:
         """What is wrong with it, as the end of a sentence that begins with its name."""

@@ -140,7 +140,7 @@ def source(
 
 
 def _schema(law: Law) -> str:
-    rows = [(name, p.unit, p.doc, p.default, *(p.range or (-math.inf, math.inf)), 0) for name, p in law.parameters.items()]
+    rows = [(name, p.unit, p.doc, p.default, *(p.range or (-math.inf, math.inf)), 2 * int(p.friction)) for name, p in law.parameters.items()]
     states = [(name, v.unit, v.doc, v.initial, -math.inf, math.inf, int(v.output)) for name, v in law.variables.items()]
     out = []
     for what, fields in (("parameters", rows), ("variables", states)):

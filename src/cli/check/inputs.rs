@@ -3,10 +3,11 @@
 use super::CheckLine;
 use crate::RunView;
 use crate::laws::ParameterOrigin;
+use crate::record::summary::wrapped;
 use crate::scene::law_inputs;
 use crate::scene::wear_coefficient::WearCoefficient;
 
-/// Characters of an origin that are shown.
+/// Characters of a line of an origin.
 const WIDE: usize = 100;
 
 /// Returns a line for each parameter of each law; the first of a law has its interface, kind and
@@ -36,19 +37,18 @@ pub fn lines(s: &dyn RunView, wear: &[WearCoefficient]) -> Vec<CheckLine> {
             Some(ParameterOrigin::Default) => "default of the law",
             None => "not known",
         };
-        let origin = match origin.char_indices().nth(WIDE) {
-            Some((cut, _)) => format!("{}...", &origin[..cut]),
-            None => origin.to_owned(),
-        };
+        let mut origin = wrapped(origin, WIDE).into_iter();
+        let first = origin.next().unwrap_or_default();
         let unit = match input.field.unit.as_str() {
             "" => "-",
             unit => unit,
         };
         let (name, value) = (&input.field.name, input.number());
-        out.push((
-            String::new(),
-            format!("{name:<18} {value:>12} {unit:<10} {origin}"),
-        ));
+        let line = |origin: &str| format!("{name:<18} {value:>12} {unit:<10} {origin}");
+        out.push((String::new(), line(&first)));
+        // A long origin goes on below itself.
+        let margin = line("").chars().count();
+        out.extend(origin.map(|rest| (String::new(), format!("{:margin$}{rest}", ""))));
     }
     out
 }

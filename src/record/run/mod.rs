@@ -319,7 +319,10 @@ impl<'a> Recorder<'a> {
                 made.map_err(|e| unwritable(&options.out, &e))?;
                 let lock = FolderLock::exclusive(&options.out, RUN_LOCK)?;
                 if run.keeping
-                    && let Some(found) = occupied(&options.out, &identity)
+                    && let Some(found) = occupied(&options.out, &identity, || {
+                        // The end is that with which they were made.
+                        observers.set_end(case.time.end, true).err()
+                    })
                 {
                     return Err(RunError::Occupied(Box::new(found)));
                 }

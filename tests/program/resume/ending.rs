@@ -113,6 +113,7 @@ fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
     let half = 4.302_652_73 * (square / 2.0 / 3.0).sqrt();
     let known = &summary["uncertainty"]["friction_coefficient"];
     assert!((known["value"].as_f64().unwrap() / mean - 1.0).abs() < 1e-12);
+    assert_eq!(known["value"], summary["friction_coefficient"]);
     assert!((known["scatter"].as_f64().unwrap() / half - 1.0).abs() < 1e-6);
     // These half-widths are from repeated steps.
     assert!(known["step"].as_f64().unwrap() >= 0.0 && known["tolerance"].as_f64().unwrap() >= 0.0);

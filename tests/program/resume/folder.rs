@@ -230,7 +230,10 @@ fn results_of_another_run_are_kept() {
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
     kept(
         &said(&job(&OTHER).run(&out.0, &[]), 2),
-        &["a run of other inputs", "`seed`"],
+        &[
+            "a run of other inputs",
+            "`seed` was 19 in the original run and is 7 now",
+        ],
     );
     kept(
         &said(&job(&LONGER).run(&out.0, &[]), 2),
@@ -317,6 +320,13 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     ] {
         assert!(reported.contains(word), "{reported}");
     }
+    // Without the option it is not offered either.
+    let reported = said(&job(&LATER).run(&out.0, &[]), 2);
+    assert!(
+        reported.contains("cannot go on from there: a friction test without a period"),
+        "{reported}"
+    );
+    assert!(!reported.contains("--resume"), "{reported}");
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
     let left = draft(&out.0);
     assert!(left.is_none() || left == drafted, "a draft was left");

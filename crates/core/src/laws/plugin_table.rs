@@ -22,6 +22,8 @@ pub struct LawField {
     pub maximum: f64,
     /// Whether a variable is written to the results.
     pub output: bool,
+    /// Whether a parameter is a friction coefficient.
+    pub friction: bool,
 }
 
 /// Copies the fields of the table known to both versions of the ABI.
@@ -116,7 +118,8 @@ pub(super) unsafe fn fields(
                 default: f.default,
                 minimum: f.minimum,
                 maximum: f.maximum,
-                output: f.flags & 1 != 0,
+                output: f.flags & abi::FIELD_OUTPUT != 0,
+                friction: f.flags & abi::FIELD_FRICTION != 0,
             })
         })
         .collect()

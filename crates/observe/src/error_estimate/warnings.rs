@@ -91,7 +91,7 @@ impl Repeats {
         let texts: Vec<String> = texts.collect();
         (!texts.is_empty()).then(|| {
             format!(
-                "repeated steps with finer settings give another result: {}; take a smaller time.step (also where it is the \
+                "finer settings give {}, by repeated steps; take a smaller time.step (also where it is the \
                  coupling) or solver.tolerance, and see `uncertainty` in summary.json",
                 texts.join(", ")
             )
@@ -109,10 +109,9 @@ impl Repeats {
         let texts: Vec<String> = texts.collect();
         (!texts.is_empty()).then(|| {
             format!(
-                "repeated steps at {} places do not tell whether results are right to 5 %. Possible errors: {}. A longer run, or more places \
-                 (`uncertainty: (repeats: {})`, for more time), tell more",
-                self.places,
+                "it may be {}, by steps repeated at {} places; a longer run, or more places (`uncertainty: (repeats: {})`, for more time), tell more",
                 texts.join(", "),
+                self.places,
                 4 * self.places
             )
         })
@@ -150,7 +149,9 @@ mod tests {
         let text = list[1].to_string();
         assert!(
             text.starts_with("ERROR NOT KNOWN")
-                && text.contains("damage up to 9 % for solver.tolerance"),
+                && text.contains(
+                    "it may be damage up to 9 % for solver.tolerance, by steps repeated at 6 places"
+                ),
             "{text}"
         );
         let list = of_run(|repeats| repeats.shares.correction = Some(0.23));

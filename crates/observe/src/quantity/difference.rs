@@ -48,11 +48,10 @@ impl Compared {
         own.map(|(_, half)| *half)
     }
 
-    /// Returns the causes that this and another result have, or that this one alone has.
-    fn causes(&self, other: &Self, shared: bool) -> Vec<String> {
-        let own = self.half_widths.iter().map(|(of, _)| of);
-        let own = own.filter(|of| other.by(of).is_some() == shared);
-        own.cloned().collect()
+    /// Returns the causes of which only another result has a half-width.
+    fn lacks(&self, other: &Self) -> Vec<String> {
+        let causes = other.half_widths.iter().map(|(of, _)| of);
+        causes.filter(|of| self.by(of).is_none()).cloned().collect()
     }
 }
 
@@ -67,7 +66,10 @@ pub enum Significance {
     DifferInTheseSamples,
     /// The difference is within its half-width.
     NotKnownToDiffer,
-    /// The two have no half-width of the same cause.
+    /// The difference is larger than its half-width, but what only one of the two knows may be as
+    /// large in the other, see [`UNKNOWN`].
+    UnknownMatters,
+    /// One of the two has no half-width.
     NotKnown,
     /// A check of one of the two runs failed.
     NotTrusted,
@@ -85,25 +87,30 @@ impl Significance {
                 "these samples differ, what other seeds give is not known"
             }
             Self::NotKnownToDiffer => "not known to differ",
-            Self::NotKnown => "significance not known: no half-width of a cause that both know",
+            Self::UnknownMatters => "not known to differ, for what is not known of one run",
+            Self::NotKnown => "significance not known: no half-width of one run",
             Self::NotTrusted => "no result to rest on: a run is not trustworthy",
             Self::NotDetermined => "not determined",
         }
     }
 }
 
+/// A half-width that one run does not know does not matter where the difference exceeds its
+/// half-width even if the unknown one is this number of times that of the other run.
+pub const UNKNOWN: f64 = 3.0;
+
 /// Difference of a result of a run, less that of a base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Value of the run less that of the base.
     pub value: f64,
-    /// Half-width of the causes that both have: the root of the sum of the squares; `None` where
-    /// they share none.
+    /// Half-width of the causes that at least one of the two has: the root of the sum of the
+    /// squares; `None` where there are none.
     pub half_width: Option<f64>,
     /// These causes.
     pub causes: Vec<String>,
-    /// Causes of which only one of the two has a half-width, which is not counted.
-    pub left_out: Vec<String>,
+    /// Causes of which only the base has a half-width, and those of which only the run has one.
+    pub unknown: [Vec<String>; 2],
     /// Significance.
     pub significance: Significance,
 }
@@ -112,27 +119,38 @@ impl Difference {
     /// Returns the difference of a run and a base, whose errors are independent.
     pub fn new(run: &Compared, base: &Compared) -> Self {
         let value = run.value - base.value;
-        let causes = run.causes(base, true);
-        let squares = causes.iter().map(|of| {
-            let both = [run, base].map(|one| one.by(of).unwrap_or(0.0));
-            both[0].hypot(both[1]).powi(2)
-        });
-        let half_width = squares.reduce(|a, b| a + b).map(f64::sqrt);
+        let own = run.half_widths.iter().map(|(of, _)| of.clone());
+        let causes: Vec<String> = own.chain(run.lacks(base)).collect();
+        // A half-width that is not known is `unknown` times that of the other run.
+        let half = |unknown: f64| {
+            let squares = causes.iter().map(|of| {
+                let (one, other) = (run.by(of), base.by(of));
+                let known = one.or(other).unwrap_or(0.0);
+                let both = [one, other].map(|half| half.unwrap_or(unknown * known));
+                both[0].hypot(both[1]).powi(2)
+            });
+            squares.reduce(|a, b| a + b).map(f64::sqrt)
+        };
+        let half_width = half(0.0);
+        let none = run.half_widths.is_empty() || base.half_widths.is_empty();
         let significance = match half_width {
             _ if value == 0.0 => Significance::Equal,
             _ if !(run.trusted && base.trusted) => Significance::NotTrusted,
             _ if !(run.determined && base.determined) => Significance::NotDetermined,
             None => Significance::NotKnown,
             Some(half) if value.abs() <= half => Significance::NotKnownToDiffer,
+            Some(_) if none => Significance::NotKnown,
+            Some(_) if half(UNKNOWN).is_some_and(|half| value.abs() <= half) => {
+                Significance::UnknownMatters
+            }
             Some(_) if run.random || base.random => Significance::DifferInTheseSamples,
             Some(_) => Significance::Differ,
         };
-        let left_out = [run.causes(base, false), base.causes(run, false)].concat();
         Self {
             value,
             half_width,
             causes,
-            left_out,
+            unknown: [run.lacks(base), base.lacks(run)],
             significance,
         }
     }
@@ -149,11 +167,11 @@ impl Difference {
             }
             (_, None) => quantity(self.value, unit),
         };
-        let left_out = match self.left_out.as_slice() {
-            [] => String::new(),
-            causes => format!("; {} known of one run only, not counted", causes.join(", ")),
-        };
-        format!("{number}: {words}{left_out}")
+        let of = ["this run", "the first run"].into_iter().zip(&self.unknown);
+        let unknown = of.filter(|(_, causes)| !causes.is_empty());
+        let unknown =
+            unknown.map(|(of, causes)| format!("; of {of} not known: {}", causes.join(", ")));
+        format!("{number}: {words}{}", unknown.collect::<String>())
     }
 }
 
@@ -191,7 +209,7 @@ mod tests {
                 0.46,
                 None,
                 Significance::NotKnown,
-                "0.06000: significance not known: no half-width of a cause that both know; step known of one run only, not counted",
+                "0.06000 +- 0.030 (step): significance not known: no half-width of one run; of this run not known: step",
             ),
             // More than a quarter of the value.
             (
@@ -230,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn half_widths_of_different_causes_are_not_combined() {
+    fn a_cause_that_one_run_knows_counts_and_the_unknown_of_the_other_may_matter() {
         let with = |value, scope: &str, step| {
             let estimate = Estimate {
                 value: Some(value),
@@ -244,15 +262,26 @@ mod tests {
         };
         let base = with(0.40, "within this sample (3 cycles)", Some(0.02));
         let text = |run: &Compared| Difference::new(run, &base).text("1");
-        // The number of cycles is another, what the scatter is over is the same.
+        // The number of cycles is another, what the scatter is over is the same. The half-width is
+        // that of 0.003, 0.003 and 0.02; with a step of 0.06 of the run it is 0.0634.
+        let cycles = "within this sample (25 cycles)";
         assert_eq!(
-            text(&with(0.46, "within this sample (25 cycles)", None)),
-            "0.06000 +- 0.0042 (within this sample): they differ; step known of one run only, not counted"
+            text(&with(0.46, cycles, None)),
+            "0.06000 +- 0.020 (within this sample, step): not known to differ, for what is not known of one run; of this run \
+             not known: step"
         );
         assert_eq!(
-            text(&with(0.46, "over 8 seeds", None)),
-            "0.06000: significance not known: no half-width of a cause that both know; over 8 seeds, step, within this sample \
-             known of one run only, not counted"
+            text(&with(0.47, cycles, None)),
+            "0.07000 +- 0.020 (within this sample, step): they differ; of this run not known: step"
+        );
+        assert_eq!(
+            text(&with(0.41, cycles, None)),
+            "0.01000 +- 0.020 (within this sample, step): not known to differ; of this run not known: step"
+        );
+        assert_eq!(
+            text(&with(0.45, "over 8 seeds", Some(0.03))),
+            "0.05000 +- 0.036 (step, over 8 seeds, within this sample): they differ; of this run not known: within this \
+             sample; of the first run not known: over 8 seeds"
         );
     }
 }

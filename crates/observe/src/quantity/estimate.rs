@@ -11,6 +11,10 @@ crate::described! {
     pub struct Estimate {
         /// Value to which the half-widths refer.
         pub value: Option<f64> => ONE,
+        /// What the value is of, such as `mean of cycles 26 to 50`; null where there is one value
+        /// only.
+        #[serde(default)]
+        pub statistic: Option<String> => WORD,
         /// Half-width from the scatter within the run.
         pub scatter: Option<f64> => ONE,
         /// Half-width from the time step, by repeated steps: the change that they show, and what is
@@ -73,6 +77,13 @@ impl Estimate {
         settings.chain(scatter).collect()
     }
 
+    /// Returns the causes of its half-widths in a word each: the scatter by what it is over, as
+    /// `cycles`, `blocks` or `seeds`.
+    pub fn causes(&self) -> Vec<String> {
+        let shares = self.shares().into_iter();
+        shares.map(|(of, _)| short_cause(&of).to_owned()).collect()
+    }
+
     /// Returns the half-widths due to settings: by step, tolerance and coupling, with their names.
     pub fn settings(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let all = [
@@ -103,6 +114,17 @@ impl Estimate {
             text += &format!(" (effect of {} not known)", unknown.join(" and "));
         }
         text
+    }
+}
+
+/// Returns a cause in a word: `cycles` of `within this sample (3 cycles)`.
+pub fn short_cause(of: &str) -> &str {
+    let over = ["within ", "over "]
+        .iter()
+        .any(|start| of.starts_with(start));
+    match of.rsplit_once(' ').filter(|_| over) {
+        Some((_, last)) => last.trim_end_matches(')'),
+        None => of,
     }
 }
 
@@ -163,6 +185,10 @@ mod tests {
         let shares = estimate.shares();
         let names: Vec<&str> = shares.iter().map(|s| s.0.as_str()).collect();
         assert_eq!(names, ["step", "over 8 seeds"]);
+        assert_eq!(estimate.causes(), ["step", "seeds"]);
+        assert_eq!(short_cause("within this sample (10 blocks)"), "blocks");
+        assert_eq!(short_cause("within this sample"), "sample");
+        assert_eq!(short_cause("step and tolerance"), "step and tolerance");
         assert!((shares[1].1 - 0.01).abs() < 1e-12, "{shares:?}");
     }
 }

@@ -13,9 +13,16 @@ const PREFIXES: [(i32, &str); 9] = [
     (9, "G"),
 ];
 
+/// Size below which a value in an SI unit with prefixes is round-off: a thousandth of the smallest
+/// prefix. Contacts are far smaller than a metre, of which doubles resolve 1e-16.
+const ROUND_OFF: f64 = 1e-18;
+
 /// Formats a number with `digits` significant digits, without an exponent if that is short.
 pub fn number(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return format!("{value}");
     }
     // Rounding may carry into another digit.
@@ -65,7 +72,14 @@ impl ShownUnit {
             };
         }
         let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "g"].contains(&base);
-        if !takes || size == 0.0 || !size.is_finite() {
+        if takes && size < ROUND_OFF {
+            let name = format!("{base}{rest}");
+            return Self {
+                scale: [0.0, 1.0],
+                name,
+            };
+        }
+        if !takes || !size.is_finite() {
             let name = format!("{base}{rest}");
             return Self {
                 scale: [factor, 1.0],
@@ -161,7 +175,8 @@ mod tests {
         assert_eq!(quantity(4.5e-9, "kg/s"), "4.500 ug/s");
         assert_eq!(quantity(0.25, "rad"), "0.2500 rad");
         assert_eq!(quantity(0.412_345, ""), "0.4123");
-        assert_eq!(quantity(1e-30, "J"), "1.000e-15 fJ");
+        assert_eq!(quantity(1e-17, "J"), "0.01000 fJ");
+        assert_eq!(quantity(-1.613e-21, "m"), "0 m");
         assert_eq!(quantity(1.2e-15, "m^3/(N m)"), "1.200e-6 mm3/(N m)");
     }
 

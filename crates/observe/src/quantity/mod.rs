@@ -15,7 +15,7 @@ mod path;
 pub use catalogue::{Catalogue, Entry};
 pub use described::{Described, Field, Schema, field, part, parts, values};
 pub use difference::{Compared, Difference, Significance};
-pub use estimate::{DETERMINED, Estimate};
+pub use estimate::{DETERMINED, Estimate, short_cause};
 pub use findings::{Expected, Findings};
 pub use format::{below_digits, half_width, number, percent, quantity, with_half_width};
 pub use fretwork_core::unit::{self, Unit};

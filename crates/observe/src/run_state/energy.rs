@@ -16,6 +16,8 @@ pub const LEDGER_TOLERANCE: f64 = 1e-6;
 const GIVEN: f64 = 0.05;
 /// Energies below this fraction of the largest are omitted, as in the energy figure.
 const NEGLIGIBLE: f64 = 1e-3;
+/// Share of the largest energy that is round-off of sums over the steps.
+const ROUND_OFF: f64 = 1e-12;
 
 crate::described! {
     /// Momentum of the free rigid bodies that nothing outside gave them.
@@ -163,9 +165,13 @@ fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)
         x if !shown(x) => String::new(),
         x => format!("; thermal expansion did {}", quantity(x, unit)),
     };
+    let work = match e.external_work {
+        x if x.abs() <= ROUND_OFF * largest => 0.0,
+        x => x,
+    };
     let text = format!(
         "{}{gravity}{expansion}; the ledger closes to {} of the largest energy",
-        quantity(e.external_work, unit),
+        quantity(work, unit),
         number(e.relative_residual(), 2)
     );
     out.push(("external_work", "external work", text));

@@ -1,16 +1,17 @@
 //! The end of a run in at most 14 lines of 100 columns: the grade with what is known of the error,
 //! results by topic, and three things to look at.
 
+use super::lines::{COLUMNS, cut, flow, wrapped};
 use super::{Grade, Summary};
 use crate::quantity::unit::WEAR_RATE;
-use crate::quantity::{Findings, Quantity, Role, Topic, Wording, quantity, with_half_width};
+use crate::quantity::{
+    Findings, Quantity, Role, Topic, Wording, quantity, short_cause, with_half_width,
+};
 use fretwork_scene::input_ranges::GivenRange;
 use serde_json::Value;
 
 /// Largest number of lines: the caller adds one with the folder of the results.
 const LINES: usize = 14;
-/// Largest number of columns of a line of an answer.
-pub const COLUMNS: usize = 100;
 /// Columns of the labels, with the margin.
 const MARGIN: usize = 13;
 /// Number of things to look at.
@@ -148,7 +149,8 @@ impl Summary {
         if let Some(Wording::Sentence(_, text)) = last.next().map(|q| &q.wording) {
             blocks.push(Block::of_text(Some("run"), text, [0; 4]));
         }
-        let mut out = vec![run.grade.words().to_owned()];
+        let mut out = wrapped(&run.verdict, COLUMNS);
+        cut(&mut out, 1, COLUMNS);
         out.extend(within(LINES - 1, &blocks));
         out
     }
@@ -174,118 +176,74 @@ fn labelled(label: &str, text: &str) -> String {
     format!("  {label:<width$}{text}", width = MARGIN - 2)
 }
 
-/// Keeps this number of lines of a broken text, at least one; the end of the last shows that more
-/// follows.
-pub fn cut(lines: &mut Vec<String>, count: usize, columns: usize) {
-    let rest = lines.split_off(count.min(lines.len()));
-    let Some(last) = lines.last_mut().filter(|_| !rest.is_empty()) else {
-        return;
-    };
-    for line in rest {
-        *last = format!("{last} {}", line.trim_start());
-    }
-    *last = fitted(last, columns);
-}
+/// End of the depths of a body.
+const DEPTHS_END: &str = " at most";
 
-/// Breaks a text into lines, between words; a line after the first is indented.
-pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= columns => {
-                *line += " ";
-                *line += word;
-            }
-            Some(_) => lines.push(format!("  {word}")),
-            None => lines.push(word.to_owned()),
-        }
-    }
-    lines.iter().map(|line| fitted(line, columns)).collect()
-}
+/// Places of results of wear: rates k of bodies with K, volumes with half-widths, others and the
+/// depths of bodies, flows.
+const RATES: u8 = 0;
+const ESTIMATES: u8 = 1;
+const OTHERS: u8 = 2;
+const FLOWS: u8 = 3;
 
-/// Puts entries into lines. One that does not fit into a line is broken between its clauses, and a
-/// clause between words.
-fn flow(entries: &[String], columns: usize) -> Vec<String> {
-    let length = |text: &str| text.chars().count();
-    let mut lines: Vec<String> = Vec::new();
-    let mut add = |entry: &str| match lines.last_mut() {
-        Some(line) if length(line) + 2 + length(entry) <= columns => {
-            *line = format!("{line}; {entry}");
-        }
-        _ => lines.extend(wrapped(entry, columns)),
-    };
-    for entry in entries {
-        match length(entry) <= columns {
-            true => add(entry),
-            false => entry.split("; ").for_each(&mut add),
-        }
-    }
-    lines
-}
-
-/// Cuts a text to a number of columns, at the end of a clause if it keeps most of them, and
-/// otherwise between words.
-pub fn fitted(text: &str, columns: usize) -> String {
-    if text.chars().count() <= columns {
-        return text.to_owned();
-    }
-    let kept: String = text.chars().take(columns - 4).collect();
-    let clause = [". ", "; ", ": ", ", "].iter();
-    let clause = clause.filter_map(|end| kept.rfind(end)).max();
-    let end = clause.filter(|end| 4 * *end > 3 * kept.len());
-    let end = end.or_else(|| kept.rfind(' ')).unwrap_or(kept.len());
-    format!("{} ...", kept[..end].trim_end_matches([';', ':', ',']))
-}
-
-/// Returns the place of a result of wear: volumes with half-widths, rates of bodies, others, flows.
 fn place(q: &Quantity) -> u8 {
     match &q.wording {
-        _ if q.topic != Topic::Wear => 0,
-        _ if q.role == Role::Headline => 3,
-        Wording::Value(_) if q.estimate.is_some() => 0,
-        Wording::Sentence(label, _) if label.starts_with(WEAR_OF) || q.unit == WEAR_RATE => 1,
-        _ => 2,
+        _ if q.topic != Topic::Wear => OTHERS,
+        _ if q.role == Role::Headline => FLOWS,
+        Wording::Value(_) if q.estimate.is_some() => ESTIMATES,
+        Wording::Sentence(label, _) if label.starts_with(WEAR_OF) || q.unit == WEAR_RATE => RATES,
+        _ => OTHERS,
     }
 }
 
-/// Returns the results of a topic: those with half-widths first, main results before others. The
-/// causes of the half-width of the result of the `sentence` on the error are in that.
+/// Returns the results of a topic: wear rates first, those with half-widths before others, main
+/// results before others. The causes of the half-width of the result of the `sentence` on the error
+/// are in that.
 fn entries(all: &Findings, topic: Topic, sentence: &str) -> Vec<String> {
     let own = |q: &&Quantity| {
         q.topic == topic && q.role <= Role::Secondary && q.wording != Wording::Silent
     };
     let mut list: Vec<&Quantity> = all.all().iter().filter(own).collect();
-    list.sort_by_key(|q| (place(q), q.estimate.is_none(), q.role));
+    // Values with half-widths come first here: the sentences of bodies do not repeat them.
+    list.sort_by_key(|q| (place(q) == FLOWS, q.estimate.is_none(), q.role));
     let dimension = all.dimension();
     let mut causes = topic != Topic::Energy;
-    let mut out: Vec<String> = Vec::new();
+    let mut out: Vec<(u8, String)> = Vec::new();
     // Values that were shown with their half-widths.
     let mut shown: Vec<String> = Vec::new();
     for q in list {
         let known = sentence.starts_with(&format!("error of {}", q.label()));
-        let Some(mut entry) = entry(q, dimension, causes && !known) else {
+        let Some(entry) = entry(q, dimension, causes && !known) else {
             continue;
         };
         causes = false;
         match (&q.wording, q.value.as_f64()) {
             (_, Some(value)) if q.estimate.is_some() => {
                 shown.push(quantity(value, q.unit.symbol(dimension)));
+                out.push((place(q), entry));
             }
-            (Wording::Sentence(label, text), _) => {
+            (Wording::Sentence(label, text), _) if topic == Topic::Wear => {
                 // The label of the block says what it is about.
                 let label = label.strip_prefix(WEAR_OF).unwrap_or(label);
                 let mut again = shown.iter().filter_map(|v| text.strip_prefix(v.as_str()));
-                entry = match again.find_map(|rest| rest.strip_prefix(", ")) {
-                    Some(rest) => format!("{label}: {rest}"),
-                    None if topic == Topic::Wear => format!("{label} {text}"),
-                    None => entry,
+                let text = match again.find_map(|rest| rest.strip_prefix(", ")) {
+                    Some(rest) => rest,
+                    None => text,
                 };
+                // Depths may be left out where there is no room.
+                let parts = text.rsplit_once("; ");
+                let parts = parts.filter(|(_, last)| last.ends_with(DEPTHS_END));
+                let (rate, depths) = parts.unwrap_or((text, ""));
+                out.push((place(q), format!("{label} {rate}")));
+                if !depths.is_empty() {
+                    out.push((OTHERS, format!("{label} {depths}")));
+                }
             }
-            _ => {}
+            _ => out.push((place(q), entry)),
         }
-        out.push(entry);
     }
-    out
+    out.sort_by_key(|(place, _)| *place);
+    out.into_iter().map(|(_, entry)| entry).collect()
 }
 
 /// Returns a result with its half-width, and the causes of that if requested.
@@ -307,12 +265,15 @@ fn entry(q: &Quantity, dimension: usize, causes: bool) -> Option<String> {
         if estimate.is_determined() == Some(false) {
             return Some(format!("{} not determined: {shown}", q.label()));
         }
-        let by: Vec<String> = estimate.shares().into_iter().map(|(of, _)| of).collect();
-        let plain = format!("{} {shown}", q.label());
-        let caused = format!("{plain} ({})", by.join(", "));
+        let of = estimate.statistic.as_ref();
+        let of = of.map_or(String::new(), |of| format!(", {of}"));
+        let plain = format!("{} {shown}{of}", q.label());
+        let caused = format!("{plain} ({})", estimate.causes().join(", "));
         let fits = causes && caused.chars().count() <= COLUMNS - MARGIN;
         return Some(if fits { caused } else { plain });
     }
+    let of = q.estimate.as_ref().and_then(|e| e.statistic.as_ref());
+    let of = of.map_or(String::new(), |of| format!(", {of}"));
     match &q.wording {
         Wording::Sentence(label, text) => Some(format!("{label} {text}")),
         _ => {
@@ -322,7 +283,7 @@ fn entry(q: &Quantity, dimension: usize, causes: bool) -> Option<String> {
                 Value::String(text) => text.clone(),
                 _ => return None,
             };
-            Some(format!("{} {value}", q.label()))
+            Some(format!("{} {value}{of}", q.label()))
         }
     }
 }
@@ -344,6 +305,7 @@ fn undetermined(all: &Findings) -> Vec<String> {
             true => format!("{:.0} %", 100.0 * share),
             false => "all of it".to_owned(),
         };
+        let of = short_cause(&of);
         Some(format!(
             "{} is not determined: {of} may change {share}",
             q.label()
@@ -355,37 +317,6 @@ fn undetermined(all: &Findings) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_long_text_is_cut_at_a_clause_or_between_words() {
-        assert_eq!(fitted("short", 10), "short");
-        assert_eq!(
-            fitted("NOT KNOWN: the first clause, the second clause", 34),
-            "NOT KNOWN: the first clause ..."
-        );
-        assert_eq!(
-            fitted("only one clause of words", 20),
-            "only one clause ..."
-        );
-        let long = fitted(&"é".repeat(300), COLUMNS);
-        assert!(long.chars().count() <= COLUMNS, "{long}");
-    }
-
-    #[test]
-    fn an_entry_is_broken_between_clauses_and_a_clause_between_words() {
-        let clause = |word: &str| [word; 8].join(" ");
-        let long = [clause("first"), clause("second"), "short".to_owned()].join("; ");
-        let lines = flow(&["one".to_owned(), long], 62);
-        let expected = [
-            format!("one; {}", clause("first")),
-            format!("{}; short", clause("second")),
-        ];
-        assert_eq!(lines, expected);
-        assert_eq!(
-            flow(&[clause("first")], 30),
-            [["first"; 5].join(" "), "  first first first".to_owned()]
-        );
-    }
 
     #[test]
     fn blocks_share_the_lines_there_are() {

@@ -12,7 +12,7 @@ crate::described! {
     /// The main results.
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
     pub struct Uncertainty {
-        /// Friction coefficient: the mean over the steady cycles or blocks.
+        /// Friction coefficient: the mean over the later cycles, or the second half of the time.
         pub friction_coefficient: Estimate = part::<Estimate>(),
         /// Broken bonds over bonds made; its half-widths are those of the sum of the damage of all
         /// bonds, of which the ratio counts the part that is complete.
@@ -62,8 +62,24 @@ impl Uncertainty {
             mu.method = Some(scatter.method());
             mu.scatter = scatter.half_width();
             mu.scope = mu.scatter.map(|_| scatter.scope());
-            mu.value = mu.scatter.map_or(mu.value, |_| Some(scatter.flow.mean));
         }
+        // The ratio of the sums over blocks is that of the second half.
+        let mean = friction.filter(|f| f.oscillates).and_then(|f| {
+            let scatter = f.scatter.as_ref()?;
+            scatter.half_width()?;
+            Some((scatter.flow.mean, format!("mean of {}", scatter.over)))
+        });
+        let own = mu.value.zip(friction).map(|(own, friction)| {
+            let complete = friction.cycles.iter().rev().find(|c| c.complete);
+            let last = complete.or(friction.cycles.last());
+            let part = match last.filter(|_| friction.oscillates) {
+                Some(cycle) => format!("cycle {}", cycle.cycle),
+                None => "second half of the time".to_owned(),
+            };
+            let begun = complete.map_or("begun ", |_| "");
+            (own, format!("{begun}{part}"))
+        });
+        (mu.value, mu.statistic) = mean.or(own).unzip();
         let bonds = found.number("bonds").unwrap_or(0.0);
         all.damage_ratio.value = found.number("damage_ratio").filter(|_| bonds > 0.0);
         let worn = found.number("wear.volume_first_bodies");
@@ -105,10 +121,12 @@ impl Uncertainty {
             ("wear.volume_first_bodies", &self.wear),
             ("energy.friction", &self.friction_energy),
         ] {
-            if estimate.scatter.is_some() || estimate.settings().next().is_some() {
+            let known = estimate.scatter.is_some() || estimate.settings().next().is_some();
+            if known || estimate.statistic.is_some() {
                 found.estimate(name, estimate);
             }
         }
+        self.friction_coefficient.as_result(found);
         if self.wear.settings().next().is_some() {
             found.edit("wear.volume_first_bodies", |q| {
                 q.remark("");
@@ -128,6 +146,19 @@ impl Uncertainty {
             q.sentence("estimate of the error", text);
         });
         found.warn(repeats.warnings());
+    }
+}
+
+impl Estimate {
+    /// Makes the value of the friction coefficient that of this estimate: one number of one name.
+    fn as_result(&self, found: &mut Findings) {
+        let Some((value, statistic)) = self.value.zip(self.statistic.as_ref()) else {
+            return;
+        };
+        found.edit("friction_coefficient", |q| {
+            q.value = value.into();
+            q.remark(format!("{statistic}: |Q|/P while the contact slides"));
+        });
     }
 }
 

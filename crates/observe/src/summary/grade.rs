@@ -2,11 +2,15 @@
 //! known of the error of its headline.
 
 use super::SampleFacts;
-use crate::quantity::{Estimate, Findings, Quantity, Role, percent};
+use super::SlidingTest;
+use crate::quantity::{Estimate, Findings, Quantity, Role, Topic, percent, short_cause};
 use serde::Serialize;
 
 /// Largest error of a headline that counts as small, as a share of its value.
 pub const SMALL: f64 = 0.05;
+
+/// Path of the result whose scatter over seeds was studied.
+const SLIDING: &str = SlidingTest::COEFFICIENT;
 
 /// Trust in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -23,21 +27,6 @@ pub enum Grade {
     ErrorKnown,
 }
 
-impl Grade {
-    /// Returns the grade in words, for the first line of a text.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::NotTrustworthy => "NOT TRUSTWORTHY",
-            Self::Consistent => {
-                "CONSISTENT: the ledgers close and the steps converged; the error is not known to be small"
-            }
-            Self::ErrorKnown => {
-                "ERROR KNOWN: the ledgers close, the steps converged, the error is known and small"
-            }
-        }
-    }
-}
-
 /// What a run knows of the error of its headline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeadlineError {
@@ -47,7 +36,7 @@ pub struct HeadlineError {
     pub known: Vec<(String, f64)>,
     /// Causes whose effect on the headline is not known although the run looked for it.
     pub unknown: Vec<String>,
-    /// Causes that one run cannot know.
+    /// Causes that one run cannot know, and that were not studied.
     pub beyond: Vec<&'static str>,
 }
 
@@ -80,15 +69,22 @@ impl HeadlineError {
             Some(share) => out.known.push(("step and tolerance".to_owned(), share)),
             None => out.missing(&estimate),
         }
-        // A mean over cycles or blocks has a scatter, unless it still changes.
-        if estimate.method.is_some() && estimate.scatter.is_none() {
+        // A mean over cycles or blocks has a scatter, unless it still changes; of a random sample
+        // one cycle is not known to be like the next.
+        let one = sample.random && headline.topic == Topic::Friction;
+        if (estimate.method.is_some() || one) && estimate.scatter.is_none() {
             out.unknown.push("sample".to_owned());
         }
         if sample.cells {
             out.beyond.push("cells");
         }
-        if sample.random {
-            out.beyond.push("seeds");
+        let studied = sample.sliding.filter(|_| headline.name() == SLIDING);
+        match studied {
+            Some(study) => out
+                .known
+                .push((format!("over {} seeds", study.seeds), study.half_width())),
+            None if sample.random => out.beyond.push("seeds"),
+            None => {}
         }
         out
     }
@@ -114,6 +110,29 @@ impl HeadlineError {
         match known && self.share() <= SMALL {
             true => Grade::ErrorKnown,
             false => Grade::Consistent,
+        }
+    }
+
+    /// Returns the verdict on a run in a line: its grade, of what the error is known and by which
+    /// causes, and what was not studied.
+    pub fn verdict(&self, grade: Grade) -> String {
+        let of = match self.label.as_str() {
+            "" => "the main result",
+            label => label,
+        };
+        let names: Vec<&str> = self.known.iter().map(|(of, _)| short_cause(of)).collect();
+        let beyond = match self.beyond.as_slice() {
+            [] => String::new(),
+            list => format!("; {}: not studied", list.join(", ")),
+        };
+        match grade {
+            Grade::NotTrustworthy => "NOT TRUSTWORTHY".to_owned(),
+            Grade::Consistent => format!(
+                "CONSISTENT: ledgers close, steps converged; error of {of} not known to be small"
+            ),
+            Grade::ErrorKnown => {
+                format!("ERROR KNOWN: {of} ({}){beyond}", names.join(", "))
+            }
         }
     }
 
@@ -149,8 +168,8 @@ fn chosen_accuracy(found: &Findings) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::Topic;
     use crate::quantity::unit::ONE;
+    use crate::summary::SeedScatter;
 
     fn found(estimate: Estimate) -> Findings {
         let mut found = Findings::new(2);
@@ -188,6 +207,10 @@ mod tests {
             error.sentence(),
             "error of friction not known by seeds; known: step 0.50 %, tolerance 0.10 %, within this sample (3 cycles) 1.0 %"
         );
+        assert_eq!(
+            error.verdict(error.grade()),
+            "ERROR KNOWN: friction (step, tolerance, cycles); seeds: not studied"
+        );
         for (estimate, says) in [
             (
                 Estimate {
@@ -223,6 +246,68 @@ mod tests {
             let text = error.sentence();
             assert!(text.contains(says), "{text}");
         }
+    }
+
+    /// One cycle of a random sample has no scatter, and says nothing of the next.
+    #[test]
+    fn friction_of_one_cycle_of_a_random_sample_is_not_known() {
+        let one = || Estimate {
+            scatter: None,
+            scope: None,
+            method: None,
+            ..known()
+        };
+        let of = |random| {
+            let sample = SampleFacts {
+                random,
+                ..SampleFacts::default()
+            };
+            HeadlineError::of(&found(one()), &sample)
+        };
+        assert_eq!(of(false).grade(), Grade::ErrorKnown);
+        let error = of(true);
+        assert_eq!(error.grade(), Grade::Consistent);
+        assert!(
+            error.sentence().contains("not known by sample, seeds"),
+            "{error:?}"
+        );
+        assert!(
+            error
+                .verdict(error.grade())
+                .ends_with("error of friction not known to be small"),
+            "{error:?}"
+        );
+    }
+
+    #[test]
+    fn a_studied_scatter_of_seeds_is_a_known_cause_of_the_coefficient_of_sliding() {
+        let of = |deviation, path: &str| {
+            let sample = SampleFacts {
+                random: true,
+                sliding: Some(SeedScatter {
+                    seeds: 5,
+                    mean: 0.4,
+                    deviation,
+                }),
+                ..SampleFacts::default()
+            };
+            let mut found = Findings::new(2);
+            found.begin(Topic::Friction, Role::Headline);
+            found.add(path, 0.4, ONE, "friction").headline("friction");
+            found.estimate(path, &known());
+            HeadlineError::of(&found, &sample)
+        };
+        let small = of(0.01, SLIDING);
+        assert_eq!(small.grade(), Grade::ErrorKnown);
+        assert_eq!(
+            small.verdict(small.grade()),
+            "ERROR KNOWN: friction (step, tolerance, cycles, seeds)"
+        );
+        // 0.06 by one seed.
+        let large = of(0.02, SLIDING);
+        assert_eq!(large.grade(), Grade::Consistent, "{large:?}");
+        assert!(large.sentence().contains("over 5 seeds 6.1 %"), "{large:?}");
+        assert_eq!(of(0.02, "another").beyond, ["seeds"]);
     }
 
     #[test]

@@ -5,16 +5,17 @@ mod brief;
 mod course;
 mod estimate;
 mod grade;
+mod lines;
 mod sample;
 mod sliding;
 mod text;
 mod time_spent;
 
-pub use self::brief::{COLUMNS, cut, fitted, wrapped};
 pub use self::course::{Course, RELATIVE_RESIDUAL, residual};
 pub use self::estimate::{Estimate, Uncertainty};
 pub use self::grade::{Grade, HeadlineError};
-pub use self::sample::SampleFacts;
+pub use self::lines::{COLUMNS, cut, fitted, wrapped};
+pub use self::sample::{SampleFacts, SeedScatter};
 pub use self::sliding::SlidingTest;
 pub use self::time_spent::TimeSpent;
 
@@ -70,6 +71,8 @@ crate::described! {
         /// close and the steps converged; `error known`, in addition the error of the headline is
         /// known and at most 5 %.
         pub grade: Grade => WORD,
+        /// The grade with that of which the error is known, the causes, and what was not studied.
+        pub verdict: String => WORD,
         /// What is known of the error of the headline, and what is not.
         pub grade_sentence: String => WORD,
         /// What decides how far its numbers go.
@@ -176,6 +179,7 @@ impl Summary {
             true => error.grade(),
             false => Grade::NotTrustworthy,
         };
+        run.verdict = error.verdict(run.grade);
         run.grade_sentence = error.sentence();
         list
     }

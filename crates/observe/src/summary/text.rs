@@ -5,6 +5,12 @@ use super::Summary;
 use crate::quantity::{Findings, Quantity, Role, Topic, Wording, half_width, quantity};
 use std::fmt::Write as _;
 
+/// Where the inputs are told.
+const INPUTS: (&str, &str) = (
+    "inputs",
+    "each parameter of the laws with its origin: fretwork check CASE --inputs",
+);
+
 impl Summary {
     /// The text: a few lines, or warnings and results with all details if `verbose`.
     pub fn text(&self, verbose: bool) -> String {
@@ -12,7 +18,7 @@ impl Summary {
             return self.brief().join("\n") + "\n";
         }
         let mut out = String::new();
-        let _ = writeln!(out, "{}", self.run.grade.words());
+        let _ = writeln!(out, "{}", self.run.verdict);
         if self.run.trustworthy {
             let _ = writeln!(out, "  {}", self.run.grade_sentence);
         }
@@ -20,6 +26,8 @@ impl Summary {
             let _ = writeln!(out, "  {warning}");
         }
         let _ = writeln!(out, "{}", self.run.case);
+        let (label, text) = INPUTS;
+        let _ = writeln!(out, "  {label:<22} {text}");
         for (label, text) in lines(&self.quantities()) {
             let _ = writeln!(out, "  {label:<22} {text}");
         }

@@ -130,7 +130,12 @@ fn a_trusted_run_begins_with_its_grade_and_what_is_known_of_the_error() {
     let text = summary.text(false);
     // For k in 26..=50 each of 0.400 to 0.404 occurs five times: mean 0.402, deviation 1e-3
     // sqrt(2 * 25/24), t(24, 0.975) = 2.0639: 0.000596.
-    assert!(text.starts_with("CONSISTENT: the ledgers close"), "{text}");
+    assert!(
+        text.starts_with(
+            "CONSISTENT: ledgers close, steps converged; error of friction coefficient not known to be small\n"
+        ),
+        "{text}"
+    );
     let says = &summary.run.grade_sentence;
     assert_eq!(
         says,
@@ -138,9 +143,20 @@ fn a_trusted_run_begins_with_its_grade_and_what_is_known_of_the_error() {
     );
     place(
         &text,
-        "friction coefficient 0.4020 +- 0.00060; energetic coefficient 0.4000",
+        "friction coefficient 0.4020 +- 0.00060, mean of cycles 26 to 50; energetic",
     );
-    place(&text, "rail 3.000e-5 mm3, k 3.000e-6 mm3/(N m)");
+    let rate = place(
+        &text,
+        "wear       rail 3.000e-5 mm3, k 3.000e-6 mm3/(N m); wheel 2.000e-5",
+    );
+    assert!(
+        rate < place(&text, "wear of first bodies 5.000e-5"),
+        "{text}"
+    );
+    place(
+        &text,
+        "rail 100.0 nm deep on average where worn, 300.0 nm at most",
+    );
     place(&text, "damage ratio 0.3000");
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(&text, "look at    1 one seed");
@@ -169,6 +185,21 @@ fn a_result_with_a_large_half_width_is_not_determined() {
         &summary.text(true),
         "not determined: 0.3000 +- 0.19 (step) +- 0.040 (tolerance)",
     );
+}
+
+/// The file has the number of the terminal, with what it is of.
+#[test]
+fn friction_is_one_number_on_the_terminal_and_in_the_file() {
+    let summary = fretting();
+    let file = serde_json::to_value(&summary).unwrap();
+    let mean = file["friction_coefficient"].as_f64().unwrap();
+    assert!((mean - 0.402).abs() < 1e-12, "{mean}");
+    let estimate = &file["uncertainty"]["friction_coefficient"];
+    assert_eq!(estimate["value"], file["friction_coefficient"]);
+    assert_eq!(estimate["statistic"], "mean of cycles 26 to 50");
+    // Cycle 50 by itself.
+    assert_eq!(file["cycles"][49]["friction_coefficient"], 0.4);
+    assert!(!summary.text(true).contains("0.4000 in cycle 50"));
 }
 
 #[test]

@@ -129,7 +129,7 @@ impl Identity {
                 free.push(END);
             }
             if let Some(d) = first_difference(&a, &b, &free) {
-                let said = |text: Option<String>| text.unwrap_or("nothing".to_owned());
+                let said = |text: Option<String>| text.unwrap_or("not given".to_owned());
                 return Some(format!(
                     "`{}` was {} in the original run and is {} now",
                     d.path,
@@ -229,6 +229,23 @@ mod tests {
                 .collect(),
             scene: String::new(),
         }
+    }
+
+    #[test]
+    fn a_key_that_one_case_does_not_give_is_said_to_be_missing() {
+        let case = |text: &str| Identity {
+            case: text.to_owned(),
+            ..of(&[])
+        };
+        let (without, with) = (case("(name: \"a\")"), case("(name: \"a\", seed: 7)"));
+        assert_eq!(
+            without.differs(&with).unwrap(),
+            "`seed` was not given in the original run and is 7 now"
+        );
+        assert_eq!(
+            with.differs(&without).unwrap(),
+            "`seed` was 7 in the original run and is not given now"
+        );
     }
 
     #[test]

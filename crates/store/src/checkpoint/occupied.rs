@@ -21,8 +21,13 @@ pub struct Occupied {
 /// Returns the results in a folder that a run with this identity would replace and not give again:
 /// those of other inputs or of another version, of a run that is not at its end, of one with
 /// another end, and files that cannot be read. The same finished run, also of another build of the
-/// program, and a run that recorded nothing, may be replaced. The folder should be locked.
-pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
+/// program, and a run that recorded nothing, may be replaced. `refuses` returns why the new run
+/// cannot be an extension of one with an earlier end. The folder should be locked.
+pub fn occupied(
+    folder: &Path,
+    identity: &Identity,
+    refuses: impl FnOnce() -> Option<&'static str>,
+) -> Option<Occupied> {
     let path = folder.join("results.h5");
     if !path.exists() {
         return None;
@@ -73,10 +78,11 @@ pub fn occupied(folder: &Path, identity: &Identity) -> Option<Occupied> {
     let continues = state && !theirs.is_of_another_build(identity);
     if theirs.ends_later(identity) {
         let end = theirs.end();
-        return holds(
-            format!("this run up to an earlier `time.end`, {end} s"),
-            continues,
-        );
+        let what = format!("this run up to an earlier `time.end`, {end} s");
+        return match refuses() {
+            None => holds(what, continues),
+            Some(why) => holds(format!("{what}, and cannot go on from there: {why}"), false),
+        };
     }
     let ended = last.kind == FrameKind::Ended && finished(folder, &Identity::name(&last.identity));
     match ended {

@@ -335,7 +335,7 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
     format!(
         "<p class=\"lead\">Half-widths are of 95 % intervals, by cause. A difference is significant \
          (<em>they differ</em>) where it exceeds the half-widths of both, as the root of the sum of their \
-         squares, of the causes that both have. Runs that are not trustworthy, and results that are not \
+         squares, of the causes that at least one knows, also if what the other does not know is three times as large. Runs that are not trustworthy, and results that are not \
          determined, have no significant difference.{seeds}{dimensions}</p>\n{table}"
     )
 }

@@ -4,6 +4,7 @@ use crate::html::folder::RunFolder;
 use fretwork_observe::quantity::{
     Catalogue, Compared, Difference, Entry, Estimate, Role, Topic, half_width, with_half_width,
 };
+use fretwork_observe::summary::{SeedScatter, SlidingTest};
 use serde_json::Value;
 
 /// A result.
@@ -89,11 +90,21 @@ pub(crate) fn groups(run: &RunFolder) -> Vec<ResultGroup> {
     let catalogue = Catalogue::of(&run.summary);
     let trusted = run.summary["trustworthy"] == true;
     let random = run.summary["sample"]["random"] == true;
+    let seeds = run.summary["sample"]["sliding"].clone();
+    let seeds: Option<SeedScatter> = serde_json::from_value(seeds).ok().flatten();
     let mut groups: Vec<(Topic, Vec<ResultRow>)> = Vec::new();
     for (entry, value) in catalogue.shown(&run.summary, Role::Secondary) {
         let mut row = row(entry, value);
         if let Some((number, _)) = &mut row.number {
             (number.trusted, number.random) = (trusted, random);
+            if let Some(study) = seeds
+                .as_ref()
+                .filter(|_| entry.path == SlidingTest::COEFFICIENT)
+            {
+                let half = study.half_width() * number.value.abs();
+                number.half_widths.push(("seeds".to_owned(), half));
+                number.random = false;
+            }
         }
         match groups.iter_mut().find(|g| g.0 == entry.topic) {
             Some(group) => group.1.push(row),

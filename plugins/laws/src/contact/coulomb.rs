@@ -4,7 +4,7 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, abi, parameters};
 parameters! {
     /// |p_t| <= mu p_n, opposite to the sliding velocity; u+ = -e u- for closed contacts.
     pub struct Coulomb {
-        mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient";
+        mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient", friction;
         restitution_n: "" = 0.0, 0.0, 1.0, "normal restitution (Newton)";
         restitution_t: "" = 0.0, 0.0, 1.0, "tangential restitution (Newton)";
     }

@@ -4,7 +4,7 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 parameters! {
     /// |p_t| <= mu D p_n: an intact bond does not slide, a broken one has the full friction.
     pub struct CoulombDamage {
-        mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient of the broken contact";
+        mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient of the broken contact", friction;
     }
 }
 

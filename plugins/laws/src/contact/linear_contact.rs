@@ -8,7 +8,7 @@ parameters! {
         stiffness: "N/m" = 1e6, 1e-300, 1e300, "normal stiffness k; in 2D per metre of depth (N/m^2)";
         ratio: "" = 0.8, 0.0, 1e3, "tangential over normal stiffness; 0: no tangential displacement before slip";
         restitution: "" = 1.0, 0.0, 1.0, "share of the approach velocity with which two bodies part";
-        mu: "" = 0.3, 0.0, 1e6, "friction coefficient";
+        mu: "" = 0.3, 0.0, 1e6, "friction coefficient", friction;
     }
 }
 

@@ -13,7 +13,7 @@ parameters! {
     /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone. The range is the
     /// distance at which surfaces touch: a roughness, or the thickness of a film.
     pub struct MohrCoulomb {
-        mu: "" = 0.5, 0.0, 1e6, "friction coefficient, tangent of the friction angle";
+        mu: "" = 0.5, 0.0, 1e6, "friction coefficient, tangent of the friction angle", friction;
         cohesion: "Pa" = 1e5, 0.0, 1e30, "shear strength c without pressure";
         tension: "Pa" = 5e4, 0.0, 1e30, "tension cut-off, at most cohesion/mu";
         range: "m" = 1e-7, 0.0, 1e30, "largest gap over which cohesion and tension act";

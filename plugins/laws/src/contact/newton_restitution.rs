@@ -9,7 +9,7 @@ parameters! {
         e_n: "" = 0.8, 0.0, 1.0, "normal restitution";
         e_t: "" = 0.0, 0.0, 1.0, "tangential restitution, in impacts only";
         v_min: "m/s" = 1e-3, 0.0, 1e6, "approach velocity up to which both are zero; above g h";
-        mu: "" = 0.3, 0.0, 1e6, "friction coefficient";
+        mu: "" = 0.3, 0.0, 1e6, "friction coefficient", friction;
     }
 }
 

@@ -4,7 +4,7 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 parameters! {
     /// The defaults are Polach's for a dry rail; for a wet one he gives mu_0 0.30, a 0.40, b 0.20.
     pub struct RailFallingFriction {
-        mu_0: "" = 0.55, 0.0, 1e6, "friction coefficient without slip";
+        mu_0: "" = 0.55, 0.0, 1e6, "friction coefficient without slip", friction;
         a: "" = 0.40, 0.0, 1.0, "A, friction at infinite slip over mu_0";
         b: "s/m" = 0.60, 0.0, 1e12, "B, decay with the slip velocity";
     }

@@ -14,7 +14,7 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, Variable, parameters, requir
 parameters! {
     /// Dieterich's aging law or Ruina's slip law.
     pub struct RateAndState {
-        mu_0: "" = 0.6, 0.0, 1e3, "friction coefficient of steady sliding at V_0";
+        mu_0: "" = 0.6, 0.0, 1e3, "friction coefficient of steady sliding at V_0", friction;
         a: "" = 0.010, 0.0, 1e3, "direct effect of the velocity";
         b: "" = 0.015, 0.0, 1e3, "effect of the state";
         v_0: "m/s" = 1e-6, 1e-30, 1e6, "reference velocity V_0";

@@ -5,7 +5,7 @@ parameters! {
     /// Each length is a constant plus a fraction of the reduced radius r1 r2/(r1 + r2), which is
     /// half the radius between equal bodies and the radius itself against a flat one.
     pub struct RollingFriction {
-        mu: "" = 0.3, 0.0, 1e6, "friction coefficient";
+        mu: "" = 0.3, 0.0, 1e6, "friction coefficient", friction;
         rolling: "m" = 0.0, 0.0, 1e6, "constant part of the rolling friction length";
         spinning: "m" = 0.0, 0.0, 1e6, "constant part of the spinning friction length";
         rolling_factor: "" = 0.05, 0.0, 1e6, "rolling friction length over the reduced radius";

@@ -10,8 +10,8 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters, require};
 parameters! {
     /// mu_s for V <= v_s, mu_d for V >= v_s + v_r, linear in between.
     pub struct StaticDynamic {
-        mu_s: "" = 0.4, 0.0, 1e6, "static friction coefficient";
-        mu_d: "" = 0.3, 0.0, 1e6, "dynamic friction coefficient, at most mu_s";
+        mu_s: "" = 0.4, 0.0, 1e6, "static friction coefficient", friction;
+        mu_d: "" = 0.3, 0.0, 1e6, "dynamic friction coefficient, at most mu_s", friction;
         v_s: "m/s" = 1e-4, 0.0, 1e6, "tangential velocity up to which the contact sticks";
         v_r: "m/s" = 1e-4, 1e-12, 1e6, "width of the ramp from mu_s to mu_d, against chatter";
     }

@@ -10,8 +10,8 @@ parameters! {
         stiffness: "N/m" = 1e6, 1e-300, 1e300, "normal stiffness k; in 2D per metre of depth (N/m^2)";
         ratio: "" = 0.8, 0.0, 1e3, "tangential over normal stiffness; 0: no tangential displacement before slip";
         restitution: "" = 1.0, 0.0, 1.0, "share of the approach velocity with which two bodies part";
-        cold: "" = 0.4, 0.0, 1e6, "friction coefficient up to the lower temperature";
-        hot: "" = 0.16, 0.0, 1e6, "friction coefficient from the upper temperature on";
+        cold: "" = 0.4, 0.0, 1e6, "friction coefficient up to the lower temperature", friction;
+        hot: "" = 0.16, 0.0, 1e6, "friction coefficient from the upper temperature on", friction;
         from: "K" = 293.15, 0.0, 1e6, "lower temperature";
         to: "K" = 893.15, 0.0, 1e6, "upper temperature";
     }

@@ -5,8 +5,8 @@ parameters! {
     /// The coefficient mu is `cold` up to the temperature `from`, `hot` above `to`, and linear
     /// between them. It may decrease or increase.
     pub struct ThermalFriction {
-        cold: "" = 0.4, 0.0, 1e6, "friction coefficient up to the lower temperature";
-        hot: "" = 0.16, 0.0, 1e6, "friction coefficient from the upper temperature on";
+        cold: "" = 0.4, 0.0, 1e6, "friction coefficient up to the lower temperature", friction;
+        hot: "" = 0.16, 0.0, 1e6, "friction coefficient from the upper temperature on", friction;
         from: "K" = 293.15, 0.0, 1e6, "lower temperature";
         to: "K" = 893.15, 0.0, 1e6, "upper temperature";
     }

@@ -4,8 +4,8 @@ use fretwork_law::{ContactLaw, Friction, Law, Site, parameters, require};
 parameters! {
     /// Smooth decrease from mu_s at rest to mu_d at high velocity.
     pub struct VelocityWeakening {
-        mu_s: "" = 0.4, 0.0, 1e6, "friction coefficient at rest";
-        mu_d: "" = 0.3, 0.0, 1e6, "friction coefficient at high velocity, at most mu_s";
+        mu_s: "" = 0.4, 0.0, 1e6, "friction coefficient at rest", friction;
+        mu_d: "" = 0.3, 0.0, 1e6, "friction coefficient at high velocity, at most mu_s", friction;
         v_s: "m/s" = 0.1, 1e-12, 1e6, "velocity over which it falls, V_s";
     }
 }

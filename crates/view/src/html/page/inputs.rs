@@ -37,7 +37,8 @@ pub(crate) fn html(run: &RunFolder) -> String {
         .count();
     format!(
         "<p class=\"lead\">{given} of {} keys are given by the case, the others are defaults or not set. Any of them changes with \
-         <code>--set KEY=VALUE</code>. Units are SI; texts and pure numbers have none.</p>\n\
+         <code>--set KEY=VALUE</code>. Units are SI; texts and pure numbers have none. Where each parameter of the laws came from \
+         (case, material with its source, default of the law): <code>fretwork check CASE --inputs</code>.</p>\n\
          <div class=\"tools\"><label class=\"search\">Search <input type=\"search\" data-filters=\"inputs-table\" \
          placeholder=\"solver, young, 0.5 ...\"></label>\n\
          <label><input type=\"checkbox\" data-hides=\"inputs-table\" data-class=\"given\"> only what is given</label></div>\n\

@@ -21,7 +21,7 @@ parameters! {
         young_2: "Pa" = 2.1e11, 1e-300, 1e300, "Young's modulus of the second material";
         poisson_2: "" = 0.3, -0.99, 0.5, "Poisson's ratio of the second material";
         restitution: "" = 1.0, 0.0, 1.0, "share of the approach velocity with which two bodies part";
-        mu: "" = 0.3, 0.0, 1e6, "friction coefficient";
+        mu: "" = 0.3, 0.0, 1e6, "friction coefficient", friction;
     }
 }
 
