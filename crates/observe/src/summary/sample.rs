@@ -111,7 +111,7 @@ const STUDIED: [Studied; 5] = [
     Studied {
         case: "regime_map",
         text: include_str!("../../../../cases/regime_map.ron"),
-        sliding: sliding(3, 0.2669, 0.042),
+        sliding: sliding(5, 0.2648, 0.032),
         other: "",
         row: "",
     },
