@@ -186,6 +186,7 @@ mod tests {
     fn a_friction_coefficient_is_declared_as_one() {
         let flags: Vec<u64> = Sliding::FIELDS.iter().map(|field| field.flags).collect();
         assert_eq!(flags, [FIELD_FRICTION, 0]);
-        assert_eq!(Sliding::default().mu, 0.3);
+        let Sliding { mu, k } = Sliding::default();
+        assert_eq!([mu, k], [0.3, 1.0]);
     }
 }

@@ -151,7 +151,7 @@ mod tests {
             of(2, 60),
             [
                 "1 NOT STEADY: friction has no interval: 10 blocks of equal",
-                "  time still show a trend"
+                "  time still show a trend (by a test, p < 0.01)"
             ]
         );
         assert_eq!(of(1, 30), ["1 NOT STEADY: friction ..."]);
