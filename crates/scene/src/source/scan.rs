@@ -440,7 +440,8 @@ impl<'a> Scanner<'a> {
             false => rest.find(|c: char| is_blank(c) || "()[]{},:\"'/*".contains(c)),
         };
         let unit = &rest[..word.unwrap_or(rest.len())];
-        match sign == '/' && units::known(&format!("1/{unit}")).is_ok() && !unit.is_empty() {
+        let named = unit.starts_with(|c: char| c.is_alphabetic() || c == '(');
+        match sign == '/' && named && units::known(&format!("1/{unit}")).is_ok() {
             true => format!(
                 "a unit stands after a blank, and begins with 1 here: write `{number} 1/{unit}`"
             ),
