@@ -250,3 +250,122 @@ fn a_free_ball_on_a_vibrating_plate_is_not_in_gross_slip() {
     // In the first cycle the plate starts at once, and the ball slides until it rolls.
     assert_eq!(found.found.text("cycles.4.regime"), Some("partial"));
 }
+
+/// Bodies on a disc of the case of a pin on it, which rests or turns by `rz`.
+fn on_disc(rz: &str, pins: &[(&str, [f64; 2], &str)]) -> String {
+    let pins = pins.iter().map(|(name, [x, y], dofs)| {
+        format!(
+            "(name: \"{name}\", material: \"steel\", mass: 0.01, position: [{x}, {y}, 0.003], \
+             shapes: [Balls([([0.0, 0.0, 0.0], 0.003)])], dofs: ({dofs}))"
+        )
+    });
+    let pins: Vec<String> = pins.collect();
+    format!(
+        "bodies=[(name: \"disc\", material: \"steel\", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])], \
+         dofs: ({rz})), {}]",
+        pins.join(", ")
+    )
+}
+
+/// Contacts that slide oblique to the axis of the test have the mu put in (0.4): three pins on a
+/// disc, a pin between the axes, one that goes in a circle, and one with a ripple on the rotation.
+#[test]
+fn friction_is_in_the_plane_of_the_contacts() {
+    let load = "z: Force(-10.0)";
+    let turns = "rz: Velocity(6.283185307179586)";
+    let circle = "x: Displacement(Sine(amplitude: 1e-4, frequency: 10.0)), \
+                  y: Displacement(Sine(amplitude: 1e-4, frequency: 10.0, phase: 1.5707963)), z: Force(-10.0)";
+    let ripple = "y: Displacement(Sine(amplitude: 1e-3, frequency: 10.0)), z: Force(-10.0)";
+    let half = 0.75_f64.sqrt() * 0.01;
+    let three = [
+        ("pin", [0.01, 0.0], load),
+        ("second", [-0.005, half], load),
+        ("third", [-0.005, -half], load),
+    ];
+    for (name, bodies, body, along) in [
+        ("three pins", on_disc(turns, &three), "disc", "1"),
+        (
+            "45 degrees",
+            on_disc(turns, &[("pin", [0.007, 0.007], load)]),
+            "pin",
+            "1",
+        ),
+        (
+            "circle",
+            on_disc("", &[("pin", [0.0; 2], circle)]),
+            "pin",
+            "0",
+        ),
+        (
+            "ripple",
+            on_disc(turns, &[("pin", [0.01, 0.0], ripple)]),
+            "pin",
+            "1",
+        ),
+    ] {
+        let [of, axis] = [
+            format!("friction.body={body}"),
+            format!("friction.along={along}"),
+        ];
+        let found = ran(
+            "verification/pin_on_disc",
+            &[&bodies, "time.end=0.5", &of, &axis],
+        );
+        let mu = number(&found, "friction_coefficient");
+        assert!((mu / 0.4 - 1.0).abs() < 0.01, "{name}: {mu}");
+        let rates: Vec<f64> = (0..4)
+            .filter_map(|k| {
+                found
+                    .found
+                    .number(&format!("wear.bodies.{k}.specific_rate"))
+            })
+            .collect();
+        assert!(!rates.is_empty(), "{name}");
+        for rate in rates {
+            assert!((rate / 1e-13 - 1.0).abs() < 0.01, "{name}: {rate}");
+        }
+    }
+}
+
+/// Forces below mu P, one way and to and fro: the contact sticks, and neither friction nor wear
+/// have a coefficient, whatever rounding moves it by.
+#[test]
+fn a_contact_that_sticks_has_no_coefficient() {
+    for force in ["2.0", "Sine(amplitude: 3.0, frequency: 10.0)"] {
+        let dofs = format!("x: Force({force}), z: Force(-10.0)");
+        let bodies = on_disc("", &[("pin", [0.0; 2], &dofs)]);
+        let sets = [
+            &bodies,
+            "time.end=0.5",
+            "friction.along=0",
+            "friction.body=pin",
+        ];
+        let sets: Vec<&str> = sets.into_iter().collect();
+        let found = ran("verification/pin_on_disc", &sets);
+        assert_eq!(found.found.number("friction_coefficient"), None, "{force}");
+        for k in 0..2 {
+            let rate = found
+                .found
+                .number(&format!("wear.bodies.{k}.specific_rate"));
+            assert_eq!(rate, None, "{force}");
+        }
+    }
+}
+
+/// A stroke before the first cycle that counts slips as those of the cycles, partly.
+#[test]
+fn wear_before_the_start_of_the_test_has_its_path_of_slip() {
+    let drive = "half_spaces.1.dofs.x=Displacement(Sine(amplitude:2e-6,frequency:20.0,start:0.01))";
+    let wear = [
+        "time.end=0.16",
+        "friction.start=0.06",
+        "interfaces.contact.wear=archard",
+        "interfaces.contact.parameters.wear={\"k\":1e-13}",
+        drive,
+    ];
+    let sets = [&COARSE[..], &wear[..]].concat();
+    let found = ran("sphere_on_flat_fretting", &sets);
+    let rate = number(&found, "wear.bodies.0.specific_rate");
+    // The elastic energy stored in the cycle before counts as slip there.
+    assert!((rate / 1e-13 - 1.0).abs() < 0.03, "{rate}");
+}

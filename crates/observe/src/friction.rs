@@ -10,6 +10,8 @@ use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
 
+/// Path over the size of a body below which it is due to rounding.
+const STILL: f64 = 1e-9;
 /// Share of the path along the axis of a test below which the contacts slide across it.
 const ACROSS: f64 = 1e-3;
 
@@ -54,10 +56,12 @@ pub struct Cycles {
     blocks: Vec<(f64, f64)>,
     /// Rise of Q/P from the start on, for these tests.
     onset: Onset,
-    /// Elastic energy stored at the start of the cycle (J).
-    stored: f64,
+    /// |Q|/P at the start of the cycle.
+    start_ratio: f64,
     /// Integrals of P |ds| over all cycles: along the axis, and in the plane of the contacts (J).
     load_paths: [f64; 2],
+    /// Path below which a contact sticks (m).
+    still: f64,
 }
 
 /// Cumulative quantities of a run at the end of a step.
@@ -104,9 +108,22 @@ impl Cycles {
             sliding: Vec::new(),
             blocks: vec![(0.0, 0.0); if clock.period.is_some() { 0 } else { BLOCKS }],
             onset: Onset::default(),
-            stored: 0.0,
+            start_ratio: 0.0,
             load_paths: [0.0; 2],
+            still: 0.0,
         }
+    }
+
+    /// Counts a path that is far below this length (m), the size of the smallest body, as that of a
+    /// contact that sticks: it is due to rounding.
+    pub fn with_length(mut self, length: f64) -> Self {
+        self.still = STILL * length;
+        self
+    }
+
+    /// Returns whether the contact sticked over the last cycle.
+    pub fn sticks(&self) -> bool {
+        self.last().is_some_and(|c| c.path < self.still)
     }
 
     /// Returns the scatter of the friction coefficient over the later cycles; without a period over
@@ -183,7 +200,10 @@ impl Cycles {
             (self.pressure_time, self.time) = (0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
-            self.stored = self.shape.stored();
+            self.start_ratio = match self.list.len() {
+                1 if sample.p > 0.0 => sample.q.abs() / sample.p,
+                _ => self.shape.ratio(),
+            };
             self.shape.next_cycle();
         }
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
@@ -228,6 +248,16 @@ impl Cycles {
         cycle.broken = after.broken - start.broken;
         cycle.wear_volume = after.worn - start.worn;
         cycle.damage_ratio = damage;
+        self.judge(sample.time, h);
+    }
+
+    /// Evaluates the current cycle at a time (s): ratios of its loop, regime, and coefficient.
+    fn judge(&mut self, time: f64, h: f64) {
+        let number = self.number(time);
+        let Some(cycle) = self.list.last_mut() else {
+            return;
+        };
+        let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         let amplitude = 0.5 * (self.highest - self.lowest);
         cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
         cycle.amplitude = amplitude;
@@ -241,10 +271,18 @@ impl Cycles {
             false => stiffness(&self.blocks, &self.onset, cycle.normal_force),
         };
         cycle.stored = match reciprocates {
-            true => self.shape.stored() - self.stored,
+            true => {
+                let shape = &self.shape;
+                shape.stored(shape.ratio()) - shape.stored(self.start_ratio)
+            }
             false => 0.0,
         };
+        let end = clock
+            .period
+            .map_or(self.end, |p| clock.start + f64::from(number) * p);
+        cycle.complete = time >= end - 1e-6 * h;
         cycle.regime = match stiffness {
+            _ if cycle.path < self.still => SlipRegime::Partial,
             _ if reciprocates && cycle.moves_together() => SlipRegime::Partial,
             _ if reciprocates => SlipRegime::of(cycle.energy_ratio, cycle.slip_ratio, stiffness),
             Some(k) if k >= SLIDING_STIFFNESS => SlipRegime::Partial,
@@ -252,16 +290,16 @@ impl Cycles {
         };
         let slides = cycle.regime == SlipRegime::Gross;
         cycle.friction_coefficient = match reciprocates {
+            // A motion that doesn't turn back slides all the time.
+            true if slides && cycle.complete && !cycle.reverses() => {
+                Some(cycle.energetic_coefficient)
+            }
             true if slides => self.shape.plateau(),
             true => None,
             // Without a period elastic travel after reversals cannot be told from sliding.
             false if cycle.reverses() || across(self.load_paths) => None,
             false => (cycle.load_path > 0.0 && slides).then_some(cycle.energetic_coefficient),
         };
-        let end = clock
-            .period
-            .map_or(self.end, |p| clock.start + f64::from(number) * p);
-        cycle.complete = sample.time >= end - 1e-6 * h;
     }
 
     /// Returns whether the contacts slide across the axis of the test alone.
@@ -282,20 +320,32 @@ impl Cycles {
         let jumps = |c: &Cycle| f64::from(1 + c.jumped);
         let [along, whole] = self.load_paths;
         if !self.oscillates() {
-            if self.across() {
+            let cycle = self.list.last()?;
+            // Nothing that may be elastic, or no path.
+            if self.across() || cycle.load_path <= 0.0 {
                 return Some(whole);
             }
-            let cycle = self.list.last()?;
             let elastic = self.onset.elastic_path(cycle.friction_coefficient?);
             return Some(whole - cycle.normal_force * elastic);
         }
         let known = |c: &Cycle| c.friction_coefficient.filter(|mu| c.complete && *mu > 0.0);
+        self.last().and_then(known)?;
         let mut coefficient = self.list.iter().find_map(known)?;
         let of = |c: &Cycle| {
             coefficient = known(c).unwrap_or(coefficient);
             c.slip_load_path(coefficient) * jumps(c)
         };
         Some(self.list.iter().map(of).sum::<f64>() * whole / along)
+    }
+
+    /// Returns the part of the path that is slip, of a reciprocating motion; 1 of others, and where
+    /// it is not known.
+    pub fn share_of_slip(&self) -> f64 {
+        let [along, whole] = self.load_paths;
+        let imposed = self.load_path() * whole / along;
+        let share = self.slip_load_path().map(|slip| slip / imposed);
+        let share = share.filter(|share| self.oscillates() && share.is_finite());
+        share.unwrap_or(1.0)
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.

@@ -38,6 +38,9 @@ crate::described! {
         /// Whether the contacts slide across the axis of the test alone.
         #[serde(skip)]
         pub across: bool,
+        /// Whether the contacts stick.
+        #[serde(skip)]
+        pub sticks: bool,
         /// Whether the motion is reciprocating.
         #[serde(skip)]
         pub oscillates: bool,
@@ -104,6 +107,7 @@ pub(super) fn report(
             .filter(|_| cycles.oscillates() || along.is_some_and(slides)),
         cycles: cycles.list.clone(),
         across: cycles.across(),
+        sticks: cycles.sticks(),
         oscillates: cycles.oscillates(),
         sliding: cycles.sliding().map(<[_]>::to_vec),
     };
@@ -208,14 +212,20 @@ fn show(
             f.regime.name()
         )
     };
-    let text = format!(
-        "{} {whole}; A = E_d/(4 Q* delta*) {}, slip ratio {}, E_d {}, stroke +-{}",
-        last.regime.name(),
-        number(last.energy_ratio, 3),
-        number(last.slip_ratio, 3),
-        quantity(last.work, joule),
-        quantity(last.amplitude, "m")
-    );
+    let text = if last.moves_together() || friction.sticks {
+        "none: the bodies do not slide on each other".to_owned()
+    } else if !last.complete {
+        "not known: no cycle is complete".to_owned()
+    } else {
+        format!(
+            "{} {whole}; A = E_d/(4 Q* delta*) {}, slip ratio {}, E_d {}, stroke +-{}",
+            last.regime.name(),
+            number(last.energy_ratio, 3),
+            number(last.slip_ratio, 3),
+            quantity(last.work, joule),
+            quantity(last.amplitude, "m")
+        )
+    };
     found.edit("fretting.regime", |q| {
         q.secondary("sliding regime")
             .sentence("sliding regime", text);
@@ -253,6 +263,12 @@ fn coefficient(cycle: &Cycle) -> String {
 /// Returns why there is no coefficient of sliding, with what describes the contact instead.
 fn no_sliding(friction: &Friction, last: &Cycle) -> String {
     let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |x| number(x, 3));
+    if friction.sticks && last.load_path > 0.0 {
+        return format!(
+            "none: the contact sticks, Q*/P {}",
+            known(friction.peak_friction)
+        );
+    }
     if friction.across {
         return "none: the contacts slide across the axis of the test, not along it; give the other one as `along` of `friction`".to_owned();
     }
@@ -263,11 +279,18 @@ fn no_sliding(friction: &Friction, last: &Cycle) -> String {
                 "none, partial slip: Q rises to the end as that of elastic bodies, to Q*/P {}",
                 known(friction.peak_friction)
             ),
-            (false, _) => "none: nothing slid under a load".to_owned(),
+            (false, _) => {
+                "none: nothing slid under a load in the second half of the time, which is evaluated".to_owned()
+            }
         };
     }
     let why = match (last.complete, last.regime) {
-        (false, _) => "no cycle is complete",
+        (false, _) => {
+            return format!(
+                "none, no cycle is complete: Q*/P {} so far",
+                known(friction.peak_friction)
+            );
+        }
         (true, _) if last.moves_together() => {
             return format!(
                 "none, the bodies move together: they slide {} of their path, Q*/P {}",
@@ -276,7 +299,7 @@ fn no_sliding(friction: &Friction, last: &Cycle) -> String {
             );
         }
         (true, SlipRegime::Partial) => "partial slip",
-        (true, _) => "the motion does not turn back within its period",
+        (true, _) => "no whole stroke between two reversals yet (a cycle more tells, time.end)",
     };
     format!(
         "none, {why}: Q*/P {}, slip ratio {}, A = E_d/(4 Q* delta*) {}",

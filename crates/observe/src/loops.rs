@@ -91,11 +91,16 @@ impl Loop {
         self.last = Some([displacement, q, p]);
     }
 
-    /// Returns the elastic energy that the tangential force keeps stored at the last sample (J; J/m
-    /// in 2D): what the contact gives back after the reversals of the cycle, times the square of
-    /// the force relative to that at these reversals.
-    pub fn stored(&self) -> f64 {
-        let relative = self.ratio / self.reversal();
+    /// Returns |Q|/P of the last sample.
+    pub fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// Returns the elastic energy that the tangential force keeps stored at |Q|/P (J; J/m in 2D):
+    /// what the contact gives back after the reversals of the cycle, times the square of the ratio
+    /// relative to that at these reversals.
+    pub fn stored(&self, ratio: f64) -> f64 {
+        let relative = ratio / self.reversal();
         let given_back = self.given_back[1] / f64::from(self.unloading.1.max(1));
         match relative.is_finite() {
             true => given_back * relative.min(1.0).powi(2),
@@ -320,7 +325,7 @@ mod tests {
             }
             if step == 3 * n - 1 {
                 let stored = 0.5 * q * q / k;
-                let off = l.stored() / stored - 1.0;
+                let off = l.stored(l.ratio()) / stored - 1.0;
                 assert!(off.abs() < 1e-2, "{k}: {off}");
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
                 assert!(l.end_stiffness().unwrap().abs() < 1e-9);

@@ -10,8 +10,8 @@ use super::steady::{self, MeanFlow};
 
 /// Smallest number of cycles for an interval.
 const FEWEST: usize = 3;
-/// Range of values over their mean that is due to rounding.
-const ROUNDING: f64 = 1e-9;
+/// Range of values over their mean within which a trend does not matter: it is counted as error.
+const NEGLIGIBLE: f64 = 1e-3;
 /// Number of cycles from which their correlation is tested.
 const CORRELATED: usize = 8;
 
@@ -32,11 +32,15 @@ impl Scatter {
     fn new(values: &[f64], over: String, of: &'static str) -> Option<Self> {
         let finite = values.iter().all(|v| v.is_finite());
         let mut flow = steady::of_blocks(values).filter(|_| finite && values.len() >= FEWEST)?;
-        // A trend of rounding errors is none.
+        // A trend of rounding errors, or far below what friction is known to, is none.
         let ends = values
             .iter()
             .fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(*v), b.max(*v)]);
-        flow.steady |= ends[1] - ends[0] <= ROUNDING * flow.mean.abs();
+        let range = ends[1] - ends[0];
+        if !flow.steady && range <= NEGLIGIBLE * flow.mean.abs() {
+            flow.steady = true;
+            flow.half_width = flow.half_width.max(range);
+        }
         Some(Self {
             flow,
             count: values.len(),

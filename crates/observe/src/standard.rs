@@ -41,7 +41,9 @@ pub fn observers(case: &Case, run: &dyn RunView, materials: &WearMaterials) -> O
     let wear = Wear::new(flows, materials.clone(), along, wears);
     all.push(Box::new(wear));
     if let Some(test) = test {
-        let cycles = Cycles::of(test.clock, case.time.end);
+        let sizes = run.bodies().length.iter().filter(|length| **length > 0.0);
+        let smallest = sizes.copied().fold(f64::INFINITY, f64::min);
+        let cycles = Cycles::of(test.clock, case.time.end).with_length(smallest);
         all.push(Box::new(FrictionTest::new(test.body, cycles, run)));
     }
     if let Some(biaxial) = case.biaxial.as_ref().and_then(|b| Biaxial::new(b, run)) {

@@ -37,7 +37,7 @@ impl Warning {
 }
 
 /// Categories in the order in which they are reported; those of other observers follow.
-const ORDER: [&str; 46] = [
+const ORDER: &[&str] = &[
     "INTERRUPTED",
     "STOPPED",
     "NOT FINITE",

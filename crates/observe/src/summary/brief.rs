@@ -1,7 +1,7 @@
 //! The end of a run in at most 14 lines of 100 columns: the grade with what is known of the error,
 //! results by topic, and three things to look at.
 
-use super::lines::{COLUMNS, cut, flow, wrapped};
+use super::lines::{COLUMNS, cut, fitted, flow, wrapped};
 use super::{Grade, Summary};
 use crate::quantity::unit::WEAR_RATE;
 use crate::quantity::{
@@ -79,7 +79,16 @@ impl Block {
         let mut lines = self.lines.clone();
         match self.text {
             true => cut(&mut lines, count, columns_beside(self.label)),
-            false => lines.truncate(count),
+            false => {
+                let whole = lines.len() <= count;
+                lines.truncate(count);
+                // A line that goes on in the next one, which is not shown.
+                let goes_on = self.lines.get(count).is_some_and(|l| l.starts_with(' '));
+                if let Some(last) = lines.last_mut().filter(|_| !whole && goes_on) {
+                    let room = columns_beside(self.label);
+                    *last = fitted(&format!("{last} {}", ".".repeat(room)), room);
+                }
+            }
         }
         let line = |(k, line): (usize, &String)| match self.label {
             None => format!("  {line}"),

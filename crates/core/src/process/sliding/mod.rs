@@ -72,10 +72,10 @@ impl SlidingBody {
     /// weights. Behind grains, the counterpart is that of the other first bodies which carries the
     /// load of grains.
     ///
-    /// Where a rotation that is imposed makes contacts slide in opposite directions, as of a disc
-    /// under two pins, the distance is the mean of theirs and the force the sum of theirs, each
-    /// against its own direction: force times distance is their work. Their sign is that of the
-    /// rotation.
+    /// Where a motion that is imposed makes contacts slide oblique to the axis, or in opposite
+    /// directions as of a disc under two pins, the distance is the mean of theirs in their plane
+    /// and the force the sum of theirs, each against its own direction: force times distance is
+    /// their work. Their sign is that of the rotation, or of the motion along the axis.
     pub fn drive<S: Space>(&self, s: &Simulation<S>) -> SlidingStep {
         let h = s.options.scheme.h;
         let (own, force, at) = match self.part {
@@ -95,7 +95,7 @@ impl SlidingBody {
             }
         };
         let relative = self.relative_motion(s, &own);
-        if let Some((velocity, power)) = relative.turns {
+        if let Some((velocity, power)) = relative.in_plane {
             return SlidingStep {
                 force: if velocity == 0.0 {
                     0.0

@@ -9,6 +9,9 @@ use crate::step::Simulation;
 /// Share of the mean speed that rotation adds at contacts below which the mean of these velocities
 /// shows that it moves contacts in opposite directions.
 const OPPOSITE: f64 = 0.9;
+/// Share of the speed in the plane of the contacts that lies along the axis, below which the
+/// contacts slide oblique to it.
+const OBLIQUE: f64 = 0.98;
 
 /// Motion of the rubbed body relative to what it rubs against.
 pub(super) struct Relative {
@@ -17,19 +20,22 @@ pub(super) struct Relative {
     pub counter: f64,
     /// Speed of sliding in the plane of the contacts (m/s).
     pub speed: f64,
-    /// Where an imposed rotation makes contacts slide in opposite directions: mean of their speeds
-    /// along the axis with the sign of the rotation (m/s), and the power of their forces (W).
-    pub turns: Option<(f64, f64)>,
+    /// Where an imposed motion makes contacts slide in opposite directions, or oblique to the axis:
+    /// mean of their speeds with the sign of the motion (m/s), and the power of their forces (W).
+    pub in_plane: Option<(f64, f64)>,
 }
 
 impl SlidingBody {
     /// Returns its motion relative to what it rubs against, with its own velocity (m/s).
     pub(super) fn relative_motion<S: Space>(&self, s: &Simulation<S>, own: &S::Vector) -> Relative {
-        if !self.others_move(s) {
+        let own_speed = in_plane::<S>(own, self.normal);
+        let oblique = |along: f64, speed: f64| along.abs() < OBLIQUE * speed;
+        if !self.others_move(s) && !(oblique(own[self.along], own_speed) && self.imposes_across(s))
+        {
             return Relative {
                 counter: 0.0,
-                speed: in_plane::<S>(own, self.normal),
-                turns: None,
+                speed: own_speed,
+                in_plane: None,
             };
         }
         let spin = match self.part {
@@ -42,7 +48,7 @@ impl SlidingBody {
         let mut turned = Mean::<S>::default();
         let held = held_velocities(s);
         let behind = self.behind_grains(s, &held);
-        let (mut speed, mut along, mut power) = (0.0, 0.0, 0.0);
+        let (mut speed, mut power) = (0.0, 0.0);
         // Sums of weights times what rotation adds, with signs and without.
         let mut rotation = [0.0; 2];
         for side in self.sides(s) {
@@ -64,8 +70,7 @@ impl SlidingBody {
             };
             rotation[0] += weight * turns[self.along];
             rotation[1] += weight * turns[self.along].abs();
-            along += weight * slides[self.along].abs();
-            power -= side.impulse[self.along] * slides[self.along];
+            power -= (side.impulse).dot(&slides) - side.impulse[self.normal] * slides[self.normal];
         }
         if grains > 0.0 {
             all.add(grains, behind);
@@ -73,13 +78,32 @@ impl SlidingBody {
         let weight = all.weight;
         let counter = all.value()[self.along] - turned.value()[self.along];
         let mean = |sum: f64| if weight > 0.0 { sum / weight } else { 0.0 };
+        let speed = mean(speed);
+        let velocity = own[self.along] - counter;
+        let turns = imposed_rotation(s);
         let opposite = rotation[0].abs() < OPPOSITE * rotation[1];
-        let sign = imposed_rotation(s).filter(|_| opposite);
+        let sign = match turns.filter(|_| opposite) {
+            Some(sign) => Some(sign),
+            None => (oblique(velocity, speed) && (turns.is_some() || self.imposes_across(s)))
+                .then(|| velocity.signum()),
+        };
         Relative {
             counter,
-            speed: mean(speed),
-            turns: sign.map(|sign| (sign * mean(along), power / s.options.scheme.h)),
+            speed,
+            in_plane: sign.map(|sign| (sign * speed, power / s.options.scheme.h)),
         }
+    }
+
+    /// Returns whether the scene moves a first body in the plane of the contacts across the axis.
+    fn imposes_across<S: Space>(&self, s: &Simulation<S>) -> bool {
+        let driven = &s.state.bodies.driven;
+        (0..driven.len()).any(|place| {
+            let velocity = step_velocity(s, place);
+            (0..S::D).any(|axis| {
+                let across = axis != self.along && axis != self.normal;
+                across && velocity[axis] != 0.0 && driven[place].dofs.get(axis).is_some_and(imposes)
+            })
+        })
     }
 
     /// Returns whether anything but the translation of the body itself can make it slide.
@@ -188,17 +212,19 @@ fn in_plane<S: Space>(v: &S::Vector, normal: usize) -> f64 {
     v.norm()
 }
 
+/// Returns whether a drive imposes a motion.
+fn imposes(drive: &Dof) -> bool {
+    match drive {
+        Dof::Velocity(_) | Dof::Displacement(_) => true,
+        Dof::Stages(stages) => stages.iter().any(|stage| imposes(&stage.drive)),
+        _ => false,
+    }
+}
+
 /// Returns the sign of the rotation that the scene imposes on a first body; 0 while it rests,
 /// `None` without one.
 fn imposed_rotation<S: Space>(s: &Simulation<S>) -> Option<f64> {
     let driven = &s.state.bodies.driven;
-    let imposes = |dof: &Dof| match dof {
-        Dof::Velocity(_) | Dof::Displacement(_) => true,
-        Dof::Stages(stages) => stages
-            .iter()
-            .any(|s| matches!(s.drive, Dof::Velocity(_) | Dof::Displacement(_))),
-        _ => false,
-    };
     let mut turning = (0..driven.len()).filter_map(|place| {
         let axis = (driven[place].dofs.iter().skip(S::D)).position(imposes)?;
         let rate = step_spin(s, place)[axis];

@@ -109,7 +109,7 @@ impl FlowRegime {
     /// Returns name and criteria as a sentence.
     pub fn describe(self, flow: Option<&FlowProfile>, cluster: f64) -> String {
         let Some(f) = flow else {
-            return "none: there is no sliding, or fewer than three bins lie in the interior"
+            return "flow of the layer not known: the last state does not slide, or the layer has fewer than three bins"
                 .to_owned();
         };
         let seen = format!(
