@@ -37,7 +37,7 @@ impl Warning {
 }
 
 /// Categories in the order in which they are reported; those of other observers follow.
-const ORDER: [&str; 45] = [
+const ORDER: [&str; 46] = [
     "INTERRUPTED",
     "STOPPED",
     "NOT FINITE",
@@ -58,6 +58,7 @@ const ORDER: [&str; 45] = [
     "LOOSE VELOCITIES",
     "NOT COUPLED",
     "LAWS NOT MET",
+    "NOT IN RANGE",
     "NOT CERTIFIED",
     "GRAINS DO NOT ADD UP",
     NOT_REACHED,
