@@ -69,7 +69,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 10] = [
     (
         "experiments",
         &[
-            "core", "elastic", "math", "observe", "scene", "store", "view",
+            "core", "elastic", "math", "observe", "rolling", "scene", "store", "view",
         ],
         &["clap", "indicatif"],
     ),
