@@ -7,6 +7,11 @@
 //! Q*/(mu P) = 1 - (1 - d)^(3/2),   what sticks is a share 1 - d of the patch
 //! E/(mu P delta_g) = 8 (d - (2/5)(1 - (1 - d)^(5/2))) - 4 Q* d/(mu P);   0.8 + 4 (d - 1) for d > 1
 //! ```
+//!
+//! The forms are exact at Poisson's ratio 0. Above it slip depends on the direction from the middle
+//! of the patch: by cells, its largest product with pressure is 18 % higher at 0.3 and d = 0.4,
+//! while force and energy agree within the error of the cells. Of an ellipse that product is of its
+//! displacement at gross slip and the profile of a circle.
 
 use crate::running::{Conditions, Contacts, Loaded, RunningError};
 use fretwork_elastic::patch::{PartialSlip, PointPatch, Solid, effective_modulus, point};

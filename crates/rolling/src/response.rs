@@ -2,8 +2,8 @@
 //! or both (Z. R. Zhou, L. Vincent, Wear 181-183, 1995), on the axes of the running conditions.
 //!
 //! A crack is expected where the index of a criterion reaches 1 for the averaged cycle, wear where
-//! its largest depth after a number of cycles reaches a limit. In partial slip stresses grow with the
-//! amplitude and wear is little; in gross slip stresses stay as they are, and wear, which grows
+//! its largest depth after a number of cycles reaches a limit. In partial slip stresses grow with
+//! the amplitude and wear is little; in gross slip stresses stay as they are, and wear, which grows
 //! with the way of slip, takes away what would crack.
 
 use crate::below::Below;
@@ -12,6 +12,7 @@ use crate::fatigue::history::{histories, opposite};
 use crate::fatigue::{Block, Criterion};
 use crate::fretting::{Amplitude, Loop};
 use crate::running::{Conditions, Loaded, RunningError, boundary};
+use crate::stress::Stress;
 use serde::Serialize;
 
 /// How the material responds.
@@ -37,6 +38,9 @@ pub struct Thresholds {
     pub poisson: f64,
     /// Which of both bodies: 0 or 1.
     pub body: usize,
+    /// Stress of the body without the contact at the largest displacement (Pa), which follows the
+    /// displacement through the cycle: that of fretting fatigue, or none.
+    pub bulk: Stress,
     /// Block over which stresses are averaged.
     pub block: Block,
     /// Wear coefficient of the body, k (1/Pa).
@@ -177,7 +181,12 @@ impl<'a> Body<'a> {
             }
         };
         let (pressure, block) = (&self.contact.pressure, &self.thresholds.block);
-        let cycles = histories(&self.below, block, pressure, traction, &[]);
+        let largest = cycle.amplitude[0];
+        let parts = cycle.points.iter().map(|[at, _]| at / largest);
+        let bulk: Vec<Stress> = parts
+            .map(|part| self.thresholds.bulk.map(|s| part * s))
+            .collect();
+        let cycles = histories(&self.below, block, pressure, traction, &bulk);
         let indices = cycles.iter().map(|c| self.thresholds.criterion.index(c));
         let cells = indices.enumerate().map(|(cell, index)| (index, cell));
         cells.fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })

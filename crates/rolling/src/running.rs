@@ -35,11 +35,11 @@ impl Regime {
 /// Where a regime ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limits {
-    /// Share of the patch that slips in [`Regime::Stick`] at most. A convention: elastic bodies slip
-    /// at the edge under the smallest displacement.
+    /// Share of the patch that slips in [`Regime::Stick`] at most. A convention: elastic bodies
+    /// slip at the edge under the smallest displacement.
     pub ring: f64,
-    /// Energy ratio A at the onset of gross slip: 0.2 for a sphere on a flat, which serves for loops
-    /// that are measured (S. Fouvry, Ph. Kapsa, L. Vincent, Wear 200, 1996).
+    /// Energy ratio A at the onset of gross slip: 0.2 for a sphere on a flat, which serves for
+    /// loops that are measured (S. Fouvry, Ph. Kapsa, L. Vincent, Wear 200, 1996).
     pub energy_ratio: f64,
     /// Amplitude over half of the width of the patch along the motion above which the bodies
     /// slide to and fro.

@@ -8,7 +8,7 @@ use fretwork_rolling::cells::ByCells;
 use fretwork_rolling::fatigue::history::{histories, opposite};
 use fretwork_rolling::fatigue::materials::STEEL_30NCD16;
 use fretwork_rolling::fatigue::{Block, Criterion, Crossland, swt};
-use fretwork_rolling::response::{Response, Thresholds, map};
+use fretwork_rolling::response::{Body, Response, Thresholds, map};
 use fretwork_rolling::{Below, Field};
 use std::f64::consts::PI;
 
@@ -140,6 +140,7 @@ fn responses_follow_the_amplitude() {
         criterion: Criterion::Crossland(STEEL_30NCD16.crossland),
         poisson: NU,
         body: 0,
+        bulk: [0.0; 6],
         block: Block {
             side: 20e-6,
             layers: 2,
@@ -178,13 +179,25 @@ fn responses_follow_the_amplitude() {
     };
     assert_eq!(responses(1)[0], Response::None);
     assert_eq!(responses(1)[3], Response::Both);
+    let crack = |thresholds: &Thresholds, load: f64, displacement: f64| {
+        let contact = contacts.contact(load).unwrap_or_else(|e| panic!("{e}"));
+        let damage = Body::new(contact, thresholds).damage(displacement);
+        damage.unwrap_or_else(|e| panic!("{e}")).crack
+    };
     // The second body is the first one turned round.
     let turned = Thresholds {
         body: 1,
         ..thresholds
     };
-    let turned = map(&contacts, &[500.0], &[1e-5], &turned).unwrap_or_else(|e| panic!("{e}"));
-    let (one, other) = (found.damage[1][2].crack, turned.damage[0][0].crack);
+    let (one, other) = (found.damage[1][2].crack, crack(&turned, 500.0, 1e-5));
+    assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    // Half of the strength in bending is half of the way to cracks, all over the body.
+    let bent = Thresholds {
+        bulk: [354e6, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ..thresholds
+    };
+    let index = crack(&bent, 2.0, 1e-9);
+    assert!((0.49..0.6).contains(&index), "{index}");
     // In tension across the edge both criteria expect cracks.
     let planes = Thresholds {
         criterion: Criterion::Swt {
@@ -194,8 +207,6 @@ fn responses_follow_the_amplitude() {
         },
         ..thresholds
     };
-    let planes = map(&contacts, &[500.0], &[1e-7, 1e-5], &planes).unwrap_or_else(|e| panic!("{e}"));
-    let [low, high] = [0, 1].map(|k| planes.damage[0][k].crack);
+    let [low, high] = [1e-7, 1e-5].map(|d| crack(&planes, 500.0, d));
     assert!(low < 1.0 && high > 1.0, "{low} {high}");
-    assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
 }

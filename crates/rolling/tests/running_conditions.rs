@@ -1,6 +1,6 @@
 //! Maps of running conditions of a sphere on a flat: by cells against the closed forms of Mindlin
-//! (K. L. Johnson, Contact Mechanics, 1985, 7.4), which give A = 0.2 and a slip ratio of 0.26 at the
-//! onset of gross slip.
+//! (K. L. Johnson, Contact Mechanics, 1985, 7.4), which give A = 0.2 and a slip ratio of 0.26 at
+//! the onset of gross slip.
 
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;

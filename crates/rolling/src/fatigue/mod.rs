@@ -30,8 +30,8 @@ pub enum Criterion {
 }
 
 impl Criterion {
-    /// Returns the index of a cycle of stresses (Pa): a crack is expected from 1 on. Of Crossland it
-    /// goes with the stress, of Smith, Watson and Topper with its square.
+    /// Returns the index of a cycle of stresses (Pa): a crack is expected from 1 on. Crossland's
+    /// goes with the stress, that of Smith, Watson and Topper with its square.
     pub fn index(&self, cycle: &[Stress]) -> f64 {
         match self {
             Self::Crossland(law) => law.index(cycle),
