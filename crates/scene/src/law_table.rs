@@ -1,11 +1,11 @@
 //! Tables of laws: friction or wear over slip, slip velocity, pressure and temperature.
 //!
-//! A table is a text file of columns with headings and units, as
-//! [`measured`](crate::measured) reads them: `slip`, `slip_rate`, `pressure`, `temperature`, as many
-//! of them as the law depends on, and the value, `friction` or `k`, with the ends of its interval in
-//! `friction_low` and `friction_high`. Its rows are all combinations of the points of its axes, in
-//! any order. Several rows of one point, as runs of several seeds give them, count with their mean,
-//! and with their lowest and highest value as the interval. Other columns are ignored.
+//! A table is a text file of columns with headings and units, see [`measured`](crate::measured):
+//! `slip`, `slip_rate`, `pressure`, `temperature`, as many of them as the law depends on, and the
+//! value, `friction` or `k`, with the ends of its interval in `friction_low` and `friction_high`.
+//! Its rows are all combinations of the points of its axes, in any order. Several rows of one
+//! point, as runs of several seeds give them, count with their mean, and with their lowest and
+//! highest value as the interval. Other columns are ignored.
 
 use super::case::InterfaceSpec;
 use super::case::slots::BySlot;

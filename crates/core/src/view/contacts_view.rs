@@ -43,8 +43,8 @@ pub trait ContactsView {
     /// is computed.
     fn contact_heat(&self) -> Option<&ContactHeat>;
 
-    /// Returns an internal variable of the laws of an interface at its contacts, by the index of the
-    /// variable among those of the interface.
+    /// Returns an internal variable of the laws of an interface at its contacts, by the index of
+    /// the variable among those of the interface.
     fn law_variable(&self, interface: usize, variable: usize) -> Vec<f64>;
 
     /// Returns the number of bonds formed so far.

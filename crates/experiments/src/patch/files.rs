@@ -1,5 +1,5 @@
-//! Files of a patch: `patch.json`, `adhesion.csv` or `loop_N.csv`, the fields in `patch.h5`, and the
-//! page `patch.html`.
+//! Files of a patch: `patch.json`, `adhesion.csv` or `loop_N.csv`, the fields in `patch.h5`, and
+//! the page `patch.html`.
 
 use super::answer::Motion;
 use super::{Outcome, PatchFile, page};

@@ -103,8 +103,8 @@ fn a_force_has_its_creepage() {
     assert!(refused.contains("at most 35.2"), "{refused}");
 }
 
-/// In full slip the energy is mu P xi, and the volume worn k P xi over the distance rolled, with k =
-/// K/H of each body.
+/// In full slip the energy is mu P xi, and the volume worn k P xi over the distance rolled, with
+/// k = K/H of each body.
 #[test]
 fn a_patch_that_slides_wears_by_load_and_creepage() {
     let interface = r#"contact: "coulomb", wear: "archard", parameters: (contact: {"mu": 0.33}, wear: {"K": 1e-4})"#;
@@ -120,8 +120,9 @@ fn a_patch_that_slides_wears_by_load_and_creepage() {
     // Slip is the creepage less the elastic part, whose sum over a row is 0.
     near(wheel.volume, 1e-4 / 2e9 * 106.7e3 * 0.05, 0.02);
     near(rail.volume / wheel.volume, 0.5, 1e-9);
-    // The middle row is a semi-ellipse of heat mu p0 xi V in both bodies; 2.1883 is the maximum over x
-    // of the integral of sqrt(1 - s²)/sqrt(s - x) from x to 1 (M. Ertz, K. Knothe, Wear 253, 2002).
+    // The middle row is a semi-ellipse of heat mu p0 xi V in both bodies; 2.1883 is the maximum
+    // over x of the integral of sqrt(1 - s²)/sqrt(s - x) from x to 1 (M. Ertz, K. Knothe, Wear
+    // 253, 2002).
     let rise = point.temperature.unwrap() - 293.15;
     let flux = 0.33 * outcome.answer.pressure * 0.05 * 20.0;
     let effusivity = f64::sqrt(50.0 * 450.0 * 7850.0);
@@ -161,9 +162,9 @@ fn a_stroke_of_fretting_has_mindlins_loop() {
     // Q/(mu P) = 1 - (1 - d/d_gross)^(3/2) on loading.
     near(partial.adhesion / mu, 1.0 - 0.3f64.powf(1.5), 0.01);
     near(full.adhesion / mu, 1.0, 1e-6);
-    // Between branches q = q_end - 2 (1 - (1 - s/2)^(3/2)) over the way s back, in units of mu P and
-    // the displacement w at which it slides: 8 w - 4 w q - 16/5 (1 - (1 - w)^(5/2)), and beyond w = 1
-    // 4 w - 16/5.
+    // Between branches q = q_end - 2 (1 - (1 - s/2)^(3/2)) over the way s back, in units of mu P
+    // and the displacement w at which it slides: 8 w - 4 w q - 16/5 (1 - (1 - w)^(5/2)), and beyond
+    // w = 1 4 w - 16/5.
     let q = 1.0 - 0.3f64.powf(1.5);
     let lost = 8.0 * 0.7 - 4.0 * 0.7 * q - 3.2 * (1.0 - 0.3f64.powf(2.5));
     near(partial.t_gamma, lost * mu * load * gross, 0.05);
