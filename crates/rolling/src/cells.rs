@@ -5,7 +5,7 @@ use crate::fields::Vector;
 use crate::fretting::{Fretting, FrettingError};
 use crate::friction::Coulomb;
 use crate::normal::normal;
-use crate::running::{Conditions, Contacts, Loaded, RunningError};
+use crate::running::{Conditions, Contacts, Loaded, RunningError, check_friction};
 use crate::surfaces::Surfaces;
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
@@ -52,8 +52,9 @@ impl ByCells<'_> {
     /// Returns the contact under a load (N).
     ///
     /// # Errors
-    /// The load is not held.
+    /// The load is not held, or the coefficient of friction is not positive.
     pub fn contact(&self, load: f64) -> Result<Contact, RunningError> {
+        check_friction(self.friction)?;
         let grid = (self.grid)(load);
         let surfaces = Surfaces::new(grid, self.bodies, self.layer);
         let places = (0..grid.len()).map(|cell| grid.middle(cell));
@@ -69,7 +70,7 @@ impl ByCells<'_> {
             along: self.along,
             scale: 0.0,
         };
-        contact.scale = self.friction * load * contact.frets().compliance();
+        contact.scale = self.friction * load * contact.frets().compliance()[1];
         Ok(contact)
     }
 }

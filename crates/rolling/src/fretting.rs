@@ -298,20 +298,21 @@ impl Fretting<'_> {
             .displacement)
     }
 
-    /// Returns the displacement (m) over the force (N) where nothing slips and tractions were
-    /// spread as pressures are; less is needed for the first slip.
-    pub fn compliance(&self) -> f64 {
+    /// Returns the displacement (m) over the force (N) of a traction that is spread as pressures
+    /// are: the mean over the patch, weighted by them, and the largest. With the force mu P the
+    /// last is the displacement at the onset of gross slip, but for tractions across the motion.
+    pub fn compliance(&self) -> [f64; 2] {
         let load = self.load();
-        let field: Field = self
-            .pressure
-            .iter()
-            .map(|p| self.along.map(|a| a * p))
-            .collect();
-        let moved = self.surfaces.displacement(&field, 0);
-        let weighted = moved.iter().zip(&field);
+        let field = self.pressure.iter().map(|p| self.along.map(|a| a * p));
+        let moved = self.surfaces.displacement(&field.collect::<Field>(), 0);
         let area = self.surfaces.grid.area(3);
-        let sum: f64 = weighted.map(|(u, p)| u[0] * p[0] + u[1] * p[1]).sum();
-        sum * area / (load * load)
+        let (mut sum, mut most) = (0.0, 0.0f64);
+        for (u, p) in moved.iter().zip(self.pressure).filter(|(_, p)| **p > 0.0) {
+            let along = (u[0] * self.along[0] + u[1] * self.along[1]) / load;
+            sum += along * p * area / load;
+            most = most.max(along);
+        }
+        [sum, most]
     }
 
     /// Returns the speed at which a cell passes in a step (m/s), to which laws refer.
@@ -368,7 +369,7 @@ impl Fretting<'_> {
             return Ok(from.clone());
         }
         let mut low = [0.0, -wanted];
-        let mut high = 2.0 * self.compliance() * wanted;
+        let mut high = 2.0 * self.compliance()[0] * wanted;
         let mut place = self.shifted(from, high)?;
         while (place.force - target) * wanted < 0.0 {
             if !place.found.sticks.iter().any(|s| *s) {

@@ -13,7 +13,7 @@
 //! while force and energy agree within the error of the cells. Of an ellipse that product is of its
 //! displacement at gross slip and the profile of a circle.
 
-use crate::running::{Conditions, Contacts, Loaded, RunningError};
+use crate::running::{Conditions, Contacts, Loaded, RunningError, check_friction};
 use fretwork_elastic::patch::{PartialSlip, PointPatch, Solid, effective_modulus, point};
 use std::f64::consts::PI;
 
@@ -36,6 +36,7 @@ struct Under {
 
 impl Contacts for Mindlin {
     fn under(&self, load: f64) -> Result<Box<dyn Loaded + '_>, RunningError> {
+        check_friction(self.friction)?;
         let patch = point(load, self.curvatures, effective_modulus(&self.bodies));
         let slip = PartialSlip::of(&patch, load, self.friction, &self.bodies);
         Ok(Box::new(Under { load, patch, slip }))

@@ -130,9 +130,23 @@ pub enum RunningError {
         /// Why.
         source: FrettingError,
     },
+    /// Without friction everything slips.
+    #[error("the coefficient of friction must be positive and finite, got {0}")]
+    Friction(f64),
     /// An axis of the map is not made of positive numbers.
     #[error("loads and amplitudes must be positive and finite, got {0}")]
     Axis(f64),
+}
+
+/// Refuses a coefficient of friction that is not positive.
+///
+/// # Errors
+/// It is not.
+pub(crate) fn check_friction(friction: f64) -> Result<(), RunningError> {
+    match friction > 0.0 && friction.is_finite() {
+        true => Ok(()),
+        false => Err(RunningError::Friction(friction)),
+    }
 }
 
 /// A contact under one load.

@@ -7,7 +7,7 @@ use fretwork_elastic::half_space::CellGrid;
 use fretwork_elastic::patch::{Solid, effective_modulus, point};
 use fretwork_rolling::cells::ByCells;
 use fretwork_rolling::mindlin::Mindlin;
-use fretwork_rolling::running::{Limits, Map, Regime, RunningError, map};
+use fretwork_rolling::running::{Contacts, Limits, Map, Regime, RunningError, map};
 
 const MU: f64 = 0.6;
 const CURVATURE: f64 = 20.0;
@@ -131,8 +131,59 @@ fn a_map_by_cells_is_mindlins() {
     }
 }
 
+/// Ellipses that are five times as long along the motion as across it, and the other way round.
 #[test]
-fn axes_that_are_not_positive_are_refused() {
+fn ellipses_have_the_closed_forms_too() {
+    for curvatures in [[4.0, 50.0], [50.0, 4.0]] {
+        let closed = Mindlin {
+            curvatures,
+            ..mindlin(0.0)
+        };
+        let hertz = |load| point(load, curvatures, effective_modulus(&steel(0.0)));
+        let body = Elasticity {
+            young: 210e9,
+            poisson: 0.0,
+            density: 7800.0,
+        };
+        let contacts = ByCells {
+            bodies: [body; 2],
+            layer: 0.0,
+            distance: &|[x, y]| 0.5 * (curvatures[0] * x * x + curvatures[1] * y * y),
+            grid: &|load| {
+                let patch = hertz(load);
+                let half = [1.1 * patch.along, 1.1 * patch.across];
+                CellGrid {
+                    from: half.map(|h| -h),
+                    size: half.map(|h| h / 16.0),
+                    cells: [32; 2],
+                }
+            },
+            friction: MU,
+            along: [1.0, 0.0],
+        };
+        let (loads, displacements) = ([100.0], [5e-7, 5e-6]);
+        let limits = Limits::default();
+        let [closed, found] = [&closed as &dyn Contacts, &contacts]
+            .map(|c| map(c, &loads, &displacements, &limits).unwrap_or_else(|e| panic!("{e}")));
+        for (got, expected) in found.conditions[0].iter().zip(&closed.conditions[0]) {
+            near(got.amplitude[1], expected.amplitude[1], 0.015);
+            near(got.energy, expected.energy, 0.05);
+        }
+        let [got, expected] = [found.boundaries[0], closed.boundaries[0]];
+        near(got.gross_slip, expected.gross_slip, 0.03);
+        near(got.energy_ratio, expected.energy_ratio, 0.05);
+        near(got.reciprocating, expected.reciprocating, 0.06);
+    }
+}
+
+#[test]
+fn numbers_that_are_not_positive_are_refused() {
+    let smooth = Mindlin {
+        friction: 0.0,
+        ..mindlin(0.3)
+    };
+    let refused = map(&smooth, &[1.0], &[1e-6], &Limits::default()).err();
+    assert_eq!(refused, Some(RunningError::Friction(0.0)));
     let refused = |loads: &[f64], displacements: &[f64]| {
         map(&mindlin(0.3), loads, displacements, &Limits::default()).err()
     };
