@@ -1,5 +1,5 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `law`, `solve`, `study`,
-//! `fit`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `law`, `solve`,
+//! `study`, `fit`, `trade`.
 //!
 //! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
 
@@ -15,6 +15,7 @@ mod measured;
 mod number;
 mod observers;
 mod output;
+mod patch;
 mod progress;
 mod report;
 mod run;
@@ -78,6 +79,10 @@ enum Command {
     /// against creepage
     #[command(after_help = contact_patch::EXAMPLES)]
     ContactPatch(contact_patch::ContactPatchArgs),
+    /// Solve a contact patch that rolls or frets with the laws of an interface: adhesion, wear,
+    /// temperature, fields over the patch
+    #[command(after_help = patch::EXAMPLES)]
+    Patch(patch::PatchArgs),
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
@@ -321,6 +326,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::ContactPatch(args) => contact_patch::contact_patch(&args),
+        Command::Patch(args) => patch::patch(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Study(command) => study::study(&command),

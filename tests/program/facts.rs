@@ -48,6 +48,7 @@ fn paths(text: &str) -> impl Iterator<Item = &str> {
         "cases/",
         "studies/",
         "fits/",
+        "patches/",
         "docs/",
         "tests/fclib/",
         "materials/",

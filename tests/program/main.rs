@@ -32,6 +32,7 @@ mod library_features;
 mod line_length;
 mod material_laws;
 mod pages;
+mod patch;
 mod plugin_loading;
 mod quantities;
 mod rebuilt_program;

@@ -18,7 +18,8 @@
 //!
 //! [`study`] varies the values of a case, [`fit`] finds those for which it reproduces measured
 //! curves, [`trade`] compares accuracy with cost, [`contact_patch`] relates a patch in closed form
-//! to the runs of a window of it. The mathematics is that of [`fretwork_math`].
+//! to the runs of a window of it, [`patch`] solves a patch with the laws of an interface. The
+//! mathematics is that of [`fretwork_math`].
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -32,6 +33,7 @@ pub mod factor;
 pub mod fit;
 pub mod folder;
 mod page;
+pub mod patch;
 pub mod runs;
 pub mod shell;
 pub mod spec;

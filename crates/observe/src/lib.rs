@@ -26,6 +26,7 @@ pub mod friction_report;
 pub mod friction_test;
 pub mod heat;
 pub mod jump;
+mod law_tables;
 pub mod layer;
 pub mod loops;
 pub mod measure;

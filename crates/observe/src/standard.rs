@@ -11,6 +11,7 @@ use super::friction::Cycles;
 use super::friction_test::FrictionTest;
 use super::heat::HeatObserver;
 use super::jump::CycleJumps;
+use super::law_tables::{LawTables, reads_table};
 use super::measure::{ThirdBody, measures};
 use super::observer::{Observers, RunEnd};
 use super::quantity::Findings;
@@ -50,6 +51,9 @@ pub fn observers(case: &Case, run: &dyn RunView, materials: &WearMaterials) -> O
         all.push(Box::new(biaxial));
     }
     all.push(Box::new(Scars::of(run)));
+    if run.laws().iter().any(reads_table) {
+        all.push(Box::new(LawTables));
+    }
     all.push(Box::new(Phases::of(run)));
     let loops = test.filter(|t| t.clock.period.is_some());
     let loops = loops.and(case.friction.as_ref());

@@ -58,6 +58,7 @@ const ORDER: &[&str] = &[
     "LOOSE VELOCITIES",
     "NOT COUPLED",
     "LAWS NOT MET",
+    "NOT IN RANGE",
     "NOT CERTIFIED",
     "GRAINS DO NOT ADD UP",
     NOT_REACHED,

@@ -13,26 +13,37 @@
 //! slip         S = w + B p    (B: displacement of a cell less that of the one before, upstream)
 //! ```
 
+pub mod below;
+pub mod cells;
 pub mod convolution;
 pub mod creep;
 pub mod fastsim;
+pub mod fatigue;
 pub mod fields;
+pub mod fretting;
 pub mod friction;
 mod gmres;
+pub mod mindlin;
 pub mod motion;
 pub mod normal;
 pub mod patch;
 pub mod profile;
+pub mod response;
+pub mod running;
+pub mod stress;
 pub mod surfaces;
 pub mod tangential;
 pub mod temperature;
 
+pub use below::Below;
 pub use creep::{Creep, Share};
 pub use fastsim::Fastsim;
 pub use fields::{Field, Vector};
+pub use fretting::{Amplitude, Fretting, FrettingError, Loop};
 pub use friction::{Bound, Coulomb, Falling, Friction};
 pub use motion::{Creepage, Motion};
 pub use normal::{NormalError, Pressure, normal};
 pub use patch::{Patch, PatchError, Refined, Rolling};
+pub use stress::Stress;
 pub use surfaces::Surfaces;
 pub use tangential::{Tractions, tangential};

@@ -15,38 +15,45 @@ pub struct Thermal {
     pub bulk: [f64; 2],
 }
 
+/// The temperature of a cell by the fluxes of its row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Temperature without heat of friction (K, or °C).
+    pub mixed: f64,
+    /// Rise by a flux in the cell itself, in the one before it upstream, and so on (K m²/W).
+    pub weights: Vec<f64>,
+}
+
 impl Thermal {
     /// Returns the temperature that both surfaces have in each cell under fluxes of heat (W/m²),
     /// where material passes at a speed (m/s) from the last cell of a row to its first.
     ///
     /// T = (e1 T1 + e2 T2)/(e1 + e2) + 1/((e1 + e2) sqrt(pi V)) int q(x')/sqrt(x' - x) dx'
     pub fn temperature(&self, grid: &CellGrid, flux: &[f64], speed: f64) -> Vec<f64> {
-        let effusivity = self.bodies.map(|b| b.effusivity());
-        let sum = effusivity[0] + effusivity[1];
-        let mixed = (effusivity[0] * self.bulk[0] + effusivity[1] * self.bulk[1]) / sum;
         let [columns, _] = grid.cells;
-        // The integral of 1/sqrt over a cell at a distance in cells upstream of the middle of this.
-        let root = grid.size[0].sqrt();
-        let weights: Vec<f64> = (0..columns)
-            .map(|d| {
-                let far = 2.0 * (d as f64 + 0.5).sqrt();
-                let near = if d == 0 {
-                    0.0
-                } else {
-                    2.0 * (d as f64 - 0.5).sqrt()
-                };
-                root * (far - near)
-            })
-            .collect();
-        let scale = 1.0 / (sum * (PI * speed).sqrt());
+        let Response { mixed, weights } = self.response(grid, speed);
         let mut out = Vec::with_capacity(flux.len());
         for row in flux.chunks(columns) {
             for i in 0..columns {
                 let upstream = row[i..].iter().zip(&weights);
-                out.push(mixed + scale * upstream.map(|(q, w)| q * w).sum::<f64>());
+                out.push(mixed + upstream.map(|(q, w)| q * w).sum::<f64>());
             }
         }
         out
+    }
+
+    /// Returns how the temperature of a cell follows from the fluxes of its row at a speed (m/s).
+    pub fn response(&self, grid: &CellGrid, speed: f64) -> Response {
+        let effusivity = self.bodies.map(|b| b.effusivity());
+        let sum = effusivity[0] + effusivity[1];
+        // The integral of 1/sqrt over a cell at a distance in cells upstream of the middle of this.
+        let root = |cells: f64| (cells.max(0.0) * grid.size[0]).sqrt();
+        let scale = 2.0 / (sum * (PI * speed).sqrt());
+        let weight = |d: usize| scale * (root(d as f64 + 0.5) - root(d as f64 - 0.5));
+        Response {
+            mixed: (effusivity[0] * self.bulk[0] + effusivity[1] * self.bulk[1]) / sum,
+            weights: (0..grid.cells[0]).map(weight).collect(),
+        }
     }
 
     /// Returns the Peclet number V a/(2 kappa) of the better conductor for half of the length of a

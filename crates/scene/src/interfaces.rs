@@ -1,6 +1,7 @@
 //! Interface laws of a case: finds the plugins, resolves and checks their parameters.
 
 use super::case::{Case, InterfaceSpec};
+use super::law_table::{self, Tables};
 use super::law_values::{
     GivenNumber, InterfaceError, Sides, friction_of, given_numbers, parameter_value,
     properties_of_sides, wear_from_hardness,
@@ -91,7 +92,9 @@ pub fn build(
         let from = FromFile::read(spec, case, library, &mut out.files, (source, &here))?;
         let sides = pair.map(|m| &properties[usize::from(m)]);
         let derived = &mut out.wear_coefficients;
-        let built = build_interface(case, spec, &from.parameters, &sides, path, derived);
+        let tables = law_table::of_interface(spec, source, &here)?;
+        let given = (&from.parameters, &tables);
+        let built = build_interface(case, spec, given, &sides, path, derived);
         let interface = built.map_err(|error| match error.in_file {
             true => match from.locate(error.fault.clone()) {
                 Some(located) => located,
@@ -282,7 +285,7 @@ impl FromFile {
 fn build_interface(
     case: &Case,
     spec: &InterfaceSpec,
-    file: &InterfaceParameters,
+    (file, tables): (&InterfaceParameters, &Tables),
     sides: &Sides<'_>,
     path: &SearchPath,
     derived: &mut Vec<WearCoefficient>,
@@ -325,8 +328,14 @@ fn build_interface(
             .then(|| wear_from_hardness(&plugin, &mut numbers, (sides, spec), friction))
             .transpose()?
             .flatten();
+        let table = tables.get(kind);
+        law_table::check(&plugin, table.is_some())?;
         let given = (&numbers, coefficient.as_ref());
-        laws.push(load_law(case, plugin, given, (sides, spec))?);
+        let law = load_law(case, plugin, given, (sides, spec))?;
+        laws.push(match table {
+            Some(table) => law.with_table(table.clone()),
+            None => law,
+        });
         derived.extend(coefficient);
     }
     // The error is reported at the damage law, or at `healing`.

@@ -86,7 +86,8 @@ pub fn undecided(case: &Case, s: &dyn RunView) -> Vec<String> {
             .iter()
             .any(|phase| phase.friction.contains_key(input.interface));
         let given = input.origin != Some(&ParameterOrigin::Default);
-        if given || !decides(kind, input.field) || (set && input.field.name == "mu") {
+        let tabulated = !input.law.table.is_empty();
+        if given || tabulated || !decides(kind, input.field) || (set && input.field.name == "mu") {
             continue;
         }
         let unit = match input.field.unit.as_str() {

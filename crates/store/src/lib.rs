@@ -12,5 +12,6 @@ pub mod views;
 mod write_advice;
 
 pub use fretwork_observe::{series, summary};
+pub use results::maps;
 pub use summary::Summary;
 pub use write_advice::write_advice;

@@ -1,4 +1,4 @@
-/* fretwork.h - the C interface between Fretwork and its law plugins, version 1.1.
+/* fretwork.h - the C interface between Fretwork and its law plugins, version 1.2.
  *
  * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion,
  * damage, wear, transport; NAME with '-' written '_') which exports one function,
@@ -47,7 +47,7 @@ extern "C" {
 #endif
 
 #define FW_ABI_MAJOR 1u
-#define FW_ABI_MINOR 1u
+#define FW_ABI_MINOR 2u
 
 /* Kind of plugin: friction, restitution, rolling (fills the non-smooth part of the local form). */
 #define FW_KIND_CONTACT 1
@@ -97,6 +97,8 @@ extern "C" {
 /* Flag: the law reads temperatures, so the case must compute heat; the columns are then not null.
  * Transport laws have them without the flag. Since 1.1. */
 #define FW_FLAG_TEMPERATURE (UINT64_C(1) << 9)
+/* Flag: the law reads a table, which the case names: `table` of the batch. Since 1.2. */
+#define FW_FLAG_TABLE (UINT64_C(1) << 10)
 
 /* Flag of a variable: it is written to the results. */
 #define FW_FIELD_OUTPUT (UINT64_C(1) << 0)
@@ -211,6 +213,9 @@ typedef struct fw_batch {
     const double *resistivity; /* Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); null where no current flows. */
     double *out_conductance; /* Transport: thermal conductance (W/K; W/(m K) in 2D), not negative. */
     double *out_electric_conductance; /* Transport: electrical conductance (S; S/m in 2D), not negative. */
+    /* Since version 1.2. */
+    const double *table; /* Numbers of the law's table; null without one: the numbers of points on the axes slip (m), slip velocity (m/s), pressure (Pa) and temperature (K), 1 where it does not depend on one; the points of each axis, ascending; then the values at all points, the last axis running fastest, their lower ends, and their upper ends. Valid as long as the program runs. */
+    size_t table_length; /* Number of numbers in `table`. */
 } fw_batch;
 
 /* Checks parameters in addition to their ranges (relations between them). May be null. */

@@ -17,7 +17,7 @@ use core::ffi::c_char;
 /// Major version: a host refuses a plugin of another major.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor version: incremented when structs grow at their end.
-pub const ABI_MINOR: u32 = 1;
+pub const ABI_MINOR: u32 = 2;
 /// Name of the one exported function, of type [`FwEntry`].
 pub const ENTRY_SYMBOL: &str = "fretwork_plugin";
 
@@ -73,6 +73,9 @@ pub const FLAG_COMPLIANT: u64 = 1 << 8;
 /// then not null. Transport laws receive them without this flag. Since version 1.1.
 pub const FLAG_TEMPERATURE: u64 = 1 << 9;
 
+/// Flag: the law reads a table, which the case names; see [`FwBatch::table`]. Since version 1.2.
+pub const FLAG_TABLE: u64 = 1 << 10;
+
 /// All flags of this version.
 pub const FLAGS: u64 = FLAG_2D_ONLY
     | FLAG_3D_ONLY
@@ -83,7 +86,8 @@ pub const FLAGS: u64 = FLAG_2D_ONLY
     | FLAG_BREAKS
     | FLAG_FORMS
     | FLAG_COMPLIANT
-    | FLAG_TEMPERATURE;
+    | FLAG_TEMPERATURE
+    | FLAG_TABLE;
 
 /// Flag of a variable: it is written to the results.
 pub const FIELD_OUTPUT: u64 = 1;
@@ -313,6 +317,15 @@ pub struct FwBatch {
     pub out_conductance: *mut f64,
     /// Transport: electrical conductance (S; S/m in 2D), not negative.
     pub out_electric_conductance: *mut f64,
+    // The fields below exist since version 1.2.
+    /// Numbers of the table of the law; null without one. They are the numbers of points on the
+    /// axes slip (m), slip velocity (m/s), pressure (Pa) and temperature (K), 1 where the table
+    /// does not depend on one; the points of each axis, ascending; then the values at all points,
+    /// the last axis running fastest, their lower ends, and their upper ends. They are valid as
+    /// long as the program runs.
+    pub table: *const f64,
+    /// Number of numbers in `table`.
+    pub table_length: usize,
 }
 
 /// Checks parameters in addition to their ranges (relations between them). May be null.

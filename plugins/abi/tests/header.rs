@@ -103,7 +103,9 @@ fn rust_layout() -> Vec<(String, u64)> {
         conductivity,
         resistivity,
         out_conductance,
-        out_electric_conductance
+        out_electric_conductance,
+        table,
+        table_length
     );
     layout!(
         out,
@@ -157,6 +159,7 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_FLAG_FORMS", FLAG_FORMS),
         ("FW_FLAG_COMPLIANT", FLAG_COMPLIANT),
         ("FW_FLAG_TEMPERATURE", FLAG_TEMPERATURE),
+        ("FW_FLAG_TABLE", FLAG_TABLE),
     ] {
         out.push((name.to_owned(), value));
     }

@@ -17,6 +17,7 @@ pub mod contact {
     pub mod rate_and_state;
     pub mod rolling_friction;
     pub mod static_dynamic;
+    pub mod tabulated;
     pub mod thermal_contact;
     pub mod thermal_friction;
     pub mod velocity_weakening;
@@ -61,6 +62,7 @@ pub mod wear {
     pub mod dissipated_energy;
     pub mod oxidation;
     pub mod t_gamma;
+    pub mod tabulated;
     pub mod thermal_archard;
 }
 
@@ -92,7 +94,7 @@ macro_rules! laws {
                 mohr_coulomb::MohrCoulomb, newton_restitution::NewtonRestitution,
                 rail_falling_friction::RailFallingFriction, rate_and_state::RateAndState,
                 rolling_friction::RollingFriction, static_dynamic::StaticDynamic,
-                thermal_contact::ThermalContact, thermal_friction::ThermalFriction,
+                tabulated::Tabulated, thermal_contact::ThermalContact, thermal_friction::ThermalFriction,
                 velocity_weakening::VelocityWeakening;
             cohesion:
                 camanho_davila::CamanhoDavila, capillary_bridge::CapillaryBridge,
@@ -108,7 +110,8 @@ macro_rules! laws {
                 thermal_softening::ThermalSoftening, trapezoidal::Trapezoidal;
             wear:
                 archard::Archard, broken_bonds::BrokenBonds, dissipated_energy::DissipatedEnergy,
-                oxidation::Oxidation, t_gamma::TGamma, thermal_archard::ThermalArchard;
+                oxidation::Oxidation, t_gamma::TGamma, tabulated::TabulatedWear,
+                thermal_archard::ThermalArchard;
             transport:
                 batchelor_obrien::BatchelorObrien, bond_conductance::BondConductance,
                 constant_conductance::ConstantConductance, holm::Holm, oxide_film::OxideFilm,

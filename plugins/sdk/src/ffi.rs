@@ -1,7 +1,7 @@
 //! The interface layer, which converts the host's columns to the values of one contact and back.
 //! All `unsafe` code of a law is here.
 
-use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
+use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, Table, TransportLaw, WearLaw};
 use core::cell::{Cell, OnceCell};
 use core::ffi::c_char;
 use core::mem::{MaybeUninit, offset_of};
@@ -139,6 +139,11 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             theta: b.theta,
             time: b.time,
             dimension: b.dimension,
+            table: match b.table.is_null() {
+                true => Table::default(),
+                // The numbers are valid as long as the program runs.
+                false => Table::new(core::slice::from_raw_parts(b.table, b.table_length)),
+            },
         }
     }
 }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod ffi;
+mod grid;
 mod intact;
 mod output;
 mod site;
@@ -10,6 +11,7 @@ pub mod testing;
 mod traits;
 
 pub use fretwork_abi as abi;
+pub use grid::{Reading, Table};
 pub use intact::Intact;
 pub use output::{Conductance, Friction, Traction, bounded};
 pub use site::Site;

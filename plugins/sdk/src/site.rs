@@ -1,6 +1,6 @@
 //! Inputs of a law for a contact.
 
-use crate::Conductance;
+use crate::{Conductance, Table};
 
 /// Input of a law for one contact. Vectors are (n, t1, t2), SI units.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,6 +60,8 @@ pub struct Site {
     pub time: f64,
     /// Dimension, 2 or 3.
     pub dimension: u32,
+    /// Table of the law, with `FLAG_TABLE`; without numbers where the case names none.
+    pub table: Table,
 }
 
 impl Site {

@@ -337,6 +337,12 @@ impl BatchColumns {
             out_energy: energy,
             degradation,
             parameters: loaded.parameters.as_ptr(),
+            table: if loaded.table.is_empty() {
+                null()
+            } else {
+                loaded.table.as_ptr()
+            },
+            table_length: loaded.table.len(),
             state: if state.is_empty() {
                 null()
             } else {
@@ -440,6 +446,8 @@ impl BatchColumns {
             resistivity: pointers.input(&self.resistivity),
             out_conductance: pointers.output(&mut out.conductance),
             out_electric_conductance: pointers.output(&mut out.electric_conductance),
+            table: null(),
+            table_length: 0,
         }
     }
 }

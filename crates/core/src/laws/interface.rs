@@ -4,7 +4,7 @@ use super::error::LawError;
 use super::kind::{Domain, Kind};
 use super::library::Plugin;
 use fretwork_abi::{
-    FLAG_BREAKS, FLAG_COMPLIANT, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING,
+    FLAG_BREAKS, FLAG_COMPLIANT, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING, FLAG_TABLE,
     FLAG_TEMPERATURE, FLAG_TENSION_ONLY,
 };
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,8 @@ pub struct LoadedLaw {
     pub parameters: Vec<f64>,
     /// Where they come from, one per parameter; empty if that is not known.
     pub origins: Vec<ParameterOrigin>,
+    /// Numbers of its table, in the order of [`fretwork_abi::FwBatch::table`]; empty without one.
+    pub table: &'static [f64],
     /// Index of its first column among the interface's internal variables.
     pub first_variable: usize,
 }
@@ -39,6 +41,7 @@ impl LoadedLaw {
             plugin: Arc::new(plugin),
             parameters,
             origins: Vec::new(),
+            table: &[],
             first_variable: 0,
         }
     }
@@ -48,6 +51,26 @@ impl LoadedLaw {
     pub fn with_origins(mut self, origins: Vec<ParameterOrigin>) -> Self {
         self.origins = origins;
         self
+    }
+
+    /// Gives the law a table, see [`fretwork_abi::FwBatch::table`]. Laws may keep its address, so
+    /// that it stays in memory as long as the program runs.
+    #[must_use]
+    pub fn with_table(self, table: Vec<f64>) -> Self {
+        Self {
+            table: table.leak(),
+            ..self
+        }
+    }
+
+    /// Returns whether the table depends on temperature.
+    fn table_of_temperatures(&self) -> bool {
+        const TEMPERATURE: usize = 3;
+        self.has(FLAG_TABLE)
+            && self
+                .table
+                .get(TEMPERATURE)
+                .is_some_and(|points| *points > 1.0)
     }
 
     /// Creates a law with the defaults of its parameters.
@@ -68,7 +91,9 @@ impl LoadedLaw {
 
     /// Returns whether the law reads temperatures or transports heat.
     pub fn reads_temperatures(&self) -> bool {
-        self.plugin.kind == Kind::TRANSPORT || self.has(FLAG_TEMPERATURE)
+        self.plugin.kind == Kind::TRANSPORT
+            || self.has(FLAG_TEMPERATURE)
+            || self.table_of_temperatures()
     }
 }
 

@@ -43,6 +43,10 @@ pub trait ContactsView {
     /// is computed.
     fn contact_heat(&self) -> Option<&ContactHeat>;
 
+    /// Returns an internal variable of the laws of an interface at its contacts, by the index of
+    /// the variable among those of the interface.
+    fn law_variable(&self, interface: usize, variable: usize) -> Vec<f64>;
+
     /// Returns the number of bonds formed so far.
     fn bonds_made(&self) -> u64;
     /// Returns the number of bonds broken so far.
@@ -125,6 +129,19 @@ impl<S: Space> ContactsView for Simulation<S> {
     }
     fn contact_forces(&self) -> ContactForces {
         self.contact_forces()
+    }
+    fn law_variable(&self, interface: usize, variable: usize) -> Vec<f64> {
+        let network = &self.state.network;
+        let memory = network.memory.get(interface);
+        let Some(values) = memory.and_then(|m| m.variables.get(variable)) else {
+            return Vec::new();
+        };
+        let own = network
+            .contacts
+            .iter()
+            .filter(|c| usize::from(c.law) == interface);
+        own.filter_map(|c| values.get(c.memory()?).copied())
+            .collect()
     }
     fn nodes_of_side(&self, contact: usize, side: usize) -> Option<Nodes> {
         self.nodes_of_side(&self.state.network.contacts[contact], side)

@@ -29,6 +29,7 @@ impl InterfaceSpec {
             parameters_from: None,
             laws: BySlot::default(),
             parameters: SlotValues::default(),
+            tables: BySlot::default(),
             bonds: BondRule::default(),
             healing: None,
             bonds_within: None,
@@ -45,6 +46,13 @@ impl InterfaceSpec {
         if !parameters.is_empty() {
             self.parameters.set(kind, values(parameters));
         }
+        self
+    }
+
+    /// Sets the table of the law of a kind, a file relative to that of the case.
+    #[must_use]
+    pub fn table(mut self, kind: Kind, file: impl Into<String>) -> Self {
+        self.tables.set(kind, file.into());
         self
     }
 

@@ -27,6 +27,8 @@ pub struct InterfaceSpec {
     pub laws: BySlot<String>,
     /// Parameters given here, which take precedence over those of the file.
     pub parameters: SlotValues,
+    /// Tables of the laws that read one: files relative to that of the case.
+    pub tables: BySlot<String>,
     /// When bonds are made.
     pub bonds: BondRule,
     /// Largest gap at which a bond forms (m), at most the alert distance, which is the default.
@@ -41,11 +43,12 @@ pub struct InterfaceSpec {
 }
 
 /// Names of the fields other than slots; the slots come after the first three.
-const OWN: [&str; 9] = [
+const OWN: [&str; 10] = [
     "name",
     "between",
     "parameters_from",
     "parameters",
+    "tables",
     "bonds",
     "bonds_within",
     "bond_opening",
@@ -97,7 +100,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<InterfaceSpec, A::Error> {
         let (mut name, mut between, mut file) = (None, None, None);
         let (mut parameters, mut bonds, mut healing, mut factor) = (None, None, None, None);
-        let (mut within, mut opening) = (None, None);
+        let (mut within, mut opening, mut tables) = (None, None, None);
         let (mut laws, mut seen) = (BySlot::default(), BTreeSet::new());
         while let Some(field) = map.next_key_seed(FieldName(self.0))? {
             match field {
@@ -117,6 +120,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
                     "between" => once(&mut map, &mut between, own)?,
                     "parameters_from" => once(&mut map, &mut file, own)?,
                     "parameters" => once(&mut map, &mut parameters, own)?,
+                    "tables" => once(&mut map, &mut tables, own)?,
                     "bonds" => once(&mut map, &mut bonds, own)?,
                     "bonds_within" => once(&mut map, &mut within, own)?,
                     "bond_opening" => once(&mut map, &mut opening, own)?,
@@ -132,6 +136,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
             parameters_from: file.flatten(),
             laws,
             parameters: parameters.unwrap_or_default(),
+            tables: tables.unwrap_or_default(),
             bonds: bonds.unwrap_or_default(),
             bonds_within: within.flatten(),
             bond_opening: opening.unwrap_or_default(),
@@ -163,6 +168,9 @@ impl Serialize for InterfaceSpec {
         }
         if self.parameters != SlotValues::default() {
             fields.serialize_field("parameters", &self.parameters)?;
+        }
+        if self.tables != BySlot::default() {
+            fields.serialize_field("tables", &self.tables)?;
         }
         fields.serialize_field("bonds", &self.bonds)?;
         if self.bonds_within.is_some() {

@@ -2,9 +2,8 @@
 
 use crate::case::{Case, HeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
-use fretwork_abi::FLAG_TEMPERATURE;
 use fretwork_core::heat::Supply;
-use fretwork_core::laws::Kind;
+use fretwork_core::laws::{Kind, LoadedLaw};
 use fretwork_core::view::RunView;
 
 /// Checks numbers and names.
@@ -246,7 +245,9 @@ pub(super) fn refuse_laws_without_heat(
     s: &dyn RunView,
 ) -> Result<(), ValidationError> {
     for (k, law) in s.laws().iter().enumerate() {
-        let mut reading = law.loaded().filter(|l| l.has(FLAG_TEMPERATURE));
+        let of_temperature =
+            |l: &&LoadedLaw| l.plugin.kind != Kind::TRANSPORT && l.reads_temperatures();
+        let mut reading = law.loaded().filter(of_temperature);
         let Some(found) = reading.next() else {
             continue;
         };

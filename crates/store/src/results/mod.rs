@@ -18,6 +18,7 @@ mod declare;
 mod deformed;
 mod events;
 mod growth;
+pub mod maps;
 mod mesh_view;
 mod previous;
 mod reader;

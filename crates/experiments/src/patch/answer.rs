@@ -1,0 +1,110 @@
+//! Results of a patch, as numbers in SI units.
+
+use fretwork_rolling::Creepage;
+use serde::Serialize;
+
+/// The answer.
+#[derive(Debug, Serialize)]
+pub struct Answer {
+    /// Title.
+    pub name: String,
+    /// Materials of the two bodies.
+    pub bodies: [String; 2],
+    /// Load (N).
+    pub load: f64,
+    /// Speed (m/s).
+    pub speed: Option<f64>,
+    /// Laws of the interface: kind and name.
+    pub laws: Vec<(String, String)>,
+    /// Number of cells of the grid along its sides.
+    pub cells: [usize; 2],
+    /// Sides of a cell (m).
+    pub cell: [f64; 2],
+    /// Largest pressure (Pa).
+    pub pressure: f64,
+    /// Approach of distant points of the bodies (m).
+    pub approach: f64,
+    /// Area under pressure (m²).
+    pub area: f64,
+    /// Points, one for each creepage or stroke.
+    pub points: Vec<Point>,
+}
+
+/// How the bodies move in a point.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub enum Motion {
+    /// Steady rolling.
+    Rolling(Creepage),
+    /// A stroke of an amplitude (m).
+    Fretting(f64),
+}
+
+/// A point. In fretting forces are those at the end of the stroke.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// How the bodies move.
+    pub motion: Motion,
+    /// Forces on the first body along the motion and across it (N).
+    pub force: [f64; 2],
+    /// Tangential force over load, extrapolated to cells of no size.
+    pub adhesion: f64,
+    /// Error of it by the grid.
+    pub adhesion_error: f64,
+    /// Lowest and highest value over the members.
+    pub adhesion_band: Option<Band>,
+    /// Moment on the first body about the normal (N m).
+    pub moment: f64,
+    /// Energy supplied over the distance rolled (N), T gamma; in fretting over a cycle (J).
+    pub t_gamma: f64,
+    /// Energy dissipated by slip over the distance rolled (N); in fretting over a cycle (J).
+    pub dissipation: f64,
+    /// Resistance to rolling by unlike bodies (N).
+    pub resistance: f64,
+    /// Share of the area that sticks; in fretting throughout the cycle.
+    pub stuck: f64,
+    /// Largest velocity of slip (m/s).
+    pub slip_speed: Option<f64>,
+    /// Highest temperature (K).
+    pub temperature: Option<f64>,
+    /// Wear of a passage; in fretting of a cycle.
+    pub wear: Vec<Wear>,
+    /// Steps of Newton's method, and iterations of the linear equations.
+    pub iterations: [usize; 2],
+    /// Whether the solution is the only one nearby.
+    pub unique: bool,
+    /// What limits the trust in this point.
+    pub notes: Vec<String>,
+}
+
+/// Lowest and highest value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Band {
+    /// Lowest value.
+    pub low: f64,
+    /// Highest value.
+    pub high: f64,
+}
+
+impl Band {
+    /// Returns the range of a value and those of members; `None` without members.
+    pub fn of(value: f64, members: &[f64]) -> Option<Self> {
+        let low = members.iter().copied().fold(value, f64::min);
+        let high = members.iter().copied().fold(value, f64::max);
+        (!members.is_empty()).then_some(Self { low, high })
+    }
+}
+
+/// Wear of a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct Wear {
+    /// The body by its material, or `interface` where the law does not tell the bodies apart.
+    pub body: String,
+    /// The wear law.
+    pub law: String,
+    /// Volume over the distance rolled (m²); in fretting the volume of a cycle (m³).
+    pub volume: f64,
+    /// Largest depth (m).
+    pub depth: f64,
+    /// Depth across the motion, one number for each row of cells (m); in fretting empty.
+    pub profile: Vec<f64>,
+}

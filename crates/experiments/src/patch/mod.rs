@@ -1,0 +1,127 @@
+//! A contact patch by the laws of an interface: from load, bodies and motion to adhesion, wear and
+//! temperature, with fields over the patch.
+//!
+//! ```text
+//! file (RON, as a case)        spec
+//!       ▼
+//! bodies, grid, laws           bodies, setup, law
+//!       ▼
+//! points: creepages, strokes   rolling, pulling, fretting      (fretwork_rolling)
+//!       ▼
+//! numbers, curves, fields      answer, text, files, page
+//! ```
+
+mod answer;
+mod bodies;
+pub mod files;
+pub mod fretting;
+pub mod law;
+mod page;
+mod pulling;
+pub mod rolling;
+mod setup;
+pub mod spec;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use answer::{Answer, Band, Motion, Point, Wear};
+pub use bodies::{Bodies, Distance};
+pub use setup::Setup;
+pub use spec::{PatchFile, PatchSpec};
+
+use crate::Error;
+use crate::folder::Owner;
+use fretting::Stroke;
+use fretwork_core::laws::SearchPath;
+use fretwork_rolling::Pressure;
+use rolling::Solved;
+
+/// Owner of the folders of patches.
+pub const OWNER: Owner = Owner {
+    command: "fretwork patch",
+    lock_file: "patch.lock",
+    files: &["patch.json"],
+};
+
+/// All points of a patch.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The numbers.
+    pub answer: Answer,
+    /// The patch.
+    pub setup: Setup,
+    /// Fields of points of rolling.
+    pub rolled: Vec<Solved>,
+    /// Curves and fields of strokes.
+    pub strokes: Vec<Stroke>,
+}
+
+/// Solves all points of a patch; `follow` gets the number of each point that is done, and that of
+/// all.
+///
+/// # Errors
+/// The file names what does not exist, a law cannot act in a patch or fails, or a point has no
+/// solution.
+pub fn solve(
+    file: &PatchFile,
+    search: &SearchPath,
+    follow: &mut dyn FnMut(usize, usize),
+) -> Result<Outcome, Error> {
+    let creepages = rolling::creepages(file)?;
+    let (amplitudes, steps) = fretting::amplitudes(file)?;
+    let pulls = pulling::forces(file)?;
+    let mut setup = Setup::new(file, search)?;
+    let count = creepages.len() + pulls.len() + amplitudes.len();
+    let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
+    for creepage in &creepages {
+        rolled.push(rolling::solve(&setup, creepage)?);
+        follow(rolled.len(), count);
+    }
+    for pull in &pulls {
+        let creepage = pulling::creepage(&setup, pull)?;
+        rolled.push(rolling::solve(&setup, &creepage)?);
+        follow(rolled.len(), count);
+    }
+    for amplitude in amplitudes {
+        strokes.push(fretting::solve(&mut setup, amplitude, steps)?);
+        follow(strokes.len(), count);
+    }
+    let pressures = rolled.iter().map(|s| &s.rolling.pressure);
+    let mut pressures = pressures.chain(strokes.iter().map(|s| &s.pressure));
+    let first = pressures.next().cloned().unwrap_or_default();
+    let points = rolled.iter().map(|s| s.point.clone());
+    let points = points
+        .chain(strokes.iter().map(|s| s.point.clone()))
+        .collect();
+    let answer = numbers(file, &setup, &first, points);
+    Ok(Outcome {
+        answer,
+        setup,
+        rolled,
+        strokes,
+    })
+}
+
+fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Point>) -> Answer {
+    let loaded = setup.laws[0].interface().loaded();
+    let touching = pressure.pressure.iter().filter(|p| **p > 0.0).count();
+    Answer {
+        name: file.spec.name.clone(),
+        bodies: setup.bodies.names.each_ref().map(|n| {
+            let from = file.spec.materials.get(n);
+            from.unwrap_or(n).clone()
+        }),
+        load: setup.load,
+        speed: setup.speed,
+        laws: loaded
+            .map(|l| (l.plugin.kind.to_string(), l.plugin.name.clone()))
+            .collect(),
+        cells: setup.grid.cells,
+        cell: setup.grid.size,
+        pressure: pressure.largest(),
+        approach: pressure.approach,
+        area: touching as f64 * setup.grid.area(3),
+        points,
+    }
+}

@@ -1,0 +1,105 @@
+//! The creepage at which a patch has a force along the rolling.
+
+use super::rolling::LARGEST;
+use super::setup::Setup;
+use super::spec::{MotionSpec, PatchFile, value};
+use crate::Error;
+use fretwork_observe::quantity::quantity;
+use fretwork_rolling::Creepage;
+use fretwork_scene::InputError;
+
+/// Creepage from which the search begins.
+const FIRST: f64 = 1e-5;
+/// Difference of the force over it at which the creepage is found, and largest number of solutions.
+const FOUND: (f64, usize) = (1e-5, 60);
+
+/// A force on the first body along the rolling (N), and spin (1/m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pull {
+    force: f64,
+    spin: f64,
+}
+
+/// Returns the forces of all points.
+///
+/// # Errors
+/// A number is out of range.
+pub(super) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError> {
+    let MotionSpec::Pulling { force, spin } = &file.spec.motion else {
+        return Ok(Vec::new());
+    };
+    let source = &file.source;
+    let spin = spin.as_ref();
+    let spin = spin.map(|s| value(source, "motion.spin", s, "1/m"));
+    let spin = spin.transpose()?.unwrap_or(0.0);
+    let path = "motion.force";
+    let list = force.0.iter();
+    let list = list.map(|f| -> Result<Pull, InputError> {
+        Ok(Pull {
+            force: value(source, path, f, "N")?,
+            spin,
+        })
+    });
+    let list: Vec<Pull> = list.collect::<Result<_, _>>()?;
+    match list.iter().any(|p| p.force == 0.0) || list.is_empty() {
+        true => Err(source.error_at(path, "forces other than 0 are expected")),
+        false => Ok(list),
+    }
+}
+
+/// Returns the creepage at which the first body has a force.
+///
+/// # Errors
+/// A law fails, there is no solution, or the patch does not carry the force.
+pub(super) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
+    let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
+    let (law, speed) = (&setup.laws[0], setup.rolling_speed());
+    // Force opposes creepage.
+    let sign = -pull.force.signum();
+    let wanted = pull.force.abs();
+    let at = |size: f64| Creepage {
+        along: sign * size,
+        across: 0.0,
+        spin: pull.spin,
+    };
+    let missing = |size: f64| -> Result<f64, Error> {
+        let solved = setup.with_patch(|patch| patch.rolls(setup.grid, &at(size), law, speed));
+        if let Some(error) = law.take_error() {
+            return Err(fail(&error));
+        }
+        let rolling = solved.map_err(|e| fail(&e))?;
+        Ok(-sign * rolling.force[0] - wanted)
+    };
+    let (mut low, mut below) = (0.0, missing(0.0)?);
+    let (mut high, mut above) = (FIRST, missing(FIRST)?);
+    let mut most = below.max(above);
+    while above < 0.0 {
+        if high >= LARGEST {
+            return Err(Error::Failed(format!(
+                "the patch does not carry a force of {} along the rolling: with this law it has at most {}",
+                quantity(wanted, "N"),
+                quantity(most + wanted, "N")
+            )));
+        }
+        (low, below) = (high, above);
+        high = (2.0 * high).min(LARGEST);
+        above = missing(high)?;
+        most = most.max(above);
+    }
+    // Regula falsi, with the value of an end that stays halved (Illinois).
+    for _ in 0..FOUND.1 {
+        let size = low - below * (high - low) / (above - below);
+        let now = missing(size)?;
+        if now.abs() <= FOUND.0 * wanted {
+            return Ok(at(size));
+        }
+        if now < 0.0 {
+            (low, below) = (size, now);
+            above *= 0.5;
+        } else {
+            (high, above) = (size, now);
+            below *= 0.5;
+        }
+    }
+    Ok(at(0.5 * (low + high)))
+}

@@ -1,0 +1,216 @@
+//! Points of steady rolling: forces, wear and temperature at each creepage.
+
+use super::answer::{Band, Motion, Point, Wear};
+use super::law::{Passage, PatchLaw};
+use super::setup::Setup;
+use super::spec::{MotionSpec, Numbers, PatchFile, value};
+use crate::Error;
+use fretwork_core::laws::Kind;
+use fretwork_rolling::fields::length;
+use fretwork_rolling::friction::Cells;
+use fretwork_rolling::{Creepage, Refined, Rolling};
+use fretwork_scene::InputError;
+use fretwork_scene::quantity::hardness_in_pascal;
+
+/// Largest creepage: beyond it the bodies slide more than they roll, and their speeds differ so
+/// much that there is no common one.
+pub(super) const LARGEST: f64 = 0.5;
+/// Peclet number below which heat flows along the patch too.
+const FAST: f64 = 5.0;
+/// Error of the force by the grid over the force that is no longer small.
+const COARSE: f64 = 0.05;
+
+/// Returns the creepages of all points.
+///
+/// # Errors
+/// A number is out of range, or lists differ in length.
+pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
+    let MotionSpec::Rolling {
+        along,
+        across,
+        spin,
+    } = &file.spec.motion
+    else {
+        return Ok(Vec::new());
+    };
+    let source = &file.source;
+    let read = |name: &str, numbers: &Numbers, unit: &str| -> Result<Vec<f64>, InputError> {
+        let path = format!("motion.{name}");
+        let list = numbers.0.iter();
+        let list: Vec<f64> = list
+            .map(|n| value(source, &path, n, unit))
+            .collect::<Result<_, _>>()?;
+        if unit.is_empty()
+            && let Some(large) = list.iter().find(|x| x.abs() > LARGEST)
+        {
+            return Err(source.error_at(
+                &path,
+                format!("a creepage of {large} is more than {LARGEST}, where bodies slide rather than roll; in per cent write {large} %"),
+            ));
+        }
+        Ok(list)
+    };
+    let lists = [
+        read("along", along, "")?,
+        read("across", across, "")?,
+        read("spin", spin, "1/m")?,
+    ];
+    let count = lists.iter().map(Vec::len).max().unwrap_or(0);
+    if count == 0 {
+        return Err(source.error_at(
+            "motion",
+            "there is no creepage: give `along`, `across` or `spin`",
+        ));
+    }
+    if let Some(other) = lists.iter().find(|l| l.len() > 1 && l.len() != count) {
+        return Err(source.error_at(
+            "motion",
+            format!(
+                "lists of {} and {count} creepages: give lists of one length, or single numbers",
+                other.len()
+            ),
+        ));
+    }
+    let at = |list: &[f64], k: usize| match list {
+        [] => 0.0,
+        [one] => *one,
+        many => many[k],
+    };
+    let point = |k| Creepage {
+        along: at(&lists[0], k),
+        across: at(&lists[1], k),
+        spin: at(&lists[2], k),
+    };
+    Ok((0..count).map(point).collect())
+}
+
+/// A solved point with the fields over its cells.
+#[derive(Debug)]
+pub struct Solved {
+    /// The numbers.
+    pub point: Point,
+    /// The fields.
+    pub rolling: Rolling,
+    /// What the laws gave in the cells.
+    pub passage: Passage,
+}
+
+/// Solves a point, with the laws of all members for its band.
+///
+/// # Errors
+/// A law fails, or there is no solution.
+pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
+    let (refined, passage) = of_law(setup, creepage, &setup.laws[0])?;
+    let members = setup.laws[1..].iter().map(|law| -> Result<f64, Error> {
+        let (refined, _) = of_law(setup, creepage, law)?;
+        Ok(length(refined.force) / setup.load)
+    });
+    let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
+    let speed = setup.rolling_speed();
+    let Refined { fine, force, error } = refined;
+    let grid = fine.grid;
+    let cells = fine.tractions.slip.iter().zip(&fine.pressure.pressure);
+    let touching = cells.clone().filter(|(_, p)| **p > 0.0).count();
+    let sticks = fine.tractions.sticks.iter().zip(&fine.pressure.pressure);
+    let stuck = sticks.filter(|(s, p)| **s && **p > 0.0).count();
+    let most = |list: &[f64]| list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let slips = cells.map(|(s, _)| length(*s));
+    let adhesion = length(force) / setup.load;
+    let mut notes = Vec::new();
+    if !fine.tractions.unique {
+        notes.push("NOT UNIQUE: friction falls so fast with slip that the patch has another branch of lower friction at this creepage; a law whose friction follows over a length of slip decides between them".to_owned());
+    }
+    if length(error) > COARSE * length(force) {
+        notes.push(format!(
+            "the grid errs by {:.1} % of the force: take more `cells`",
+            100.0 * length(error) / length(force)
+        ));
+    }
+    if let Some(thermal) = setup.laws[0].thermal() {
+        let peclet = thermal.peclet(0.5 * grid.extent()[0], speed);
+        if peclet < FAST {
+            notes.push(format!(
+                "NOT IN RANGE: at a Peclet number of {peclet:.1} heat also flows along the patch, and the temperatures are those of heat that flows into the depth alone"
+            ));
+        }
+    }
+    let time = touching as f64 * grid.size[0] / speed;
+    notes.extend(setup.laws[0].outside(&passage, grid.cells[0], time));
+    let temperature = setup.speed.filter(|_| !passage.temperature.is_empty());
+    let point = Point {
+        motion: Motion::Rolling(*creepage),
+        force: fine.force,
+        adhesion,
+        adhesion_error: length(error) / setup.load,
+        adhesion_band: Band::of(adhesion, &members),
+        moment: fine.moment,
+        t_gamma: fine.t_gamma,
+        dissipation: fine.dissipation,
+        resistance: fine.resistance,
+        stuck: stuck as f64 / touching as f64,
+        slip_speed: setup
+            .speed
+            .map(|v| slips.fold(0.0, f64::max) * v / grid.size[0]),
+        temperature: temperature.map(|_| most(&passage.temperature)),
+        wear: wear(setup, &fine, &passage),
+        iterations: fine.tractions.iterations,
+        unique: fine.tractions.unique,
+        notes,
+    };
+    Ok(Solved {
+        point,
+        rolling: fine,
+        passage,
+    })
+}
+
+fn of_law(setup: &Setup, creepage: &Creepage, law: &PatchLaw) -> Result<(Refined, Passage), Error> {
+    let speed = setup.rolling_speed();
+    let solved = setup.with_patch(|patch| patch.refined(setup.grid, creepage, law, speed));
+    let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
+    if let Some(error) = law.take_error() {
+        return Err(fail(&error));
+    }
+    let refined = solved.map_err(|e| fail(&e))?;
+    let fine = &refined.fine;
+    let cells = Cells {
+        grid: &fine.grid,
+        pressure: &fine.pressure.pressure,
+        speed,
+    };
+    let passage = law.passage(cells, &fine.tractions.slip);
+    Ok((refined, passage.map_err(|e| fail(&e))?))
+}
+
+/// Returns the wear of a passage, of each body where it follows from their hardness.
+fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
+    let Some(law) = setup.laws[0].interface().law(Kind::WEAR) else {
+        return Vec::new();
+    };
+    let grid = &rolling.grid;
+    let rows: Vec<f64> = passage
+        .worn
+        .chunks(grid.cells[0])
+        .map(|row| row.iter().sum())
+        .collect();
+    let of = |body: &str, factor: f64| Wear {
+        body: body.to_owned(),
+        law: law.plugin.name.clone(),
+        volume: factor * rows.iter().sum::<f64>() * grid.size[1],
+        depth: factor * rows.iter().copied().fold(0.0, f64::max),
+        profile: rows.iter().map(|d| factor * d).collect(),
+    };
+    let Some(coefficient) = &setup.wear_coefficient else {
+        return vec![of("interface", 1.0)];
+    };
+    let hardness = |name: &str| {
+        let material = setup.bodies.materials.iter().find(|(m, _)| m == name)?;
+        let hardness = material.1.get("hardness")?;
+        hardness_in_pascal(hardness.value, &hardness.unit)
+    };
+    let bodies = setup.bodies.names.iter().filter_map(|name| {
+        let own = hardness(name)?;
+        Some(of(name, coefficient.hardness / own))
+    });
+    bodies.collect()
+}

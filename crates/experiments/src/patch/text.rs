@@ -1,0 +1,132 @@
+//! The answer as lines of text.
+
+use super::answer::{Answer, Motion, Point};
+use fretwork_observe::quantity::{number, quantity};
+use std::fmt::Write as _;
+
+impl Answer {
+    /// Returns the answer as text.
+    pub fn text(&self) -> String {
+        let mut out = format!("{}: {} on {}", self.name, self.bodies[0], self.bodies[1]);
+        let mut add = |label: &str, text: String| {
+            let _ = write!(out, "\n  {label:<18} {text}");
+        };
+        let speed = self.speed.map(|v| format!(", {}", quantity(v, "m/s")));
+        add(
+            "load",
+            quantity(self.load, "N") + &speed.unwrap_or_default(),
+        );
+        let laws: Vec<String> = self.laws.iter().map(|(k, n)| format!("{k} {n}")).collect();
+        add("laws", laws.join(", "));
+        add(
+            "patch",
+            format!(
+                "{} largest pressure, {} mm2, approach {}",
+                quantity(self.pressure, "Pa"),
+                number(1e6 * self.area, 4),
+                quantity(self.approach, "m")
+            ),
+        );
+        add(
+            "grid",
+            format!(
+                "{} x {} cells of {} x {}",
+                self.cells[0],
+                self.cells[1],
+                quantity(self.cell[0], "m"),
+                quantity(self.cell[1], "m")
+            ),
+        );
+        for point in &self.points {
+            out.push('\n');
+            out.push_str(&point.text());
+        }
+        let noted = self.points.iter().filter(|p| !p.notes.is_empty()).count();
+        let verdict = match noted {
+            0 => "all points converged, within the range of the theory".to_owned(),
+            n => format!("{n} of {} points have notes, see above", self.points.len()),
+        };
+        let _ = write!(out, "\nverdict: {verdict}");
+        out
+    }
+}
+
+impl Point {
+    fn text(&self) -> String {
+        let mut out = match self.motion {
+            Motion::Rolling(c) => {
+                let percent = |x: f64| format!("{} %", number(100.0 * x, 4));
+                let mut parts = vec![format!("creepage {}", percent(c.along))];
+                if c.across != 0.0 {
+                    parts.push(format!("across {}", percent(c.across)));
+                }
+                if c.spin != 0.0 {
+                    parts.push(format!("spin {}", quantity(c.spin, "1/m")));
+                }
+                parts.join(", ")
+            }
+            Motion::Fretting(amplitude) => format!("amplitude {}", quantity(amplitude, "m")),
+        };
+        let rolls = matches!(self.motion, Motion::Rolling(_));
+        let mut add = |label: &str, text: String| {
+            let _ = write!(out, "\n  {label:<18} {text}");
+        };
+        let mut adhesion = number(self.adhesion, 4);
+        if rolls {
+            adhesion += &format!(" +- {} by the grid", number(self.adhesion_error, 2));
+        }
+        if let Some(band) = self.adhesion_band {
+            let (low, high) = (number(band.low, 4), number(band.high, 4));
+            adhesion += &format!(", {low} to {high} over the members");
+        }
+        add(if rolls { "adhesion" } else { "Q/P" }, adhesion);
+        let forces = self.force.map(|f| quantity(f, "N"));
+        if rolls {
+            let moment = quantity(self.moment, "N m");
+            add(
+                "on the first body",
+                format!("{} along, {} across, {moment}", forces[0], forces[1]),
+            );
+            add("T gamma", quantity(self.t_gamma, "J/m"));
+        } else {
+            add("on the first body", forces[0].clone());
+            add("energy of a cycle", quantity(self.t_gamma, "J"));
+        }
+        let regime = match (rolls, self.stuck) {
+            (false, 0.0) => ": gross slip",
+            (false, x) if x < 1.0 => ": partial slip",
+            (false, _) => ": stick",
+            _ => "",
+        };
+        add(
+            "sticks",
+            format!("{} % of the area{regime}", number(100.0 * self.stuck, 3)),
+        );
+        if let Some(speed) = self.slip_speed {
+            add("slip velocity", format!("up to {}", quantity(speed, "m/s")));
+        }
+        if let Some(t) = self.temperature {
+            add("temperature", format!("up to {} K", number(t, 4)));
+        }
+        for wear in &self.wear {
+            let depth = quantity(wear.depth, "m");
+            let text = match rolls {
+                true => format!(
+                    "{} mm3 per metre, up to {depth} a passage ({})",
+                    number(1e9 * wear.volume, 4),
+                    wear.law
+                ),
+                false => format!(
+                    "{} mm3 a cycle, up to {depth} ({})",
+                    number(1e9 * wear.volume, 4),
+                    wear.law
+                ),
+            };
+            add(&format!("wear of {}", wear.body), text);
+        }
+        for note in &self.notes {
+            add("", note.clone());
+        }
+        out
+    }
+}

@@ -1,0 +1,141 @@
+//! `fretwork patch`: the shipped files, tables of friction, and what is refused.
+
+use crate::temp::TempFolder;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn patch(file: &Path, out: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .arg("patch")
+        .args([file, Path::new("--out"), out])
+        .output()
+        .unwrap()
+}
+
+fn answered(file: &Path, out: &Path) -> Value {
+    let output = patch(file, out);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    let text = std::fs::read_to_string(out.join("patch.json")).unwrap();
+    assert!(out.join("patch.h5").is_file());
+    serde_json::from_str(&text).unwrap()
+}
+
+fn numbers(of: &Value, path: &str) -> Vec<f64> {
+    let points = of["points"].as_array().unwrap().iter();
+    points
+        .map(|p| p.pointer(path).unwrap().as_f64().unwrap())
+        .collect()
+}
+
+/// Strokes of a ball go from stick over partial to gross slip, in which Q/P is mu, with the band of
+/// the members.
+#[test]
+fn a_ball_frets_on_a_flat() {
+    let folder = TempFolder::new("patch-ball");
+    let got = answered(Path::new("patches/ball_on_flat.ron"), &folder.join("out"));
+    let adhesion = numbers(&got, "/adhesion");
+    assert!(
+        adhesion.windows(2).all(|w| w[0] <= w[1] + 1e-9),
+        "{adhesion:?}"
+    );
+    let last = adhesion.len() - 1;
+    assert!((adhesion[last] - 0.6).abs() < 1e-6);
+    assert!((numbers(&got, "/adhesion_band/low")[last] - 0.5).abs() < 1e-6);
+    assert!((numbers(&got, "/adhesion_band/high")[last] - 0.7).abs() < 1e-6);
+    assert_eq!(numbers(&got, "/stuck")[last], 0.0);
+    let loops = std::fs::read_to_string(folder.join("out/loop_4.csv")).unwrap();
+    assert!(loops.starts_with("displacement [m],force [N]\n"), "{loops}");
+}
+
+const WHEEL: &str = r#"(
+    name: "a wheel", materials: {"wheel": "wheel_steel_er7", "rail": "rail_steel_r260"},
+    bodies: ((material: "wheel", radius: 0.46 m), (material: "rail", across: 0.3 m)),
+    interfaces: [(name: "dry", between: ("wheel", "rail"), contact: "tabulated", tables: (contact: "mu.csv"))],
+    load: 75 kN, speed: 20 m/s, cells: 24, motion: Rolling(along: 10 %),
+)"#;
+
+fn with_table(folder: &Path, table: &str, text: &str) -> Output {
+    std::fs::write(folder.join("mu.csv"), table).unwrap();
+    std::fs::write(folder.join("wheel.ron"), text).unwrap();
+    patch(&folder.join("wheel.ron"), &folder.join("out"))
+}
+
+/// Friction over slip velocity, read where the whole patch slips at 2 m/s, with its interval as the
+/// band; a table that ends at 1 m/s is left.
+#[test]
+fn friction_from_a_table() {
+    let folder = TempFolder::new("patch-table");
+    let text = |fastest: f64| {
+        format!(
+            "slip_rate [m/s],friction,friction_low,friction_high\n0,0.5,0.45,0.55\n{fastest},0.3,0.25,0.4\n"
+        )
+    };
+    for (fastest, expected, left) in [
+        (4.0, [0.4, 0.35, 0.475], false),
+        (1.0, [0.3, 0.25, 0.4], true),
+    ] {
+        let output = with_table(&folder, &text(fastest), WHEEL);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{errors}");
+        let json = std::fs::read_to_string(folder.join("out/patch.json")).unwrap();
+        let got: Value = serde_json::from_str(&json).unwrap();
+        let paths = ["/adhesion", "/adhesion_band/low", "/adhesion_band/high"];
+        for (path, expected) in paths.into_iter().zip(expected) {
+            let found = numbers(&got, path)[0];
+            assert!(
+                (found - expected).abs() < 0.005,
+                "{path}: {found} {expected}"
+            );
+        }
+        assert_eq!(json.contains("NOT IN RANGE"), left, "{json}");
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(said.contains("have notes"), left, "{said}");
+    }
+}
+
+#[test]
+fn wrong_files_are_refused_with_a_sentence() {
+    let folder = TempFolder::new("patch-wrong");
+    let table = "slip_rate [m/s],friction\n0,0.5\n4,0.3\n";
+    for (from, to, says) in [
+        ("load: 75 kN", "load: -75 kN", "must be above zero"),
+        ("load: 75 kN", "load: 75 kg", "`kg`"),
+        (
+            "\"rail_steel_r260\"",
+            "\"rail_steel_r261\"",
+            "did you mean `rail_steel_r260`",
+        ),
+        (
+            "across: 0.3 m",
+            "across: -0.3 m",
+            "conform across the motion",
+        ),
+        ("cells: 24", "cells: 25", "an even number"),
+        ("along: 10 %", "along: 10", "in per cent write 10 %"),
+        ("\"mu.csv\"", "\"nu.csv\"", "nu.csv"),
+        (
+            "contact: \"tabulated\"",
+            "contact: \"coulomb\"",
+            "reads no table",
+        ),
+        (
+            "contact: \"tabulated\"",
+            "contact: \"coulom\"",
+            "did you mean `coulomb`",
+        ),
+        (
+            "(material: \"rail\"",
+            "(material: \"rails\"",
+            "no material `rails`",
+        ),
+    ] {
+        assert!(WHEEL.contains(from), "{from}");
+        let output = with_table(&folder, table, &WHEEL.replace(from, to));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{to}: {errors}");
+        assert!(errors.contains(says), "{to}: {errors}");
+    }
+}
