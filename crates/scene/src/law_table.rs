@@ -246,15 +246,15 @@ mod tests {
             "temperature [K],seed,k [1/Pa]\n300,1,1e-14\n300,2,3e-14\n600,1,5e-14\n600,2,5e-14\n";
         let got = read(text, Kind::WEAR).unwrap();
         let close = |k: usize, x: f64| assert!((got[k] / x - 1.0).abs() < 1e-12, "{got:?}");
-        [
+        for (k, x) in [
             (9, 2e-14),
             (10, 5e-14),
             (11, 1e-14),
             (12, 5e-14),
             (13, 3e-14),
-        ]
-        .into_iter()
-        .for_each(|(k, x)| close(k, x));
+        ] {
+            close(k, x);
+        }
     }
 
     #[test]
