@@ -10,6 +10,8 @@ use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
 
+/// E_d/(4 Q* delta*) above which a cycle has more than one loop; that of a rectangle is 1.
+const LARGEST_RATIO: f64 = 1.05;
 /// Path over the size of a body below which it is due to rounding.
 const STILL: f64 = 1e-9;
 /// Share of the path along the axis of a test below which the contacts slide across it.
@@ -62,6 +64,10 @@ pub struct Cycles {
     load_paths: [f64; 2],
     /// Path below which a contact sticks (m).
     still: f64,
+    /// Whether a cycle was not a period of the motion.
+    other_period: bool,
+    /// Elastic energy stored at the start of the first cycle (J).
+    stored_before: f64,
 }
 
 /// Cumulative quantities of a run at the end of a step.
@@ -111,6 +117,8 @@ impl Cycles {
             start_ratio: 0.0,
             load_paths: [0.0; 2],
             still: 0.0,
+            other_period: false,
+            stored_before: 0.0,
         }
     }
 
@@ -121,7 +129,12 @@ impl Cycles {
         self
     }
 
-    /// Returns whether the contact sticked over the last cycle.
+    /// Returns whether cycles are not periods of the motion.
+    pub fn of_other_period(&self) -> bool {
+        self.oscillates() && self.other_period
+    }
+
+    /// Returns whether the contact stuck over the last cycle.
     pub fn sticks(&self) -> bool {
         self.last().is_some_and(|c| c.path < self.still)
     }
@@ -272,8 +285,11 @@ impl Cycles {
         };
         cycle.stored = match reciprocates {
             true => {
-                let shape = &self.shape;
-                shape.stored(shape.ratio()) - shape.stored(self.start_ratio)
+                let before = self.shape.stored(self.start_ratio);
+                if cycle.cycle == 1 {
+                    self.stored_before = before;
+                }
+                self.shape.stored(self.shape.ratio()) - before
             }
             false => 0.0,
         };
@@ -289,7 +305,10 @@ impl Cycles {
             _ => SlipRegime::Gross,
         };
         let slides = cycle.regime == SlipRegime::Gross;
+        self.other_period |= self.shape.strokes() > 2 || cycle.energy_ratio > LARGEST_RATIO;
         cycle.friction_coefficient = match reciprocates {
+            // Parts of strokes of several lengths cannot be told.
+            true if self.other_period => None,
             // A motion that doesn't turn back slides all the time.
             true if slides && cycle.complete && !cycle.reverses() => {
                 Some(cycle.energetic_coefficient)
@@ -338,14 +357,18 @@ impl Cycles {
         Some(self.list.iter().map(of).sum::<f64>() * whole / along)
     }
 
-    /// Returns the part of the path that is slip, of a reciprocating motion; 1 of others, and where
-    /// it is not known.
-    pub fn share_of_slip(&self) -> f64 {
+    /// Returns how much of a load path before the first cycle (J; J/m in 2D) was slip: of a
+    /// reciprocating motion the share of the cycles, less what is elastically stored at the start of
+    /// the first one; all of it in other motions, and where slip is not known.
+    pub fn slip_before(&self, load_path: f64) -> f64 {
         let [along, whole] = self.load_paths;
-        let imposed = self.load_path() * whole / along;
-        let share = self.slip_load_path().map(|slip| slip / imposed);
-        let share = share.filter(|share| self.oscillates() && share.is_finite());
-        share.unwrap_or(1.0)
+        let slip = self.slip_load_path().filter(|_| self.oscillates());
+        let coefficient = self.last().and_then(|c| c.friction_coefficient);
+        let (Some(slip), Some(coefficient)) = (slip, coefficient) else {
+            return load_path;
+        };
+        let share = slip / (self.load_path() * whole / along);
+        (load_path * share - self.stored_before / coefficient).max(0.0)
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.

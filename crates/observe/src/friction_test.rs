@@ -211,7 +211,7 @@ impl Observer for FrictionTest {
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
         // Strokes before the first cycle are taken to slip as those of the cycles.
-        let before = self.state.load_path * self.state.cycles.share_of_slip();
+        let before = self.state.cycles.slip_before(self.state.load_path);
         let path = self.state.cycles.slip_load_path().map(|p| before + p);
         let doc = "normal force times distance of slip: the integral of P |ds| over the run; of a reciprocating motion the energy of the cycles over the coefficient of sliding, without what is elastic";
         found.keep(LoadPath {
