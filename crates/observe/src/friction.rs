@@ -358,8 +358,8 @@ impl Cycles {
     }
 
     /// Returns how much of a load path before the first cycle (J; J/m in 2D) was slip: of a
-    /// reciprocating motion the share of the cycles, less what is elastically stored at the start of
-    /// the first one; all of it in other motions, and where slip is not known.
+    /// reciprocating motion the share of the cycles, less what is elastically stored at the start
+    /// of the first one; all of it in other motions, and where slip is not known.
     pub fn slip_before(&self, load_path: f64) -> f64 {
         let [along, whole] = self.load_paths;
         let slip = self.slip_load_path().filter(|_| self.oscillates());
