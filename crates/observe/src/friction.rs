@@ -200,6 +200,11 @@ impl Cycles {
         }
         let number = self.number(sample.time);
         if number == 0 {
+            self.start_ratio = if sample.p > 0.0 {
+                sample.q.abs() / sample.p
+            } else {
+                0.0
+            };
             return;
         }
         if self.list.last().is_none_or(|c| c.cycle != number) {
@@ -213,10 +218,9 @@ impl Cycles {
             (self.pressure_time, self.time) = (0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
-            self.start_ratio = match self.list.len() {
-                1 if sample.p > 0.0 => sample.q.abs() / sample.p,
-                _ => self.shape.ratio(),
-            };
+            if self.list.len() > 1 {
+                self.start_ratio = self.shape.ratio();
+            }
             self.shape.next_cycle();
         }
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
@@ -357,18 +361,17 @@ impl Cycles {
         Some(self.list.iter().map(of).sum::<f64>() * whole / along)
     }
 
-    /// Returns how much of a load path before the first cycle (J; J/m in 2D) was slip: of a
-    /// reciprocating motion the share of the cycles, less what is elastically stored at the start
-    /// of the first one; all of it in other motions, and where slip is not known.
-    pub fn slip_before(&self, load_path: f64) -> f64 {
+    /// Returns normal force times the path of slip before the first cycle (J; J/m in 2D), by the
+    /// load path and the work of the tangential force until then (J; J/m): of a reciprocating
+    /// motion the work without what is elastically stored then, over the coefficient of sliding;
+    /// all of the path in other motions, and where slip is not known.
+    pub fn slip_before(&self, load_path: f64, work: f64) -> f64 {
         let [along, whole] = self.load_paths;
-        let slip = self.slip_load_path().filter(|_| self.oscillates());
-        let coefficient = self.last().and_then(|c| c.friction_coefficient);
-        let (Some(slip), Some(coefficient)) = (slip, coefficient) else {
-            return load_path;
-        };
-        let share = slip / (self.load_path() * whole / along);
-        (load_path * share - self.stored_before / coefficient).max(0.0)
+        let known = self.last().and_then(|c| c.friction_coefficient);
+        match known.filter(|mu| self.oscillates() && *mu > 0.0) {
+            Some(mu) => (work - self.stored_before).max(0.0) / mu * whole / along,
+            None => load_path,
+        }
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.

@@ -42,8 +42,10 @@ struct FrictionTestState {
     worn: f64,
     /// Normal force times sliding distance before the first cycle (N m; N).
     load_path: f64,
-    /// The same of each first body by its name, over all of its contacts, where there are more than
-    /// two (J; J/m).
+    /// Work of sliding before the first cycle (J; J/m).
+    work: f64,
+    /// Normal force times sliding distance of each first body by its name, over all of its
+    /// contacts, where there are more than two (J; J/m).
     paths: BTreeMap<String, f64>,
 }
 
@@ -68,6 +70,7 @@ impl FrictionTest {
                 force: 0.0,
                 worn: 0.0,
                 load_path: 0.0,
+                work: 0.0,
                 paths: BTreeMap::new(),
             },
         }
@@ -145,6 +148,7 @@ impl Observer for FrictionTest {
         state.slide += sample.slide;
         if state.cycles.number(run.time()) == 0 {
             state.load_path += sample.p * sample.travel;
+            state.work += sample.work;
         }
         state.cycles.add(
             sample,
@@ -210,8 +214,8 @@ impl Observer for FrictionTest {
     }
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
-        // Strokes before the first cycle are taken to slip as those of the cycles.
-        let before = self.state.cycles.slip_before(self.state.load_path);
+        let (before, work) = (self.state.load_path, self.state.work);
+        let before = self.state.cycles.slip_before(before, work);
         let path = self.state.cycles.slip_load_path().map(|p| before + p);
         let doc = "normal force times distance of slip: the integral of P |ds| over the run; of a reciprocating motion the energy of the cycles over the coefficient of sliding, without what is elastic";
         found.keep(LoadPath {
