@@ -33,8 +33,8 @@ impl SlidingBody {
         let own_speed = in_plane::<S>(own, self.normal);
         let oblique =
             |along: f64, speed: f64| along.abs() < OBLIQUE * speed && along.abs() > ACROSS * speed;
-        if !self.others_move(s) && !(oblique(own[self.along], own_speed) && self.imposes_across(s))
-        {
+        let across = oblique(own[self.along], own_speed) && self.imposes_across(s);
+        if !across && !self.others_move(s) {
             return Relative {
                 counter: 0.0,
                 speed: own_speed,
