@@ -366,6 +366,5 @@ fn wear_before_the_start_of_the_test_has_its_path_of_slip() {
     let sets = [&COARSE[..], &wear[..]].concat();
     let found = ran("sphere_on_flat_fretting", &sets);
     let rate = number(&found, "wear.bodies.0.specific_rate");
-    // The elastic energy stored in the cycle before counts as slip there.
     assert!((rate / 1e-13 - 1.0).abs() < 0.03, "{rate}");
 }

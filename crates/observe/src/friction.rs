@@ -10,6 +10,8 @@ use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
 
+/// E_d/(4 Q* delta*) above which a cycle has more than one loop; that of a rectangle is 1.
+const LARGEST_RATIO: f64 = 1.05;
 /// Path over the size of a body below which it is due to rounding.
 const STILL: f64 = 1e-9;
 /// Share of the path along the axis of a test below which the contacts slide across it.
@@ -62,6 +64,10 @@ pub struct Cycles {
     load_paths: [f64; 2],
     /// Path below which a contact sticks (m).
     still: f64,
+    /// Whether a cycle was not a period of the motion.
+    other_period: bool,
+    /// Elastic energy stored at the start of the first cycle (J).
+    stored_before: f64,
 }
 
 /// Cumulative quantities of a run at the end of a step.
@@ -111,6 +117,8 @@ impl Cycles {
             start_ratio: 0.0,
             load_paths: [0.0; 2],
             still: 0.0,
+            other_period: false,
+            stored_before: 0.0,
         }
     }
 
@@ -121,7 +129,12 @@ impl Cycles {
         self
     }
 
-    /// Returns whether the contact sticked over the last cycle.
+    /// Returns whether cycles are not periods of the motion.
+    pub fn of_other_period(&self) -> bool {
+        self.oscillates() && self.other_period
+    }
+
+    /// Returns whether the contact stuck over the last cycle.
     pub fn sticks(&self) -> bool {
         self.last().is_some_and(|c| c.path < self.still)
     }
@@ -187,6 +200,11 @@ impl Cycles {
         }
         let number = self.number(sample.time);
         if number == 0 {
+            self.start_ratio = if sample.p > 0.0 {
+                sample.q.abs() / sample.p
+            } else {
+                0.0
+            };
             return;
         }
         if self.list.last().is_none_or(|c| c.cycle != number) {
@@ -200,10 +218,9 @@ impl Cycles {
             (self.pressure_time, self.time) = (0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
-            self.start_ratio = match self.list.len() {
-                1 if sample.p > 0.0 => sample.q.abs() / sample.p,
-                _ => self.shape.ratio(),
-            };
+            if self.list.len() > 1 {
+                self.start_ratio = self.shape.ratio();
+            }
             self.shape.next_cycle();
         }
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
@@ -272,8 +289,11 @@ impl Cycles {
         };
         cycle.stored = match reciprocates {
             true => {
-                let shape = &self.shape;
-                shape.stored(shape.ratio()) - shape.stored(self.start_ratio)
+                let before = self.shape.stored(self.start_ratio);
+                if cycle.cycle == 1 {
+                    self.stored_before = before;
+                }
+                self.shape.stored(self.shape.ratio()) - before
             }
             false => 0.0,
         };
@@ -289,7 +309,10 @@ impl Cycles {
             _ => SlipRegime::Gross,
         };
         let slides = cycle.regime == SlipRegime::Gross;
+        self.other_period |= self.shape.strokes() > 2 || cycle.energy_ratio > LARGEST_RATIO;
         cycle.friction_coefficient = match reciprocates {
+            // Parts of strokes of several lengths cannot be told.
+            true if self.other_period => None,
             // A motion that doesn't turn back slides all the time.
             true if slides && cycle.complete && !cycle.reverses() => {
                 Some(cycle.energetic_coefficient)
@@ -338,14 +361,17 @@ impl Cycles {
         Some(self.list.iter().map(of).sum::<f64>() * whole / along)
     }
 
-    /// Returns the part of the path that is slip, of a reciprocating motion; 1 of others, and where
-    /// it is not known.
-    pub fn share_of_slip(&self) -> f64 {
+    /// Returns normal force times the path of slip before the first cycle (J; J/m in 2D), by the
+    /// load path and the work of the tangential force until then (J; J/m): of a reciprocating
+    /// motion the work without what is elastically stored then, over the coefficient of sliding;
+    /// all of the path in other motions, and where slip is not known.
+    pub fn slip_before(&self, load_path: f64, work: f64) -> f64 {
         let [along, whole] = self.load_paths;
-        let imposed = self.load_path() * whole / along;
-        let share = self.slip_load_path().map(|slip| slip / imposed);
-        let share = share.filter(|share| self.oscillates() && share.is_finite());
-        share.unwrap_or(1.0)
+        let known = self.last().and_then(|c| c.friction_coefficient);
+        match known.filter(|mu| self.oscillates() && *mu > 0.0) {
+            Some(mu) => (work - self.stored_before).max(0.0) / mu * whole / along,
+            None => load_path,
+        }
     }
 
     /// Returns the last complete cycle, or the last one if none is complete.

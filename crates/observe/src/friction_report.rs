@@ -38,6 +38,9 @@ crate::described! {
         /// Whether the contacts slide across the axis of the test alone.
         #[serde(skip)]
         pub across: bool,
+        /// Whether the cycles are not periods of the motion.
+        #[serde(skip)]
+        pub other_period: bool,
         /// Whether the contacts stick.
         #[serde(skip)]
         pub sticks: bool,
@@ -108,6 +111,7 @@ pub(super) fn report(
         cycles: cycles.list.clone(),
         across: cycles.across(),
         sticks: cycles.sticks(),
+        other_period: cycles.of_other_period(),
         oscillates: cycles.oscillates(),
         sliding: cycles.sliding().map(<[_]>::to_vec),
     };
@@ -189,6 +193,13 @@ fn show(
             q.sentence(format!("cycle {}{unfinished}", c.cycle), text);
         });
     }
+    if !friction.oscillates && last.friction_coefficient.is_some() {
+        let text = format!("slides one way over {}", quantity(last.path, "m"));
+        let doc = "how the contact slides in a motion one way, over the evaluated part of it";
+        found
+            .finding("sliding_regime", text, doc)
+            .about(Topic::Regime);
+    }
     let Some(f) = fretting else { return };
     let complete: Vec<&Cycle> = friction.cycles.iter().filter(|c| c.complete).collect();
     if let [first, .., _] = complete[..] {
@@ -268,6 +279,9 @@ fn no_sliding(friction: &Friction, last: &Cycle) -> String {
             "none: the contact sticks, Q*/P {}",
             known(friction.peak_friction)
         );
+    }
+    if friction.other_period {
+        return "none: the motion turns back more than twice in a cycle, or a cycle has several loops; give its period as `period` of `friction`".to_owned();
     }
     if friction.across {
         return "none: the contacts slide across the axis of the test, not along it; give the other one as `along` of `friction`".to_owned();

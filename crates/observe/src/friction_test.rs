@@ -26,6 +26,8 @@ pub struct FrictionTest {
     body: SlidingBody,
     sample: Sample,
     before: FrictionTotals,
+    /// Whether wear is booked to bodies with paths of their own: more than two of them can slide.
+    several: bool,
     state: FrictionTestState,
 }
 
@@ -42,8 +44,10 @@ struct FrictionTestState {
     worn: f64,
     /// Normal force times sliding distance before the first cycle (N m; N).
     load_path: f64,
-    /// The same of each first body by its name, over all of its contacts, where there are more than
-    /// two (J; J/m).
+    /// Work of sliding before the first cycle (J; J/m).
+    work: f64,
+    /// Normal force times sliding distance of each first body by its name, over all of its
+    /// contacts, where there are more than two (J; J/m).
     paths: BTreeMap<String, f64>,
 }
 
@@ -61,6 +65,7 @@ impl FrictionTest {
             body,
             sample: Sample::default(),
             before: FrictionTotals::default(),
+            several: run.laws().iter().any(|l| l.wear().is_some()) && first_bodies(run) > 2,
             state: FrictionTestState {
                 cycles,
                 layer: LayerBalance::new(run),
@@ -68,6 +73,7 @@ impl FrictionTest {
                 force: 0.0,
                 worn: 0.0,
                 load_path: 0.0,
+                work: 0.0,
                 paths: BTreeMap::new(),
             },
         }
@@ -82,8 +88,8 @@ impl FrictionTest {
         }
     }
 
-    /// Returns the path of a first body under its loads relative to that of the rubbed one; 1 where
-    /// there are no others than these two.
+    /// Returns the path of a first body under its loads relative to that of the rubbed one: 0 of one
+    /// that did not slide, 1 where there are no others than these two.
     fn share(&self, run: &dyn RunView, body: &str) -> f64 {
         let own = match self.body.part {
             SlidingPart::Driven(place) => Some(run.bodies().driven[place].name.clone()),
@@ -91,10 +97,7 @@ impl FrictionTest {
         };
         let of = |name: &str| self.state.paths.get(name).copied();
         let own = own.and_then(|own| of(&own)).filter(|path| *path > 0.0);
-        match (of(body), own) {
-            (Some(path), Some(own)) => path / own,
-            _ => 1.0,
-        }
+        own.map_or(1.0, |own| of(body).unwrap_or(0.0) / own)
     }
 
     /// Returns Q, P and the sliding distance of the last step.
@@ -112,9 +115,15 @@ impl FrictionTest {
     }
 }
 
-/// Returns the number of first bodies of a run.
+/// Returns the number of first bodies of a run, without grains that deform.
 fn first_bodies(run: &dyn RunView) -> usize {
-    run.bodies().driven.len() + run.system_count()
+    let bodies = run.bodies();
+    let deforms = |system: &usize| {
+        let carried = run.bodies_of_system(*system).first();
+        let carrier = carried.and_then(|body| bodies.carrier(*body as usize));
+        carrier.is_some_and(|carrier| !carrier.grain)
+    };
+    bodies.driven.len() + (0..run.system_count()).filter(deforms).count()
 }
 
 impl Observer for FrictionTest {
@@ -145,6 +154,7 @@ impl Observer for FrictionTest {
         state.slide += sample.slide;
         if state.cycles.number(run.time()) == 0 {
             state.load_path += sample.p * sample.travel;
+            state.work += sample.work;
         }
         state.cycles.add(
             sample,
@@ -153,8 +163,8 @@ impl Observer for FrictionTest {
             after,
             damage_ratio(run),
         );
-        if first_bodies(run) > 2 {
-            let multiplier = run.cycle_multiplier() as f64;
+        if self.several {
+            let multiplier = run.cycle_multiplier();
             for (name, path) in run.first_body_paths(self.body.normal) {
                 *state.paths.entry(name.to_owned()).or_default() += multiplier * path;
             }
@@ -210,8 +220,8 @@ impl Observer for FrictionTest {
     }
 
     fn report(&self, end: &RunEnd<'_>, found: &mut Findings) {
-        // Strokes before the first cycle are taken to slip as those of the cycles.
-        let before = self.state.load_path * self.state.cycles.share_of_slip();
+        let (before, work) = (self.state.load_path, self.state.work);
+        let before = self.state.cycles.slip_before(before, work);
         let path = self.state.cycles.slip_load_path().map(|p| before + p);
         let doc = "normal force times distance of slip: the integral of P |ds| over the run; of a reciprocating motion the energy of the cycles over the coefficient of sliding, without what is elastic";
         found.keep(LoadPath {

@@ -27,6 +27,8 @@ pub struct Loop {
     given_back: [f64; 2],
     /// Q/P of the last sample.
     ratio: f64,
+    /// Reversals of the cycle after at least a tenth of the longest stroke.
+    strokes: u32,
     /// Work of Q, and integral of P over the path (J), in equal parts of the strokes.
     parts: Vec<[f64; 2]>,
 }
@@ -50,6 +52,7 @@ impl Loop {
         self.reversals = (0.0, 0);
         self.unloading = (0.0, 0);
         self.given_back[1] = 0.0;
+        self.strokes = 0;
         self.parts = vec![[0.0; 2]; PARTS];
     }
 
@@ -91,6 +94,12 @@ impl Loop {
         self.last = Some([displacement, q, p]);
     }
 
+    /// Returns how often the motion turned back in the cycle after more than a tenth of the longest
+    /// stroke: twice in one period of a motion to and fro.
+    pub fn strokes(&self) -> u32 {
+        self.strokes
+    }
+
     /// Returns |Q|/P of the last sample.
     pub fn ratio(&self) -> f64 {
         self.ratio
@@ -113,6 +122,9 @@ impl Loop {
         let [since, longest] = &mut self.stroke;
         if turns {
             self.turns = self.turns.saturating_add(1);
+            if *since > 0.1 * *longest {
+                self.strokes += 1;
+            }
             // A motion usually starts in the middle of its stroke.
             *longest = match self.turns {
                 1 => 2.0 * *since,

@@ -240,11 +240,10 @@ pub(crate) fn show_flows(found: &mut Findings) {
             doc.clone_into(&mut q.doc);
         });
     }
-    let any = found.number("wear.Qs").is_some_and(|q| q > 0.0);
     found.edit("wear.Qs", |q| {
         q.lacks = None;
         q.headline("source flow Qs").silent();
-        if any || circuit {
+        if circuit {
             q.sentence("flows", known.join(", "));
         }
     });

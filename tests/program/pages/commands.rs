@@ -1,11 +1,11 @@
 //! The commands of the pages are run, and print what the pages show.
 
-use super::console::{Block, blocks, day_of, is_timed, renewed};
+use super::console::{Block, blocks, is_timed, renewed};
 use super::{Mode, mode, pages, read, root, settle, versions};
 use crate::temp::TempFolder;
+use chrono::Utc;
 use std::path::Path;
 use std::process::Command;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Folders that commands of pages read.
 const READ: [&str; 7] = [
@@ -45,8 +45,7 @@ fn today(block: &Block, lines: &[&str], folder: &Path) -> Vec<String> {
     let mut out: Vec<String> = command.map(|l| (*l).to_owned()).collect();
     if let (Some(_), Some(last)) = (&block.version, out.last_mut()) {
         let (call, _) = last.rsplit_once("# version ").unwrap();
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap();
-        let (version, day) = (env!("CARGO_PKG_VERSION"), day_of(now.as_secs()));
+        let (version, day) = (env!("CARGO_PKG_VERSION"), Utc::now().date_naive());
         *last = format!("{call}# version {version}, {day}");
     }
     let output = printed(&block.words, folder);

@@ -83,17 +83,21 @@ fn compared(question: &Question, runs: &Runs) -> Result<Vec<String>, String> {
     alike::compare(question, &contact, runs).map(|(_, notes)| notes)
 }
 
-/// Compares the motion of runs with a patch that slips by this length (m).
-fn driven(question: &Question, runs: &Runs, slip: f64) -> Result<Vec<String>, String> {
-    let window = Window {
+/// A window of a patch that slips by this length (m).
+fn window(slip: Option<f64>) -> Window {
+    Window {
         width: 4e-4,
         pressure: 1.12e9,
         load: 4.5e5,
         pressure_drop: 0.0,
         gap: 0.0,
-        slip: Some(Range::certain(slip)),
-    };
-    alike::drive(question, runs, &window)
+        slip: slip.map(Range::certain),
+    }
+}
+
+/// Compares the motion of runs with a patch that slips by this length (m).
+fn driven(question: &Question, runs: &Runs, slip: f64) -> Result<Vec<String>, String> {
+    alike::drive(question, runs, &window(Some(slip)))
 }
 
 /// Expects a refusal with these words that says what to accept, and a note under the heading once
@@ -256,14 +260,7 @@ fn materials_and_pressure_are_those_of_the_patch() {
 fn motions_are_compared_with_each_other_where_the_patch_has_none() {
     let folder = Folder::new("among");
     let [one, two] = ["a", "b"].map(|name| folder.run(name, &json!({})));
-    let window = Window {
-        width: 4e-4,
-        pressure: 1.12e9,
-        load: 4.5e5,
-        pressure_drop: 0.0,
-        gap: 0.0,
-        slip: None,
-    };
+    let window = window(None);
     let still = Question {
         creepage: None,
         ..wheel()

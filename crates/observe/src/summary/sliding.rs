@@ -47,6 +47,12 @@ impl SlidingTest {
         };
         let complete = cycles.into_iter().flatten();
         let complete = complete.filter(|c| c["complete"] != false);
+        if cycles.is_some_and(|c| !c.is_empty()) && complete.clone().next().is_none() {
+            return Err(
+                "the run ended within its first cycle; run it longer (time.end), or give friction"
+                    .into(),
+            );
+        }
         let forces: Vec<f64> = complete
             .filter_map(|c| c["normal_force"].as_f64())
             .collect();
@@ -85,6 +91,10 @@ mod tests {
         says(of(Value::Null, Value::Null, "partial"), partial);
         says(of(Value::Null, json!("mixed"), "gross"), "`mixed`");
         says(SlidingTest::of(&json!({})), "its case needs `friction`");
+        let cut = json!({
+            SlidingTest::COEFFICIENT: 0.4, "cycles": [{"complete": false, "normal_force": 2.0}],
+        });
+        says(SlidingTest::of(&cut), "within its first cycle");
         let one_way = of(json!(0.3), Value::Null, "partial").unwrap();
         assert_eq!((one_way.coefficient, one_way.reciprocates), (0.3, false));
         let mixed = of(json!(0.3), json!("mixed"), "gross").unwrap();

@@ -153,10 +153,7 @@ fn a_trusted_run_begins_with_its_grade_and_what_is_known_of_the_error() {
         rate < place(&text, "wear of first bodies 5.000e-5"),
         "{text}"
     );
-    place(
-        &text,
-        "rail 100.0 nm deep on average where worn, 300.0 nm at most",
-    );
+    place(&text, "wear per energy 0.0005000 mm3/J");
     place(&text, "damage ratio 0.3000");
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(&text, "look at    1 one seed");

@@ -12,6 +12,8 @@ const OPPOSITE: f64 = 0.9;
 /// Share of the speed in the plane of the contacts that lies along the axis, below which the
 /// contacts slide oblique to it.
 const OBLIQUE: f64 = 0.98;
+/// Share of that speed below which they slide across the axis: a sign along it is due to rounding.
+const ACROSS: f64 = 1e-3;
 
 /// Motion of the rubbed body relative to what it rubs against.
 pub(super) struct Relative {
@@ -29,9 +31,10 @@ impl SlidingBody {
     /// Returns its motion relative to what it rubs against, with its own velocity (m/s).
     pub(super) fn relative_motion<S: Space>(&self, s: &Simulation<S>, own: &S::Vector) -> Relative {
         let own_speed = in_plane::<S>(own, self.normal);
-        let oblique = |along: f64, speed: f64| along.abs() < OBLIQUE * speed;
-        if !self.others_move(s) && !(oblique(own[self.along], own_speed) && self.imposes_across(s))
-        {
+        let oblique =
+            |along: f64, speed: f64| along.abs() < OBLIQUE * speed && along.abs() > ACROSS * speed;
+        let across = oblique(own[self.along], own_speed) && self.imposes_across(s);
+        if !across && !self.others_move(s) {
             return Relative {
                 counter: 0.0,
                 speed: own_speed,
