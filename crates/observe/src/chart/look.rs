@@ -123,9 +123,14 @@ impl Chart {
             with.filter(|(p, i)| self.shows(p) && i.0.is_finite() && i.1.is_finite())
                 .flat_map(|(_, i)| [i.0, i.1])
         });
-        let heights = points().map(|p| p.1).chain(intervals);
+        let corners = |axis: usize| {
+            let cells = self.field.iter().flat_map(|field| &field.cells).flatten();
+            cells.map(move |corner| f64::from(corner[axis]))
+        };
+        let heights = points().map(|p| p.1).chain(intervals).chain(corners(1));
+        let places = points().map(|p| p.0).chain(corners(0));
         [
-            self.x.range(points().map(|p| p.0), self.x_range),
+            self.x.range(places, self.x_range),
             self.y.range(heights, self.y_range),
         ]
     }
