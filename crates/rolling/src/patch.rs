@@ -1,6 +1,6 @@
 //! A patch from its undeformed distance, load and motion, with the error of its grid.
 
-use crate::fields::{Field, Vector, length};
+use crate::fields::{Vector, length};
 use crate::friction::Friction;
 use crate::motion::{Creepage, Motion};
 use crate::normal::{NormalError, Pressure, normal};
@@ -71,6 +71,19 @@ pub enum PatchError {
     /// Pressures and tractions of unlike bodies do not settle.
     #[error("pressures and tractions of unlike bodies did not settle in {0} rounds")]
     Coupled(usize),
+    /// The law of friction carries less than a force.
+    #[error("the patch carries at most {most:.4e} N along the rolling, less than {wanted:.4e} N")]
+    Force {
+        /// The force (N).
+        wanted: f64,
+        /// The largest force (N).
+        most: f64,
+    },
+    /// The bodies wear so much that the patch leaves every grid.
+    #[error(
+        "after {0:.3e} passages the patch leaves every grid that is laid around it: the bodies have worn to fit each other"
+    )]
+    Spread(f64),
 }
 
 /// Residual of the tangential problem over the largest bound.
@@ -137,35 +150,14 @@ impl Patch<'_> {
         let distance: Vec<f64> = (0..grid.len())
             .map(|cell| (self.distance)(grid.middle(cell)))
             .collect();
-        let finer = |values: &[f64]| prolonged(values, &grid);
-        let start = coarse.map(|c| finer(&c.pressure.pressure));
-        let mut pressure = normal(&surfaces, &distance, self.load, start.as_deref())?;
-        let start: Option<Field> = coarse.map(|c| prolonged(&c.tractions.traction, &grid));
-        let motion = Motion::Steady(*creepage);
-        let solve = |pressure: &Pressure, start: Option<&[Vector]>| {
-            let p = &pressure.pressure;
-            tangential(&surfaces, p, &motion, (law, speed), start, TOLERANCE)
-        };
-        let mut tractions = solve(&pressure, start.as_deref())?;
-        if surfaces.couple() {
-            let mut settled = false;
-            for _ in 0..ROUNDS.0 {
-                let opened = surfaces.normal_by_traction(&tractions.traction);
-                let gap: Vec<f64> = distance.iter().zip(opened).map(|(h, u)| h + u).collect();
-                let next = normal(&surfaces, &gap, self.load, Some(&pressure.pressure))?;
-                let pairs = next.pressure.iter().zip(&pressure.pressure);
-                let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                pressure = next;
-                tractions = solve(&pressure, Some(&tractions.traction))?;
-                if change <= ROUNDS.1 * pressure.largest() {
-                    settled = true;
-                    break;
-                }
-            }
-            if !settled {
-                return Err(PatchError::Coupled(ROUNDS.0));
-            }
-        }
+        let start = coarse.map(|c| {
+            let pressure = prolonged(&c.pressure.pressure, &grid);
+            (pressure, prolonged(&c.tractions.traction, &grid))
+        });
+        let start = start.as_ref().map(|(p, t)| (&p[..], &t[..]));
+        let friction = (law, speed);
+        let (pressure, tractions) =
+            self.steady(&surfaces, &distance, start, creepage, friction, TOLERANCE)?;
         let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
         let half = 0.5 * grid.size[0];
         let slope = |[x, y]: [f64; 2]| {
@@ -177,6 +169,45 @@ impl Patch<'_> {
             .sum();
         rolling.resistance = sum * grid.area(3);
         Ok(rolling)
+    }
+
+    /// Solves steady rolling of surfaces at a distance (m), with pressures and tractions to begin
+    /// with, under a law of friction at a speed (m/s), to a residual of the tangential problem.
+    ///
+    /// # Errors
+    /// There is no solution.
+    pub(crate) fn steady(
+        &self,
+        surfaces: &Surfaces,
+        distance: &[f64],
+        start: Option<(&[f64], &[Vector])>,
+        creepage: &Creepage,
+        law: (&dyn Friction, f64),
+        tolerance: f64,
+    ) -> Result<(Pressure, Tractions), PatchError> {
+        let mut pressure = normal(surfaces, distance, self.load, start.map(|s| s.0))?;
+        let motion = Motion::Steady(*creepage);
+        let solve = |pressure: &Pressure, start: Option<&[Vector]>| {
+            let p = &pressure.pressure;
+            tangential(surfaces, p, &motion, law, start, tolerance)
+        };
+        let mut tractions = solve(&pressure, start.map(|s| s.1))?;
+        if !surfaces.couple() {
+            return Ok((pressure, tractions));
+        }
+        for _ in 0..ROUNDS.0 {
+            let opened = surfaces.normal_by_traction(&tractions.traction);
+            let gap: Vec<f64> = distance.iter().zip(opened).map(|(h, u)| h + u).collect();
+            let next = normal(surfaces, &gap, self.load, Some(&pressure.pressure))?;
+            let pairs = next.pressure.iter().zip(&pressure.pressure);
+            let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            pressure = next;
+            tractions = solve(&pressure, Some(&tractions.traction))?;
+            if change <= ROUNDS.1.max(tolerance) * pressure.largest() {
+                return Ok((pressure, tractions));
+            }
+        }
+        Err(PatchError::Coupled(ROUNDS.0))
     }
 }
 

@@ -4,4 +4,3 @@ mod fretting;
 mod grids;
 mod pressed;
 mod steady_rolling;
-mod wear;
