@@ -1,5 +1,7 @@
 //! Results of a patch, as numbers in SI units.
 
+use super::comparison::Comparison;
+use super::passages::Worn;
 use fretwork_rolling::Creepage;
 use serde::Serialize;
 
@@ -10,6 +12,8 @@ pub struct Answer {
     pub name: String,
     /// Materials of the two bodies.
     pub bodies: [String; 2],
+    /// Their names in the file.
+    pub names: [String; 2],
     /// Load (N).
     pub load: f64,
     /// Speed (m/s).
@@ -28,6 +32,10 @@ pub struct Answer {
     pub area: f64,
     /// Points, one for each creepage or stroke.
     pub points: Vec<Point>,
+    /// Curves and measurements beside the adhesion of the points.
+    pub comparisons: Vec<Comparison>,
+    /// Bodies after many passages.
+    pub passages: Option<Worn>,
 }
 
 /// How the bodies move in a point.

@@ -49,6 +49,16 @@ impl Distance {
         0.5 * along * x * x + of_profile.unwrap_or(0.5 * across * y * y)
     }
 
+    /// Whether the distance is known at a place across the motion (m): beyond the ends of its table
+    /// it goes on straight.
+    pub fn knows(&self, across: f64) -> bool {
+        let Some((places, _)) = &self.profile else {
+            return true;
+        };
+        let ends = places.first().zip(places.last());
+        ends.is_some_and(|(first, last)| (*first..=*last).contains(&across))
+    }
+
     /// Returns the patch by Hertz; for a profile, that of a parabola like it.
     pub fn hertz(&self, load: f64, bodies: &[Elasticity; 2]) -> PointPatch {
         let solids = bodies.map(|b| Solid {
@@ -155,6 +165,13 @@ impl Bodies {
             Some(number) => positive(source, "temperature", number, "K")?,
             None => ROOM,
         };
+        let mut bulks = [bulk; 2];
+        for (k, body) in pair.into_iter().enumerate() {
+            let path = format!("bodies.{k}.temperature");
+            if let Some(own) = &body.temperature {
+                bulks[k] = positive(source, &path, own, "K")?;
+            }
+        }
         let profile = spec
             .distance
             .as_ref()
@@ -179,7 +196,7 @@ impl Bodies {
             elasticity: [elasticity[0], elasticity[1]],
             thermal: (conductors.len() == 2).then(|| Thermal {
                 bodies: [conductors[0], conductors[1]],
-                bulk: [bulk; 2],
+                bulk: bulks,
             }),
             distance: Distance {
                 curvatures,

@@ -1,8 +1,8 @@
-//! Files of a patch: `patch.json`, `adhesion.csv` or `loop_N.csv`, the fields in `patch.h5`, and
-//! the page `patch.html`.
+//! Files of a patch: `patch.json`, `adhesion.csv` or `loop_N.csv`, the fields in `patch.h5`, those
+//! of passages, and the page `patch.html`.
 
 use super::answer::Motion;
-use super::{Outcome, PatchFile, page};
+use super::{Outcome, PatchFile, page, passages_files};
 use crate::Error;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
@@ -40,6 +40,7 @@ pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, 
         let path = out.join(format!("loop_{}.csv", k + 1));
         csv::write(&table, &path, NumberFormat::Plain)?;
     }
+    passages_files::write(outcome, out)?;
     fields(outcome, &out.join("patch.h5"))?;
     page::write(file, outcome, &out.join("patch.html"))?;
     Ok(json)

@@ -8,21 +8,28 @@
 //!       ▼
 //! points: creepages, strokes   rolling, pulling, fretting      (fretwork_rolling)
 //!       ▼
+//! profiles over passages       passages, passages_files
+//! other curves, measurements   comparison
 //! numbers, curves, fields      answer, text, files, page
 //! ```
 
 mod answer;
 mod bodies;
+pub mod comparison;
 pub mod files;
 pub mod fretting;
 pub mod law;
 mod page;
+pub mod passages;
+mod passages_files;
 mod pulling;
 pub mod rolling;
 mod setup;
 pub mod spec;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_rolling;
 mod text;
 
 pub use answer::{Answer, Band, Motion, Point, Wear};
@@ -34,7 +41,7 @@ use crate::Error;
 use crate::folder::Owner;
 use fretting::Stroke;
 use fretwork_core::laws::SearchPath;
-use fretwork_rolling::Pressure;
+use fretwork_rolling::{Course, Pressure};
 use rolling::Solved;
 
 /// Owner of the folders of patches.
@@ -55,6 +62,8 @@ pub struct Outcome {
     pub rolled: Vec<Solved>,
     /// Curves and fields of strokes.
     pub strokes: Vec<Stroke>,
+    /// The bodies over their passages.
+    pub course: Option<Course>,
 }
 
 /// Solves all points of a patch; `follow` gets the number of each point that is done, and that of
@@ -72,7 +81,8 @@ pub fn solve(
     let (amplitudes, steps) = fretting::amplitudes(file)?;
     let pulls = pulling::forces(file)?;
     let mut setup = Setup::new(file, search)?;
-    let count = creepages.len() + pulls.len() + amplitudes.len();
+    let plan = passages::plan(file, &setup, &creepages, &pulls)?;
+    let count = creepages.len() + pulls.len() + amplitudes.len() + usize::from(plan.is_some());
     let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
     for creepage in &creepages {
         rolled.push(rolling::solve(&setup, creepage)?);
@@ -87,19 +97,28 @@ pub fn solve(
         strokes.push(fretting::solve(&mut setup, amplitude, steps)?);
         follow(strokes.len(), count);
     }
+    let worn = plan.map(|plan| passages::wear(&setup, &plan)).transpose()?;
+    if worn.is_some() {
+        follow(count, count);
+    }
     let pressures = rolled.iter().map(|s| &s.rolling.pressure);
     let mut pressures = pressures.chain(strokes.iter().map(|s| &s.pressure));
     let first = pressures.next().cloned().unwrap_or_default();
     let points = rolled.iter().map(|s| s.point.clone());
-    let points = points
+    let points: Vec<Point> = points
         .chain(strokes.iter().map(|s| s.point.clone()))
         .collect();
-    let answer = numbers(file, &setup, &first, points);
+    let comparisons = comparison::comparisons(file, &setup, &points)?;
+    let mut answer = numbers(file, &setup, &first, points);
+    answer.comparisons = comparisons;
+    let (worn, course) = worn.unzip();
+    answer.passages = worn;
     Ok(Outcome {
         answer,
         setup,
         rolled,
         strokes,
+        course,
     })
 }
 
@@ -112,6 +131,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
             let from = file.spec.materials.get(n);
             from.unwrap_or(n).clone()
         }),
+        names: setup.bodies.names.clone(),
         load: setup.load,
         speed: setup.speed,
         laws: loaded
@@ -123,5 +143,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         approach: pressure.approach,
         area: touching as f64 * setup.grid.area(3),
         points,
+        comparisons: Vec::new(),
+        passages: None,
     }
 }

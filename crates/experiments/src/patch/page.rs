@@ -1,7 +1,8 @@
 //! The page of a patch: its answer, the curve of adhesion or the loops, and maps over the patch.
 
 use super::answer::Motion;
-use super::{Outcome, PatchFile};
+use super::comparison::Comparison;
+use super::{Outcome, PatchFile, passages_files};
 use crate::Error;
 use crate::page::section;
 use fretwork_elastic::half_space::CellGrid;
@@ -20,6 +21,7 @@ const MAPS: usize = 4;
 pub fn write(file: &PatchFile, outcome: &Outcome, to: &Path) -> Result<(), Error> {
     let mut sections = vec![section("Answer", vec![Block::Code(outcome.answer.text())])];
     sections.extend(curve(outcome));
+    sections.extend(passages_files::page(outcome));
     sections.extend(loops(outcome));
     sections.extend(maps(outcome));
     sections.push(section(
@@ -48,7 +50,7 @@ fn curve(outcome: &Outcome) -> Option<Section> {
             Motion::Fretting(_) => None,
         })
         .collect();
-    if creepages.len() < 2 {
+    if creepages.is_empty() || creepages.len() < 2 && outcome.answer.comparisons.is_empty() {
         return None;
     }
     let all = |k: usize| {
@@ -78,7 +80,11 @@ fn curve(outcome: &Outcome) -> Option<Section> {
         Some(_) => "Bars are the range over the members.",
         None => "Bars are the error by the grid.",
     };
-    let series = Series::new("", line)
+    let label = match outcome.answer.comparisons.is_empty() {
+        true => "",
+        false => "this patch",
+    };
+    let series = Series::new(label, line)
         .style(Style::LineMarkers)
         .intervals(bands.collect());
     let chart = Chart::new(
@@ -86,10 +92,27 @@ fn curve(outcome: &Outcome) -> Option<Section> {
         Axis::new(name, unit),
         Axis::new("force over load", ""),
     );
+    let chart = chart.note(note).with(series);
     Some(section(
         "Adhesion",
-        vec![figure(chart.note(note).with(series))],
+        vec![figure(chart.with_all(others(outcome)))],
     ))
+}
+
+/// Other curves, and measured points with their ranges.
+fn others(outcome: &Outcome) -> Vec<Series> {
+    let of = |other: &Comparison| {
+        let middle = |ends: [f64; 2]| 0.5 * (ends[0] + ends[1]);
+        let points = other.points.iter();
+        let line = points.map(|p| (100.0 * middle(p.creepage), middle(p.adhesion)));
+        let series = Series::new(&other.name, line.collect());
+        if other.curve {
+            return series;
+        }
+        let ranges = other.points.iter().map(|p| (p.adhesion[0], p.adhesion[1]));
+        series.style(Style::Markers).intervals(ranges.collect())
+    };
+    outcome.answer.comparisons.iter().map(of).collect()
 }
 
 /// The loops of strokes.

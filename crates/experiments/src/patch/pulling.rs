@@ -1,23 +1,23 @@
 //! The creepage at which a patch has a force along the rolling.
 
-use super::rolling::LARGEST;
 use super::setup::Setup;
 use super::spec::{MotionSpec, PatchFile, value};
 use crate::Error;
 use fretwork_observe::quantity::quantity;
 use fretwork_rolling::Creepage;
+use fretwork_rolling::pull::{self, Pulled};
 use fretwork_scene::InputError;
 
 /// Creepage from which the search begins.
 const FIRST: f64 = 1e-5;
-/// Difference of the force over it at which the creepage is found, and largest number of solutions.
-const FOUND: (f64, usize) = (1e-5, 60);
+/// Difference of the force over it at which the creepage is found.
+const FOUND: f64 = 1e-5;
 
 /// A force on the first body along the rolling (N), and spin (1/m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pull {
-    force: f64,
-    spin: f64,
+    pub force: f64,
+    pub spin: f64,
 }
 
 /// Returns the forces of all points.
@@ -62,44 +62,20 @@ pub(super) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
         across: 0.0,
         spin: pull.spin,
     };
-    let missing = |size: f64| -> Result<f64, Error> {
+    let carried = |size: f64| -> Result<f64, Error> {
         let solved = setup.with_patch(|patch| patch.rolls(setup.grid, &at(size), law, speed));
         if let Some(error) = law.take_error() {
             return Err(fail(&error));
         }
         let rolling = solved.map_err(|e| fail(&e))?;
-        Ok(-sign * rolling.force[0] - wanted)
+        Ok(-sign * rolling.force[0])
     };
-    let (mut low, mut below) = (0.0, missing(0.0)?);
-    let (mut high, mut above) = (FIRST, missing(FIRST)?);
-    let mut most = below.max(above);
-    while above < 0.0 {
-        if high >= LARGEST {
-            return Err(Error::Failed(format!(
-                "the patch does not carry a force of {} along the rolling: with this law it has at most {}",
-                quantity(wanted, "N"),
-                quantity(most + wanted, "N")
-            )));
-        }
-        (low, below) = (high, above);
-        high = (2.0 * high).min(LARGEST);
-        above = missing(high)?;
-        most = most.max(above);
+    match pull::creepage(wanted, FIRST, FOUND, carried)? {
+        Pulled::At(size) => Ok(at(size)),
+        Pulled::Most(most) => Err(Error::Failed(format!(
+            "the patch does not carry a force of {} along the rolling: with this law it has at most {}",
+            quantity(wanted, "N"),
+            quantity(most, "N")
+        ))),
     }
-    // Regula falsi, with the value of an end that stays halved (Illinois).
-    for _ in 0..FOUND.1 {
-        let size = low - below * (high - low) / (above - below);
-        let now = missing(size)?;
-        if now.abs() <= FOUND.0 * wanted {
-            return Ok(at(size));
-        }
-        if now < 0.0 {
-            (low, below) = (size, now);
-            above *= 0.5;
-        } else {
-            (high, above) = (size, now);
-            below *= 0.5;
-        }
-    }
-    Ok(at(0.5 * (low + high)))
 }

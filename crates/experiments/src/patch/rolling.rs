@@ -8,13 +8,11 @@ use crate::Error;
 use fretwork_core::laws::Kind;
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
+use fretwork_rolling::pull::LARGEST;
 use fretwork_rolling::{Creepage, Refined, Rolling};
 use fretwork_scene::InputError;
 use fretwork_scene::quantity::hardness_in_pascal;
 
-/// Largest creepage: beyond it the bodies slide more than they roll, and their speeds differ so
-/// much that there is no common one.
-pub(super) const LARGEST: f64 = 0.5;
 /// Peclet number below which heat flows along the patch too.
 const FAST: f64 = 5.0;
 /// Error of the force by the grid over the force that is no longer small.
@@ -134,6 +132,11 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
             ));
         }
     }
+    let mut pressed = fine.pressure.pressure.iter().enumerate();
+    let distance = &setup.bodies.distance;
+    if pressed.any(|(cell, p)| *p > 0.0 && !distance.knows(grid.middle(cell)[1])) {
+        notes.push("NOT IN RANGE: the patch reaches beyond the ends of the table of the distance, where it goes on straight: measure it over a wider range".to_owned());
+    }
     let time = touching as f64 * grid.size[0] / speed;
     notes.extend(setup.laws[0].outside(&passage, grid.cells[0], time));
     let temperature = setup.speed.filter(|_| !passage.temperature.is_empty());
@@ -200,17 +203,23 @@ fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
         depth: factor * rows.iter().copied().fold(0.0, f64::max),
         profile: rows.iter().map(|d| factor * d).collect(),
     };
-    let Some(coefficient) = &setup.wear_coefficient else {
+    let Some(factors) = factors(setup) else {
         return vec![of("interface", 1.0)];
     };
-    let hardness = |name: &str| {
+    let bodies = setup.bodies.names.iter().zip(factors);
+    let bodies = bodies.filter_map(|(name, factor)| Some(of(name, factor?)));
+    bodies.collect()
+}
+
+/// Returns the depth that each body loses over that of the wear law, where its coefficient follows
+/// from the hardness of the softer one: that over its own, if it is known.
+pub(super) fn factors(setup: &Setup) -> Option<[Option<f64>; 2]> {
+    let coefficient = setup.wear_coefficient.as_ref()?;
+    let hardness = |name: &String| {
         let material = setup.bodies.materials.iter().find(|(m, _)| m == name)?;
         let hardness = material.1.get("hardness")?;
         hardness_in_pascal(hardness.value, &hardness.unit)
     };
-    let bodies = setup.bodies.names.iter().filter_map(|name| {
-        let own = hardness(name)?;
-        Some(of(name, coefficient.hardness / own))
-    });
-    bodies.collect()
+    let of = |name| hardness(name).map(|own| coefficient.hardness / own);
+    Some(setup.bodies.names.each_ref().map(of))
 }

@@ -1,5 +1,7 @@
 //! The file of a patch.
 
+use super::comparison::{MeasuredSpec, PolachSpec};
+use super::passages::PassagesSpec;
 use crate::spec::{Spec, SpecFile};
 use fretwork_scene::case::{InterfaceSpec, SlotValues};
 use fretwork_scene::material::NumberSpec;
@@ -63,6 +65,15 @@ pub struct PatchSpec {
     pub layer: Option<LayerSpec>,
     /// How the bodies move over each other.
     pub motion: MotionSpec,
+    /// Passages over which the bodies wear.
+    #[serde(default)]
+    pub passages: Option<PassagesSpec>,
+    /// Curves of Polach beside that of the patch: his dry and wet rail by default.
+    #[serde(default)]
+    pub polach: Option<Vec<PolachSpec>>,
+    /// Measured adhesion beside the curve of the patch.
+    #[serde(default)]
+    pub measured: Vec<MeasuredSpec>,
     /// Number of cells along each side of the grid, which is a tenth larger than the patch.
     #[serde(default = "cells")]
     pub cells: usize,
@@ -88,6 +99,9 @@ pub struct BodySpec {
     /// Radius across it (m).
     #[serde(default)]
     pub across: Option<NumberSpec>,
+    /// Temperature far from the patch (K), if it is not that of the file.
+    #[serde(default)]
+    pub temperature: Option<NumberSpec>,
 }
 
 /// A table of the distance of the undeformed bodies across the motion.

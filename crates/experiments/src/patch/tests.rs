@@ -10,13 +10,13 @@ use fretwork_rolling::Friction;
 use fretwork_rolling::friction::Cells;
 use std::path::PathBuf;
 
-fn laws() -> SearchPath {
+pub(super) fn laws() -> SearchPath {
     let shipped = BuiltInLaws::new(fretwork_laws::plugins());
     SearchPath::new(&[]).with_built_in(shipped)
 }
 
 /// A folder with a steel of G 82 GPa and nu 0.28, and one of nu 0.
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("fretwork-patch-{name}-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("materials")).unwrap();
     for (name, young, poisson, hardness) in [
@@ -38,7 +38,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-fn solved(name: &str, text: &str) -> Result<Outcome, Error> {
+pub(super) fn solved(name: &str, text: &str) -> Result<Outcome, Error> {
     let folder = folder(name);
     let path = folder.join("patch.ron");
     std::fs::write(&path, text).unwrap();
@@ -50,7 +50,7 @@ fn solved(name: &str, text: &str) -> Result<Outcome, Error> {
 }
 
 /// The patch of the series `tractcurv` of the program CONTACT, with an interface and a motion.
-fn rolls(interface: &str, rest: &str) -> String {
+pub(super) fn rolls(interface: &str, rest: &str) -> String {
     format!(
         r#"(
             name: "a wheel", materials: {{"wheel": "contact", "rail": "harder"}},
@@ -61,9 +61,9 @@ fn rolls(interface: &str, rest: &str) -> String {
     )
 }
 
-const COULOMB: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.33})"#;
+pub(super) const COULOMB: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.33})"#;
 
-fn near(got: f64, expected: f64, by: f64) {
+pub(super) fn near(got: f64, expected: f64, by: f64) {
     assert!(
         (got / expected - 1.0).abs() < by,
         "{got:e} for {expected:e}"

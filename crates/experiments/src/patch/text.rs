@@ -1,6 +1,8 @@
 //! The answer as lines of text.
 
 use super::answer::{Answer, Motion, Point};
+use super::comparison::Comparison;
+use super::passages_files;
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
 
@@ -40,6 +42,21 @@ impl Answer {
         for point in &self.points {
             out.push('\n');
             out.push_str(&point.text());
+        }
+        for other in &self.comparisons {
+            out.push('\n');
+            out.push_str(&other.text());
+        }
+        if let Some(worn) = &self.passages {
+            let count = number(worn.end.passages, 4);
+            let _ = write!(
+                out,
+                "\nafter {count} passages of point {}",
+                worn.about.point
+            );
+            for (label, text) in passages_files::lines(self, worn) {
+                let _ = write!(out, "\n  {label:<18} {text}");
+            }
         }
         let noted = self.points.iter().filter(|p| !p.notes.is_empty()).count();
         let verdict = match noted {
@@ -126,6 +143,51 @@ impl Point {
         }
         for note in &self.notes {
             add("", note.clone());
+        }
+        out
+    }
+}
+
+impl Comparison {
+    fn text(&self) -> String {
+        let mut out = format!("beside {}", self.name);
+        let mut add = |label: &str, text: String| {
+            let _ = write!(out, "\n  {label:<18} {text}");
+        };
+        match &self.off {
+            Some(off) => {
+                let signed =
+                    |x: f64| format!("{}{}", if x < 0.0 { "-" } else { "+" }, number(x.abs(), 3));
+                let percent = |x: f64| format!("{} %", number(100.0 * x, 3));
+                add(
+                    "the curve is off",
+                    format!(
+                        "by {} on average, {} (root of the mean square), at most {} at a creepage of {}, over {} points",
+                        signed(off.mean),
+                        number(off.rms, 3),
+                        signed(off.largest),
+                        percent(off.at),
+                        off.points
+                    ),
+                );
+                if !self.curve {
+                    add(
+                        "its band reaches",
+                        format!("{} of them", percent(off.reached)),
+                    );
+                }
+            }
+            None => add(
+                "",
+                "no point lies between the creepages of the curve".to_owned(),
+            ),
+        }
+        if self.beyond > 0 && self.off.is_some() {
+            let others = format!(
+                "{} points lie beyond the creepages of the curve",
+                self.beyond
+            );
+            add("", others);
         }
         out
     }

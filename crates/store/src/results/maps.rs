@@ -35,12 +35,30 @@ impl Maps {
     /// # Errors
     /// The file cannot be written.
     pub fn create(path: &Path, [x, y]: [&[f64]; 2]) -> Result<Self, ResultsError> {
+        let axis = |name, places: &[f64], doc| (name, places.to_vec(), "m", doc);
+        let axes = [
+            axis("x", x, "middles of the cells along the motion"),
+            axis("y", y, "middles of the cells across the motion"),
+        ];
+        Self::over(path, &axes)
+    }
+
+    /// Creates the file for fields over other axes, those of columns and of rows: name, places,
+    /// unit and doc.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn over(
+        path: &Path,
+        axes: &[(&str, Vec<f64>, &str, &str); 2],
+    ) -> Result<Self, ResultsError> {
         let mut store = Store::create(&path.with_extension("h5.part"))?;
-        store.numbers("/x", 1, x, ("m", "middles of the cells along the motion"))?;
-        store.numbers("/y", 1, y, ("m", "middles of the cells across the motion"))?;
+        for (name, places, unit, doc) in axes {
+            store.numbers(&format!("/{name}"), 1, places, (unit, doc))?;
+        }
         Ok(Self {
             store,
-            columns: x.len() as u64,
+            columns: axes[0].1.len() as u64,
             path: path.to_owned(),
         })
     }

@@ -1,0 +1,373 @@
+//! Profiles of both bodies over many passages: what a passage is for each body, how they share the
+//! wear, and the course with its errors.
+
+use super::law::PatchLaw;
+use super::pulling::{self, Pull};
+use super::rolling::factors;
+use super::setup::Setup;
+use super::spec::{PatchFile, positive, value};
+use crate::Error;
+use fretwork_core::laws::{Kind, LawError};
+use fretwork_elastic::half_space::CellGrid;
+use fretwork_rolling::friction::Cells;
+use fretwork_rolling::passages::{Course, Drive, Jump, Passages, Steps};
+use fretwork_rolling::{Creepage, Vector, Wears};
+use fretwork_scene::InputError;
+use fretwork_scene::material::NumberSpec;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+
+/// Passages of a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PassagesSpec {
+    /// Passages of the patch over each point of the body that is counted: the one that is plane
+    /// along the motion, such as a rail, else the second one.
+    pub count: f64,
+    /// Largest number of passages of a jump.
+    #[serde(default)]
+    pub jump: Option<f64>,
+    /// Largest error of a jump in depth over the depth that it takes.
+    #[serde(default)]
+    pub error: Option<NumberSpec>,
+    /// Passages at which profiles are kept.
+    #[serde(default)]
+    pub profiles: Vec<f64>,
+    /// Length of the track on which the wheels run (m), over which the counted passages are made.
+    #[serde(default)]
+    pub track: Option<NumberSpec>,
+    /// Number of wheels that run over the track.
+    #[serde(default)]
+    pub wheels: Option<f64>,
+    /// Parts of the depth of the wear law that the first and the second body lose.
+    #[serde(default)]
+    pub shares: Option<(f64, f64)>,
+    /// The point that wears, from 1, where the motion has several.
+    #[serde(default)]
+    pub point: Option<usize>,
+}
+
+/// Error of a jump by default.
+const SHARE: f64 = 0.02;
+/// Number of profiles that are kept by default.
+const PROFILES: usize = 8;
+
+/// Passages that can be made.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    steps: Steps,
+    parts: [f64; 2],
+    drive: Drive,
+    /// What the answer says of it.
+    about: About,
+}
+
+/// What a passage is for each body.
+#[derive(Clone, Debug, Serialize)]
+pub struct About {
+    /// The point of the motion that wears, from 1.
+    pub point: usize,
+    /// Passages of the points of each body.
+    pub passages: [f64; 2],
+    /// Parts of the depth of the wear law that the bodies lose in each of their passages.
+    pub shares: [f64; 2],
+    /// How they follow, as sentences.
+    pub why: [String; 2],
+}
+
+/// Bodies after their passages.
+#[derive(Clone, Debug, Serialize)]
+pub struct Worn {
+    /// What a passage is.
+    pub about: About,
+    /// New bodies.
+    pub start: Jump,
+    /// Worn bodies.
+    pub end: Jump,
+    /// Error of the largest depth of each body by the cells (m), from cells twice as large.
+    pub error_of_grid: [f64; 2],
+    /// Error of the largest pressure by the cells (Pa).
+    pub pressure_error: f64,
+    /// Number of jumps, and of those that were made again.
+    pub jumps: [usize; 2],
+    /// Difference between the volume that the law took and that which the profiles miss, over the
+    /// former.
+    pub ledger: f64,
+}
+
+/// Reads the passages of a file, of points with creepages or forces.
+///
+/// # Errors
+/// A number is out of range, or it is not clear which point wears, and how.
+pub(super) fn plan(
+    file: &PatchFile,
+    setup: &Setup,
+    creepages: &[Creepage],
+    pulls: &[Pull],
+) -> Result<Option<Plan>, Error> {
+    let (spec, source) = (&file.spec, &file.source);
+    let Some(given) = &spec.passages else {
+        return Ok(None);
+    };
+    let refuse = |path: &str, why: String| Err(Error::Input(source.error_at(path, why)));
+    if setup.laws[0].interface().law(Kind::WEAR).is_none() {
+        return refuse(
+            "passages",
+            "nothing wears: give the interface of the bodies a `wear` law, such as \"archard\""
+                .into(),
+        );
+    }
+    let points = creepages.len() + pulls.len();
+    if points == 0 {
+        return refuse(
+            "passages",
+            "passages are those of bodies that roll: take `motion: Rolling(..)` or `Pulling(..)`"
+                .into(),
+        );
+    }
+    let point = match given.point {
+        Some(point) if (1..=points).contains(&point) => point,
+        None if points == 1 => 1,
+        _ => {
+            return refuse(
+                "passages.point",
+                format!("which point of the motion wears? Give one of 1 to {points}"),
+            );
+        }
+    };
+    let above = |name: &str, number: f64, least: f64| match number.is_finite() && number >= least {
+        true => Ok(number),
+        false => Err(source.error_at(
+            &format!("passages.{name}"),
+            format!("it is {number}, and must be a number of {least} or more"),
+        )),
+    };
+    let count = above("count", given.count, 1.0)?;
+    let longest = given.jump.map(|jump| above("jump", jump, 1.0));
+    let longest = longest.transpose()?.unwrap_or(f64::INFINITY);
+    let share = given.error.as_ref();
+    let share = share.map(|e| value(source, "passages.error", e, ""));
+    let share = share.transpose()?.unwrap_or(SHARE);
+    if !(1e-4..=0.5).contains(&share) {
+        return refuse(
+            "passages.error",
+            format!("it is {share}, and must be between 0.01 % and 50 % of the depth of a jump"),
+        );
+    }
+    let mut moments = given.profiles.clone();
+    moments.sort_by(f64::total_cmp);
+    moments.dedup();
+    if let Some(wrong) = moments.iter().find(|m| !(**m > 0.0 && **m <= count)) {
+        return refuse(
+            "passages.profiles",
+            format!("a profile after {wrong} passages is not among the {count}"),
+        );
+    }
+    if moments.is_empty() {
+        // Profiles deepen about with the root of the passages.
+        let of = |k: usize| count * (k as f64 / PROFILES as f64).powi(2);
+        moments = (1..=PROFILES).map(of).collect();
+    }
+    let (passages, why_passages) = passages_of(file, given, count)?;
+    let (shares, why_shares) = shares(file, setup, given)?;
+    let drive = match creepages.get(point - 1) {
+        Some(creepage) => Drive::Creepage(*creepage),
+        None => {
+            let pull = &pulls[point - 1];
+            let start = pulling::creepage(setup, pull)?;
+            let force = pull.force;
+            Drive::Force { force, start }
+        }
+    };
+    Ok(Some(Plan {
+        steps: Steps {
+            count,
+            share,
+            longest,
+            moments,
+        },
+        parts: [0, 1].map(|k| shares[k] * passages[k] / count),
+        drive,
+        about: About {
+            point,
+            passages,
+            shares,
+            why: [why_passages, why_shares],
+        },
+    }))
+}
+
+/// Returns the passages of the points of both bodies, and why.
+fn passages_of(
+    file: &PatchFile,
+    given: &PassagesSpec,
+    count: f64,
+) -> Result<([f64; 2], String), InputError> {
+    let (spec, source) = (&file.spec, &file.source);
+    let bodies = [&spec.bodies.0, &spec.bodies.1];
+    let mut radii = [None; 2];
+    for (k, body) in bodies.iter().enumerate() {
+        let path = format!("bodies.{k}.radius");
+        let radius = body.radius.as_ref();
+        radii[k] = radius.map(|r| value(source, &path, r, "m")).transpose()?;
+    }
+    let name = |k: usize| &bodies[k].material;
+    let counted = match radii {
+        [None, Some(_)] => 0,
+        _ => 1,
+    };
+    let other = 1 - counted;
+    let mut all = [count; 2];
+    let on_track = given.track.is_some() || given.wheels.is_some();
+    let why = match (radii[other], radii[counted]) {
+        (Some(radius), None) => {
+            let Some(track) = &given.track else {
+                if on_track {
+                    return Err(source.error_at(
+                        "passages.wheels",
+                        "give the length of the `track` on which these wheels run",
+                    ));
+                }
+                let all = format!(
+                    "each point of {} and of {} passes through the patch as often (no `track`)",
+                    name(other),
+                    name(counted)
+                );
+                return Ok(([count; 2], all));
+            };
+            let track = positive(source, "passages.track", track, "m")?;
+            let wheels = given.wheels.unwrap_or(1.0);
+            if !(wheels.is_finite() && wheels > 0.0) {
+                return Err(source.error_at("passages.wheels", "give a number above 0"));
+            }
+            let turns = track / (std::f64::consts::TAU * radius.abs());
+            all[other] = count * turns / wheels;
+            format!(
+                "a point of {} passes once for each wheel, a point of {} once a turn: {turns:.4e} turns over the track, shared by {wheels} wheels",
+                name(counted),
+                name(other)
+            )
+        }
+        _ if on_track => {
+            return Err(source.error_at(
+                "passages",
+                "a `track` is for a body with a radius along the motion on one that is plane along it",
+            ));
+        }
+        (Some(one), Some(fixed)) => {
+            all[other] = count * (fixed / one).abs();
+            format!(
+                "a point of each body passes once a turn, that of {} {:.4} times as often",
+                name(other),
+                all[other] / count
+            )
+        }
+        _ => "each point of both bodies passes as often".into(),
+    };
+    Ok((all, why))
+}
+
+/// Returns the parts of the depth of the law that both bodies lose in a passage, and why.
+fn shares(
+    file: &PatchFile,
+    setup: &Setup,
+    given: &PassagesSpec,
+) -> Result<([f64; 2], String), InputError> {
+    let source = &file.source;
+    if let Some((one, other)) = given.shares {
+        let fits = |x: f64| x.is_finite() && x >= 0.0;
+        return match fits(one) && fits(other) && one + other > 0.0 {
+            true => Ok(([one, other], "`shares` of the file".into())),
+            false => Err(source.error_at(
+                "passages.shares",
+                "give two numbers of 0 or more, not both 0: the parts of the depth of the law",
+            )),
+        };
+    }
+    match factors(setup) {
+        None => Ok((
+            [0.5; 2],
+            "each body loses half of the depth of the law (no `shares`, no `K`)".into(),
+        )),
+        Some([Some(one), Some(other)]) => Ok((
+            [one, other],
+            "each body wears by K over its own hardness".into(),
+        )),
+        Some(_) => Err(source.error_at(
+            "passages",
+            "`K` needs the hardness of both materials; add it to their files, or give `shares`",
+        )),
+    }
+}
+
+/// Wear by the law of a patch, with its first error.
+struct ByLaw<'a> {
+    law: &'a PatchLaw,
+    error: RefCell<Option<LawError>>,
+}
+
+impl Wears for ByLaw<'_> {
+    fn worn(&self, cells: Cells<'_>, slip: &[Vector]) -> Vec<f64> {
+        match self.law.passage(cells, slip) {
+            Ok(passage) => passage.worn,
+            Err(error) => {
+                self.error.borrow_mut().get_or_insert(error);
+                vec![0.0; slip.len()]
+            }
+        }
+    }
+}
+
+/// Makes all passages.
+///
+/// # Errors
+/// A law fails, or there is no solution.
+pub(super) fn wear(setup: &Setup, plan: &Plan) -> Result<(Worn, Course), Error> {
+    let cells = setup.grid.cells;
+    let course = course(setup, plan, &setup.grid)?;
+    let coarse = CellGrid {
+        size: [0, 1].map(|k| setup.grid.extent()[k] / (cells[k] / 2) as f64),
+        cells: cells.map(|n| n / 2),
+        ..setup.grid
+    };
+    let rough = self::course(setup, plan, &coarse)?;
+    let ends = |course: &Course| {
+        let jumps = course.jumps.iter().copied();
+        jumps.last().unwrap_or_default()
+    };
+    let (end, other) = (ends(&course), ends(&rough));
+    let worn = Worn {
+        about: plan.about.clone(),
+        start: course.jumps.first().copied().unwrap_or_default(),
+        end,
+        error_of_grid: [0, 1].map(|k| (end.depth[k] - other.depth[k]).abs()),
+        pressure_error: (end.pressure - other.pressure).abs(),
+        jumps: [course.jumps.len() - 1, course.repeated],
+        ledger: course.ledger(),
+    };
+    Ok((worn, course))
+}
+
+fn course(setup: &Setup, plan: &Plan, grid: &CellGrid) -> Result<Course, Error> {
+    let law = &setup.laws[0];
+    let wears = ByLaw {
+        law,
+        error: RefCell::new(None),
+    };
+    let made = setup.with_patch(|patch| {
+        let passages = Passages {
+            patch: *patch,
+            drive: plan.drive,
+            law,
+            speed: setup.rolling_speed(),
+            wears: &wears,
+            parts: plan.parts,
+        };
+        passages.wear(grid, &plan.steps, &mut |_| ())
+    });
+    let error = law.take_error().or_else(|| wears.error.take());
+    if let Some(error) = error {
+        return Err(Error::Failed(error.to_string()));
+    }
+    made.map_err(|e| Error::Failed(e.to_string()))
+}

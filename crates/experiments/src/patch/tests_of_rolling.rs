@@ -1,0 +1,281 @@
+//! Temperature, passages and comparisons of patches that roll, through the file of a patch.
+
+use super::tests::{COULOMB, folder, laws, near, rolls, solved};
+use super::{Outcome, PatchFile, files, solve};
+use fretwork_elastic::patch::{Solid, effective_modulus, point};
+
+/// The patch of the case `ertz_temperature` of the program CONTACT (github eve70a/CONTACT, commit
+/// d431cdb): semi-axes 5.88 mm and 10.54 mm under 100 kN, mu 0.3, steel of M. Ertz and K. Knothe
+/// (Wear 253, 2002), 30 m/s. Its radii follow from Hertz.
+fn ertz(interface: &str, rest: &str) -> String {
+    let body = Solid {
+        young: 209.92e9,
+        poisson: 0.28,
+    };
+    let modulus = effective_modulus(&[body; 2]);
+    let of = |radii: [f64; 2]| point(100e3, radii.map(|r| 1.0 / r), modulus);
+    let mut radii = [0.5, 1.0];
+    for _ in 0..200 {
+        let now = of(radii);
+        radii[0] *= 5.88e-3 / now.along;
+        radii[1] *= 10.54e-3 / now.across;
+    }
+    let found = of(radii);
+    near(found.along, 5.88e-3, 1e-6);
+    near(found.pressure, 770.6e6, 1e-3);
+    format!(
+        r#"(
+            name: "a wheel", materials: {{"wheel": "contact", "rail": "harder"}},
+            bodies: ((material: "wheel", radius: {} m), (material: "rail", across: {} m, RAIL)),
+            interfaces: [(name: "dry", between: ("wheel", "rail"), {interface})],
+            load: 100 kN, {rest}
+        )"#,
+        radii[0], radii[1]
+    )
+}
+
+const FRICTION: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.3})"#;
+
+fn rise(outcome: &Outcome, from: f64) -> f64 {
+    outcome.answer.points[0].temperature.unwrap() - from
+}
+
+/// A slip of 1 m/s heats by 150.3 K, the maximum of the integral under a semi-ellipse (CONTACT has
+/// 166.8 K by a rule of its own for it); bodies of 0 and 150 K more meet at their mean. Of the slip
+/// the strain of the surfaces is a part, up to 4 % at the trailing edge.
+#[test]
+fn sliding_heats_as_in_closed_form() {
+    let motion = "speed: 30 m/s, motion: Rolling(along: -3.333 %)";
+    let text = ertz(FRICTION, motion);
+    let alike = solved("ertz", &text.replace(", RAIL", "")).unwrap();
+    near(rise(&alike, 293.15), 150.3, 0.05);
+    near(alike.answer.points[0].adhesion, 0.3, 1e-5);
+    let hot = solved("ertz", &text.replace("RAIL", "temperature: 443.15 K")).unwrap();
+    near(rise(&hot, 293.15), rise(&alike, 293.15) + 75.0, 1e-6);
+}
+
+/// Creepages along and across with spin: the forces are those of CONTACT (0.7274 and 0.1492 of mu
+/// P), and the rise is its 15.85 K less the 11 % of its rule for the integral.
+#[test]
+fn creep_and_spin_heat_as_in_contact() {
+    let motion = "speed: 30 m/s, motion: Rolling(along: -0.2 %, across: 0.1 %, spin: 0.2 1/m)";
+    let text = ertz(FRICTION, motion).replace(", RAIL", "");
+    let outcome = solved("ertz-spin", &text).unwrap();
+    let point = &outcome.answer.points[0];
+    near(point.force[0], 0.7274 * 30e3, 5e-3);
+    near(point.force[1], -0.1492 * 30e3, 1e-2);
+    near(rise(&outcome, 293.15), 15.85 * 150.3 / 166.8, 0.03);
+}
+
+/// The rise grows with the root of the speed at one creepage: the heat with the speed, the time of
+/// contact with one over it.
+#[test]
+fn heat_follows_the_speed() {
+    let at = |speed: f64| {
+        let motion = format!("speed: {speed} m/s, cells: 24, motion: Rolling(along: 2 %)");
+        let text = ertz(FRICTION, &motion).replace(", RAIL", "");
+        rise(&solved("speed", &text).unwrap(), 293.15)
+    };
+    near(at(40.0), 2.0 * at(10.0), 1e-6);
+}
+
+/// Friction that falls with temperature falls with the speed, and is that of its temperature: in
+/// full slip the adhesion lies between those of the hottest place and of the bodies.
+#[test]
+fn hot_patches_have_less_friction() {
+    let interface = r#"contact: "thermal-friction", parameters: (contact: {"cold": 0.4, "hot": 0.1, "from": 293.15 K, "to": 893.15 K})"#;
+    let at = |speed: f64| {
+        let motion = format!("speed: {speed} m/s, cells: 24, motion: Rolling(along: 5 %)");
+        let text = ertz(interface, &motion).replace(", RAIL", "");
+        let outcome = solved("hot", &text).unwrap();
+        (outcome.answer.points[0].adhesion, rise(&outcome, 293.15))
+    };
+    let (slow, fast) = (at(1.0), at(60.0));
+    assert!(slow.0 > fast.0 && slow.1 < fast.1, "{slow:?} {fast:?}");
+    for (adhesion, rise) in [slow, fast] {
+        let hottest = 0.4 - 0.3 * rise / 600.0;
+        assert!(adhesion > hottest && adhesion < 0.4, "{adhesion} {hottest}");
+    }
+    // Without heat the coefficient would be 0.4; a fourth of the rise is lost at least.
+    assert!(fast.0 < 0.4 - 0.25 * 0.3 * fast.1 / 600.0, "{fast:?}");
+}
+
+const WEARS: &str = r#"contact: "coulomb", wear: "archard", parameters: (contact: {"mu": 0.33}, wear: {"K": 1e-4})"#;
+
+/// Bodies in full slip lose N k P xi, each with k = K/H of its own; the wheel passes once a turn.
+#[test]
+fn passages_wear_both_bodies() {
+    let passages =
+        "motion: Rolling(along: 20 %), passages: (count: 100, track: 392.699 m, wheels: 2)";
+    let outcome = solved("passages", &rolls(WEARS, passages)).unwrap();
+    let worn = outcome.answer.passages.as_ref().unwrap();
+    // 100 turns of 2 pi 0.625 m over the track, by two wheels.
+    near(worn.about.passages[0], 100.0 * 50.0, 1e-5);
+    near(worn.about.passages[1], 100.0, 1e-12);
+    let taken = 1e-4 * 106.7e3 * 0.2;
+    near(worn.end.volume[0], 5000.0 * taken / 2e9, 5e-3);
+    near(worn.end.volume[1], 100.0 * taken / 4e9, 5e-3);
+    assert!(worn.ledger < 1e-12, "{}", worn.ledger);
+    assert!(worn.end.pressure < worn.start.pressure);
+    let text = outcome.answer.text();
+    assert!(
+        text.contains("100.0 turns over the track") || text.contains("1.0000e2 turns"),
+        "{text}"
+    );
+}
+
+/// Files of passages, with the last profile that of the answer; without a point, a law or a place
+/// the sentence says what is missing.
+#[test]
+fn passages_are_written_and_refused() {
+    let passages = "motion: Pulling(force: -20 kN), passages: (count: 1000, shares: (0, 1))";
+    let folder = folder("written");
+    let path = folder.join("patch.ron");
+    std::fs::write(&path, rolls(WEARS, passages)).unwrap();
+    let file = PatchFile::read(&path).unwrap();
+    let outcome = solve(&file, &laws(), &mut |_, _| ()).unwrap();
+    let worn = outcome.answer.passages.as_ref().unwrap();
+    near(worn.end.adhesion[0], -20e3 / 106.7e3, 1e-4);
+    assert_eq!(worn.end.depth[0], 0.0);
+    files::write(&file, &outcome, &folder).unwrap();
+    let table = std::fs::read_to_string(folder.join("passages.csv")).unwrap();
+    assert_eq!(
+        table.lines().count(),
+        outcome.course.as_ref().unwrap().jumps.len() + 1
+    );
+    assert!(folder.join("profiles.h5").is_file());
+    let profiles = std::fs::read_to_string(folder.join("profiles.csv")).unwrap();
+    assert!(profiles.starts_with("passages [1],y [m]") || profiles.starts_with("passages,y [m]"));
+    let page = std::fs::read_to_string(folder.join("patch.html")).unwrap();
+    assert!(page.contains("Profiles over passages"));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let refused = |interface: &str, rest: &str| {
+        let error = solved("refused-passages", &rolls(interface, rest)).unwrap_err();
+        error.to_string()
+    };
+    for (interface, rest, says) in [
+        (
+            COULOMB,
+            "motion: Rolling(along: 1 %), passages: (count: 10)",
+            "nothing wears",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: [1 %, 2 %]), passages: (count: 10)",
+            "one of 1 to 2",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: -1)",
+            "1 or more",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: 10, wheels: 3)",
+            "`track`",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: 10, profiles: [20])",
+            "not among",
+        ),
+        (
+            WEARS,
+            "motion: Fretting(amplitude: 1 um), passages: (count: 10)",
+            "bodies that roll",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: 10, shares: (0, 0))",
+            "not both 0",
+        ),
+    ] {
+        let got = refused(interface, rest);
+        assert!(got.contains(says), "{rest}: {got}");
+    }
+}
+
+/// Points on the solved curve are at no distance from it, ranges that it meets neither; others are
+/// at theirs, and those beyond its ends are told.
+#[test]
+fn measured_points_beside_the_curve() {
+    let folder = folder("measured");
+    let table = "# made up\ncreepage [%],to [%],adhesion,high\n5,5,0.33,0.33\n10,10,0.30,0.30\n5,10,0.2,0.4\n30,30,0.3,0.3\n";
+    std::fs::write(folder.join("points.csv"), table).unwrap();
+    let path = folder.join("patch.ron");
+    let rest = r#"speed: 10 m/s, motion: Rolling(along: [5 %, 10 %]), polach: [Dry],
+        measured: [(file: "points.csv", along_to: "to", adhesion_to: "high", name: "some")]"#;
+    std::fs::write(&path, rolls(COULOMB, rest)).unwrap();
+    let file = PatchFile::read(&path).unwrap();
+    let outcome = solve(&file, &laws(), &mut |_, _| ()).unwrap();
+    let [polach, some] = &outcome.answer.comparisons[..] else {
+        panic!("{:?}", outcome.answer.comparisons);
+    };
+    assert!(polach.curve && polach.beyond == 0);
+    assert_eq!((some.beyond, some.name.as_str()), (1, "some"));
+    let off = some.off.unwrap();
+    assert_eq!(off.points, 3);
+    near(off.largest, 0.03, 1e-3);
+    near(off.mean, 0.01, 1e-3);
+    near(off.rms, 0.03 / f64::sqrt(3.0), 1e-3);
+    near(off.reached, 2.0 / 3.0, 1e-12);
+    let text = outcome.answer.text();
+    assert!(
+        text.contains("beside Polach, dry") && text.contains("1 points lie beyond"),
+        "{text}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A measured distance with two crests: each contact has half of the load and the pressure of Hertz
+/// under it; a table that ends within the patch is told.
+#[test]
+fn a_measured_distance_with_two_contacts() {
+    let folder = folder("gap");
+    let write = |wide: i32| {
+        let rows = (-wide..=wide).map(|k| {
+            let y = 0.1 * f64::from(k);
+            format!("{y},{}", 0.005 * (y.abs() - 20.0).powi(2))
+        });
+        let rows: Vec<String> = rows.collect();
+        std::fs::write(
+            folder.join("gap.csv"),
+            format!("y [mm],distance [mm]\n{}\n", rows.join("\n")),
+        )
+        .unwrap();
+    };
+    let text = rolls(
+        COULOMB,
+        "motion: Rolling(along: 1 %), distance: (file: \"gap.csv\")",
+    );
+    let text = text
+        .replace(", across: 1.776737 m", "")
+        .replace("cells: 24", "cells: 96");
+    let text = text.replace("106.7 kN", "20 kN");
+    let path = folder.join("patch.ron");
+    std::fs::write(&path, text).unwrap();
+    let solved = || {
+        let file = PatchFile::read(&path).unwrap();
+        solve(&file, &laws(), &mut |_, _| ()).unwrap()
+    };
+    write(400);
+    let outcome = solved();
+    let body = Solid {
+        young: 209.92e9,
+        poisson: 0.28,
+    };
+    // 0.005 y² in mm is y²/(2 R) with R = 100 mm.
+    let hertz = point(10e3, [1.0 / 0.625, 10.0], effective_modulus(&[body; 2]));
+    near(outcome.answer.pressure, hertz.pressure, 0.05);
+    near(outcome.answer.points[0].adhesion, 0.33, 0.02);
+    let told = |outcome: &Outcome| {
+        outcome
+            .answer
+            .text()
+            .contains("beyond the ends of the table")
+    };
+    assert!(!told(&outcome));
+    write(200);
+    assert!(told(&solved()));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
