@@ -9,6 +9,7 @@ use super::spec::{PatchFile, positive, value};
 use crate::Error;
 use fretwork_core::laws::{Kind, LawError};
 use fretwork_elastic::half_space::CellGrid;
+use fretwork_observe::quantity::number;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::passages::{Course, Drive, Jump, Passages, Steps};
 use fretwork_rolling::{Creepage, Vector, Wears};
@@ -243,9 +244,10 @@ fn passages_of(
             let turns = track / (std::f64::consts::TAU * radius.abs());
             all[other] = count * turns / wheels;
             format!(
-                "a point of {} passes once for each wheel, a point of {} once a turn: {turns:.4e} turns over the track, shared by {wheels} wheels",
+                "a point of {} passes once for each wheel, a point of {} once a turn: {} turns over the track, shared by {wheels} wheels",
                 name(counted),
-                name(other)
+                name(other),
+                number(turns, 4)
             )
         }
         _ if on_track => {

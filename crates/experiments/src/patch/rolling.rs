@@ -181,7 +181,7 @@ fn of_law(setup: &Setup, creepage: &Creepage, law: &PatchLaw) -> Result<(Refined
         pressure: &fine.pressure.pressure,
         speed,
     };
-    let passage = law.passage(cells, &fine.tractions.slip);
+    let passage = law.passage(cells, &fine.wearing_slip());
     Ok((refined, passage.map_err(|e| fail(&e))?))
 }
 

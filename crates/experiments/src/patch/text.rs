@@ -68,11 +68,24 @@ impl Answer {
     }
 }
 
+/// Components of the force over its size that are rounding, and the arm of a moment (m).
+const ROUNDING: f64 = 1e-6;
+const ROUNDING_ARM: f64 = 1e-9;
+
+/// Returns a number that was typed, without zeros at its end.
+fn short(value: f64) -> String {
+    let text = number(value, 4);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 impl Point {
     fn text(&self) -> String {
         let mut out = match self.motion {
             Motion::Rolling(c) => {
-                let percent = |x: f64| format!("{} %", number(100.0 * x, 4));
+                let percent = |x: f64| format!("{} %", short(100.0 * x));
                 let mut parts = vec![format!("creepage {}", percent(c.along))];
                 if c.across != 0.0 {
                     parts.push(format!("across {}", percent(c.across)));
@@ -97,9 +110,12 @@ impl Point {
             adhesion += &format!(", {low} to {high} over the members");
         }
         add(if rolls { "adhesion" } else { "Q/P" }, adhesion);
-        let forces = self.force.map(|f| quantity(f, "N"));
+        // What is left of a component that cancels is rounding.
+        let size = self.force[0].hypot(self.force[1]);
+        let seen = |x: f64, least: f64| if x.abs() > least * size { x } else { 0.0 };
+        let forces = self.force.map(|f| quantity(seen(f, ROUNDING), "N"));
         if rolls {
-            let moment = quantity(self.moment, "N m");
+            let moment = quantity(seen(self.moment, ROUNDING_ARM), "N m");
             add(
                 "on the first body",
                 format!("{} along, {} across, {moment}", forces[0], forces[1]),
