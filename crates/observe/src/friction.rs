@@ -8,14 +8,13 @@ use super::onset::Onset;
 use super::scatter::{self, Scatter};
 use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
+use fretwork_core::process::sliding::ACROSS;
 use serde::{Deserialize, Serialize};
 
 /// E_d/(4 Q* delta*) above which a cycle has more than one loop; that of a rectangle is 1.
 const LARGEST_RATIO: f64 = 1.05;
 /// Path over the size of a body below which it is due to rounding.
 const STILL: f64 = 1e-9;
-/// Share of the path along the axis of a test below which the contacts slide across it.
-const ACROSS: f64 = 1e-3;
 
 /// Measurements of one step.
 #[derive(Clone, Copy, Debug, Default)]

@@ -88,8 +88,8 @@ impl FrictionTest {
         }
     }
 
-    /// Returns the path of a first body under its loads relative to that of the rubbed one: 0 of one
-    /// that did not slide, 1 where there are no others than these two.
+    /// Returns the path of a first body under its loads relative to that of the rubbed one: 0 of
+    /// one that did not slide, 1 where there are no others than these two.
     fn share(&self, run: &dyn RunView, body: &str) -> f64 {
         let own = match self.body.part {
             SlidingPart::Driven(place) => Some(run.bodies().driven[place].name.clone()),

@@ -113,17 +113,23 @@ pub fn quantity(text: &str, wanted: &str) -> Result<f64, UnitError> {
             nearest: None,
         });
     };
-    let rest = text[end..].trim();
-    if let Some(decimals) = rest.strip_prefix(',')
-        && decimals.starts_with(|c: char| c.is_ascii_digit())
-    {
+    if let Some(written) = decimal_comma(text) {
         return Err(UnitError {
             message: format!("`{text}` has a decimal comma"),
-            expected: Some(format!("`{}.{decimals}`", &text[..end])),
+            expected: Some(format!("`{written}`")),
             nearest: None,
         });
     }
-    convert(value, rest, wanted)
+    convert(value, text[end..].trim(), wanted)
+}
+
+/// Returns how a number with a decimal comma, and with or without a unit, is written; `None` if the
+/// text is something else.
+pub(crate) fn decimal_comma(text: &str) -> Option<String> {
+    let whole = number_length(text);
+    let decimals = text[whole..].trim_start().strip_prefix(',')?;
+    let digits = whole > 0 && decimals.starts_with(|c: char| c.is_ascii_digit());
+    (digits && !decimals.contains(',')).then(|| format!("{}.{decimals}", &text[..whole]))
 }
 
 /// Parses a number with or without a unit, and converts it to SI units, see [`in_si`]; `None` if

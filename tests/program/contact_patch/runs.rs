@@ -124,7 +124,7 @@ fn runs_are_compared_with_each_other_and_with_the_patch() {
         let (code, text) = with(of.clone(), &runs, &[]);
         assert_eq!(code, Some(2), "{what}: {text}");
         assert!(
-            text.contains(words) && text.contains("accept "),
+            text.contains(words) && text.contains("--accept "),
             "{what}: {text}"
         );
         let (code, text) = with(of, &runs, &["--accept", what]);
@@ -150,7 +150,7 @@ fn runs_are_compared_with_each_other_and_with_the_patch() {
     for words in [
         "NOT CONVERGED: of a test",
         "no results.h5",
-        "accept untrusted,materials,pressure",
+        "--accept untrusted,materials,pressure",
     ] {
         assert!(text.contains(words), "{words} in {text}");
     }

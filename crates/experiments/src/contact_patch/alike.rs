@@ -136,7 +136,7 @@ impl<'a> Differences<'a> {
         let mut what: Vec<&str> = refused.iter().map(|d| d.what).collect();
         what.dedup();
         Err(format!(
-            "friction of runs: {}; to take them all the same, accept {}",
+            "friction of runs: {}; to take them all the same, give `--accept {}`",
             reasons.join("; "),
             what.join(",")
         ))

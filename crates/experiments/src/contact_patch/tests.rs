@@ -109,7 +109,7 @@ fn refused(
     [words, advice, heading]: [&str; 3],
 ) {
     let said = check(question).unwrap_err();
-    for part in [words, advice, &format!("accept {what}")] {
+    for part in [words, advice, &format!("--accept {what}")] {
         assert!(said.contains(part), "{part} in {said}");
     }
     let accept = vec![what.to_owned()];
@@ -248,7 +248,7 @@ fn materials_and_pressure_are_those_of_the_patch() {
     for words in [
         "no results.h5",
         "keep results.h5",
-        "accept materials,pressure",
+        "--accept materials,pressure",
     ] {
         assert!(said.contains(words), "{words} in {said}");
     }

@@ -58,7 +58,7 @@ impl Compared {
 /// Significance of a difference, from the half-widths of 95 % intervals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Significance {
-    /// The values are equal to the last digit.
+    /// The values are equal but for rounding, see [`ROUNDING`].
     Equal,
     /// The difference is larger than its half-width.
     Differ,
@@ -99,6 +99,10 @@ impl Significance {
 /// half-width even if the unknown one is this number of times that of the other run.
 pub const UNKNOWN: f64 = 3.0;
 
+/// Difference of two values, relative to the larger, that the rounding of sums over steps and
+/// contacts leaves: another number of threads or another order of bodies gives other last digits.
+pub const ROUNDING: f64 = 1e-10;
+
 /// Difference of a result of a run, less that of a base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
@@ -119,6 +123,7 @@ impl Difference {
     /// Returns the difference of a run and a base, whose errors are independent.
     pub fn new(run: &Compared, base: &Compared) -> Self {
         let value = run.value - base.value;
+        let rounding = ROUNDING * run.value.abs().max(base.value.abs());
         let own = run.half_widths.iter().map(|(of, _)| of.clone());
         let causes: Vec<String> = own.chain(run.lacks(base)).collect();
         // A half-width that is not known is `unknown` times that of the other run.
@@ -134,7 +139,7 @@ impl Difference {
         let half_width = half(0.0);
         let none = run.half_widths.is_empty() || base.half_widths.is_empty();
         let significance = match half_width {
-            _ if value == 0.0 => Significance::Equal,
+            _ if value.abs() <= rounding => Significance::Equal,
             _ if !(run.trusted && base.trusted) => Significance::NotTrusted,
             _ if !(run.determined && base.determined) => Significance::NotDetermined,
             None => Significance::NotKnown,
@@ -205,6 +210,13 @@ mod tests {
                 "0.04000 +- 0.050 (step): not known to differ",
             ),
             (0.40, Some(0.04), Significance::Equal, "equal"),
+            (0.40 + 3e-14, Some(0.04), Significance::Equal, "equal"),
+            (
+                0.40 + 3e-9,
+                Some(0.04),
+                Significance::NotKnownToDiffer,
+                "3.000e-9 +- 0.050 (step): not known to differ",
+            ),
             (
                 0.46,
                 None,

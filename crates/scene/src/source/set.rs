@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 use super::schema::{self, Level};
 use super::tree::{Node, Shape, Tree, ValueKind, join_path, split_path};
 use super::{InputError, Source, scan};
+use crate::quantity;
 
 /// A parsed `--set` argument; ranges are bytes of the argument.
 struct Assignment<'a> {
@@ -74,6 +75,9 @@ impl<'a> Assignment<'a> {
         let value = self.value();
         if is_value(value) {
             return Ok(value.to_owned());
+        }
+        if let Some(written) = quantity::decimal_comma(value) {
+            return Err(self.fail(format!("`{value}` has a decimal comma; write `{written}`")));
         }
         let tree = scan::scan(value);
         let fault = tree.fault.map(|fault| fault.message);

@@ -3,7 +3,7 @@
 mod contacts;
 mod motion;
 
-pub use motion::{first_body_paths, step_velocity};
+pub use motion::{ACROSS, first_body_paths, step_velocity};
 
 use crate::geometry::space::Space;
 use crate::step::Simulation;

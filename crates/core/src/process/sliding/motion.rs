@@ -12,8 +12,9 @@ const OPPOSITE: f64 = 0.9;
 /// Share of the speed in the plane of the contacts that lies along the axis, below which the
 /// contacts slide oblique to it.
 const OBLIQUE: f64 = 0.98;
-/// Share of that speed below which they slide across the axis: a sign along it is due to rounding.
-const ACROSS: f64 = 1e-3;
+/// Share of that speed, and of a path, below which they slide across the axis: a sign along it is
+/// due to rounding.
+pub const ACROSS: f64 = 1e-3;
 
 /// Motion of the rubbed body relative to what it rubs against.
 pub(super) struct Relative {

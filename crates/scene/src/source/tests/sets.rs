@@ -100,6 +100,12 @@ fn malformed_sets_are_refused() {
     assert!(refused("seed=1, name: \"x\"").contains("is not a value"));
     assert!(refused("seed=(1").contains("never closed"));
     assert!(refused("new=(1").contains("never closed"));
+    let comma = refused("loading.frequency=1,5 Hz");
+    assert!(
+        comma.contains("`1,5 Hz` has a decimal comma; write `1.5 Hz`"),
+        "{comma}"
+    );
+    assert!(!refused("loading.frequency=1,5,2").contains("decimal comma"));
     assert!(refused("loading.frequency=1 // x").contains("is not a value"));
     assert!(refused(&format!("seed={}", "[".repeat(200))).contains("too deeply"));
     let parent = refused("loadin.amplitude=3");
