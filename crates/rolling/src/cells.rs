@@ -1,9 +1,10 @@
-//! Running conditions of a fretting contact by cells: bodies of any undeformed distance under
-//! Coulomb's friction, each cycle from its first loading by Masing's rule.
+//! Running conditions of a fretting contact by cells: bodies of any undeformed distance under a law
+//! of friction. Where friction is that of the pressure alone, each cycle is from its first loading
+//! by Masing's rule; else it is the first cycle after loading, step by step.
 
 use crate::fields::Vector;
-use crate::fretting::{Fretting, FrettingError};
-use crate::friction::Coulomb;
+use crate::fretting::{Amplitude, Fretting, FrettingError, Loop};
+use crate::friction::{Cells, Friction};
 use crate::normal::normal;
 use crate::running::{Conditions, Contacts, Loaded, RunningError, check_friction};
 use crate::surfaces::Surfaces;
@@ -21,23 +22,28 @@ pub struct ByCells<'a> {
     pub distance: &'a dyn Fn([f64; 2]) -> f64,
     /// Cells for a load (N), which hold the patch.
     pub grid: &'a dyn Fn(f64) -> CellGrid,
-    /// Coefficient of friction.
-    pub friction: f64,
+    /// Law of friction.
+    pub law: &'a dyn Friction,
     /// Direction of the motion, of length 1.
     pub along: Vector,
+    /// Mean speed of the stroke (m/s).
+    pub speed: f64,
+    /// Steps of a quarter of a cycle, where cycles are followed step by step.
+    pub quarter: usize,
 }
 
 /// Two bodies under a load.
-#[derive(Debug)]
-pub struct Contact {
+pub struct Contact<'a> {
     /// Load (N).
     pub load: f64,
     /// Both surfaces.
     pub surfaces: Surfaces,
     /// Pressure of each cell (Pa).
     pub pressure: Vec<f64>,
-    law: Coulomb,
+    law: &'a dyn Friction,
     along: Vector,
+    speed: f64,
+    quarter: usize,
     scale: f64,
     half_width: f64,
 }
@@ -53,8 +59,7 @@ impl ByCells<'_> {
     ///
     /// # Errors
     /// The load is not held, or the coefficient of friction is not positive.
-    pub fn contact(&self, load: f64) -> Result<Contact, RunningError> {
-        check_friction(self.friction)?;
+    pub fn contact(&self, load: f64) -> Result<Contact<'_>, RunningError> {
         let grid = (self.grid)(load);
         let surfaces = Surfaces::new(grid, self.bodies, self.layer);
         let places = (0..grid.len()).map(|cell| grid.middle(cell));
@@ -66,25 +71,64 @@ impl ByCells<'_> {
             half_width: half_width(&grid, &found.pressure, self.along),
             surfaces,
             pressure: found.pressure,
-            law: Coulomb(self.friction),
+            law: self.law,
             along: self.along,
+            speed: self.speed,
+            quarter: self.quarter,
             scale: 0.0,
         };
-        contact.scale = self.friction * load * contact.frets().compliance()[1];
+        let force = contact.limit();
+        check_friction(force / load)?;
+        contact.scale = force * contact.frets(0.0).compliance()[1];
         Ok(contact)
     }
 }
 
-impl Contact {
-    /// Returns the contact as one that frets.
-    pub fn frets(&self) -> Fretting<'_> {
+impl Contact<'_> {
+    /// Returns the contact as one that frets, a quarter of a cycle in one step by Masing's rule, or
+    /// step by step.
+    pub fn frets(&self, displacement: f64) -> Fretting<'_> {
+        let steps = if self.law.constant() { 1 } else { self.quarter };
+        let time = match displacement > 0.0 {
+            true => displacement / (self.speed * steps as f64),
+            false => 1.0,
+        };
         Fretting {
             surfaces: &self.surfaces,
             pressure: &self.pressure,
-            law: &self.law,
+            law: self.law,
             along: self.along,
-            step: 1.0,
+            step: time,
         }
+    }
+
+    /// Returns the cycle of an amplitude of displacement (m), with the tractions of its ends at
+    /// least.
+    ///
+    /// # Errors
+    /// The cycle has no solution.
+    pub fn cycle(&self, displacement: f64) -> Result<Loop, RunningError> {
+        let (frets, amplitude) = (
+            self.frets(displacement),
+            Amplitude::Displacement(displacement),
+        );
+        let found = match self.law.constant() {
+            true => frets.ruled(amplitude, 1),
+            false => frets.cycles(amplitude, self.quarter, 1),
+        };
+        found.map_err(self.failed(displacement))
+    }
+
+    /// Returns the force of new contacts that slide slowly (N).
+    fn limit(&self) -> f64 {
+        self.law.renew(self.pressure.len());
+        let cells = Cells {
+            grid: &self.surfaces.grid,
+            pressure: &self.pressure,
+            speed: self.speed,
+        };
+        let bounds = self.law.bounds(cells, &vec![[0.0; 2]; self.pressure.len()]);
+        bounds.iter().map(|b| b.traction).sum::<f64>() * self.surfaces.grid.area(3)
     }
 
     fn failed(&self, displacement: f64) -> impl Fn(FrettingError) -> RunningError {
@@ -97,37 +141,31 @@ impl Contact {
     }
 }
 
-impl Loaded for Contact {
+impl Loaded for Contact<'_> {
     fn conditions(&self, displacement: f64) -> Result<Conditions, RunningError> {
-        let loaded = self.frets().loaded(displacement);
-        let (found, force) = loaded.map_err(self.failed(displacement))?;
-        let mut out = Conditions {
-            load: self.load,
-            amplitude: [displacement, force],
-            cover: displacement / self.half_width,
-            ..Conditions::default()
-        };
+        let cycle = self.cycle(displacement)?;
         let area = self.surfaces.grid.area(3);
-        let (mut touching, mut sticking) = (0.0, 0.0);
-        for (cell, p) in self.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
-            touching += 1.0;
-            if found.sticks[cell] {
-                sticking += 1.0;
-                continue;
-            }
-            // A cycle slips four times as far as the first loading.
-            let way = 4.0 * found.slip[cell][0].hypot(found.slip[cell][1]);
-            out.energy += way * found.bound[cell] * area;
-            out.rubbed += way * p * area;
-            out.most_rubbed = out.most_rubbed.max(way * p);
-        }
-        out.stuck = sticking / touching;
-        Ok(out)
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        Ok(Conditions {
+            load: self.load,
+            amplitude: cycle.amplitude,
+            cover: displacement / self.half_width,
+            stuck: cycle.stuck,
+            energy: cycle.energy,
+            rubbed: cycle.rubbed.iter().sum::<f64>() * area,
+            most_rubbed: most(&cycle.rubbed),
+            slip_ratio: cycle.slip_ratio(),
+            worn: [cycle.worn.iter().sum::<f64>() * area, most(&cycle.worn)],
+        })
     }
 
     fn slip_ratio(&self, of: &Conditions) -> Result<f64, RunningError> {
+        if !self.law.constant() {
+            return Ok(of.slip_ratio);
+        }
+        // By Masing's rule the force has vanished where a first loading has half of the amplitude.
         let [displacement, force] = of.amplitude;
-        let half = self.frets().displacement_under(0.5 * force);
+        let half = self.frets(displacement).displacement_under(0.5 * force);
         let half = half.map_err(self.failed(displacement))?;
         Ok((1.0 - 2.0 * half / displacement).max(0.0))
     }

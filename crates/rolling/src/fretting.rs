@@ -37,6 +37,8 @@ pub enum Amplitude {
 pub struct Loop {
     /// Displacement of the first body (m) and force that drives it (N), step by step.
     pub points: Vec<[f64; 2]>,
+    /// Those of the first loading, where it was followed.
+    pub loading: Vec<[f64; 2]>,
     /// Tractions on the first body at the points (Pa).
     pub traction: Vec<Field>,
     /// Load (N).
@@ -55,6 +57,14 @@ pub struct Loop {
     pub sticks: Vec<bool>,
     /// Share of the patch that never slips.
     pub stuck: f64,
+    /// Depth worn off each cell (m), or nothing without wear.
+    pub worn: Vec<f64>,
+    /// Largest slip of a cell in a step (m).
+    pub fastest: f64,
+    /// Number of Newton's steps, and of iterations of the linear equations.
+    pub iterations: [usize; 2],
+    /// Whether no step has a branch of lower friction.
+    pub unique: bool,
 }
 
 /// Reason why there is no cycle.
@@ -64,7 +74,9 @@ pub enum FrettingError {
     #[error(transparent)]
     Tangential(#[from] TangentialError),
     /// Friction does not hold the force.
-    #[error("the contact slides under {limit:.4e} N, below the force of {force:.4e} N")]
+    #[error(
+        "the contact slides away: friction holds {limit:.4e} N, below the force of {force:.4e} N; take a lower force, or an amplitude of displacement"
+    )]
     Slides {
         /// Wanted (N).
         force: f64,
@@ -84,7 +96,7 @@ pub enum FrettingError {
     Amplitude(f64),
     /// Masing's rule does not hold.
     #[error(
-        "friction depends on slip, so that Masing's rule does not give the cycle: follow it step by step"
+        "friction is not that of the pressure alone, so that Masing's rule does not give the cycle: follow it step by step"
     )]
     Changes,
 }
@@ -95,9 +107,9 @@ const TOLERANCE: f64 = 1e-7;
 const FORCE: (f64, usize) = (1e-6, 60);
 
 /// A place of the cycle.
-#[derive(Clone)]
-struct Place {
-    displacement: f64,
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) displacement: f64,
     force: f64,
     found: Tractions,
 }
@@ -144,45 +156,70 @@ impl Fretting<'_> {
         quarter: usize,
         cycles: usize,
     ) -> Result<Loop, FrettingError> {
-        let (size, by_force) = match amplitude {
-            Amplitude::Displacement(size) => (size, false),
-            Amplitude::Force(size) => (size, true),
-        };
-        checked(size)?;
-        let tolerance = FORCE.0 * size;
-        let to = |from: &Place, target: f64| match by_force {
-            true => self.at_force(from, target, tolerance),
-            false => self.shifted(from, target - from.displacement),
-        };
-        let parts = quarter.max(1);
-        let mut place = self.at_rest();
-        for k in 1..=parts {
-            place = to(&place, size * k as f64 / parts as f64)?;
-        }
-        let n = self.pressure.len();
+        self.law.renew(self.pressure.len());
+        let (mut place, loading) = self.first(amplitude, quarter)?;
         let mut out = Loop::default();
         for _ in 0..cycles.max(1) {
-            out = Loop {
-                points: vec![[place.displacement, place.force]],
-                traction: vec![place.found.traction.clone()],
-                load: self.load(),
-                dissipated: vec![0.0; n],
-                rubbed: vec![0.0; n],
-                sticks: self.pressure.iter().map(|p| *p > 0.0).collect(),
-                ..Loop::default()
-            };
-            for k in 1..=4 * parts {
-                let back = 2 * parts;
-                let part = k.abs_diff(back) as f64 / parts as f64 - 1.0;
-                place = to(&place, size * part)?;
-                out.points.push([place.displacement, place.force]);
-                out.traction.push(place.found.traction.clone());
-                let found = place.found.traction.iter().zip(&place.found.slip);
-                for (cell, (p, s)) in found.enumerate() {
-                    out.dissipated[cell] -= p[0] * s[0] + p[1] * s[1];
-                    out.rubbed[cell] += self.pressure[cell] * s[0].hypot(s[1]);
-                    out.sticks[cell] &= place.found.sticks[cell];
-                }
+            (place, out) = self.cycle(&place, amplitude, quarter)?;
+        }
+        Ok(Loop { loading, ..out })
+    }
+
+    /// Loads a contact at rest, and returns the place at the largest displacement, and the way.
+    pub(crate) fn first(
+        &self,
+        amplitude: Amplitude,
+        quarter: usize,
+    ) -> Result<(Place, Vec<[f64; 2]>), FrettingError> {
+        let parts = quarter.max(1);
+        let mut place = self.at_rest();
+        let mut way = vec![[0.0; 2]];
+        for k in 1..=parts {
+            place = self.to(&place, amplitude, k as f64 / parts as f64)?;
+            self.law.passed(self.cells(), &place.found.slip);
+            way.push([place.displacement, place.force]);
+        }
+        Ok((place, way))
+    }
+
+    /// Follows a cycle from the largest displacement.
+    pub(crate) fn cycle(
+        &self,
+        from: &Place,
+        amplitude: Amplitude,
+        quarter: usize,
+    ) -> Result<(Place, Loop), FrettingError> {
+        let parts = quarter.max(1);
+        let n = self.pressure.len();
+        let mut place = from.clone();
+        let mut out = Loop {
+            points: vec![[place.displacement, place.force]],
+            traction: vec![place.found.traction.clone()],
+            load: self.load(),
+            dissipated: vec![0.0; n],
+            rubbed: vec![0.0; n],
+            sticks: self.pressure.iter().map(|p| *p > 0.0).collect(),
+            unique: true,
+            ..Loop::default()
+        };
+        for k in 1..=4 * parts {
+            let back = 2 * parts;
+            let part = k.abs_diff(back) as f64 / parts as f64 - 1.0;
+            place = self.to(&place, amplitude, part)?;
+            let worn = self.law.passed(self.cells(), &place.found.slip);
+            out.worn.resize(worn.len(), 0.0);
+            out.worn.iter_mut().zip(worn).for_each(|(to, w)| *to += w);
+            out.points.push([place.displacement, place.force]);
+            out.traction.push(place.found.traction.clone());
+            out.unique &= place.found.unique;
+            (0..2).for_each(|k| out.iterations[k] += place.found.iterations[k]);
+            let found = place.found.traction.iter().zip(&place.found.slip);
+            for (cell, (p, s)) in found.enumerate() {
+                let slipped = s[0].hypot(s[1]);
+                out.dissipated[cell] -= p[0] * s[0] + p[1] * s[1];
+                out.rubbed[cell] += self.pressure[cell] * slipped;
+                out.sticks[cell] &= place.found.sticks[cell];
+                out.fastest = out.fastest.max(slipped);
             }
         }
         let range = |k: usize| {
@@ -193,7 +230,29 @@ impl Fretting<'_> {
         out.amplitude = [range(0), range(1)];
         out.opening = opening(&out.points);
         self.close(&mut out);
-        Ok(out)
+        Ok((place, out))
+    }
+
+    /// Goes to a part of the amplitude.
+    fn to(&self, from: &Place, amplitude: Amplitude, part: f64) -> Result<Place, FrettingError> {
+        match amplitude {
+            Amplitude::Displacement(size) => {
+                checked(size)?;
+                self.shifted(from, part * size - from.displacement)
+            }
+            Amplitude::Force(size) => {
+                checked(size)?;
+                self.at_force(from, part * size, FORCE.0 * size)
+            }
+        }
+    }
+
+    pub(crate) fn cells(&self) -> Cells<'_> {
+        Cells {
+            grid: &self.surfaces.grid,
+            pressure: self.pressure,
+            speed: self.speed(),
+        }
     }
 
     /// Returns the cycle from its first quarter by Masing's rule, each quarter in a number of
@@ -221,6 +280,10 @@ impl Fretting<'_> {
         amplitude: Amplitude,
         quarter: usize,
     ) -> Result<Loop, FrettingError> {
+        if !self.law.constant() {
+            return Err(FrettingError::Changes);
+        }
+        self.law.renew(self.pressure.len());
         let rest = self.at_rest();
         let end = match amplitude {
             Amplitude::Displacement(size) => {
@@ -232,7 +295,8 @@ impl Fretting<'_> {
                 self.at_force(&rest, size, FORCE.0 * size)?
             }
         };
-        self.check_constant(&end.found.slip)?;
+        // All quarters of the cycle wear as the first loading does.
+        let worn = self.law.passed(self.cells(), &end.found.slip);
         let steps = 2 * quarter.max(1);
         let mut loading = Vec::with_capacity(steps + 1);
         loading.push(rest.clone());
@@ -246,6 +310,9 @@ impl Fretting<'_> {
         let mut out = Loop {
             load: self.load(),
             amplitude: [end.displacement, end.force],
+            worn: worn.into_iter().map(|w| 4.0 * w).collect(),
+            iterations: end.found.iterations,
+            unique: end.found.unique,
             ..Loop::default()
         };
         for k in 0..=2 * steps {
@@ -401,20 +468,6 @@ impl Fretting<'_> {
             wanted: target,
             reached: place.force,
         })
-    }
-
-    /// Refuses a law whose bounds depend on slip.
-    fn check_constant(&self, slip: &[Vector]) -> Result<(), FrettingError> {
-        let cells = Cells {
-            grid: &self.surfaces.grid,
-            pressure: self.pressure,
-            speed: self.speed(),
-        };
-        let none = vec![[0.0; 2]; slip.len()];
-        match self.law.bounds(cells, slip) == self.law.bounds(cells, &none) {
-            true => Ok(()),
-            false => Err(FrettingError::Changes),
-        }
     }
 
     fn close(&self, out: &mut Loop) {

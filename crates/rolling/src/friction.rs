@@ -29,6 +29,32 @@ pub trait Friction {
     /// Returns the bounds for slips of the cells in a step (m). Material enters each row at its
     /// last cell.
     fn bounds(&self, cells: Cells<'_>, slip: &[Vector]) -> Vec<Bound>;
+
+    /// Returns whether bounds depend on the pressure of a cell alone: not on its slip, nor on what
+    /// was before.
+    fn constant(&self) -> bool {
+        false
+    }
+
+    /// Begins with new contacts in a number of cells, where material stays in its cell.
+    fn renew(&self, _cells: usize) {}
+
+    /// Ends a step in which the cells slipped (m): what stays with the material of a cell goes on.
+    /// Returns the depth worn off each cell (m), or nothing without wear.
+    fn passed(&self, _cells: Cells<'_>, _slip: &[Vector]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Returns what stays with the material, a list of numbers for each cell.
+    fn carried(&self) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// Goes on from what stays with the material, in the form of [`carried`](Self::carried).
+    fn carry(&self, _state: &[Vec<f64>]) {}
+
+    /// Takes the debris between the bodies in each cell, volume over area (m).
+    fn cover(&self, _debris: &[f64]) {}
 }
 
 /// Coulomb's law, g = mu p.
@@ -45,6 +71,10 @@ impl Friction for Coulomb {
             slope: 0.0,
         };
         cells.pressure.iter().map(bound).collect()
+    }
+
+    fn constant(&self) -> bool {
+        true
     }
 }
 

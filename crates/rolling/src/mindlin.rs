@@ -60,6 +60,7 @@ impl Loaded for Under {
             rubbed: energy / friction,
             most_rubbed: 4.0 * self.patch.pressure * self.slip.displacement * most_rubbed(d),
             slip_ratio: 0.0,
+            worn: [0.0; 2],
         })
     }
 

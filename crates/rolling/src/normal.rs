@@ -94,6 +94,37 @@ pub fn wearing(
         }
         moved
     };
+    solve(surfaces, distance, load, &displacement, start)
+}
+
+/// Returns the pressures of bodies that wear under them where they are: `worn` has the depth that
+/// goes by one pascal in each cell (m/Pa).
+///
+/// # Errors
+/// Those of [`normal`].
+pub fn wearing_in_place(
+    surfaces: &Surfaces,
+    distance: &[f64],
+    load: f64,
+    worn: &[f64],
+    start: Option<&[f64]>,
+) -> Result<Pressure, NormalError> {
+    let displacement = |pressure: &[f64]| {
+        let mut moved = surfaces.normal(pressure);
+        let cells = moved.iter_mut().zip(worn.iter().zip(pressure));
+        cells.for_each(|(u, (depth, p))| *u += depth * p);
+        moved
+    };
+    solve(surfaces, distance, load, &displacement, start)
+}
+
+fn solve(
+    surfaces: &Surfaces,
+    distance: &[f64],
+    load: f64,
+    displacement: &dyn Fn(&[f64]) -> Vec<f64>,
+    start: Option<&[f64]>,
+) -> Result<Pressure, NormalError> {
     if !(load > 0.0 && load.is_finite()) {
         return Err(NormalError::Load(load));
     }

@@ -1,6 +1,6 @@
 //! A patch from its undeformed distance, load and motion, with the error of its grid.
 
-use crate::fields::{Field, Vector, length};
+use crate::fields::{Vector, length};
 use crate::friction::Friction;
 use crate::motion::{Creepage, Motion};
 use crate::normal::{NormalError, Pressure, normal};
@@ -8,6 +8,7 @@ use crate::surfaces::Surfaces;
 use crate::tangential::{TangentialError, Tractions, tangential};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
+use serde::Serialize;
 
 /// Two bodies that touch.
 #[derive(Clone, Copy)]
@@ -57,6 +58,27 @@ pub struct Refined {
     /// Error of the force of the fine grid (N): its difference to the extrapolated one, and half of
     /// the difference of the coarse grids.
     pub error: Vector,
+}
+
+/// A number extrapolated to cells of no size, to first order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Error of the fine grid: its difference to the number, and half of the difference of the
+    /// coarse grids.
+    pub error: f64,
+}
+
+impl Estimate {
+    /// Returns it from a fine grid and two of cells twice as large, half a cell apart.
+    pub fn of(fine: f64, coarse: [f64; 2]) -> Self {
+        let change = fine - 0.5 * (coarse[0] + coarse[1]);
+        Self {
+            value: fine + change,
+            error: change.abs() + 0.5 * (coarse[0] - coarse[1]).abs(),
+        }
+    }
 }
 
 /// Reason why a patch has no solution.
@@ -125,15 +147,14 @@ impl Patch<'_> {
         law: &dyn Friction,
         speed: f64,
     ) -> Result<Refined, PatchError> {
-        let coarse = self.rolls(twice(&grid), creepage, law, speed)?;
-        let other = self.rolls_from(displaced(&coarse.grid), None, creepage, law, speed)?;
+        let [coarse, other] = coarser(&grid);
+        let coarse = self.rolls(coarse, creepage, law, speed)?;
+        let other = self.rolls_from(other, None, creepage, law, speed)?;
         let fine = self.rolls_from(grid, Some(&coarse), creepage, law, speed)?;
-        let pairs = [0, 1].map(|k| [coarse.force[k], other.force[k]]);
-        let change = [0, 1].map(|k| fine.force[k] - 0.5 * (pairs[k][0] + pairs[k][1]));
-        let apart = pairs.map(|[a, b]| 0.5 * (a - b).abs());
+        let [x, y] = [0, 1].map(|k| Estimate::of(fine.force[k], [coarse.force[k], other.force[k]]));
         Ok(Refined {
-            force: [0, 1].map(|k| fine.force[k] + change[k]),
-            error: [0, 1].map(|k| change[k].abs() + apart[k]),
+            force: [x.value, y.value],
+            error: [x.error, y.error],
             fine,
         })
     }
@@ -159,19 +180,16 @@ impl Patch<'_> {
         let (pressure, tractions) =
             self.steady(&surfaces, &distance, start, creepage, friction, TOLERANCE)?;
         let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
-        rolling.resistance = self.resistance(&grid, &rolling.pressure.pressure);
-        Ok(rolling)
-    }
-
-    /// Returns the force against rolling by pressures, the integral of p dh/dx (N).
-    pub(crate) fn resistance(&self, grid: &CellGrid, pressure: &[f64]) -> f64 {
         let half = 0.5 * grid.size[0];
         let slope = |[x, y]: [f64; 2]| {
             ((self.distance)([x + half, y]) - (self.distance)([x - half, y])) / (2.0 * half)
         };
-        let cells = pressure.iter().enumerate();
-        let sum: f64 = cells.map(|(cell, p)| p * slope(grid.middle(cell))).sum();
-        sum * grid.area(3)
+        let pressures = rolling.pressure.pressure.iter().enumerate();
+        let sum: f64 = pressures
+            .map(|(cell, p)| p * slope(grid.middle(cell)))
+            .sum();
+        rolling.resistance = sum * grid.area(3);
+        Ok(rolling)
     }
 
     /// Solves steady rolling of surfaces at a distance (m), with pressures and tractions to begin
@@ -238,15 +256,6 @@ impl Rolling {
         }
     }
 
-    /// Returns the slips with which the cells dissipate what creepages and resistance supply (m).
-    /// Slip is largest at the trailing edge, where pressures end within a cell: what the cells
-    /// dissipate by themselves misses a part of the first order of their size, more than a third of
-    /// it where nearly all sticks.
-    pub fn wearing_slip(&self) -> Field {
-        let supplied = self.t_gamma + self.resistance;
-        balanced(&self.tractions.slip, supplied, self.dissipation)
-    }
-
     /// Returns the adhesion: the force over the load.
     pub fn adhesion(&self) -> f64 {
         let load = self.pressure.pressure.iter().sum::<f64>() * self.grid.area(3);
@@ -254,20 +263,18 @@ impl Rolling {
     }
 }
 
-/// Returns slips by a factor with which they dissipate what is supplied (N).
-pub(crate) fn balanced(slip: &[Vector], supplied: f64, dissipated: f64) -> Field {
-    let factor = match supplied > 0.0 && dissipated > 0.0 {
-        true => supplied / dissipated,
-        false => 1.0,
-    };
-    slip.iter().map(|s| s.map(|s| factor * s)).collect()
-}
-
 /// Returns a grid of cells twice as large, for even numbers of cells that are not few.
 fn halved(grid: &CellGrid) -> Option<CellGrid> {
-    let even = grid.cells.iter().all(|n| n.is_multiple_of(2));
-    let many = grid.cells.iter().all(|n| *n >= 2 * COARSEST);
+    let sides = || grid.cells.iter().filter(|n| **n > 1);
+    let even = sides().all(|n| n.is_multiple_of(2));
+    let many = sides().all(|n| *n >= 2 * COARSEST) && sides().next().is_some();
     (even && many).then(|| twice(grid))
+}
+
+/// Returns two grids of cells twice as large, half a cell of theirs apart, for the error of a grid.
+pub fn coarser(grid: &CellGrid) -> [CellGrid; 2] {
+    let coarse = twice(grid);
+    [coarse, displaced(&coarse)]
 }
 
 /// Returns a grid of the same extent with half the number of cells along each side, rounded up.
@@ -280,12 +287,14 @@ fn twice(grid: &CellGrid) -> CellGrid {
     }
 }
 
-/// Returns a grid that begins half a cell before another one, and is a cell larger.
+/// Returns a grid that begins half a cell before another one, and is a cell larger, along each side
+/// of more than one cell.
 fn displaced(grid: &CellGrid) -> CellGrid {
+    let more = grid.cells.map(|n| usize::from(n > 1));
     CellGrid {
-        from: [0, 1].map(|k| grid.from[k] - 0.5 * grid.size[k]),
+        from: [0, 1].map(|k| grid.from[k] - 0.5 * more[k] as f64 * grid.size[k]),
         size: grid.size,
-        cells: grid.cells.map(|n| n + 1),
+        cells: [0, 1].map(|k| grid.cells[k] + more[k]),
     }
 }
 

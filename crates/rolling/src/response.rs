@@ -10,7 +10,7 @@ use crate::below::Below;
 use crate::cells::{ByCells, Contact};
 use crate::fatigue::history::{histories, opposite};
 use crate::fatigue::{Block, Criterion};
-use crate::fretting::{Amplitude, Loop};
+use crate::fretting::Loop;
 use crate::running::{Conditions, Loaded, RunningError, boundary};
 use crate::stress::Stress;
 use serde::Serialize;
@@ -43,12 +43,21 @@ pub struct Thresholds {
     pub bulk: Stress,
     /// Block over which stresses are averaged.
     pub block: Block,
-    /// Wear coefficient of the body, k (1/Pa).
-    pub wear: f64,
+    /// Wear of the body.
+    pub wear: Wears,
     /// Number of cycles.
     pub cycles: f64,
     /// Depth of wear that counts (m).
     pub depth: f64,
+}
+
+/// How a body wears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wears {
+    /// By a wear coefficient k (1/Pa).
+    Coefficient(f64),
+    /// By this multiple of what the law of the contact wears.
+    Law(f64),
 }
 
 /// Damage at a load and an amplitude.
@@ -111,20 +120,7 @@ pub fn map(
         let body = Body::new(contacts.contact(*load)?, thresholds);
         let row = displacements.iter().map(|d| body.damage(*d));
         out.damage.push(row.collect::<Result<_, _>>()?);
-        let scale = body.contact.scale();
-        let cracks = |displacement: f64| Ok(body.damage(displacement)?.crack >= 1.0);
-        out.onsets.push(Onsets {
-            load: *load,
-            // From the onset of gross slip on stresses grow no more.
-            crack: match cracks(2.0 * scale)? {
-                true => boundary(scale, cracks)?,
-                false => f64::INFINITY,
-            },
-            wear: boundary(scale, |d| {
-                let conditions = body.contact.conditions(d)?;
-                Ok(body.worn(&conditions) >= thresholds.depth)
-            })?,
-        });
+        out.onsets.push(body.onsets()?);
     }
     Ok(out)
 }
@@ -132,14 +128,14 @@ pub fn map(
 /// A body of a contact under a load.
 pub struct Body<'a> {
     /// The contact.
-    pub contact: Contact,
+    pub contact: Contact<'a>,
     below: Below,
     thresholds: &'a Thresholds,
 }
 
 impl<'a> Body<'a> {
     /// Prepares the body below the patch.
-    pub fn new(contact: Contact, thresholds: &'a Thresholds) -> Self {
+    pub fn new(contact: Contact<'a>, thresholds: &'a Thresholds) -> Self {
         let depths = thresholds.block.depths();
         Self {
             below: Below::new(contact.surfaces.grid, thresholds.poisson, &depths),
@@ -148,18 +144,33 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// Returns the amplitudes of displacement from which on damage is expected.
+    ///
+    /// # Errors
+    /// A cycle has no solution.
+    pub fn onsets(&self) -> Result<Onsets, RunningError> {
+        let scale = self.contact.scale();
+        let cracks = |displacement: f64| Ok(self.damage(displacement)?.crack >= 1.0);
+        Ok(Onsets {
+            load: self.contact.load,
+            // From the onset of gross slip on stresses grow no more.
+            crack: match cracks(2.0 * scale)? {
+                true => boundary(scale, cracks)?,
+                false => f64::INFINITY,
+            },
+            wear: boundary(scale, |d| {
+                let conditions = self.contact.conditions(d)?;
+                Ok(self.worn(&conditions) >= self.thresholds.depth)
+            })?,
+        })
+    }
+
     /// Returns the damage at an amplitude of displacement (m).
     ///
     /// # Errors
     /// The cycle has no solution.
     pub fn damage(&self, displacement: f64) -> Result<Damage, RunningError> {
-        let amplitude = Amplitude::Displacement(displacement);
-        let cycle = self.contact.frets().ruled(amplitude, 1);
-        let cycle = cycle.map_err(|source| RunningError::Fretting {
-            load: self.contact.load,
-            displacement,
-            source,
-        })?;
+        let cycle = self.contact.cycle(displacement)?;
         let conditions = self.contact.conditions(displacement)?;
         let (crack, at) = self.crack(&cycle);
         Ok(Damage {
@@ -194,7 +205,10 @@ impl<'a> Body<'a> {
 
     /// Returns the largest depth of wear after all cycles (m).
     fn worn(&self, conditions: &Conditions) -> f64 {
-        let [_, depth] = conditions.wear(self.thresholds.wear, self.thresholds.cycles);
-        depth
+        let cycles = self.thresholds.cycles;
+        match self.thresholds.wear {
+            Wears::Coefficient(k) => conditions.wear(k, cycles)[1],
+            Wears::Law(part) => part * cycles * conditions.worn[1],
+        }
     }
 }

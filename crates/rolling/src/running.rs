@@ -4,6 +4,7 @@
 
 use crate::fretting::FrettingError;
 use crate::normal::NormalError;
+use fretwork_elastic::Elasticity;
 use serde::Serialize;
 
 /// How a contact frets.
@@ -75,6 +76,8 @@ pub struct Conditions {
     pub most_rubbed: f64,
     /// Opening of the loop over the amplitude.
     pub slip_ratio: f64,
+    /// Volume (m³) and largest depth (m) worn in a cycle by the law, 0 where it has no wear.
+    pub worn: [f64; 2],
 }
 
 impl Conditions {
@@ -259,6 +262,17 @@ pub fn boundaries(
         energy_ratio: of(&|c| c.energy_ratio() >= limits.energy_ratio)?,
         reciprocating: (limits.cover * loaded.half_width()).max(gross_slip),
     })
+}
+
+/// Returns A at the onset of gross slip of a strip of a length and half-width (m) along the motion,
+/// displaced in its middle: 1/(4 K), with K = ln(2 L/a) + 1/2 + nu/(1 - nu), from Cattaneo's force
+/// and the compliance of a strip on half-spaces. Of unlike bodies nu/(1 - nu) is the mean, weighted
+/// by their compliances (1 - nu)/G.
+pub fn strip_transition(bodies: &[Elasticity; 2], length: f64, half_width: f64) -> f64 {
+    let sum = |of: fn(&Elasticity) -> f64| bodies.iter().map(of).sum::<f64>();
+    let along = sum(|b| (1.0 - b.poisson) / b.shear());
+    let ratio = sum(|b| b.poisson / b.shear()) / along;
+    0.25 / ((2.0 * length / half_width).ln() + 0.5 + ratio)
 }
 
 /// Returns the smallest amplitude at which a condition holds that holds for all larger ones, by

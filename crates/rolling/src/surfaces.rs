@@ -233,7 +233,12 @@ fn stiffness_of_waves(surfaces: &Surfaces) -> [Vec<f64>; 3] {
         let extent = 2.0 * surfaces.grid.cells[k] as f64 * size[k];
         std::f64::consts::TAU / extent
     });
-    let lowest = 0.5 * longest[0].min(longest[1]);
+    // A single row has no waves across it.
+    let lowest = 0.5
+        * match surfaces.grid.cells[1] {
+            1 => longest[0],
+            _ => longest[0].min(longest[1]),
+        };
     surfaces.convolution.waves(|wave| {
         let k = [wave[0] / size[0], wave[1] / size[1]];
         let number = k[0].hypot(k[1]);

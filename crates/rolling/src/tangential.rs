@@ -9,7 +9,7 @@ use crate::fields::{Field, Vector, add, dot, length};
 use crate::friction::{Bound, Cells, Friction};
 use crate::gmres;
 use crate::motion::{Motion, rigid_slip};
-use crate::surfaces::{Slip, Surfaces};
+use crate::surfaces::{Passage, Slip, Surfaces};
 
 /// Tractions and slips.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,6 +87,8 @@ struct Problem<'a> {
     law: &'a dyn Friction,
     /// r (Pa/m).
     scale: f64,
+    /// Whether the motion is a shift.
+    shifts: bool,
 }
 
 impl Problem<'_> {
@@ -108,7 +110,9 @@ impl Problem<'_> {
             let (p, s, g) = (traction[k], slip[k], bounds[k].traction);
             let trial = [p[0] - self.scale * s[0], p[1] - self.scale * s[1]];
             let size = length(trial);
-            if size <= g {
+            // A cell whose slip turns round in a shift sticks before it slips the other way.
+            let turns = self.shifts && p[0] * trial[0] + p[1] * trial[1] < 0.0;
+            if size <= g || turns {
                 *cell = Cell::Sticks;
                 residual[k] = s.map(|s| self.scale * s);
                 continue;
@@ -220,6 +224,7 @@ pub fn tangential(
         },
         law,
         scale,
+        shifts: motion.passage() == Passage::Shift,
     };
     problem.solve(start, tolerance)
 }

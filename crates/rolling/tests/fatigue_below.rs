@@ -8,8 +8,8 @@ use fretwork_rolling::cells::ByCells;
 use fretwork_rolling::fatigue::history::{histories, opposite};
 use fretwork_rolling::fatigue::materials::STEEL_30NCD16;
 use fretwork_rolling::fatigue::{Block, Criterion, Crossland, swt};
-use fretwork_rolling::response::{Body, Response, Thresholds, map};
-use fretwork_rolling::{Below, Field};
+use fretwork_rolling::response::{Body, Response, Thresholds, Wears, map};
+use fretwork_rolling::{Below, Coulomb, Field};
 use std::f64::consts::PI;
 
 const NU: f64 = 0.3;
@@ -133,8 +133,10 @@ fn responses_follow_the_amplitude() {
         layer: 0.0,
         distance: &|[x, y]| 0.5 * CURVATURE * (x * x + y * y),
         grid: &|load| grid(1.2 * hertz(load).along, 24),
-        friction: MU,
+        law: &Coulomb(MU),
         along: [1.0, 0.0],
+        speed: 1.0,
+        quarter: 8,
     };
     let thresholds = Thresholds {
         criterion: Criterion::Crossland(STEEL_30NCD16.crossland),
@@ -145,7 +147,7 @@ fn responses_follow_the_amplitude() {
             side: 20e-6,
             layers: 2,
         },
-        wear: 1e-14,
+        wear: Wears::Coefficient(1e-14),
         cycles: 250e3,
         depth: 1e-6,
     };

@@ -5,6 +5,7 @@
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_elastic::patch::{Solid, effective_modulus, point};
+use fretwork_rolling::Coulomb;
 use fretwork_rolling::cells::ByCells;
 use fretwork_rolling::mindlin::Mindlin;
 use fretwork_rolling::running::{Contacts, Limits, Map, Regime, RunningError, map};
@@ -51,8 +52,10 @@ fn by_cells(poisson: f64, loads: &[f64], displacements: &[f64]) -> Result<Map, R
         layer: 0.0,
         distance: &|[x, y]| 0.5 * CURVATURE * (x * x + y * y),
         grid: &grid,
-        friction: MU,
+        law: &Coulomb(MU),
         along: [1.0, 0.0],
+        speed: 1.0,
+        quarter: 8,
     };
     map(&contacts, loads, displacements, &Limits::default())
 }
@@ -158,8 +161,10 @@ fn ellipses_have_the_closed_forms_too() {
                     cells: [32; 2],
                 }
             },
-            friction: MU,
+            law: &Coulomb(MU),
             along: [1.0, 0.0],
+            speed: 1.0,
+            quarter: 8,
         };
         let (loads, displacements) = ([100.0], [5e-7, 5e-6]);
         let limits = Limits::default();

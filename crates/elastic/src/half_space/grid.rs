@@ -48,12 +48,15 @@ impl CellGrid {
         self.size[..dimension - 1].iter().product()
     }
 
-    /// Returns whether one of these numbers, one per cell, is positive on the border (3D).
+    /// Returns whether one of these numbers, one per cell, is positive on the border (3D). A single
+    /// row or column has its border at its ends.
     pub fn on_border(&self, values: &[f64]) -> bool {
-        let [columns, rows] = self.cells;
         let border = |cell: usize| {
-            let [i, j] = self.place(cell);
-            i == 0 || j == 0 || i + 1 == columns || j + 1 == rows
+            let place = self.place(cell);
+            (0..2).any(|k| {
+                let last = self.cells[k] - 1;
+                last > 0 && (place[k] == 0 || place[k] == last)
+            })
         };
         (0..self.len()).any(|cell| values[cell] > 0.0 && border(cell))
     }

@@ -2,5 +2,8 @@
 
 mod fretting;
 mod grids;
+mod line;
 mod pressed;
+mod scar;
 mod steady_rolling;
+mod strokes;

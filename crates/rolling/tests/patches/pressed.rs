@@ -2,7 +2,7 @@
 
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
-use fretwork_elastic::patch::{PointPatch, Solid, effective_modulus, point};
+use fretwork_elastic::patch::{PointPatch, Solid, effective_modulus, line, point};
 use fretwork_rolling::{Pressure, Surfaces, normal};
 
 /// Returns a steel of this modulus (Pa) and ratio.
@@ -21,6 +21,16 @@ pub fn hertz(bodies: [Elasticity; 2], load: f64, curvatures: [f64; 2]) -> PointP
         poisson: b.poisson,
     });
     point(load, curvatures, effective_modulus(&solids))
+}
+
+/// Returns the half-width (m) of a line contact of two bodies alike under a load (N/m), with a
+/// relative curvature (1/m).
+pub fn hertz_line(body: Elasticity, load: f64, curvature: f64) -> f64 {
+    let solid = Solid {
+        young: body.young,
+        poisson: body.poisson,
+    };
+    line(load, curvature, effective_modulus(&[solid; 2])).half_width
 }
 
 /// Returns a grid of cells that ends at +-`half` (m).

@@ -1,0 +1,146 @@
+//! Strokes of a fretting patch with the error of its grid.
+
+use crate::fields::Vector;
+use crate::fretting::{Amplitude, Fretting, FrettingError, Loop};
+use crate::friction::Friction;
+use crate::normal::{NormalError, Pressure, normal};
+use crate::patch::{Estimate, Patch, coarser};
+use crate::surfaces::Surfaces;
+use fretwork_elastic::half_space::CellGrid;
+
+/// Strokes to and fro.
+#[derive(Clone, Copy)]
+pub struct Strokes<'a> {
+    /// Law of friction.
+    pub law: &'a dyn Friction,
+    /// Direction of the motion, of length 1.
+    pub along: Vector,
+    /// Half of the range.
+    pub amplitude: Amplitude,
+    /// Steps of a quarter of a cycle.
+    pub quarter: usize,
+    /// Time of a step (s).
+    pub step: f64,
+}
+
+/// A cycle on a grid.
+#[derive(Clone, Debug)]
+pub struct Stroke {
+    /// The cells.
+    pub grid: CellGrid,
+    /// Pressures.
+    pub pressure: Pressure,
+    /// The first cycle after loading.
+    pub cycle: Loop,
+}
+
+/// A cycle with its numbers extrapolated to cells of no size. The error of a law whose bounds
+/// depend on slip also has that of the steps: the difference to half as many on the coarse grid.
+#[derive(Clone, Debug)]
+pub struct RefinedStroke {
+    /// On the fine grid.
+    pub fine: Stroke,
+    /// Amplitude of the displacement (m) and of the force (N).
+    pub amplitude: [Estimate; 2],
+    /// Energy dissipated in the cycle (J).
+    pub energy: Estimate,
+    /// Half of the width of the loop at no force (m).
+    pub opening: Estimate,
+    /// Share of the patch that never slips.
+    pub stuck: Estimate,
+    /// Volume worn in the cycle (m³).
+    pub worn: Estimate,
+}
+
+/// Reason why there is no cycle.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StrokeError {
+    /// The normal problem.
+    #[error(transparent)]
+    Normal(#[from] NormalError),
+    /// The cycle.
+    #[error(transparent)]
+    Fretting(#[from] FrettingError),
+}
+
+impl Patch<'_> {
+    /// Returns both surfaces over a grid, and the pressures.
+    ///
+    /// # Errors
+    /// The load is not held.
+    pub fn pressed(&self, grid: CellGrid) -> Result<(Surfaces, Pressure), NormalError> {
+        let surfaces = Surfaces::new(grid, self.bodies, self.layer);
+        let places = (0..grid.len()).map(|cell| grid.middle(cell));
+        let distance: Vec<f64> = places.map(|at| (self.distance)(at)).collect();
+        let pressure = normal(&surfaces, &distance, self.load, None)?;
+        Ok((surfaces, pressure))
+    }
+
+    /// Follows the first loading and a cycle over a grid.
+    ///
+    /// # Errors
+    /// The load is not held, a step has no solution, or friction does not hold the force.
+    pub fn frets(&self, grid: CellGrid, strokes: &Strokes<'_>) -> Result<Stroke, StrokeError> {
+        let (surfaces, pressure) = self.pressed(grid)?;
+        let frets = Fretting {
+            surfaces: &surfaces,
+            pressure: &pressure.pressure,
+            law: strokes.law,
+            along: strokes.along,
+            step: strokes.step,
+        };
+        let cycle = frets.cycles(strokes.amplitude, strokes.quarter, 1)?;
+        Ok(Stroke {
+            grid,
+            pressure,
+            cycle,
+        })
+    }
+
+    /// Follows a cycle over a grid and over two of cells twice as large, half a cell apart.
+    ///
+    /// # Errors
+    /// Those of [`frets`](Self::frets) on one of the grids.
+    pub fn frets_refined(
+        &self,
+        grid: CellGrid,
+        strokes: &Strokes<'_>,
+    ) -> Result<RefinedStroke, StrokeError> {
+        let [coarse, other] = coarser(&grid);
+        let coarse = self.frets(coarse, strokes)?;
+        let other = self.frets(other, strokes)?;
+        let slower = match strokes.law.constant() || strokes.quarter < 2 {
+            true => None,
+            false => {
+                let quarter = strokes.quarter / 2;
+                let longer = strokes.quarter as f64 / quarter as f64;
+                let fewer = Strokes {
+                    quarter,
+                    step: strokes.step * longer,
+                    ..*strokes
+                };
+                Some(self.frets(coarse.grid, &fewer)?)
+            }
+        };
+        let fine = self.frets(grid, strokes)?;
+        let estimate = |of: &dyn Fn(&Stroke) -> f64| {
+            let mut found = Estimate::of(of(&fine), [of(&coarse), of(&other)]);
+            let by_steps = slower.as_ref().map(|s| (of(s) - of(&coarse)).abs());
+            found.error += by_steps.unwrap_or(0.0);
+            found
+        };
+        let volume = |s: &Stroke| s.cycle.worn.iter().sum::<f64>() * s.grid.area(3);
+        let stuck = estimate(&|s| s.cycle.stuck);
+        Ok(RefinedStroke {
+            amplitude: [0, 1].map(|k| estimate(&|s| s.cycle.amplitude[k])),
+            energy: estimate(&|s| s.cycle.energy),
+            opening: estimate(&|s| s.cycle.opening),
+            stuck: Estimate {
+                value: stuck.value.clamp(0.0, 1.0),
+                ..stuck
+            },
+            worn: estimate(&volume),
+            fine,
+        })
+    }
+}
