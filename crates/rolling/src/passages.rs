@@ -14,11 +14,11 @@
 //! error of the halves, which also corrects them to second order.
 
 use crate::extent::Extent;
-use crate::fields::{Field, Vector, length};
+use crate::fields::{Field, Vector, dot, length};
 use crate::friction::{Cells, Friction};
-use crate::motion::Creepage;
+use crate::motion::{Creepage, rigid_slip};
 use crate::normal::{NormalError, wearing};
-use crate::patch::{Patch, PatchError};
+use crate::patch::{Patch, PatchError, balanced};
 use crate::profile::Profile;
 use crate::pull::{self, Pulled};
 use crate::surfaces::Surfaces;
@@ -409,6 +409,10 @@ impl Passages<'_> {
             pressure: &pressure,
             speed: self.speed,
         };
+        let rigid = rigid_slip(&grid, &creepage);
+        let part = -grid.area(3) / grid.size[0];
+        let supplied = part * dot(&traction, &rigid) + self.patch.resistance(&grid, &pressure);
+        let slip = balanced(&slip, supplied, part * dot(&traction, &slip));
         let worn = self.wears.worn(cells, &slip);
         let columns = grid.cells[0];
         let rows = worn.chunks(columns).zip(pressure.chunks(columns));

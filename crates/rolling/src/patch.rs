@@ -1,6 +1,6 @@
 //! A patch from its undeformed distance, load and motion, with the error of its grid.
 
-use crate::fields::{Vector, length};
+use crate::fields::{Field, Vector, length};
 use crate::friction::Friction;
 use crate::motion::{Creepage, Motion};
 use crate::normal::{NormalError, Pressure, normal};
@@ -180,16 +180,19 @@ impl Patch<'_> {
         let (pressure, tractions) =
             self.steady(&surfaces, &distance, start, creepage, friction, TOLERANCE)?;
         let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
+        rolling.resistance = self.resistance(&grid, &rolling.pressure.pressure);
+        Ok(rolling)
+    }
+
+    /// Returns the force against rolling by pressures, the integral of p dh/dx (N).
+    pub(crate) fn resistance(&self, grid: &CellGrid, pressure: &[f64]) -> f64 {
         let half = 0.5 * grid.size[0];
         let slope = |[x, y]: [f64; 2]| {
             ((self.distance)([x + half, y]) - (self.distance)([x - half, y])) / (2.0 * half)
         };
-        let pressures = rolling.pressure.pressure.iter().enumerate();
-        let sum: f64 = pressures
-            .map(|(cell, p)| p * slope(grid.middle(cell)))
-            .sum();
-        rolling.resistance = sum * grid.area(3);
-        Ok(rolling)
+        let cells = pressure.iter().enumerate();
+        let sum: f64 = cells.map(|(cell, p)| p * slope(grid.middle(cell))).sum();
+        sum * grid.area(3)
     }
 
     /// Solves steady rolling of surfaces at a distance (m), with pressures and tractions to begin
@@ -256,11 +259,29 @@ impl Rolling {
         }
     }
 
+    /// Returns the slips with which the cells dissipate what creepages and resistance supply (m).
+    /// Slip is largest at the trailing edge, where pressures end within a cell: what the cells
+    /// dissipate by themselves misses a part of the first order of their size, more than a third of
+    /// it where nearly all sticks.
+    pub fn wearing_slip(&self) -> Field {
+        let supplied = self.t_gamma + self.resistance;
+        balanced(&self.tractions.slip, supplied, self.dissipation)
+    }
+
     /// Returns the adhesion: the force over the load.
     pub fn adhesion(&self) -> f64 {
         let load = self.pressure.pressure.iter().sum::<f64>() * self.grid.area(3);
         length(self.force) / load
     }
+}
+
+/// Returns slips by a factor with which they dissipate what is supplied (N).
+pub(crate) fn balanced(slip: &[Vector], supplied: f64, dissipated: f64) -> Field {
+    let factor = match supplied > 0.0 && dissipated > 0.0 {
+        true => supplied / dissipated,
+        false => 1.0,
+    };
+    slip.iter().map(|s| s.map(|s| factor * s)).collect()
 }
 
 /// Returns a grid of cells twice as large, for even numbers of cells that are not few.

@@ -83,7 +83,7 @@ fn last(course: &Course) -> Jump {
 #[test]
 fn a_rail_wears_to_a_flat() {
     let mut missing = f64::INFINITY;
-    for count in [3e4, 1e6] {
+    for count in [3e4, 3e5] {
         let course = worn(along(0.3), [0.0, 1.0], 32, &steps(count / 60.0, 0.02));
         let end = last(&course);
         let volume = count / 60.0 * RATE * LOAD * 0.3;
@@ -120,7 +120,7 @@ fn a_rail_wears_to_a_flat() {
 #[test]
 fn jumps_do_not_matter_within_their_error() {
     let drive = along(0.005);
-    let fine = worn(drive, [0.0, 1.0], 32, &steps(8000.0, 0.002));
+    let fine = worn(drive, [0.0, 1.0], 32, &steps(8000.0, 0.005));
     let finest = last(&fine);
     println!("{} jumps {finest:?}", fine.jumps.len());
     for share in [0.1, 0.02] {
@@ -148,30 +148,29 @@ fn jumps_do_not_matter_within_their_error() {
         bend(&fine)
     );
     assert!(bend(&course) < 2.0 * bend(&fine));
-    // The trial of the method with explicit jumps of 250 passages: 41.3 um, and 826 MPa.
-    assert!((finest.depth[1] / 41.3e-6 - 1.0).abs() < 0.03, "{finest:?}");
+    // A trial of the method with explicit jumps of 250 passages gave 41.3 um and 826 MPa, with cells
+    // that missed 5 % of the energy of slip.
+    assert!((finest.depth[1] / 41.3e-6 - 1.0).abs() < 0.05, "{finest:?}");
     assert!((finest.pressure / 826e6 - 1.0).abs() < 0.03, "{finest:?}");
 }
 
-/// Archard's wear is k/mu of the energy of slip, Q xi over the length rolled, but for the error of
-/// the cells, and pressures fall as the scar widens.
+/// Archard's wear is k/mu of the energy of slip, Q xi over the length rolled, also where most of the
+/// patch sticks, and pressures fall as the scar widens.
 #[test]
 fn wear_follows_from_the_energy_of_slip() {
-    let course = worn(along(0.005), [0.0, 1.0], 32, &steps(8000.0, 0.02));
-    let energy = course.jumps.windows(2).map(|w| {
-        let adhesion = -0.5 * (w[0].adhesion[0] + w[1].adhesion[0]);
-        (w[1].passages - w[0].passages) * adhesion * LOAD * 0.005
-    });
-    let expected = RATE / 0.43 * energy.sum::<f64>();
-    let off = last(&course).volume[1] / expected - 1.0;
-    println!("{off}");
-    assert!(off.abs() < 0.06, "{off}");
-    assert!(
-        course
-            .jumps
-            .windows(2)
-            .all(|w| w[1].pressure < w[0].pressure)
-    );
+    for creepage in [5e-4, 5e-3] {
+        let course = worn(along(creepage), [0.0, 1.0], 24, &steps(4000.0, 0.02));
+        let energy = course.jumps.windows(2).map(|w| {
+            let adhesion = -0.5 * (w[0].adhesion[0] + w[1].adhesion[0]);
+            (w[1].passages - w[0].passages) * adhesion * LOAD * creepage
+        });
+        let expected = RATE / 0.43 * energy.sum::<f64>();
+        let off = last(&course).volume[1] / expected - 1.0;
+        println!("{creepage}: {off}");
+        assert!(off.abs() < 2e-3, "{off}");
+        let pairs = course.jumps.windows(2);
+        assert!(pairs.into_iter().all(|w| w[1].pressure < w[0].pressure));
+    }
 }
 
 /// Each body loses its part, and the sum of both is what one of them would lose.
