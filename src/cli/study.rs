@@ -378,10 +378,10 @@ fn collect(args: &CollectArgs) -> Result<(), Failure> {
 /// Writes the table of the existing runs, and reports its contents.
 fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     let rows = Rows::of(plan);
-    let drawn = write(plan, &rows)?;
+    let written = write(plan, &rows)?;
     match json {
         true => answer_json(&answers::json(plan, &rows)),
-        false => answer(&answers::collected(plan, &rows, drawn)),
+        false => answer(&answers::collected(plan, &rows, &written)),
     }
 }
 

@@ -5,6 +5,7 @@
 mod compared;
 mod engines;
 mod kept;
+mod law_table;
 mod refusals;
 mod said;
 mod shipped;

@@ -1,8 +1,9 @@
 //! Results of runs of a window, from their summaries: friction, and the wear of its first bodies.
 
 use super::range::Range;
-use super::setup::{self, Motion, Setup};
+use super::setup::{Motion, Setup};
 use crate::runs::stored::numerical_error;
+use crate::runs::window::normal_force;
 use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::unit::{VOLUME, WEAR_RATE};
 use fretwork_observe::quantity::{Catalogue, Entry, Role, Topic, find};
@@ -149,9 +150,7 @@ impl WindowRun {
                 .as_str()
                 .filter(|_| summary["grade"] == "consistent")
                 .map(str::to_owned),
-            normal_force: test
-                .normal_force
-                .or_else(|| setup::normal_force(folder, start)),
+            normal_force: test.normal_force.or_else(|| normal_force(folder, start)),
             motion: Motion::read(folder, test.reciprocates, start),
             setup,
             wear: wear().filter_map(rate).collect(),

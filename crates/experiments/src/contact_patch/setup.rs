@@ -1,7 +1,7 @@
 //! Under which conditions a run was made: materials of its first bodies, load, motion, and all
 //! inputs of its case.
 
-use crate::runs::output::column;
+use crate::runs::window::{self, since};
 use fretwork_scene::source::Source;
 use fretwork_scene::{Case, inputs};
 use fretwork_store::results::Reader;
@@ -55,11 +55,7 @@ impl Setup {
         materials.sort();
         materials.dedup();
         let dimension = case.dimension as usize;
-        let periods = [case.periodic.x, case.periodic.y, case.periodic.z];
-        let area = case.friction.as_ref().and_then(|test| {
-            let within = (0..dimension).filter(|axis| *axis != test.normal);
-            within.map(|axis| periods[axis]).product()
-        });
+        let area = window::area(&case);
         let matters = |path: &str| !NO_MATTER.contains(&path.split('.').next().unwrap_or(path));
         let inputs = inputs::of(text)?.into_iter();
         let inputs = inputs.filter(|i| matters(&i.path));
@@ -86,21 +82,6 @@ impl Setup {
         }
         out
     }
-}
-
-/// Returns a column of the statistics of a run from a time on (s).
-fn since(folder: &Path, name: &str, start: f64) -> Option<Vec<f64>> {
-    let path = folder.join("statistics.csv");
-    let (time, values) = (column(&path, "time")?, column(&path, name)?);
-    let rows = time.iter().zip(values);
-    let late = rows.filter(|(t, _)| **t >= start * (1.0 - 1e-9));
-    Some(late.map(|(_, v)| v).collect()).filter(|list: &Vec<f64>| list.len() > 1)
-}
-
-/// Returns the mean normal force of the rows of the friction test (N; 2D N/m).
-pub(super) fn normal_force(folder: &Path, start: f64) -> Option<f64> {
-    let rows = since(folder, "P", start)?;
-    Some(rows.iter().sum::<f64>() / rows.len() as f64)
 }
 
 /// Motion of the moved body in the friction test.

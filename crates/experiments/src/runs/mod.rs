@@ -5,7 +5,7 @@
 //! times a few steps of one, also under load (`loaded`), [`pool`] makes several at once; [`output`]
 //! reads the numbers that they leave, [`available`] lists those that a case has. [`randomness`]
 //! determines whether the seed of a case matters, [`perturbation`] distinguishes runs where it does
-//! not.
+//! not; [`window`] reads the course of a friction test.
 
 pub mod available;
 pub mod key;
@@ -18,3 +18,4 @@ pub mod randomness;
 pub mod stored;
 pub mod trial;
 pub mod unit;
+pub mod window;

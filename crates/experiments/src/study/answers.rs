@@ -1,6 +1,6 @@
 //! Texts of `fretwork study`: the parts of a study, and the results of its runs.
 
-use super::files::PARQUET;
+use super::files::{PARQUET, Written};
 use super::forecast::Forecast;
 use super::plan::{Plan, Point};
 use super::rows::Rows;
@@ -123,8 +123,8 @@ pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points:
     serde_json::to_string_pretty(&whole).unwrap_or_default()
 }
 
-/// Describes the content of a table and its file, with a picture where one was drawn.
-pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
+/// Describes the content of a table and the files that were written.
+pub fn collected(plan: &Plan, rows: &Rows, written: &Written) -> String {
     let counts = rows.counts();
     let mut out = format!("{} of {} runs done", counts.done, counts.all);
     if counts.failed > 0 {
@@ -137,7 +137,7 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     if counts.missing > 0 {
         let _ = write!(out, ", {} not run", counts.missing);
     }
-    let picture = drawn.then_some("study.png");
+    let picture = written.picture.then_some("study.png");
     let pages = ["study.html"].into_iter().chain(picture);
     let parquet = cfg!(feature = "parquet").then_some(PARQUET);
     let names = pages
@@ -147,7 +147,8 @@ pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
     let folder = plan.out.display();
     let files: Vec<String> = names.map(|name| format!("{folder}/{name}")).collect();
     let _ = write!(out, "\n{}", files.join(", "));
-    for line in intervals(plan, rows) {
+    let of_laws = written.law_tables.iter().cloned();
+    for line in of_laws.chain(intervals(plan, rows)) {
         let _ = write!(out, "\n{line}");
     }
     for name in rows.without_text(&plan.regimes) {

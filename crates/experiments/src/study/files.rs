@@ -13,12 +13,21 @@ use std::collections::BTreeSet;
 /// The table as a Parquet file, where the crate has the feature `parquet`.
 pub(super) const PARQUET: &str = "table.parquet";
 
-/// Writes the results of a study into its folder; returns whether there is a picture.
+/// What was written beside the tables and the page.
+#[derive(Debug, Default)]
+pub struct Written {
+    /// Whether there is a picture.
+    pub picture: bool,
+    /// A line for each table of a law: its file, or why there is none.
+    pub law_tables: Vec<String>,
+}
+
+/// Writes the results of a study into its folder.
 ///
 /// # Errors
 /// A file cannot be written, or all runs in the folder belong to something else: tables are then
 /// not changed.
-pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
+pub fn write(plan: &Plan, rows: &Rows) -> Result<Written, Error> {
     let others = other_runs(plan, rows);
     if rows.counts().missing == plan.count() && others > 0 {
         return Err(Error::Failed(format!(
@@ -42,7 +51,11 @@ pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
         // A picture of an earlier state would be mistaken for one of the present state.
         let _ = std::fs::remove_file(&picture);
     }
-    Ok(drawn)
+    let law_tables = plan.law_table.as_ref().map(|t| t.write(plan, rows));
+    Ok(Written {
+        picture: drawn,
+        law_tables: law_tables.transpose()?.unwrap_or_default(),
+    })
 }
 
 /// Returns the number of runs in the folder that are not points of the study by this program.

@@ -4,8 +4,9 @@
 //! [`spec`] reads the file, [`of_case`] makes one of a case, [`design`] determines the points,
 //! [`plan`] numbers the runs, [`forecast`] estimates their duration, [`execute`] makes them on this
 //! machine and [`export`] writes scripts for other engines, [`rows`] collects them in a table,
-//! [`analysis`] evaluates it for the [`settings`], the [`page`] and the [`figures`]; [`files`]
-//! writes them, [`answers`] formats them for a terminal.
+//! [`analysis`] evaluates it for the [`settings`], the [`page`] and the [`figures`], [`law_table`]
+//! makes the tables that laws read of it; [`files`] writes them, [`answers`] formats them for a
+//! terminal.
 
 mod analysis;
 pub mod answers;
@@ -15,6 +16,7 @@ pub mod export;
 mod figures;
 mod files;
 pub mod forecast;
+mod law_table;
 mod of_case;
 mod page;
 pub mod plan;
@@ -22,7 +24,7 @@ pub mod rows;
 mod settings;
 pub mod spec;
 
-pub use files::write;
+pub use files::{Written, write};
 pub use of_case::of_case;
 
 use crate::folder::Owner;

@@ -1,6 +1,7 @@
 //! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
 
 use super::design::{Setting, settings};
+use super::law_table::LawTable;
 use super::spec::{DesignSpec, StudyFile};
 use crate::changes::Changes;
 use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
@@ -57,6 +58,8 @@ pub struct Plan {
     pub output_units: Vec<String>,
     /// Texts of the summary that are mapped as regimes.
     pub regimes: Vec<String>,
+    /// Tables of laws that are made.
+    pub law_table: Option<LawTable>,
     /// Design of the study.
     pub design: DesignSpec,
     /// Launcher of the runs.
@@ -126,6 +129,7 @@ impl Plan {
         });
         let derived: Vec<Vec<String>> = derived.collect::<Result<_, _>>().map_err(refused)?;
         check_factors(read, &factors, &changes)?;
+        let law_table = LawTable::new(read, &factors, &units, &base.case)?;
         let own = place.out.join("runs");
         let folder = place.cache.unwrap_or(&own);
         let fixed = &changes.fixed;
@@ -140,7 +144,8 @@ impl Plan {
                 let (scene, random) = build(&base, place.setup)?;
                 let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.setup.search)?;
-                let (outputs, units) = outputs(read, &base, &scene, place.setup)?;
+                let (outputs, units) =
+                    outputs(read, &base, &scene, law_table.as_ref(), place.setup)?;
                 StudyFacts {
                     units,
                     fingerprint,
@@ -161,6 +166,7 @@ impl Plan {
             derived,
             units,
             regimes: spec.regimes.clone(),
+            law_table,
             design: spec.design.clone(),
             seeds: (0..u64::from(spec.seeds))
                 .map(|k| first.wrapping_add(k))
@@ -347,14 +353,20 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
     }
 }
 
-/// Returns the requested outputs, or those that the case has, with their units.
+/// Returns the requested outputs, or those that the case has, with their units; those of a table of
+/// laws are checked too.
 fn outputs(
     read: &StudyFile,
     base: &LoadedCase,
     scene: &Built,
+    law_table: Option<&LawTable>,
     setup: &RunSetup,
 ) -> Result<(Vec<OutputName>, Vec<String>), Error> {
     let available = AvailableQuantities::of(base, scene, setup);
+    for (key, output) in law_table.map(LawTable::outputs).unwrap_or_default() {
+        let checked = available.check(&output);
+        checked.map_err(|why| read.source.error_at(key, why))?;
+    }
     let asked = &read.spec.outputs;
     let mut all: Vec<OutputName> = Vec::new();
     if asked.is_empty() {

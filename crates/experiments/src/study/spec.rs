@@ -1,5 +1,6 @@
 //! The file of a study.
 
+use super::law_table::LawTableSpec;
 use crate::factor::FactorSpec;
 use crate::runs::launcher::Keep;
 use crate::runs::stored::Limits;
@@ -50,6 +51,9 @@ pub struct StudySpec {
     /// is used.
     #[serde(default)]
     pub regimes: Vec<String>,
+    /// Tables of the laws `tabulated` that are made of the runs.
+    #[serde(default)]
+    pub table: Option<LawTableSpec>,
     /// Files of each run that are kept.
     #[serde(default)]
     pub keep: Keep,

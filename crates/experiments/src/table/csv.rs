@@ -3,6 +3,8 @@
 use super::cells::{guarded, unguarded};
 use super::{Cell, ColumnType, Table};
 use crate::Error;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
 /// Format of numbers that are not whole.
@@ -19,8 +21,25 @@ pub enum NumberFormat {
 /// # Errors
 /// The file cannot be written.
 pub fn write(table: &Table, path: &Path, numbers: NumberFormat) -> Result<(), Error> {
+    write_below(&[], table, path, numbers)
+}
+
+/// Writes a table below lines of comments.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_below(
+    comments: &[String],
+    table: &Table,
+    path: &Path,
+    numbers: NumberFormat,
+) -> Result<(), Error> {
     let text = || -> csv::Result<()> {
-        let mut out = csv::Writer::from_path(path)?;
+        let mut file = BufWriter::new(File::create(path)?);
+        for line in comments {
+            writeln!(file, "# {line}")?;
+        }
+        let mut out = csv::Writer::from_writer(file);
         out.write_record(table.columns.iter().map(|c| match c.unit.as_str() {
             "" | "1" => guarded(&c.name),
             unit => guarded(&format!("{} [{unit}]", c.name)),
