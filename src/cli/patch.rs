@@ -1,16 +1,21 @@
 //! `fretwork patch`: a contact patch that rolls or frets, by the laws of an interface.
 
-use super::experiment::results;
-use super::output::{answer_json, inform, report};
+use super::experiment::{interrupted, results};
+use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs};
-use crate::experiments::patch::{OWNER, PatchFile, files, solve};
+use crate::experiments::duration::parse as duration;
+use crate::experiments::patch::third_body::{self, Reached, Runs};
+use crate::experiments::patch::{OWNER, Outcome, PatchFile, files, solve};
+use crate::interrupt;
 use clap::Args;
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// Text below the options of the help.
 pub const EXAMPLES: &str = "\
-Exit code: 0 solved, 1 no solution, 2 wrong input.
+Exit code: 0 solved, or with --prepare the missing runs are named; 1 no solution, 2 wrong input.
 
 Example:
   fretwork patch patches/wheel_on_rail.ron
@@ -27,6 +32,16 @@ pub struct PatchArgs {
     /// Show no progress; print the result as JSON
     #[arg(long)]
     json: bool,
+    /// Parallel runs, where the patch has a `third_body`
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+    /// Stop a run that takes longer: 90s, 10m, 2h
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    limit: Option<Duration>,
+    /// Make no runs of a `third_body`, and name the study of those that are missing, for another
+    /// engine
+    #[arg(long)]
+    prepare: bool,
     #[command(flatten)]
     plugins: PluginArgs,
 }
@@ -36,12 +51,20 @@ pub fn patch(args: &PatchArgs) -> Result<(), Failure> {
     let search = args.plugins.search()?;
     let file = PatchFile::read(&args.patch)?;
     let _lock = OWNER.take(&out)?;
-    let shows = !args.json && std::io::stderr().is_terminal();
-    let outcome = solve(&file, &search, &mut |done, all| {
-        if shows {
-            report(&format!("point {done} of {all}"));
+    let outcome = match file.spec.third_body.is_some() {
+        true => match with_runs(args, &file, &out)? {
+            Some(outcome) => *outcome,
+            None => return Ok(()),
+        },
+        false => {
+            let shows = !args.json && std::io::stderr().is_terminal();
+            solve(&file, &search, &mut |done, all| {
+                if shows {
+                    report(&format!("point {done} of {all}"));
+                }
+            })?
         }
-    })?;
+    };
     let json = files::write(&file, &outcome, &out)?;
     if args.json {
         return answer_json(&json);
@@ -52,4 +75,42 @@ pub fn patch(args: &PatchArgs) -> Result<(), Failure> {
         out.display()
     ));
     Ok(())
+}
+
+/// Solves a patch with runs of a window; `None` where some are missing that another engine makes.
+fn with_runs(
+    args: &PatchArgs,
+    file: &PatchFile,
+    out: &Path,
+) -> Result<Option<Box<Outcome>>, Failure> {
+    let stop = interrupt::watch();
+    let runs = Runs {
+        setup: &args.plugins.run_setup()?,
+        out,
+        jobs: usize::from(args.jobs),
+        limit: args.limit,
+        make: !args.prepare,
+        stop,
+        say: &|line| {
+            if !args.json {
+                report(line);
+            }
+        },
+    };
+    let reached = third_body::solve(file, &args.plugins.search()?, &runs);
+    if stop.load(Ordering::Relaxed) {
+        return Err(interrupted());
+    }
+    match reached? {
+        Reached::Done(outcome) => Ok(Some(outcome)),
+        Reached::Waits(study, folder, cache, count) => {
+            answer(&format!(
+                "{count} runs are missing; to make them elsewhere:\n  fretwork study export {} --out {} --cache {} --to slurm\nthen the same command again",
+                study.display(),
+                folder.display(),
+                cache.display()
+            ))?;
+            Ok(None)
+        }
+    }
 }

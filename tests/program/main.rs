@@ -33,6 +33,7 @@ mod line_length;
 mod material_laws;
 mod pages;
 mod patch;
+mod patch_windows;
 mod plugin_loading;
 mod quantities;
 mod rebuilt_program;

@@ -2,6 +2,7 @@
 
 use super::comparison::Comparison;
 use super::passages::Worn;
+use super::third_body::ThirdBody;
 use fretwork_rolling::Creepage;
 use serde::Serialize;
 
@@ -30,6 +31,9 @@ pub struct Answer {
     pub approach: f64,
     /// Area under pressure (m²).
     pub area: f64,
+    /// The windows of a third body, where they give the friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub third_body: Option<ThirdBody>,
     /// Points, one for each creepage or stroke.
     pub points: Vec<Point>,
     /// Curves and measurements beside the adhesion of the points.

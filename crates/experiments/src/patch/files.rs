@@ -9,13 +9,21 @@ use crate::table::{Column, Table};
 use fretwork_store::maps::{MapField, Maps};
 use std::path::Path;
 
-/// Writes all files of a patch into a folder.
+/// Returns the answer as JSON.
+///
+/// # Errors
+/// It cannot be written as JSON.
+pub fn json(outcome: &Outcome) -> Result<String, Error> {
+    let text = serde_json::to_string_pretty(&outcome.answer);
+    text.map_err(|e| Error::Failed(e.to_string()))
+}
+
+/// Writes all files of a patch into a folder; returns the answer as JSON.
 ///
 /// # Errors
 /// A file cannot be written.
 pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, Error> {
-    let json = serde_json::to_string_pretty(&outcome.answer);
-    let json = json.map_err(|e| Error::Failed(e.to_string()))?;
+    let json = json(outcome)?;
     let save = |name: &str, text: &str| {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| Error::write(&path, &e))

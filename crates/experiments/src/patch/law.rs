@@ -12,7 +12,7 @@ use fretwork_elastic::half_space::CellGrid;
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::temperature::{Response, Thermal};
-use fretwork_rolling::{Bound, Friction, Vector};
+use fretwork_rolling::{Bound, Friction, Strips, Vector};
 use std::sync::{Mutex, PoisonError};
 
 /// Relative change of the slip for the slope of a bound.
@@ -31,6 +31,8 @@ pub struct PatchLaw {
     constant: Option<Cone>,
     /// Contacts of the cells, where material stays in them.
     held: Option<Mutex<Vec<Option<Held>>>>,
+    /// Friction of strips, in place of that of the law.
+    strips: Option<Strips>,
     /// The first error of a law.
     error: Mutex<Option<LawError>>,
 }
@@ -111,6 +113,7 @@ impl PatchLaw {
             thermal,
             constant: None,
             held: None,
+            strips: None,
             error: Mutex::default(),
         };
         let trial = law.trial().map_err(|e| e.to_string())?;
@@ -127,6 +130,11 @@ impl PatchLaw {
     /// that at which a step takes the time of a passage by a cell.
     pub fn stays(&mut self, cells: usize) {
         self.held = Some(Mutex::new(vec![None; cells]));
+    }
+
+    /// Takes the friction of strips in place of that of the law, or that of the law again.
+    pub fn follow(&mut self, strips: Option<Strips>) {
+        self.strips = strips;
     }
 
     /// Returns the interface.
@@ -213,6 +221,9 @@ impl PatchLaw {
 
 impl Friction for PatchLaw {
     fn bounds(&self, cells: Cells<'_>, slip: &[Vector]) -> Vec<Bound> {
+        if let Some(strips) = &self.strips {
+            return strips.bounds(cells, slip);
+        }
         if let Some(cone) = self.constant {
             let bound = |p: &f64| Bound {
                 traction: if *p > 0.0 { cone.at(*p) } else { 0.0 },
@@ -242,6 +253,8 @@ struct Walk<'a> {
     heat: Option<Response>,
     /// Heat of each cell so far (W/m²).
     flux: Vec<f64>,
+    /// Coefficient of friction of each cell by strips, where they give it.
+    strips: Option<Vec<f64>>,
     out: Passage,
 }
 
@@ -251,6 +264,12 @@ impl<'a> Walk<'a> {
         let count = slip.len();
         let thermal = law.thermal.as_ref();
         let heat = thermal.map(|t| t.response(cells.grid, cells.speed));
+        let columns = cells.grid.cells[0];
+        let by_rows = |strips: &Strips| {
+            let rows = cells.pressure.chunks(columns).enumerate();
+            let row = |(k, p): (usize, &[f64])| strips.row(cells.grid.middle(k * columns)[1], p);
+            rows.flat_map(row).collect()
+        };
         let temperature = heat
             .as_ref()
             .map_or_else(Vec::new, |h| vec![h.mixed; count]);
@@ -267,6 +286,7 @@ impl<'a> Walk<'a> {
                 variables: vec![vec![0.0; count]; law.interface.variables()],
             },
             flux: vec![0.0; count],
+            strips: law.strips.as_ref().map(by_rows),
             law,
             cells,
             slip,
@@ -325,7 +345,8 @@ impl<'a> Walk<'a> {
             let motions = self.motions(&places, &before, &upstream, &cones, 1.0);
             after.clone_from(&before);
             answers = self.bench.step(&mut after, &motions, self.step)?;
-            cones = answers.iter().map(|a| Some(Cone::of(a))).collect();
+            let both = answers.iter().zip(&places);
+            cones = both.map(|(a, (_, c))| Some(self.cone(a, *c))).collect();
         }
         let nearby = match all {
             true => None,
@@ -336,7 +357,7 @@ impl<'a> Walk<'a> {
         };
         for (k, (contact, cell)) in places.iter().copied().enumerate() {
             let p = self.cells.pressure[cell];
-            let cone = Cone::of(&answers[k]);
+            let cone = self.cone(&answers[k], cell);
             let traction = cone.at(p);
             let slipped = length(self.slip[cell]);
             let change = nearby
@@ -366,6 +387,18 @@ impl<'a> Walk<'a> {
             });
         }
         Ok(())
+    }
+
+    /// Strength of a cell by an answer of the law, or by strips in its place.
+    fn cone(&self, answer: &BenchOutputs, cell: usize) -> Cone {
+        match &self.strips {
+            Some(strips) => Cone {
+                mu: strips[cell],
+                tension: 0.0,
+                shear: 0.0,
+            },
+            None => Cone::of(answer),
+        }
     }
 
     /// Temperature of a cell without its own heat (K).

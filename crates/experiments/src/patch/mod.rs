@@ -7,6 +7,8 @@
 //! bodies, grid, laws           bodies, setup, law
 //!       ▼
 //! points: creepages, strokes   rolling, pulling, fretting      (fretwork_rolling)
+//!       ▲▼
+//! runs of a window             third_body
 //!       ▼
 //! profiles over passages       passages, passages_files
 //! other curves, measurements   comparison
@@ -31,6 +33,7 @@ mod tests;
 #[cfg(test)]
 mod tests_of_rolling;
 mod text;
+pub mod third_body;
 
 pub use answer::{Answer, Band, Motion, Point, Wear};
 pub use bodies::{Bodies, Distance};
@@ -77,6 +80,10 @@ pub fn solve(
     search: &SearchPath,
     follow: &mut dyn FnMut(usize, usize),
 ) -> Result<Outcome, Error> {
+    if file.spec.third_body.is_some() {
+        let why = "the runs of a `third_body` are made by the command `fretwork patch`";
+        return Err(file.source.error_at("third_body", why).into());
+    }
     let creepages = rolling::creepages(file)?;
     let (amplitudes, steps) = fretting::amplitudes(file)?;
     let pulls = pulling::forces(file)?;
@@ -142,6 +149,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         pressure: pressure.largest(),
         approach: pressure.approach,
         area: touching as f64 * setup.grid.area(3),
+        third_body: None,
         points,
         comparisons: Vec::new(),
         passages: None,

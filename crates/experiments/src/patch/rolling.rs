@@ -167,7 +167,15 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     })
 }
 
-fn of_law(setup: &Setup, creepage: &Creepage, law: &PatchLaw) -> Result<(Refined, Passage), Error> {
+/// Solves a point with a law.
+///
+/// # Errors
+/// The law fails, or there is no solution.
+pub(super) fn of_law(
+    setup: &Setup,
+    creepage: &Creepage,
+    law: &PatchLaw,
+) -> Result<(Refined, Passage), Error> {
     let speed = setup.rolling_speed();
     let solved = setup.with_patch(|patch| patch.refined(setup.grid, creepage, law, speed));
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());

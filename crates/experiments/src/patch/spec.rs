@@ -2,6 +2,7 @@
 
 use super::comparison::{MeasuredSpec, PolachSpec};
 use super::passages::PassagesSpec;
+use super::third_body::ThirdBodySpec;
 use crate::spec::{Spec, SpecFile};
 use fretwork_scene::case::{InterfaceSpec, SlotValues};
 use fretwork_scene::material::NumberSpec;
@@ -63,6 +64,9 @@ pub struct PatchSpec {
     /// An elastic layer between the bodies.
     #[serde(default)]
     pub layer: Option<LayerSpec>,
+    /// Runs of a window of a third body, whose friction takes the place of that of the law.
+    #[serde(default)]
+    pub third_body: Option<ThirdBodySpec>,
     /// How the bodies move over each other.
     pub motion: MotionSpec,
     /// Passages over which the bodies wear.
@@ -268,6 +272,9 @@ impl Spec for PatchSpec {
                     self.cells
                 ),
             ));
+        }
+        if let Some(windows) = &self.third_body {
+            windows.check(source)?;
         }
         for (k, body) in [&self.bodies.0, &self.bodies.1].into_iter().enumerate() {
             if !self.materials.contains_key(&body.material) {

@@ -3,6 +3,7 @@
 use super::answer::{Answer, Motion, Point};
 use super::comparison::Comparison;
 use super::passages_files;
+use super::third_body::ThirdBody;
 use fretwork_observe::quantity::{number, quantity};
 use std::fmt::Write as _;
 
@@ -39,9 +40,16 @@ impl Answer {
                 quantity(self.cell[1], "m")
             ),
         );
-        for point in &self.points {
+        let windows = self.third_body.as_ref();
+        for (label, text) in windows.map(ThirdBody::lines).unwrap_or_default() {
+            add(label, text);
+        }
+        for (k, point) in self.points.iter().enumerate() {
             out.push('\n');
             out.push_str(&point.text());
+            if let Some(settled) = windows.and_then(|w| w.points.get(k)) {
+                let _ = write!(out, "\n  {:<18} {}", "windows", settled.line());
+            }
         }
         for other in &self.comparisons {
             out.push('\n');
