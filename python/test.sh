@@ -34,7 +34,7 @@ $pip install "$wheel[test]"
 
 # Not in the folder of the sources: the package that is tested is the installed one.
 cd "$work"
-ln -s "$here/../cases" "$here/../materials" .
+ln -s "$here/../cases" "$here/../materials" "$here/../patches" .
 package=$("$work/venv/bin/python" -c 'import fretwork, pathlib; print(pathlib.Path(fretwork.__file__).parent)')
 case "$package" in
     "$work"/*) ;;

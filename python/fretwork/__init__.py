@@ -20,6 +20,7 @@ from ._contact_patch import contact_patch
 from ._errors import Error, InputError, MissingPackageError, RunError
 from ._fretwork import __version__
 from ._observers import Column, Observer, Stop
+from ._patch import patch
 from ._progress import Progress
 from ._report import compare, report
 from ._results import Results
@@ -52,6 +53,7 @@ __all__ = [
     "compare",
     "contact_patch",
     "law",
+    "patch",
     "read_study",
     "report",
 ]

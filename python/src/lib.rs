@@ -12,6 +12,7 @@ mod errors;
 mod infinity;
 mod law;
 mod observer;
+mod patch;
 mod paths;
 mod report;
 mod run;
@@ -33,6 +34,7 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(report::report, module)?)?;
     module.add_function(wrap_pyfunction!(report::compare, module)?)?;
     module.add_function(wrap_pyfunction!(contact_patch::contact_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(patch::patch, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;
     law::add(module)

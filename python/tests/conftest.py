@@ -11,8 +11,8 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """An empty working folder with `cases`, `materials` and `plugins`."""
-    for name in ("cases", "materials"):
+    """An empty working folder with `cases`, `materials` and `patches`."""
+    for name in ("cases", "materials", "patches"):
         (tmp_path / name).symlink_to(ROOT / name)
     monkeypatch.chdir(tmp_path)
     return tmp_path

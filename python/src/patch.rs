@@ -1,0 +1,35 @@
+//! Contact patches by the laws of an interface, called from Python.
+
+use crate::errors;
+use crate::search::search_path;
+use fretwork::experiments::Error;
+use fretwork::experiments::patch::{OWNER, PatchFile, files, solve};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Solves the patch of a file; returns its answer as JSON, and writes all files into a folder if
+/// there is one.
+#[pyfunction]
+pub(crate) fn patch(
+    py: Python<'_>,
+    file: PathBuf,
+    out: Option<PathBuf>,
+    plugin_path: Vec<PathBuf>,
+    trust_plugins: bool,
+) -> PyResult<String> {
+    let search = search_path(&plugin_path, trust_plugins)?;
+    let solved = py.detach(|| -> Result<String, Error> {
+        let read = PatchFile::read(&file)?;
+        let _lock = out.as_deref().map(|out| OWNER.take(out)).transpose()?;
+        let outcome = solve(&read, &search, &mut |_, _| ())?;
+        match &out {
+            Some(out) => files::write(&read, &outcome, out),
+            None => files::json(&outcome),
+        }
+    });
+    solved.map_err(|e| match e {
+        Error::Input(e) => errors::input(&e),
+        Error::Usage(text) => errors::wrong("patch", text),
+        other => errors::run(&other.to_string(), out.as_deref()),
+    })
+}
