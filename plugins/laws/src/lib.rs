@@ -8,6 +8,7 @@
 pub mod contact {
     pub mod coulomb;
     pub mod coulomb_damage;
+    pub mod debris_friction;
     pub mod frictionless;
     pub mod hertz_mindlin;
     pub mod linear_contact;
@@ -89,7 +90,8 @@ macro_rules! laws {
     ($then:ident) => {
         $then! {
             contact:
-                coulomb::Coulomb, coulomb_damage::CoulombDamage, frictionless::Frictionless,
+                coulomb::Coulomb, coulomb_damage::CoulombDamage,
+                debris_friction::DebrisFriction, frictionless::Frictionless,
                 hertz_mindlin::HertzMindlin, linear_contact::LinearContact,
                 mohr_coulomb::MohrCoulomb, newton_restitution::NewtonRestitution,
                 rail_falling_friction::RailFallingFriction, rate_and_state::RateAndState,

@@ -1,9 +1,11 @@
 //! Results of a patch, as numbers in SI units.
 
 use super::comparison::Comparison;
+use super::fretting_cycles::History;
+use super::fretting_map::FrettingMap;
 use super::passages::Worn;
 use super::third_body::ThirdBody;
-use fretwork_rolling::Creepage;
+use fretwork_rolling::{Creepage, Estimate};
 use serde::Serialize;
 
 /// The answer.
@@ -40,6 +42,12 @@ pub struct Answer {
     pub comparisons: Vec<Comparison>,
     /// Bodies after many passages.
     pub passages: Option<Worn>,
+    /// Strokes over many cycles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cycles: Vec<History>,
+    /// The map of fretting.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map: Option<FrettingMap>,
 }
 
 /// How the bodies move in a point.
@@ -56,6 +64,8 @@ pub enum Motion {
 pub struct Point {
     /// How the bodies move.
     pub motion: Motion,
+    /// The cycle, in fretting.
+    pub stroke: Option<Cycle>,
     /// Forces on the first body along the motion and across it (N).
     pub force: [f64; 2],
     /// Tangential force over load, extrapolated to cells of no size.
@@ -86,6 +96,27 @@ pub struct Point {
     pub unique: bool,
     /// What limits the trust in this point.
     pub notes: Vec<String>,
+}
+
+/// A cycle of fretting; estimates are extrapolated to cells of no size.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Cycle {
+    /// Whether the force is given, not the displacement.
+    pub by_force: bool,
+    /// Amplitude of the displacement (m).
+    pub displacement: Estimate,
+    /// Amplitude of the force Q (N).
+    pub force: Estimate,
+    /// Energy of slip (J).
+    pub energy: Estimate,
+    /// Share of the area that sticks throughout.
+    pub stuck: Estimate,
+    /// A, the energy over 4 Q delta.
+    pub energy_ratio: f64,
+    /// Half of the width of the loop at no force, over the amplitude.
+    pub slip_ratio: f64,
+    /// Volume worn off the interface (m³).
+    pub worn: Estimate,
 }
 
 /// Lowest and highest value.

@@ -3,7 +3,7 @@
 
 use super::spec::{DistanceSpec, PatchFile, positive, value};
 use fretwork_elastic::Elasticity;
-use fretwork_elastic::patch::{PointPatch, Solid, effective_modulus, point};
+use fretwork_elastic::patch::{LinePatch, PointPatch, Solid, effective_modulus, line, point};
 use fretwork_math::diffusion::Conductor;
 use fretwork_rolling::temperature::Thermal;
 use fretwork_scene::InputError;
@@ -27,6 +27,8 @@ pub struct Bodies {
     pub thermal: Option<Thermal>,
     /// Their distance.
     pub distance: Distance,
+    /// Length of a line contact across the motion (m).
+    pub length: Option<f64>,
 }
 
 /// Undeformed distance of the bodies: x²/(2 R) along the motion, and a table or y²/(2 R) across it.
@@ -61,12 +63,15 @@ impl Distance {
 
     /// Returns the patch by Hertz; for a profile, that of a parabola like it.
     pub fn hertz(&self, load: f64, bodies: &[Elasticity; 2]) -> PointPatch {
-        let solids = bodies.map(|b| Solid {
-            young: b.young,
-            poisson: b.poisson,
-        });
-        point(load, self.curvatures, effective_modulus(&solids))
+        point(load, self.curvatures, modulus(bodies))
     }
+}
+
+fn modulus(bodies: &[Elasticity; 2]) -> f64 {
+    effective_modulus(&bodies.map(|b| Solid {
+        young: b.young,
+        poisson: b.poisson,
+    }))
 }
 
 /// Returns a table's value at a place, on straight lines between its rows and beyond its ends.
@@ -180,12 +185,13 @@ impl Bodies {
         if let Some((places, values)) = &profile {
             curvatures[1] = typical(places, values);
         }
+        let length = length(file, curvatures[1])?;
         for (name, curvature) in [("along", curvatures[0]), ("across", curvatures[1])] {
-            if curvature <= 0.0 {
+            if curvature <= 0.0 && (name == "along" || length.is_none()) {
                 return Err(source.error_at(
                     "bodies",
                     format!(
-                        "the bodies conform {name} the motion: their curvatures 1/R1 + 1/R2 there add to {curvature:.3e} 1/m, which must be above 0 for a patch that ends"
+                        "the bodies conform {name} the motion: their curvatures 1/R1 + 1/R2 there add to {curvature:.3e} 1/m, which must be above 0 for a patch that ends; a cylinder on a plane has a `length`"
                     ),
                 ));
             }
@@ -202,7 +208,30 @@ impl Bodies {
                 curvatures,
                 profile,
             },
+            length,
         })
+    }
+
+    /// Returns the patch by Hertz of a line contact of a length (m).
+    pub fn line(&self, load: f64, length: f64) -> LinePatch {
+        let modulus = modulus(&self.elasticity);
+        line(load / length, self.distance.curvatures[0], modulus)
+    }
+}
+
+/// Reads the length of a line contact (m).
+fn length(file: &PatchFile, across: f64) -> Result<Option<f64>, InputError> {
+    let source = &file.source;
+    let Some(length) = &file.spec.length else {
+        return Ok(None);
+    };
+    let length = positive(source, "length", length, "m")?;
+    match across == 0.0 && file.spec.distance.is_none() {
+        true => Ok(Some(length)),
+        false => Err(source.error_at(
+            "length",
+            "a contact along a line of this length is that of bodies straight across the motion: leave out their `across` and the `distance`, or the `length`",
+        )),
     }
 }
 

@@ -300,7 +300,11 @@ pub(super) fn comparisons(
     points: &[Point],
 ) -> Result<Vec<Comparison>, Error> {
     let measured = measured(file)?;
-    let curves = polach(file, setup)?;
+    // His curves are of ellipses.
+    let curves = match setup.bodies.length {
+        Some(_) => Vec::new(),
+        None => polach(file, setup)?,
+    };
     let plain = |point: &Point| match point.motion {
         Motion::Rolling(c) => c.across == 0.0 && c.spin == 0.0,
         _ => false,

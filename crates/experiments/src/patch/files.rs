@@ -38,7 +38,8 @@ pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, 
         )?;
     }
     for (k, stroke) in outcome.strokes.iter().enumerate() {
-        let column = |at: usize| stroke.curve.iter().map(move |row| Some(row[at]));
+        let curve = stroke.curve();
+        let column = |at: usize| curve.iter().map(move |row| Some(row[at]));
         let table = Table {
             columns: vec![
                 Column::real("displacement", "m", column(0)),
@@ -49,6 +50,12 @@ pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, 
         csv::write(&table, &path, NumberFormat::Plain)?;
     }
     passages_files::write(outcome, out)?;
+    for (k, history) in outcome.answer.cycles.iter().enumerate() {
+        history.write(outcome.answer.load, out, k + 1)?;
+    }
+    if let Some(map) = &outcome.answer.map {
+        map.write(out)?;
+    }
     fields(outcome, &out.join("patch.h5"))?;
     page::write(file, outcome, &out.join("patch.html"))?;
     Ok(json)
@@ -192,28 +199,29 @@ fn fields(outcome: &Outcome, path: &Path) -> Result<(), Error> {
             .map_err(fail)?;
     }
     for (k, stroke) in outcome.strokes.iter().enumerate() {
-        let list = [
+        let fine = &stroke.found.fine;
+        let end = fine.cycle.traction.last().map_or(&[][..], |t| &t[..]);
+        let mut list = vec![
+            field("pressure", "Pa", "pressure", fine.pressure.pressure.clone()),
+            field("traction_x", "Pa", "traction at the end", of(end, 0)),
+            field("traction_y", "Pa", "traction at the end", of(end, 1)),
+            field("way", "m", "way of slip in a cycle", stroke.way()),
             field(
-                "pressure",
-                "Pa",
-                "pressure",
-                stroke.pressure.pressure.clone(),
+                "dissipated",
+                "J/m^2",
+                "energy of slip in a cycle",
+                fine.cycle.dissipated.clone(),
             ),
-            field(
-                "traction_x",
-                "Pa",
-                "traction at the end",
-                of(&stroke.tractions.traction, 0),
-            ),
-            field(
-                "traction_y",
-                "Pa",
-                "traction at the end",
-                of(&stroke.tractions.traction, 1),
-            ),
-            field("path", "m", "path of slip in a cycle", stroke.path.clone()),
-            field("worn", "m", "depth worn in a cycle", stroke.worn.clone()),
         ];
+        if !fine.cycle.worn.is_empty() {
+            let worn = fine.cycle.worn.clone();
+            list.push(field(
+                "worn",
+                "m",
+                "depth worn off both bodies in a cycle",
+                worn,
+            ));
+        }
         maps.point(&format!("point_{}", k + 1), &list)
             .map_err(fail)?;
     }

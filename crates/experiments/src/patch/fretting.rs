@@ -1,38 +1,30 @@
-//! Strokes of fretting: the loop of force and displacement, and what slips in it.
+//! Strokes of fretting: the loop of force and displacement, and what slips and wears in it.
 
-use super::answer::{Band, Motion, Point, Wear};
-use super::law::{Passage, PatchLaw};
+use super::answer::{Band, Cycle, Motion, Point, Wear};
+use super::fretting_spec::{Drive, FrettingSpec, drives};
+use super::law::PatchLaw;
+use super::rolling::bodies_that_wear;
 use super::setup::Setup;
-use super::spec::{MotionSpec, PatchFile, positive};
+use super::spec::{MotionSpec, PatchFile};
 use crate::Error;
 use fretwork_core::laws::Kind;
-use fretwork_rolling::fields::length;
-use fretwork_rolling::friction::Cells;
-use fretwork_rolling::{Field, Motion as Step, Pressure, Surfaces, Tractions, normal, tangential};
+use fretwork_rolling::{Amplitude, Estimate, RefinedStroke, Strokes};
 use fretwork_scene::InputError;
 
-/// Residual of the tractions over the largest bound.
-const TOLERANCE: f64 = 1e-7;
+/// Error of the force by the grid over the force that is no longer small.
+const COARSE: f64 = 0.05;
+/// Energy of the drive over that of slip, less 1, that is no longer small.
+const WORK: f64 = 0.1;
 
-/// Returns the amplitudes of all points (m), and the number of steps of a quarter of a cycle.
+/// Returns what the file says of fretting, and its strokes.
 ///
 /// # Errors
 /// A number is out of range.
-pub fn amplitudes(file: &PatchFile) -> Result<(Vec<f64>, usize), InputError> {
-    let MotionSpec::Fretting { amplitude, steps } = &file.spec.motion else {
-        return Ok((Vec::new(), 0));
-    };
-    let source = &file.source;
-    let path = "motion.amplitude";
-    let list = amplitude.0.iter().map(|n| positive(source, path, n, "m"));
-    let list: Vec<f64> = list.collect::<Result<_, _>>()?;
-    if list.is_empty() {
-        return Err(source.error_at(path, "there is no amplitude"));
+pub fn strokes(file: &PatchFile) -> Result<(Option<&FrettingSpec>, Vec<Drive>), InputError> {
+    match &file.spec.motion {
+        MotionSpec::Fretting(spec) => Ok((Some(spec), drives(file, spec)?)),
+        _ => Ok((None, Vec::new())),
     }
-    if !(2..=1000).contains(steps) {
-        return Err(source.error_at("motion.steps", "2 to 1000 steps are expected"));
-    }
-    Ok((list, *steps))
 }
 
 /// A solved stroke.
@@ -40,146 +32,164 @@ pub fn amplitudes(file: &PatchFile) -> Result<(Vec<f64>, usize), InputError> {
 pub struct Stroke {
     /// The numbers.
     pub point: Point,
-    /// Displacement (m) and force on the first body (N) over the first quarter and a cycle.
-    pub curve: Vec<[f64; 2]>,
-    /// Pressures.
-    pub pressure: Pressure,
-    /// Tractions at the end of the stroke.
-    pub tractions: Tractions,
-    /// Path slipped by each cell in a cycle (m).
-    pub path: Vec<f64>,
-    /// Depth worn off the interface in a cycle (m).
-    pub worn: Vec<f64>,
+    /// The loop, and what it is on the fine grid.
+    pub found: RefinedStroke,
 }
 
-/// Solves strokes of an amplitude (m): loading, then a full cycle.
+impl Stroke {
+    /// Returns displacements (m) and driving forces (N) of the first loading and the cycle.
+    pub fn curve(&self) -> Vec<[f64; 2]> {
+        let cycle = &self.found.fine.cycle;
+        let first = &cycle.loading[..cycle.loading.len().saturating_sub(1)];
+        [first, &cycle.points[..]].concat()
+    }
+
+    /// Returns the way slipped by each cell in the cycle (m).
+    pub fn way(&self) -> Vec<f64> {
+        let fine = &self.found.fine;
+        let cells = fine.cycle.rubbed.iter().zip(&fine.pressure.pressure);
+        cells
+            .map(|(r, p)| if *p > 0.0 { r / p } else { 0.0 })
+            .collect()
+    }
+}
+
+/// Refuses laws that need the time of a step where it is not known.
 ///
 /// # Errors
-/// A law fails, or there is no solution.
-pub fn solve(setup: &mut Setup, amplitude: f64, steps: usize) -> Result<Stroke, Error> {
-    let cells = setup.grid.len();
-    for law in &mut setup.laws {
-        law.stays(cells);
+/// There is such a law.
+pub fn check_time(setup: &Setup, step: Option<f64>, with: &str) -> Result<(), Error> {
+    let varies = setup.laws.iter().find(|l| !l.is_constant());
+    match varies.filter(|_| step.is_none()) {
+        None => Ok(()),
+        Some(law) => Err(Error::Failed(format!(
+            "friction of the contact law `{}` may depend on the velocity of slip: give {with}",
+            law.interface().contact().plugin.name
+        ))),
     }
-    let setup = &*setup;
-    let mut strokes = setup
-        .laws
-        .iter()
-        .map(|law| of_law(setup, law, amplitude, steps));
-    let mut first = strokes
-        .next()
-        .unwrap_or_else(|| Err(Error::Failed("the patch has no law".into())))?;
-    let members: Vec<f64> = strokes
-        .map(|s| s.map(|s| s.point.adhesion))
-        .collect::<Result<_, _>>()?;
-    first.point.adhesion_band = Band::of(first.point.adhesion, &members);
-    Ok(first)
 }
 
-fn of_law(setup: &Setup, law: &PatchLaw, amplitude: f64, steps: usize) -> Result<Stroke, Error> {
-    let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
-    let grid = setup.grid;
-    let surfaces = Surfaces::new(grid, setup.bodies.elasticity, setup.layer);
-    let distance: Vec<f64> = (0..grid.len())
-        .map(|c| setup.bodies.distance.at(grid.middle(c)))
-        .collect();
-    let pressure = normal(&surfaces, &distance, setup.load, None).map_err(|e| fail(&e))?;
-    let each = amplitude / steps as f64;
-    // The speed at which a step takes as long as the passage by a cell.
-    let speed = setup.rolling_speed() * grid.size[0] / each;
-    let area = grid.area(3);
-    let mut traction: Field = vec![[0.0; 2]; grid.len()];
-    let mut curve = vec![[0.0; 2]];
-    let mut ever = vec![false; grid.len()];
-    let (mut path, mut worn) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
-    let (mut dissipated, mut iterations, mut unique) = (0.0, [0; 2], true);
-    let mut last = Passage::default();
-    let mut found = Tractions::default();
-    for step in 0..5 * steps {
-        let forth = step < steps || step >= 3 * steps;
-        let by = [if forth { each } else { -each }, 0.0];
-        let motion = Step::Shift {
-            by,
-            from: std::mem::take(&mut traction),
-        };
-        let start = match &motion {
-            Step::Shift { from, .. } => Some(&from[..]),
-            _ => None,
-        };
-        let p = &pressure.pressure;
-        let solved = tangential(&surfaces, p, &motion, (law, speed), start, TOLERANCE);
-        if let Some(error) = law.take_error() {
-            return Err(fail(&error));
-        }
-        found = solved.map_err(|e| fail(&e))?;
-        let cells = Cells {
-            grid: &grid,
-            pressure: p,
-            speed,
-        };
-        let passage = law.passage(cells, &found.slip).map_err(|e| fail(&e))?;
-        let force: f64 = found.traction.iter().map(|t| t[0]).sum::<f64>() * area;
-        let at = curve[curve.len() - 1][0] + by[0];
-        curve.push([at, force]);
-        iterations[0] += found.iterations[0];
-        iterations[1] += found.iterations[1];
-        unique &= found.unique;
-        if step >= steps {
-            for cell in 0..grid.len() {
-                if p[cell] > 0.0 && !found.sticks[cell] {
-                    ever[cell] = true;
-                    let (t, s) = (found.traction[cell], found.slip[cell]);
-                    path[cell] += length(s);
-                    dissipated -= (t[0] * s[0] + t[1] * s[1]) * area;
-                }
-                worn[cell] += passage.worn[cell];
-            }
-        }
-        traction.clone_from(&found.traction);
-        last = passage;
-    }
-    let touching = pressure.pressure.iter().filter(|p| **p > 0.0).count();
-    let slips = ever.iter().filter(|e| **e).count();
-    let closed = curve[steps..].windows(2);
-    let supplied = closed.map(|w| -0.5 * (w[0][1] + w[1][1]) * (w[1][0] - w[0][0]));
-    let volume = worn.iter().sum::<f64>() * area;
-    let wear = setup.laws[0].interface().law(Kind::WEAR).map(|law| Wear {
-        body: "interface".into(),
-        law: law.plugin.name.clone(),
-        volume,
-        depth: worn.iter().copied().fold(0.0, f64::max),
-        profile: Vec::new(),
+/// Solves a stroke: loading, then a full cycle.
+///
+/// # Errors
+/// A law fails, friction does not hold the force, or there is no solution.
+pub fn solve(setup: &Setup, drive: &Drive) -> Result<Stroke, Error> {
+    let with = match drive.amplitude {
+        Amplitude::Displacement(_) => "`frequency`, or `speed`, the mean speed of the stroke",
+        Amplitude::Force(_) => "the `frequency` of the stroke",
+    };
+    check_time(setup, drive.step, with)?;
+    // The law of the file is solved last, so that what stays with its cells is that of the cycle.
+    let others = setup.laws[1..].iter();
+    let members = others.map(|law| -> Result<f64, Error> {
+        Ok(adhesion(setup, &of_law(setup, law, drive)?).value)
     });
-    let force = curve[curve.len() - 1][1];
+    let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
+    let law = &setup.laws[0];
+    let found = of_law(setup, law, drive)?;
+    let point = point(setup, law, drive, &found, &members);
+    Ok(Stroke { point, found })
+}
+
+fn adhesion(setup: &Setup, found: &RefinedStroke) -> Estimate {
+    let force = found.amplitude[1];
+    Estimate {
+        value: force.value / setup.load,
+        error: force.error / setup.load,
+    }
+}
+
+/// Turns an error of a layer below into one of the command.
+pub(super) fn fail(error: &dyn std::fmt::Display) -> Error {
+    Error::Failed(error.to_string())
+}
+
+fn of_law(setup: &Setup, law: &PatchLaw, drive: &Drive) -> Result<RefinedStroke, Error> {
+    let strokes = Strokes {
+        law,
+        along: [1.0, 0.0],
+        amplitude: drive.amplitude,
+        quarter: drive.steps,
+        step: drive.step.unwrap_or(1.0),
+    };
+    let solved = setup.with_patch(|patch| patch.frets_refined(setup.grid, &strokes));
+    match law.take_error() {
+        Some(error) => Err(fail(&error)),
+        None => solved.map_err(|e| fail(&e)),
+    }
+}
+
+fn point(
+    setup: &Setup,
+    law: &PatchLaw,
+    drive: &Drive,
+    found: &RefinedStroke,
+    members: &[f64],
+) -> Point {
+    let cycle = &found.fine.cycle;
+    let adhesion = adhesion(setup, found);
+    let touching = found.fine.pressure.pressure.iter().filter(|p| **p > 0.0);
+    let touching = touching.count() as f64;
     let mut notes = Vec::new();
-    if !unique {
+    if !cycle.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the contact may jump to lower friction within a stroke".to_owned());
     }
-    let time = touching as f64 * 5.0 * amplitude / setup.rolling_speed();
-    notes.extend(law.outside(&last, 1, time));
-    Ok(Stroke {
-        point: Point {
-            motion: Motion::Fretting(amplitude),
-            force: [force, 0.0],
-            adhesion: force.abs() / setup.load,
-            adhesion_error: 0.0,
-            adhesion_band: None,
-            moment: 0.0,
-            t_gamma: supplied.sum(),
-            dissipation: dissipated,
-            resistance: 0.0,
-            stuck: 1.0 - slips as f64 / touching as f64,
-            slip_speed: None,
-            temperature: None,
-            wear: wear.into_iter().collect(),
-            iterations,
-            unique,
-            notes,
-        },
-        curve,
-        pressure,
-        tractions: found,
-        path,
-        worn,
-    })
+    let force = found.amplitude[1];
+    if force.error > COARSE * force.value {
+        notes.push(format!(
+            "the grid errs by {:.1} % of the force: take more `cells`",
+            100.0 * force.error / force.value
+        ));
+    }
+    let slips = found.energy.value > 1e-3 * cycle.amplitude[0] * cycle.amplitude[1];
+    if slips && (cycle.work() / cycle.energy - 1.0).abs() > WORK {
+        notes.push(format!(
+            "the work of the drive is {:.0} % of the energy of slip: take more `steps`",
+            100.0 * cycle.work() / cycle.energy
+        ));
+    }
+    let quarters = 5.0 * drive.steps as f64;
+    let time = drive.step.map_or(1.0, |s| touching * s * quarters);
+    notes.extend(law.outside(&law.now(), 1, time));
+    let wears = law.interface().law(Kind::WEAR);
+    let wear = wears.map(|wear| {
+        let deepest = cycle.worn.iter().copied().fold(0.0, f64::max);
+        let bodies = bodies_that_wear(setup).into_iter();
+        let of = bodies.map(|(body, factor)| Wear {
+            body,
+            law: wear.plugin.name.clone(),
+            volume: factor * found.worn.value,
+            depth: factor * deepest,
+            profile: Vec::new(),
+        });
+        of.collect::<Vec<_>>()
+    });
+    Point {
+        motion: Motion::Fretting(found.amplitude[0].value),
+        stroke: Some(Cycle {
+            by_force: matches!(drive.amplitude, Amplitude::Force(_)),
+            displacement: found.amplitude[0],
+            force,
+            energy: found.energy,
+            stuck: found.stuck,
+            energy_ratio: cycle.energy_ratio(),
+            slip_ratio: cycle.slip_ratio(),
+            worn: found.worn,
+        }),
+        force: [-cycle.amplitude[1], 0.0],
+        adhesion: adhesion.value,
+        adhesion_error: adhesion.error,
+        adhesion_band: Band::of(adhesion.value, members),
+        moment: 0.0,
+        t_gamma: cycle.work(),
+        dissipation: cycle.energy,
+        resistance: 0.0,
+        stuck: cycle.stuck,
+        slip_speed: drive.step.map(|s| cycle.fastest / s),
+        temperature: None,
+        wear: wear.unwrap_or_default(),
+        iterations: cycle.iterations,
+        unique: cycle.unique,
+        notes,
+    }
 }

@@ -62,6 +62,9 @@ impl Cone {
 /// Share of the time outside of a table from which it is told.
 const SEEN: f64 = 0.01;
 
+/// Name of the internal variable to which a patch gives the debris in a cell (m).
+pub const DEBRIS: &str = "debris";
+
 /// What the laws give in the cells of a patch; 0 in cells without contact.
 #[derive(Clone, Debug, Default)]
 pub struct Passage {
@@ -126,10 +129,32 @@ impl PatchLaw {
         Ok(law)
     }
 
-    /// Keeps material in its cell, with new contacts in all of them: the speed of the cells is then
-    /// that at which a step takes the time of a passage by a cell.
-    pub fn stays(&mut self, cells: usize) {
-        self.held = Some(Mutex::new(vec![None; cells]));
+    /// Keeps material in its cell: the speed of the cells is then that at which a step takes the
+    /// time of a passage by a cell.
+    #[must_use]
+    pub fn staying(mut self) -> Self {
+        self.held = Some(Mutex::default());
+        self
+    }
+
+    /// Returns whether friction is that of the pressure alone.
+    pub fn is_constant(&self) -> bool {
+        self.constant.is_some()
+    }
+
+    /// Returns the internal variables of the contacts that stay in their cells, as they are now.
+    pub fn now(&self) -> Passage {
+        let count = self.interface.variables();
+        let mut variables = vec![Vec::new(); count];
+        for state in self.carried() {
+            for (k, list) in variables.iter_mut().enumerate() {
+                list.push(state.get(k + 1).copied().unwrap_or(0.0));
+            }
+        }
+        Passage {
+            variables,
+            ..Passage::default()
+        }
     }
 
     /// Takes the friction of strips in place of that of the law, or that of the law again.
@@ -173,6 +198,18 @@ impl PatchLaw {
     pub fn take_error(&self) -> Option<LawError> {
         let mut error = self.error.lock().unwrap_or_else(PoisonError::into_inner);
         error.take()
+    }
+
+    fn keep(&self, error: LawError) {
+        let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
+        first.get_or_insert(error);
+    }
+
+    /// Returns the place of the internal variable that is the debris in a cell, if a law has one.
+    pub fn debris(&self) -> Option<usize> {
+        let loaded = self.interface.loaded();
+        let mut fields = loaded.flat_map(|l| l.plugin.variables.iter());
+        fields.position(|f| f.name == DEBRIS)
     }
 
     fn bench(&self, grid: &CellGrid) -> Bench {
@@ -232,11 +269,81 @@ impl Friction for PatchLaw {
             return cells.pressure.iter().map(bound).collect();
         }
         self.walk(cells, slip).unwrap_or_else(|error| {
-            let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert(error);
+            self.keep(error);
             // Without friction the iteration ends at once, and the caller finds the error.
             vec![Bound::default(); slip.len()]
         })
+    }
+
+    fn constant(&self) -> bool {
+        self.is_constant()
+    }
+
+    fn renew(&self, cells: usize) {
+        if let Some(held) = &self.held {
+            *held.lock().unwrap_or_else(PoisonError::into_inner) = vec![None; cells];
+        }
+    }
+
+    fn passed(&self, cells: Cells<'_>, slip: &[Vector]) -> Vec<f64> {
+        let wears = self.interface.wear().is_some();
+        if self.is_constant() && !wears {
+            return Vec::new();
+        }
+        match self.passage(cells, slip) {
+            Ok(passage) if wears => passage.worn,
+            Ok(_) => Vec::new(),
+            Err(error) => {
+                self.keep(error);
+                Vec::new()
+            }
+        }
+    }
+
+    /// For each cell under pressure the age of its contact (s) and its internal variables.
+    fn carried(&self) -> Vec<Vec<f64>> {
+        let Some(held) = &self.held else {
+            return Vec::new();
+        };
+        let held = held.lock().unwrap_or_else(PoisonError::into_inner);
+        let numbers = |held: &Held| {
+            let state = &held.state;
+            let age = std::iter::once(state.compression_time);
+            age.chain(state.variables.iter().copied()).collect()
+        };
+        held.iter()
+            .map(|h| h.as_ref().map_or_else(Vec::new, numbers))
+            .collect()
+    }
+
+    fn carry(&self, state: &[Vec<f64>]) {
+        let Some(held) = &self.held else { return };
+        let mut held = held.lock().unwrap_or_else(PoisonError::into_inner);
+        held.resize(state.len(), None);
+        let fresh = Bench::new(self.interface.clone(), 3, 1.0).fresh();
+        for (held, numbers) in held.iter_mut().zip(state) {
+            let Some((age, variables)) = numbers.split_first() else {
+                *held = None;
+                continue;
+            };
+            let contact = held.get_or_insert_with(|| Held {
+                state: fresh.clone(),
+                cone: None,
+            });
+            contact.state.compression_time = *age;
+            contact.state.variables.copy_from_slice(variables);
+        }
+    }
+
+    fn cover(&self, debris: &[f64]) {
+        let Some(place) = self.debris() else { return };
+        let mut state = self.carried();
+        for (numbers, debris) in state.iter_mut().zip(debris) {
+            if let Some(number) = numbers.get_mut(place + 1) {
+                *number = *debris;
+            }
+        }
+        self.carry(&state);
     }
 }
 

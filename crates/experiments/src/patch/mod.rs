@@ -20,6 +20,11 @@ mod bodies;
 pub mod comparison;
 pub mod files;
 pub mod fretting;
+pub mod fretting_cycles;
+mod fretting_cycles_shown;
+pub mod fretting_map;
+mod fretting_map_shown;
+pub mod fretting_spec;
 pub mod law;
 mod page;
 pub mod passages;
@@ -30,6 +35,8 @@ mod setup;
 pub mod spec;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_fretting;
 #[cfg(test)]
 mod tests_of_rolling;
 mod text;
@@ -85,11 +92,12 @@ pub fn solve(
         return Err(file.source.error_at("third_body", why).into());
     }
     let creepages = rolling::creepages(file)?;
-    let (amplitudes, steps) = fretting::amplitudes(file)?;
+    let (frets, drives) = fretting::strokes(file)?;
+    let map = frets.and_then(|spec| Some((spec, spec.map.as_ref()?)));
     let pulls = pulling::forces(file)?;
-    let mut setup = Setup::new(file, search)?;
+    let setup = Setup::new(file, search)?;
     let plan = passages::plan(file, &setup, &creepages, &pulls)?;
-    let count = creepages.len() + pulls.len() + amplitudes.len() + usize::from(plan.is_some());
+    let count = creepages.len() + pulls.len() + drives.len() + usize::from(plan.is_some());
     let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
     for creepage in &creepages {
         rolled.push(rolling::solve(&setup, creepage)?);
@@ -100,8 +108,8 @@ pub fn solve(
         rolled.push(rolling::solve(&setup, &creepage)?);
         follow(rolled.len(), count);
     }
-    for amplitude in amplitudes {
-        strokes.push(fretting::solve(&mut setup, amplitude, steps)?);
+    for drive in &drives {
+        strokes.push(fretting::solve(&setup, drive)?);
         follow(strokes.len(), count);
     }
     let worn = plan.map(|plan| passages::wear(&setup, &plan)).transpose()?;
@@ -109,8 +117,14 @@ pub fn solve(
         follow(count, count);
     }
     let pressures = rolled.iter().map(|s| &s.rolling.pressure);
-    let mut pressures = pressures.chain(strokes.iter().map(|s| &s.pressure));
-    let first = pressures.next().cloned().unwrap_or_default();
+    let mut pressures = pressures.chain(strokes.iter().map(|s| &s.found.fine.pressure));
+    let first = match pressures.next() {
+        Some(pressure) => pressure.clone(),
+        None => {
+            let pressed = setup.with_patch(|patch| patch.pressed(setup.grid));
+            pressed.map_err(|e| fretting::fail(&e))?.1
+        }
+    };
     let points = rolled.iter().map(|s| s.point.clone());
     let points: Vec<Point> = points
         .chain(strokes.iter().map(|s| s.point.clone()))
@@ -120,6 +134,13 @@ pub fn solve(
     answer.comparisons = comparisons;
     let (worn, course) = worn.unzip();
     answer.passages = worn;
+    if let Some(spec) = frets {
+        let strokes = (&drives[..], &answer.points[..]);
+        answer.cycles = fretting_cycles::solve(file, &setup, spec, strokes, follow)?;
+    }
+    if let Some((spec, map)) = map {
+        answer.map = Some(fretting_map::solve(file, &setup, spec, map, follow)?);
+    }
     Ok(Outcome {
         answer,
         setup,
@@ -153,5 +174,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         points,
         comparisons: Vec::new(),
         passages: None,
+        cycles: Vec::new(),
+        map: None,
     }
 }

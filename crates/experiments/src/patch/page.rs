@@ -2,11 +2,13 @@
 
 use super::answer::Motion;
 use super::comparison::Comparison;
+use super::fretting_map::FrettingMap;
 use super::{Outcome, PatchFile, passages_files};
 use crate::Error;
 use crate::page::section;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_observe::chart::{Colours, FieldMap};
+use fretwork_observe::quantity::quantity;
 use fretwork_rolling::fields::length;
 use fretwork_view::{Axis, Block, Chart, Section, Series, Sheet, Style};
 use std::path::Path;
@@ -24,6 +26,10 @@ pub fn write(file: &PatchFile, outcome: &Outcome, to: &Path) -> Result<(), Error
     sections.extend(passages_files::page(outcome));
     sections.extend(loops(outcome));
     sections.extend(maps(outcome));
+    let histories = outcome.answer.cycles.iter().enumerate();
+    let load = outcome.answer.load;
+    sections.extend(histories.map(|(k, history)| history.section(load, k + 1)));
+    sections.extend(outcome.answer.map.iter().flat_map(FrettingMap::sections));
     sections.push(section(
         "The file",
         vec![Block::Code(file.source.text().to_owned())],
@@ -120,14 +126,14 @@ fn loops(outcome: &Outcome) -> Option<Section> {
     let mut chart = Chart::new(
         "loops",
         Axis::new("displacement", "um"),
-        Axis::new("force on the first body", "N"),
+        Axis::new("force", "N"),
     );
     for stroke in &outcome.strokes {
         let Motion::Fretting(amplitude) = stroke.point.motion else {
             continue;
         };
-        let points = stroke.curve.iter().map(|[d, q]| (1e6 * d, *q)).collect();
-        chart = chart.with(Series::new(format!("{:.3} um", 1e6 * amplitude), points));
+        let points = stroke.curve().iter().map(|[d, q]| (1e6 * d, *q)).collect();
+        chart = chart.with(Series::new(quantity(amplitude, "m"), points));
     }
     let any = !outcome.strokes.is_empty();
     any.then(|| section("Loops", vec![figure(chart)]))
@@ -194,17 +200,18 @@ fn maps(outcome: &Outcome) -> Vec<Section> {
     }
     for k in some(outcome.strokes.len()) {
         let stroke = &outcome.strokes[k];
-        let p = &stroke.pressure.pressure;
-        let blocks = vec![
-            map(
-                "traction at the end",
-                "MPa",
-                1e-6,
-                sizes(&stroke.tractions.traction),
-                p,
-            ),
-            map("path of slip in a cycle", "um", 1e6, stroke.path.clone(), p),
+        let fine = &stroke.found.fine;
+        let p = &fine.pressure.pressure;
+        let end = fine.cycle.traction.last().map_or(&[][..], |t| &t[..]);
+        let mut blocks = vec![
+            map("pressure", "MPa", 1e-6, p.clone(), p),
+            map("traction at the end", "MPa", 1e-6, sizes(end), p),
+            map("way of slip in a cycle", "um", 1e6, stroke.way(), p),
         ];
+        if !fine.cycle.worn.is_empty() {
+            let worn = fine.cycle.worn.clone();
+            blocks.push(map("depth worn in a cycle", "nm", 1e9, worn, p));
+        }
         out.push(section(format!("Point {}", k + 1), blocks));
     }
     out

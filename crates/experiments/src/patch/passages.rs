@@ -126,6 +126,13 @@ pub(super) fn plan(
                 .into(),
         );
     }
+    if setup.bodies.length.is_some() {
+        return refuse(
+            "passages",
+            "profiles are those across the rolling, and a contact along a line of a `length` is the same all along it: give the bodies radii `across`, or leave out `passages`"
+                .into(),
+        );
+    }
     let point = match given.point {
         Some(point) if (1..=points).contains(&point) => point,
         None if points == 1 => 1,

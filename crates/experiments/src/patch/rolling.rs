@@ -142,6 +142,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     let temperature = setup.speed.filter(|_| !passage.temperature.is_empty());
     let point = Point {
         motion: Motion::Rolling(*creepage),
+        stroke: None,
         force: fine.force,
         adhesion,
         adhesion_error: length(error) / setup.load,
@@ -211,11 +212,21 @@ fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
         depth: factor * rows.iter().copied().fold(0.0, f64::max),
         profile: rows.iter().map(|d| factor * d).collect(),
     };
+    let bodies = bodies_that_wear(setup);
+    bodies
+        .iter()
+        .map(|(body, factor)| of(body, *factor))
+        .collect()
+}
+
+/// Returns the bodies and their parts in what the wear law gives: by the law and the hardness of
+/// each, or of both as `interface` where the law does not tell them apart.
+pub(super) fn bodies_that_wear(setup: &Setup) -> Vec<(String, f64)> {
     let Some(factors) = factors(setup) else {
-        return vec![of("interface", 1.0)];
+        return vec![("interface".to_owned(), 1.0)];
     };
     let bodies = setup.bodies.names.iter().zip(factors);
-    let bodies = bodies.filter_map(|(name, factor)| Some(of(name, factor?)));
+    let bodies = bodies.filter_map(|(name, factor)| Some((name.clone(), factor?)));
     bodies.collect()
 }
 

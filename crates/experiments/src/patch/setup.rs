@@ -38,7 +38,7 @@ pub struct Setup {
 
 /// Speed of rolling of laws that do not read it, where the file gives none (m/s).
 const ANY_SPEED: f64 = 1.0;
-/// Half of the side of the grid over the semi-axis of the patch.
+/// Half of the side of the grid over the semi-axis of the patch, at least.
 const AROUND: f64 = 1.1;
 /// Cells along a side of the grids on which the size of a patch is found, the growth of the grid
 /// from one to the next, and their largest number.
@@ -58,7 +58,7 @@ impl Setup {
         let speed = speed
             .map(|s| positive(source, "speed", s, "m/s"))
             .transpose()?;
-        let rolls = !matches!(spec.motion, MotionSpec::Fretting { .. });
+        let rolls = !matches!(spec.motion, MotionSpec::Fretting(_));
         if speed.is_none() || !rolls {
             bodies.thermal = None;
         }
@@ -98,6 +98,17 @@ impl Setup {
                 )));
             };
             let mut interface = built.interfaces[usize::from(index)].clone();
+            if let Some(law) = interface.wear().filter(|_| !rolls)
+                && law.plugin.parameters.iter().any(|p| p.name == "speed")
+            {
+                return Err(Error::Input(source.error_at(
+                    &format!("interfaces.{index}"),
+                    format!(
+                        "the wear law `{}` is over the distance rolled, of which fretting has none: take one over slip, such as archard",
+                        law.plugin.name
+                    ),
+                )));
+            }
             take_speed(&mut interface, out.speed);
             let at = format!("interfaces.{index}");
             if k == 0 {
@@ -111,7 +122,8 @@ impl Setup {
             };
             for interface in std::iter::once(interface).chain(ends) {
                 let law = PatchLaw::new(interface, out.bodies.thermal);
-                out.laws.push(law.map_err(|why| source.error_at(&at, why))?);
+                let law = law.map_err(|why| source.error_at(&at, why))?;
+                out.laws.push(if rolls { law } else { law.staying() });
             }
         }
         Ok(out)
@@ -199,8 +211,21 @@ fn build(
     interfaces::build(&case, &file.source, &library, &properties, search)
 }
 
-/// Returns a grid around the patch.
-fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
+/// Returns a grid around the patch; of a line contact one row of cells as long as the line.
+///
+/// # Errors
+/// The size of the patch is not found.
+pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
+    // Of a grid of half as many cells, whose error is compared, the outermost touch nothing.
+    let around_patch = AROUND.max(1.0 / (1.0 - 4.0 / cells as f64));
+    if let Some(length) = bodies.length {
+        let half = around_patch * bodies.line(load, length).half_width;
+        return Ok(CellGrid {
+            from: [-half, -0.5 * length],
+            size: [2.0 * half / cells as f64, length],
+            cells: [cells, 1],
+        });
+    }
     let hertz = bodies.distance.hertz(load, &bodies.elasticity);
     let around = |from: [f64; 2], to: [f64; 2], cells: usize| CellGrid {
         from,
@@ -208,7 +233,7 @@ fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
         cells: [cells; 2],
     };
     let centred = |half: [f64; 2], cells| around(half.map(|h| -h), half, cells);
-    let half = [AROUND * hertz.along, AROUND * hertz.across];
+    let half = [around_patch * hertz.along, around_patch * hertz.across];
     if bodies.distance.profile.is_none() {
         return Ok(centred(half, cells));
     }

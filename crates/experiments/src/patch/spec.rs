@@ -1,6 +1,7 @@
 //! The file of a patch.
 
 use super::comparison::{MeasuredSpec, PolachSpec};
+use super::fretting_spec::FrettingSpec;
 use super::passages::PassagesSpec;
 use super::third_body::ThirdBodySpec;
 use crate::spec::{Spec, SpecFile};
@@ -53,6 +54,10 @@ pub struct PatchSpec {
     /// Measured distance of the bodies across the motion, in place of the radii across.
     #[serde(default)]
     pub distance: Option<DistanceSpec>,
+    /// Length of the contact across the motion (m), where the bodies are straight there, as a
+    /// cylinder on a plane.
+    #[serde(default)]
+    pub length: Option<NumberSpec>,
     /// Load (N).
     pub load: NumberSpec,
     /// Speed of rolling (m/s); in fretting the mean speed of the stroke.
@@ -167,17 +172,7 @@ pub enum MotionSpec {
         spin: Option<NumberSpec>,
     },
     /// Strokes back and forth.
-    Fretting {
-        /// Amplitudes of the displacement of distant points (m), a number or a list.
-        amplitude: Numbers,
-        /// Steps of a quarter of a cycle.
-        #[serde(default = "steps")]
-        steps: usize,
-    },
-}
-
-fn steps() -> usize {
-    20
+    Fretting(FrettingSpec),
 }
 
 /// A number or several.

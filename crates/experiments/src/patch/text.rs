@@ -5,6 +5,7 @@ use super::comparison::Comparison;
 use super::passages_files;
 use super::third_body::ThirdBody;
 use fretwork_observe::quantity::{number, quantity};
+use fretwork_rolling::Estimate;
 use std::fmt::Write as _;
 
 impl Answer {
@@ -66,10 +67,21 @@ impl Answer {
                 let _ = write!(out, "\n  {label:<18} {text}");
             }
         }
-        let noted = self.points.iter().filter(|p| !p.notes.is_empty()).count();
+        for history in &self.cycles {
+            out.push('\n');
+            out.push_str(&history.text(self.load));
+        }
+        if let Some(map) = &self.map {
+            out.push('\n');
+            out.push_str(&map.text());
+        }
+        let notes = self.points.iter().map(|p| &p.notes);
+        let notes = notes.chain(self.cycles.iter().map(|h| &h.notes));
+        let all = self.points.len() + self.cycles.len();
+        let noted = notes.filter(|n| !n.is_empty()).count();
         let verdict = match noted {
             0 => "all points converged, within the range of the theory".to_owned(),
-            n => format!("{n} of {} points have notes, see above", self.points.len()),
+            n => format!("{n} of {all} points have notes, see above"),
         };
         let _ = write!(out, "\nverdict: {verdict}");
         out
@@ -103,16 +115,24 @@ impl Point {
                 }
                 parts.join(", ")
             }
-            Motion::Fretting(amplitude) => format!("amplitude {}", quantity(amplitude, "m")),
+            Motion::Fretting(amplitude) => match &self.stroke {
+                Some(c) if c.by_force => format!("force {}", quantity(c.force.value, "N")),
+                _ => format!("amplitude {}", quantity(amplitude, "m")),
+            },
         };
-        let rolls = matches!(self.motion, Motion::Rolling(_));
+        let rolls = self.stroke.is_none();
         let mut add = |label: &str, text: String| {
             let _ = write!(out, "\n  {label:<18} {text}");
         };
-        let mut adhesion = number(self.adhesion, 4);
-        if rolls {
-            adhesion += &format!(" +- {} by the grid", number(self.adhesion_error, 2));
-        }
+        let within = |e: Estimate, unit: &str| {
+            let (value, error) = (quantity(e.value, unit), quantity(e.error, unit));
+            format!("{value} +- {error} by the grid")
+        };
+        let mut adhesion = format!(
+            "{} +- {} by the grid",
+            number(self.adhesion, 4),
+            number(self.adhesion_error, 2)
+        );
         if let Some(band) = self.adhesion_band {
             let (low, high) = (number(band.low, 4), number(band.high, 4));
             adhesion += &format!(", {low} to {high} over the members");
@@ -129,9 +149,18 @@ impl Point {
                 format!("{} along, {} across, {moment}", forces[0], forces[1]),
             );
             add("T gamma", quantity(self.t_gamma, "J/m"));
-        } else {
-            add("on the first body", forces[0].clone());
-            add("energy of a cycle", quantity(self.t_gamma, "J"));
+        }
+        if let Some(cycle) = &self.stroke {
+            match cycle.by_force {
+                true => add("displacement", within(cycle.displacement, "m")),
+                false => add("force", within(cycle.force, "N")),
+            }
+            add("energy of a cycle", within(cycle.energy, "J"));
+            let [ratio, slip] = [cycle.energy_ratio, cycle.slip_ratio].map(|x| number(x, 3));
+            add(
+                "loop",
+                format!("A = E/(4 Q delta) {ratio}, slip ratio {slip}"),
+            );
         }
         let regime = match (rolls, self.stuck) {
             (false, 0.0) => ": gross slip",
