@@ -182,8 +182,11 @@ fn maps(outcome: &Outcome) -> Vec<Section> {
             ));
         }
         if !solved.passage.temperature.is_empty() {
-            let temperature = solved.passage.temperature.clone();
-            blocks.push(map("temperature", "K", 1.0, temperature, p));
+            let thermal = outcome.setup.bodies.thermal.as_ref();
+            let coldest = thermal.map_or(0.0, |t| t.bulk[0].min(t.bulk[1]));
+            let temperature = solved.passage.temperature.iter();
+            let rise = temperature.map(|t| t - coldest).collect();
+            blocks.push(map("temperature above the bodies", "K", 1.0, rise, p));
         }
         if let Some(wear) = solved.point.wear.first() {
             let rows = wear.profile.iter().enumerate();

@@ -49,7 +49,7 @@ pub struct PassagesSpec {
 }
 
 /// Error of a jump by default.
-const SHARE: f64 = 0.02;
+const SHARE: f64 = 0.05;
 /// Number of profiles that are kept by default.
 const PROFILES: usize = 8;
 
