@@ -10,7 +10,7 @@ WHEEL = """(
     name: "a wheel", materials: {"wheel": "wheel_steel_er7", "rail": "rail_steel_r260"},
     bodies: ((material: "wheel", radius: 0.46 m), (material: "rail", across: 0.3 m)),
     interfaces: [(name: "dry", between: ("wheel", "rail"), contact: "coulomb", parameters: (contact: {"mu": 0.4}))],
-    load: 75 kN, cells: 12, motion: Rolling(along: [0.1 %, 5 %]), members: [(contact: {"mu": 0.3})],
+    load: 75 kN, cells: 32, motion: Rolling(along: [0.1 %, 5 %]), members: [(contact: {"mu": 0.3})],
 )"""
 
 

@@ -29,7 +29,7 @@ fn wheel(friction: &str, rest: &str) -> String {
             name: "a wheel", materials: {{"wheel": "wheel_steel_er7", "rail": "rail_steel_r260"}},
             bodies: ((material: "wheel", radius: 0.46 m), (material: "rail", across: 0.3 m)),
             interfaces: [(name: "dry", between: ("wheel", "rail"), contact: "coulomb", parameters: (contact: {{"mu": {friction}}}))],
-            load: 75 kN, cells: 24, {rest}
+            load: 75 kN, cells: 32, {rest}
             motion: Rolling(along: [0.05 %, 0.2 %]),
         )"#
     )

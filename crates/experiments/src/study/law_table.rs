@@ -212,15 +212,17 @@ impl LawTable {
                 plan.launcher.fingerprint()
             ),
             match self.has_interval(plan) {
-                true => format!(
-                    "interval: 95 % of the mean over {} seeds from {first}{}",
-                    plan.seeds.len(),
-                    match inputs.is_empty() {
+                true => {
+                    let seeds = match plan.seeds.len() {
+                        1 => "one seed".to_owned(),
+                        n => format!("95 % of the mean over {n} seeds from {first}"),
+                    };
+                    let of = match inputs.is_empty() {
                         true => String::new(),
-                        false =>
-                            format!(", of the lowest and the highest of {}", inputs.join("; ")),
-                    }
-                ),
+                        false => format!(", the lowest and the highest of {}", inputs.join("; ")),
+                    };
+                    format!("interval: {seeds}{of}")
+                }
                 false => "no interval: each point is one run".to_owned(),
             },
         ];

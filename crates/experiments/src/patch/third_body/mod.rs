@@ -441,8 +441,13 @@ impl ThirdBody {
                 "not determined: all of the {all} passages slip throughout; at most {high}, taken as rigid; a smaller creepage determines it"
             ),
             _ => format!(
-                "compliance {} ({low} to {high}) from {known} of {all} passages, the others slip throughout",
-                quantity(self.compliance, "m/Pa")
+                "compliance {} ({low} to {high}) from {known} of {all} passages{}",
+                quantity(self.compliance, "m/Pa"),
+                if known < all {
+                    ", the others slip throughout"
+                } else {
+                    ""
+                }
             ),
         };
         vec![
