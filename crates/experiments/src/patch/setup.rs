@@ -73,7 +73,10 @@ impl Setup {
         let own = SlotValues::default();
         let members = std::iter::once(&own).chain(&spec.members);
         let mut out = Self {
-            grid: grid(&bodies, load, spec.cells)?,
+            grid: match rolls {
+                true => grid(&bodies, load, spec.cells, AROUND)?,
+                false => fretting_grid(&bodies, load, spec.cells)?,
+            },
             load,
             speed,
             layer,
@@ -211,15 +214,21 @@ fn build(
     interfaces::build(&case, &file.source, &library, &properties, search)
 }
 
-/// Returns a grid around the patch; of a line contact one row of cells as long as the line.
+/// Returns a grid around a patch that frets: the outermost cells of a grid of half as many, with
+/// which it is compared, touch nothing.
 ///
 /// # Errors
 /// The size of the patch is not found.
-pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
-    // Of a grid of half as many cells, whose error is compared, the outermost touch nothing.
-    let around_patch = AROUND.max(1.0 / (1.0 - 4.0 / cells as f64));
+pub(super) fn fretting_grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
+    let wide = AROUND.max(1.0 / (1.0 - 4.0 / cells as f64));
+    grid(bodies, load, cells, wide)
+}
+
+/// Returns a grid that is so much wider than the patch; of a line contact one row of cells as long
+/// as the line.
+fn grid(bodies: &Bodies, load: f64, cells: usize, wide: f64) -> Result<CellGrid, Error> {
     if let Some(length) = bodies.length {
-        let half = around_patch * bodies.line(load, length).half_width;
+        let half = wide * bodies.line(load, length).half_width;
         return Ok(CellGrid {
             from: [-half, -0.5 * length],
             size: [2.0 * half / cells as f64, length],
@@ -233,7 +242,7 @@ pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid,
         cells: [cells; 2],
     };
     let centred = |half: [f64; 2], cells| around(half.map(|h| -h), half, cells);
-    let half = [around_patch * hertz.along, around_patch * hertz.across];
+    let half = [wide * hertz.along, wide * hertz.across];
     if bodies.distance.profile.is_none() {
         return Ok(centred(half, cells));
     }
