@@ -17,7 +17,7 @@ use fretwork_core::laws::{Kind, Plugin};
 use std::path::Path;
 
 /// Axes with their units, in the order of the plugin interface.
-const AXES: [(&str, &str); 4] = [
+pub const AXES: [(&str, &str); 4] = [
     ("slip", "m"),
     ("slip_rate", "m/s"),
     ("pressure", "Pa"),

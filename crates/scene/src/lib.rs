@@ -23,7 +23,7 @@ pub mod inputs;
 pub mod interfaces;
 pub mod jump;
 pub mod law_inputs;
-mod law_table;
+pub mod law_table;
 mod law_values;
 mod magnitudes;
 pub mod material;

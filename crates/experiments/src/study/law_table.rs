@@ -18,6 +18,7 @@ use crate::table::csv::{NumberFormat, write_below};
 use crate::table::{Column, Table};
 use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::{DETERMINED, number, quantity};
+use fretwork_scene::law_table::AXES;
 use fretwork_scene::material::NumberSpec;
 use fretwork_scene::{Case, InputError, units};
 use serde::Deserialize;
@@ -44,12 +45,6 @@ fn coefficient() -> String {
     COEFFICIENT.to_owned()
 }
 
-const AXES: [(&str, &str); 4] = [
-    ("slip", "m"),
-    ("slip_rate", "m/s"),
-    ("pressure", "Pa"),
-    ("temperature", "K"),
-];
 const COEFFICIENT: &str = "friction_coefficient";
 /// Volume worn off all first bodies over load and slip.
 const WEAR: &str = "wear.specific_rate";
