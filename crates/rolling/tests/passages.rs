@@ -1,5 +1,11 @@
 //! Profiles over passages against closed forms and limits.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_elastic::patch::{Solid, effective_modulus, point};

@@ -19,9 +19,9 @@ pub(super) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, String)> {
     let mut out = Vec::new();
     let mut add = |label: &str, text: String| out.push((label.to_owned(), text));
     let names = body_names(answer);
-    for k in 0..2 {
+    for (k, name) in names.into_iter().enumerate() {
         add(
-            &format!("wear of {}", names[k]),
+            &format!("wear of {name}"),
             format!(
                 "{} +- {} by the jumps +- {} by the cells deep, {} mm2 of its section, in {} passages of its points",
                 quantity(end.depth[k], "m"),

@@ -172,7 +172,7 @@ pub enum MotionSpec {
         spin: Option<NumberSpec>,
     },
     /// Strokes back and forth.
-    Fretting(FrettingSpec),
+    Fretting(Box<FrettingSpec>),
 }
 
 /// A number or several.
