@@ -5,7 +5,7 @@ use super::fretting::{check_time, fail};
 use super::fretting_spec::{CracksSpec, FrettingSpec, MapSpec};
 use super::law::PatchLaw;
 use super::rolling::bodies_that_wear;
-use super::setup::{Setup, fretting_grid};
+use super::setup::{Setup, grid};
 use super::spec::{PatchFile, positive};
 use crate::Error;
 use fretwork_core::laws::Kind;
@@ -172,7 +172,7 @@ pub fn solve(
         amplitudes,
     };
     for (k, load) in out.loads.clone().into_iter().enumerate() {
-        let grid = fretting_grid(&setup.bodies, load, map.cells)?;
+        let grid = grid(&setup.bodies, load, map.cells)?;
         out.cells = grid.cells;
         if let Some(length) = setup.bodies.length {
             let half = setup.bodies.line(load, length).half_width;

@@ -40,6 +40,9 @@ pub struct Setup {
 const ANY_SPEED: f64 = 1.0;
 /// Half of the side of the grid over the semi-axis of the patch, at least.
 const AROUND: f64 = 1.1;
+/// Distance of the middles of the outermost cells from the middle of the patch over its semi-axis,
+/// at least, in all grids that are compared.
+const OUTSIDE: f64 = 1.005;
 /// Cells along a side of the grids on which the size of a patch is found, the growth of the grid
 /// from one to the next, and their largest number.
 const SEARCH: (usize, f64, usize) = (32, 1.5, 20);
@@ -73,10 +76,7 @@ impl Setup {
         let own = SlotValues::default();
         let members = std::iter::once(&own).chain(&spec.members);
         let mut out = Self {
-            grid: match rolls {
-                true => grid(&bodies, load, spec.cells, AROUND)?,
-                false => fretting_grid(&bodies, load, spec.cells)?,
-            },
+            grid: grid(&bodies, load, spec.cells)?,
             load,
             speed,
             layer,
@@ -214,19 +214,14 @@ fn build(
     interfaces::build(&case, &file.source, &library, &properties, search)
 }
 
-/// Returns a grid around a patch that frets: the outermost cells of a grid of half as many, with
-/// which it is compared, touch nothing.
+/// Returns a grid around the patch; of a line contact one row of cells as long as the line.
 ///
 /// # Errors
 /// The size of the patch is not found.
-pub(super) fn fretting_grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
-    let wide = AROUND.max(1.0 / (1.0 - 4.0 / cells as f64));
-    grid(bodies, load, cells, wide)
-}
-
-/// Returns a grid that is so much wider than the patch; of a line contact one row of cells as long
-/// as the line.
-fn grid(bodies: &Bodies, load: f64, cells: usize, wide: f64) -> Result<CellGrid, Error> {
+pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid, Error> {
+    // The error of the grid is from grids of cells twice as large, one of them half a cell of its
+    // own aside: the middles of its outermost cells lie outside of the patch too.
+    let wide = AROUND.max(OUTSIDE / (1.0 - 4.0 / cells as f64));
     if let Some(length) = bodies.length {
         let half = wide * bodies.line(load, length).half_width;
         return Ok(CellGrid {

@@ -83,7 +83,8 @@ pub struct PatchSpec {
     /// Measured adhesion beside the curve of the patch.
     #[serde(default)]
     pub measured: Vec<MeasuredSpec>,
-    /// Number of cells along each side of the grid, which is a tenth larger than the patch.
+    /// Number of cells along each side of the grid, which is a tenth larger than the patch, or more
+    /// if they are few.
     #[serde(default = "cells")]
     pub cells: usize,
     /// Other values of parameters of the laws: the results have the band of all of these.
