@@ -83,6 +83,7 @@ fn curve(outcome: &Outcome) -> Option<Section> {
         }
     });
     let note = match list[0].adhesion_band {
+        Some(_) if outcome.answer.third_body.is_some() => "Bars are the range over the seeds.",
         Some(_) => "Bars are the range over the members.",
         None => "Bars are the error by the grid.",
     };

@@ -47,7 +47,10 @@ impl Answer {
         }
         for (k, point) in self.points.iter().enumerate() {
             out.push('\n');
-            out.push_str(&point.text());
+            out.push_str(&point.text(match windows {
+                Some(_) => "seeds",
+                None => "members",
+            }));
             if let Some(settled) = windows.and_then(|w| w.points.get(k)) {
                 let _ = write!(out, "\n  {:<18} {}", "windows", settled.line());
             }
@@ -102,7 +105,8 @@ fn short(value: f64) -> String {
 }
 
 impl Point {
-    fn text(&self) -> String {
+    /// Returns its lines; its band is that over `members`.
+    fn text(&self, members: &str) -> String {
         let mut out = match self.motion {
             Motion::Rolling(c) => {
                 let percent = |x: f64| format!("{} %", short(100.0 * x));
@@ -135,7 +139,7 @@ impl Point {
         );
         if let Some(band) = self.adhesion_band {
             let (low, high) = (number(band.low, 4), number(band.high, 4));
-            adhesion += &format!(", {low} to {high} over the members");
+            adhesion += &format!(", {low} to {high} over the {members}");
         }
         add(if rolls { "adhesion" } else { "Q/P" }, adhesion);
         // What is left of a component that cancels is rounding.
