@@ -66,7 +66,8 @@ pub struct Point {
     pub motion: Motion,
     /// The cycle, in fretting.
     pub stroke: Option<Cycle>,
-    /// Forces on the first body along the motion and across it (N).
+    /// Forces on the first body along the motion and across it (N), extrapolated to cells of no
+    /// size.
     pub force: [f64; 2],
     /// Tangential force over load, extrapolated to cells of no size.
     pub adhesion: f64,

@@ -63,12 +63,12 @@ pub(super) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
         spin: pull.spin,
     };
     let carried = |size: f64| -> Result<f64, Error> {
-        let solved = setup.with_patch(|patch| patch.rolls(setup.grid, &at(size), law, speed));
+        let solved = setup.with_patch(|patch| patch.refined(setup.grid, &at(size), law, speed));
         if let Some(error) = law.take_error() {
             return Err(fail(&error));
         }
-        let rolling = solved.map_err(|e| fail(&e))?;
-        Ok(-sign * rolling.force[0])
+        let refined = solved.map_err(|e| fail(&e))?;
+        Ok(-sign * refined.force[0])
     };
     match pull::creepage(wanted, FIRST, FOUND, carried)? {
         Pulled::At(size) => Ok(at(size)),

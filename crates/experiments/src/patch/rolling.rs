@@ -114,6 +114,8 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     let most = |list: &[f64]| list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let slips = cells.map(|(s, _)| length(*s));
     let adhesion = length(force) / setup.load;
+    let beyond = [0, 1].map(|k| force[k] - fine.force[k]);
+    let t_gamma = fine.t_gamma - beyond[0] * creepage.along - beyond[1] * creepage.across;
     let mut notes = Vec::new();
     if !fine.tractions.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the patch has another branch of lower friction at this creepage; a law whose friction follows over a length of slip decides between them".to_owned());
@@ -143,12 +145,12 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     let point = Point {
         motion: Motion::Rolling(*creepage),
         stroke: None,
-        force: fine.force,
+        force,
         adhesion,
         adhesion_error: length(error) / setup.load,
         adhesion_band: Band::of(adhesion, &members),
         moment: fine.moment,
-        t_gamma: fine.t_gamma,
+        t_gamma,
         dissipation: fine.dissipation,
         resistance: fine.resistance,
         stuck: stuck as f64 / touching as f64,

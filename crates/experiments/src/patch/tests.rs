@@ -70,15 +70,16 @@ pub(super) fn near(got: f64, expected: f64, by: f64) {
     );
 }
 
-/// The adhesion is that of CONTACT (github eve70a/CONTACT, commit d431cdb, 48 x 44 cells), within
-/// the error that is given.
+/// The adhesion is that of CONTACT (github eve70a/CONTACT, commit d431cdb) within the error that is
+/// given and that of CONTACT's 48 x 44 cells, which is up to 1.2 %: as many cells of ours have its
+/// numbers to 2e-4 (`crates/rolling/tests/patches`).
 #[test]
 fn adhesion_by_the_shipped_law_is_that_of_contact() {
     let text = rolls(COULOMB, "motion: Rolling(along: [0.08 %, 0.16 %, 2 %])");
     let outcome = solved("creep", &text).unwrap();
     for (point, share) in outcome.answer.points.iter().zip([0.4742, 0.7831, 1.0]) {
         let off = (point.adhesion / 0.33 - share).abs();
-        assert!(off < 0.004, "{} {share}", point.adhesion / 0.33);
+        assert!(off < 0.012 * share, "{} {share}", point.adhesion / 0.33);
         assert!(
             off < 2.0 * point.adhesion_error / 0.33 + 2e-3,
             "{off} {point:?}"
@@ -104,14 +105,16 @@ fn a_force_has_its_creepage() {
 }
 
 /// In full slip the energy is mu P xi, and the volume worn k P xi over the distance rolled, with
-/// k = K/H of each body.
+/// k = K/H of each body. Tractions follow the slip, which the strain across turns by up to a few
+/// thousandths at this creepage: CONTACT's force is 0.9999 of mu P at 1 %, and goes with one over
+/// the square of the creepage.
 #[test]
 fn a_patch_that_slides_wears_by_load_and_creepage() {
     let interface = r#"contact: "coulomb", wear: "archard", parameters: (contact: {"mu": 0.33}, wear: {"K": 1e-4})"#;
     let text = rolls(interface, "speed: 20 m/s, motion: Rolling(along: 5 %)");
     let outcome = solved("wear", &text).unwrap();
     let point = &outcome.answer.points[0];
-    near(point.t_gamma, 0.33 * 106.7e3 * 0.05, 1e-6);
+    near(point.t_gamma, 0.33 * 106.7e3 * 0.05, 1e-5);
     assert_eq!(point.stuck, 0.0);
     let [wheel, rail] = &point.wear[..] else {
         panic!("{:?}", point.wear);
