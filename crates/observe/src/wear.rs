@@ -16,6 +16,7 @@ use fretwork_core::step::StepReport;
 use fretwork_core::threads::{map_ranges, worth_dividing};
 use fretwork_core::view::RunView;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::fmt::Write as _;
 
 crate::described! {
@@ -56,9 +57,6 @@ crate::described! {
     }
 }
 
-/// Path of the specific wear rate of all first bodies.
-const RATE: &str = "wear.specific_rate";
-
 /// Why a case has no wear.
 pub(crate) const NO_WEAR: &str = "no interface of the case has a wear law";
 /// Why a case has no flows of grains.
@@ -89,6 +87,20 @@ const FLOWS: [(&str, &str, &str); 4] = [
 ];
 
 impl WearSummary {
+    /// Path of the specific wear rate of all first bodies in a summary.
+    pub const RATE: &str = "wear.specific_rate";
+
+    /// Returns name and specific wear rate (m³/(N m)) of the first bodies of a summary that have
+    /// one.
+    pub fn rates(summary: &Value) -> Vec<(String, f64)> {
+        let bodies = summary["wear"]["bodies"].as_array();
+        let rate = |body: &Value| {
+            let name = body["body"].as_str()?.to_owned();
+            Some((name, body["specific_rate"].as_f64()?))
+        };
+        bodies.into_iter().flatten().filter_map(rate).collect()
+    }
+
     /// Adds wear and flows; `wears` says whether the case has a wear law, `without_surface` names
     /// what wears in contacts without a surface.
     pub(crate) fn report(&self, wears: bool, without_surface: &str, found: &mut Findings) {
@@ -128,7 +140,7 @@ impl WearSummary {
             }
         });
         let no_test = found.quantity("friction_coefficient").and_then(|q| q.lacks);
-        found.edit(RATE, |q| {
+        found.edit(Self::RATE, |q| {
             q.headline("specific wear rate").silent();
             q.lacks = no_test.or((!wears).then_some(NO_WEAR));
         });
@@ -217,7 +229,7 @@ impl WearSummary {
         }
         self.specific_rate = total;
         if let Some(total) = total {
-            found.edit(RATE, |q| q.value = total.into());
+            found.edit(Self::RATE, |q| q.value = total.into());
         }
     }
 }

@@ -154,14 +154,14 @@ fn jumps_do_not_matter_within_their_error() {
         bend(&fine)
     );
     assert!(bend(&course) < 2.0 * bend(&fine));
-    // A trial of the method with explicit jumps of 250 passages gave 41.3 um and 826 MPa, with cells
-    // that missed 5 % of the energy of slip.
+    // A trial of the method with explicit jumps of 250 passages gave 41.3 um and 826 MPa, with
+    // cells that missed 5 % of the energy of slip.
     assert!((finest.depth[1] / 41.3e-6 - 1.0).abs() < 0.05, "{finest:?}");
     assert!((finest.pressure / 826e6 - 1.0).abs() < 0.03, "{finest:?}");
 }
 
-/// Archard's wear is k/mu of the energy of slip, Q xi over the length rolled, also where most of the
-/// patch sticks, and pressures fall as the scar widens.
+/// Archard's wear is k/mu of the energy of slip, Q xi over the length rolled, also where most of
+/// the patch sticks, and pressures fall as the scar widens.
 #[test]
 fn wear_follows_from_the_energy_of_slip() {
     for creepage in [5e-4, 5e-3] {

@@ -47,7 +47,7 @@ macro_rules! sources {
 /// Sources of the SDK and the ABI, with which a law builds without the repository.
 const CRATES: &[(&str, &str)] = sources! {
     "fretwork-abi", "abi": "src/lib.rs";
-    "fretwork-law", "sdk": "README.md" "src/lib.rs" "src/ffi.rs" "src/intact.rs" "src/output.rs" "src/site.rs"
+    "fretwork-law", "sdk": "README.md" "src/lib.rs" "src/ffi.rs" "src/grid.rs" "src/intact.rs" "src/output.rs" "src/site.rs"
         "src/spring.rs" "src/table.rs" "src/testing.rs" "src/traits.rs";
 };
 

@@ -162,7 +162,7 @@ impl FrettingMap {
             real("force", "N", &|p| Some(p.conditions.amplitude[1])),
             real("force_over_load", "1", &|p| Some(p.conditions.adhesion())),
             real("energy", "J", &|p| Some(p.conditions.energy)),
-            real("energy_ratio", "1", &|p| Some(p.conditions.energy_ratio())),
+            real("A", "1", &|p| Some(p.conditions.energy_ratio())),
             real("slip_ratio", "1", &|p| Some(p.conditions.slip_ratio)),
             real("stuck", "1", &|p| Some(p.conditions.stuck)),
         ];
@@ -196,7 +196,7 @@ impl FrettingMap {
         add("energy_ratio_reached", |e| e.energy_ratio);
         add("reciprocating_begins", |e| e.reciprocating);
         let onset = |k: usize| edges().map(move |e| Some(e.at_onset[k]));
-        columns.push(Column::real("energy_ratio_at_onset", "1", onset(0)));
+        columns.push(Column::real("A_at_onset", "1", onset(0)));
         columns.push(Column::real("slip_ratio_at_onset", "1", onset(1)));
         let finite = |v: f64| v.is_finite().then_some(v);
         if edges().any(|e| e.mixed.is_some()) {
@@ -245,7 +245,7 @@ impl FrettingMap {
             field("energy", "J", "energy of slip in a cycle", &|p| {
                 p.conditions.energy
             }),
-            field("energy_ratio", "1", "energy over 4 Q delta", &|p| {
+            field("A", "1", "energy over 4 Q delta", &|p| {
                 p.conditions.energy_ratio()
             }),
             field("slip_ratio", "1", "opening over amplitude", &|p| {

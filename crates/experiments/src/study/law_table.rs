@@ -18,6 +18,8 @@ use crate::table::csv::{NumberFormat, write_below};
 use crate::table::{Column, Table};
 use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::{DETERMINED, number, quantity};
+use fretwork_observe::summary::SlidingTest;
+use fretwork_observe::wear::WearSummary;
 use fretwork_scene::law_table::AXES;
 use fretwork_scene::material::NumberSpec;
 use fretwork_scene::{Case, InputError, units};
@@ -42,12 +44,9 @@ pub struct LawTableSpec {
 }
 
 fn coefficient() -> String {
-    COEFFICIENT.to_owned()
+    SlidingTest::COEFFICIENT.to_owned()
 }
 
-const COEFFICIENT: &str = "friction_coefficient";
-/// Volume worn off all first bodies over load and slip.
-const WEAR: &str = "wear.specific_rate";
 /// Difference of the pressure of a window from that of its factor, over the latter, above which
 /// they are not the same.
 const PRESSURE: f64 = 0.05;
@@ -119,7 +118,7 @@ impl LawTable {
                 let why = "a factor is the slip, too: leave one of them out";
                 return fail("table.slip", why.to_owned());
             }
-            if spec.friction != COEFFICIENT || case.friction.is_none() {
+            if spec.friction != SlidingTest::COEFFICIENT || case.friction.is_none() {
                 let why = "parts of the path of slip are those of the case's friction test: give the case `friction`, and leave `table.friction` out";
                 return fail("table.slip", why.to_owned());
             }
@@ -144,7 +143,7 @@ impl LawTable {
     /// The numbers of runs that the tables are made of, with their keys in the file of the study.
     pub fn outputs(&self) -> Vec<(&'static str, OutputName)> {
         let wear = self.wear.then_some("table.wear");
-        let wear = wear.and_then(|key| Some((key, OutputName::parse(WEAR).ok()?)));
+        let wear = wear.and_then(|key| Some((key, OutputName::parse(WearSummary::RATE).ok()?)));
         let mut all = vec![("table.friction", self.friction.clone())];
         all.extend(wear);
         all
@@ -378,7 +377,7 @@ impl LawTable {
             return parts_of(&course, &self.slip, what == RATE);
         }
         let output = match what {
-            RATE => OutputName::parse(WEAR)?,
+            RATE => OutputName::parse(WearSummary::RATE)?,
             _ => self.friction.clone(),
         };
         let value = output.read(&summary(&place), &place);

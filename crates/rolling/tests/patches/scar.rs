@@ -82,7 +82,8 @@ fn follow(law: &Worn, grid: CellGrid, cycles: f64, share: f64, ejection: Option<
 }
 
 /// A worn volume of k P 4 (delta - elastic part) N, of a scar that flattens to that of rigid
-/// bodies: depth D - r²/(2 R), V = pi R D², and a pressure that is the same everywhere. Volume closes.
+/// bodies: depth D - r²/(2 R), V = pi R D², and a pressure that is the same everywhere. Volume
+/// closes.
 #[test]
 fn a_ball_wears_by_archard_to_the_scar_of_a_rigid_one() {
     let law = Worn {

@@ -9,6 +9,7 @@ use crate::study::execute::{execute, missing};
 use crate::study::plan::{Location, Plan, Point};
 use crate::study::rows::{DONE, status};
 use crate::study::spec::StudyFile;
+use fretwork_observe::wear::WearSummary;
 use fretwork_rolling::slider::{Course, Fitted};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -114,7 +115,7 @@ pub fn make(
         let fitted = course.and_then(|c| Fitted::of(&c, PARTS));
         Ok(Ran {
             fitted: fitted.ok_or_else(|| fail("it has no friction along its slip"))?,
-            wear: wear(&place),
+            wear: WearSummary::rates(&summary(&place)),
         })
     };
     let all: Vec<Ran> = all.iter().map(of).collect::<Result<_, _>>()?;
@@ -144,19 +145,4 @@ fn text(
         out += &format!("        (name: {:?}, set: {sets:?}),\n", strip.name);
     }
     Ok(out + "    ])],\n)\n")
-}
-
-/// Returns the specific wear rates that a run measured on its first bodies.
-fn wear(place: &Path) -> Vec<(String, f64)> {
-    let summary = summary(place);
-    let bodies = summary["wear"]["bodies"].as_array().cloned();
-    let rate = |body: &serde_json::Value| {
-        let name = body["body"].as_str()?.to_owned();
-        Some((name, body["specific_rate"].as_f64()?))
-    };
-    bodies
-        .into_iter()
-        .flatten()
-        .filter_map(|b| rate(&b))
-        .collect()
 }
