@@ -1,6 +1,7 @@
 //! Linear and angular momentum of isolated bodies, for any law of their contacts.
 
-use crate::scene;
+use crate::scene::{self, tables};
+use crate::temp::TempFolder;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::laws::Kind;
 use fretwork::shipped::built_in;
@@ -100,12 +101,14 @@ fn every_law<S: Space>() {
         if S::D == 2 && ["dmt", "jkr"].contains(&name) {
             continue;
         }
+        let folder = TempFolder::new("momentum");
+        let tables = tables(&plugin, &folder);
         let slots = match kind.spec().word {
-            "contact" => format!("contact: \"{name}\""),
+            "contact" => format!("contact: \"{name}\"{tables}"),
             "damage" => {
                 format!("contact: \"coulomb\", cohesion: \"elastic-bond\", damage: \"{name}\"")
             }
-            word => format!("contact: \"coulomb\", {word}: \"{name}\""),
+            word => format!("contact: \"coulomb\", {word}: \"{name}\"{tables}"),
         };
         let heat =
             plugin.kind == Kind::TRANSPORT || plugin.flags & fretwork_abi::FLAG_TEMPERATURE != 0;

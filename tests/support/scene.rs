@@ -4,6 +4,7 @@
 
 use crate::temp::TempFolder;
 use fretwork::geometry::space::Space;
+use fretwork::laws::Plugin;
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::{Built, LoadedCase, load, load_text};
 use fretwork::shipped::search_path;
@@ -19,6 +20,23 @@ pub(crate) fn file(name: &str) -> PathBuf {
 pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> LoadedCase {
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_owned()).collect();
     load(&file(name), &sets).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Writes a table of friction and wear over slip for a law that reads one, and returns the field of
+/// an interface that names it; nothing for other laws.
+pub(crate) fn tables(plugin: &Plugin, folder: &Path) -> String {
+    if plugin.flags & fretwork_abi::FLAG_TABLE == 0 {
+        return String::new();
+    }
+    let file = folder.join("table.csv");
+    let rows = ["0, 0.5, 1e-14", "0.01, 0.3, 2e-14", "1, 0.2, 3e-14"].join("\n");
+    let text = format!("slip [m], friction, k [1/Pa]\n{rows}\n");
+    std::fs::write(&file, text).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    format!(
+        ", tables: ({}: {:?})",
+        plugin.kind,
+        file.display().to_string()
+    )
 }
 
 /// A case in text.

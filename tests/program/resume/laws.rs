@@ -2,11 +2,12 @@
 
 use super::common::Folder;
 use super::state::goes_on;
+use crate::scene::tables;
 use fretwork::AnySimulation;
 use fretwork::laws::Kind;
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
-use fretwork_abi::{FLAG_TABLE, FLAG_TEMPERATURE};
+use fretwork_abi::FLAG_TEMPERATURE;
 
 /// A row of balls is moved to and fro on another row, with loose balls on it; x is along the rows.
 fn case(dimension: usize, laws: &str, heated: bool) -> String {
@@ -60,11 +61,9 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     } else {
         ""
     };
-    let reads = plugin.flags & FLAG_TABLE != 0;
-    let tables = match reads {
-        true => format!(", tables: ({kind}: \"table.csv\")"),
-        false => String::new(),
-    };
+    let folder = Folder::new(&format!("law-{kind}-{name}-{dimension}"));
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let tables = tables(&plugin, &folder.0);
     let laws = match kind.word() {
         // The material has no moduli.
         "contact" if name == "hertz-mindlin" => {
@@ -81,12 +80,7 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
         }
         _ => format!("{bond}, damage: \"linear-softening\", transport: \"{name}\""),
     };
-    let folder = Folder::new(&format!("law-{kind}-{name}-{dimension}"));
-    std::fs::create_dir_all(&folder.0).unwrap();
     let file = folder.0.join("case.ron");
-    // Over slip, which changes in each step.
-    let table = "slip [m], friction, k [1/Pa]\n0, 0.5, 1e-14\n0.01, 0.3, 2e-14\n1, 0.2, 3e-14\n";
-    std::fs::write(folder.0.join("table.csv"), table).unwrap();
     std::fs::write(&file, case(dimension, &laws, heated)).unwrap();
     let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
     let built = || loaded.build(&search_path()).map(|built| built.simulation);
