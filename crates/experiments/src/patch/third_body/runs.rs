@@ -11,7 +11,7 @@ use crate::study::rows::{DONE, status};
 use crate::study::spec::StudyFile;
 use fretwork_observe::wear::WearSummary;
 use fretwork_rolling::slider::{Course, Fitted};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 /// Parts of the passage with a coefficient of friction each.
