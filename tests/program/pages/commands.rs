@@ -12,6 +12,7 @@ const READ: [&str; 7] = [
     "cases",
     "docs",
     "fits",
+    "patches",
     "materials",
     "studies",
     "tests",
