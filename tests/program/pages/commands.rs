@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Folders that commands of pages read.
-const READ: [&str; 7] = [
+const READ: [&str; 8] = [
     "cases",
     "docs",
     "fits",

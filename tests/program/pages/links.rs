@@ -111,6 +111,7 @@ fn pages_that_sources_name_are_there() {
         "examples",
         "fits",
         "materials",
+        "patches",
         "plugins",
         "python",
         "src",
