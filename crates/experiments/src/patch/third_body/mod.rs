@@ -468,13 +468,16 @@ impl Settled {
     pub fn line(&self) -> String {
         let all: Vec<String> = self.adhesions.iter().map(|q| number_of(*q)).collect();
         let mut out = format!(
-            "{} after {} times, Q/P {}",
+            "{} after following {}, Q/P {}",
             if self.settled {
                 "settled"
             } else {
                 "not settled"
             },
-            all.len() - 1,
+            match all.len() - 1 {
+                1 => "once".to_owned(),
+                times => format!("{times} times"),
+            },
             all.join(", ")
         );
         if let [.., before, last] = self.adhesions[..] {
