@@ -209,7 +209,7 @@ def list(plugin_path: PathLike | Iterable[PathLike] = ()) -> builtins.list[Info]
         plugin_path: further folders with libraries of laws.
 
     >>> [law.name for law in list() if law.kind == "wear"]
-    ['archard', 'broken-bonds', 'dissipated-energy', 'oxidation', 't-gamma', 'thermal-archard']
+    ['archard', 'broken-bonds', 'dissipated-energy', 'oxidation', 't-gamma', 'tabulated', 'thermal-archard']
     """
     return _infos(_native("laws", None, _folders(plugin_path)))
 
