@@ -17,7 +17,7 @@ def command_line(*words):
 
 def test_the_shipped_laws_are_listed_with_their_schemas():
     laws = {(info.kind, info.name): info for info in law.list()}
-    assert len(laws) == 50
+    assert len(laws) == 53
     mac = laws["damage", "mac"]
     assert mac.built_in and not mac.error
     w = mac.parameters[0]
