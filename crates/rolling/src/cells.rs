@@ -180,7 +180,7 @@ impl Loaded for Contact<'_> {
 }
 
 /// Returns half of the extent of the cells with pressure along a direction (m).
-fn half_width(grid: &CellGrid, pressure: &[f64], along: Vector) -> f64 {
+pub fn half_width(grid: &CellGrid, pressure: &[f64], along: Vector) -> f64 {
     let touching = (0..grid.len()).filter(|cell| pressure[*cell] > 0.0);
     let (mut low, mut high) = (f64::MAX, f64::MIN);
     for cell in touching {

@@ -55,6 +55,8 @@ pub struct Refined {
     pub fine: Rolling,
     /// Force extrapolated to cells of no size, to first order (N).
     pub force: Vector,
+    /// Moment on the first body about the normal through the origin (N m), likewise.
+    pub moment: Estimate,
     /// Error of the force of the fine grid (N): its difference to the extrapolated one, and half of
     /// the difference of the coarse grids.
     pub error: Vector,
@@ -153,6 +155,7 @@ impl Patch<'_> {
         let fine = self.rolls_from(grid, Some(&coarse), creepage, law, speed)?;
         let [x, y] = [0, 1].map(|k| Estimate::of(fine.force[k], [coarse.force[k], other.force[k]]));
         Ok(Refined {
+            moment: Estimate::of(fine.moment, [coarse.moment, other.moment]),
             force: [x.value, y.value],
             error: [x.error, y.error],
             fine,

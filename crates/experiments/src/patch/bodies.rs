@@ -5,10 +5,12 @@ use super::spec::{DistanceSpec, PatchFile, positive, value};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::patch::{LinePatch, PointPatch, Solid, effective_modulus, line, point};
 use fretwork_math::diffusion::Conductor;
+use fretwork_observe::quantity::quantity;
 use fretwork_rolling::temperature::Thermal;
 use fretwork_scene::InputError;
 use fretwork_scene::material::{Material, MaterialLibrary, Sourced};
 use fretwork_scene::measured::MeasuredTable;
+use fretwork_scene::quantity::hardness_in_pascal;
 use std::collections::BTreeMap;
 
 /// Temperature of the bodies by default (K).
@@ -74,13 +76,39 @@ fn modulus(bodies: &[Elasticity; 2]) -> f64 {
     }))
 }
 
-/// Returns a table's value at a place, on straight lines between its rows and beyond its ends.
+/// Length of a line contact over half of its width below which its ends matter.
+const SLENDER: f64 = 10.0;
+
+/// Returns a table's value at a place, without kinks, in which pressures would be infinite: on a
+/// cubic between two rows with the slopes there of parabolas through three rows, and straight on
+/// beyond the ends.
 fn between(places: &[f64], values: &[f64], at: f64) -> f64 {
-    let next = places
-        .partition_point(|p| *p <= at)
-        .clamp(1, places.len() - 1);
-    let share = (at - places[next - 1]) / (places[next] - places[next - 1]);
-    values[next - 1] + share * (values[next] - values[next - 1])
+    let last = places.len() - 1;
+    let chord = |k: usize| (values[k + 1] - values[k]) / (places[k + 1] - places[k]);
+    let slope = |k: usize| match k {
+        _ if last == 1 => chord(0),
+        0 => chord(0) - (places[1] - places[0]) * bend(places, values, 1),
+        k if k == last => chord(k - 1) + (places[k] - places[k - 1]) * bend(places, values, k - 1),
+        k => chord(k - 1) + (places[k] - places[k - 1]) * bend(places, values, k),
+    };
+    if at <= places[0] || at >= places[last] {
+        let end = if at <= places[0] { 0 } else { last };
+        return values[end] + slope(end) * (at - places[end]);
+    }
+    let next = places.partition_point(|p| *p <= at).clamp(1, last);
+    let width = places[next] - places[next - 1];
+    let x = (at - places[next - 1]) / width;
+    let [from, to] = [next - 1, next].map(|k| width * slope(k));
+    let (a, b) = (values[next - 1], values[next]);
+    let cubic = 2.0 * (a - b) + from + to;
+    let square = 3.0 * (b - a) - 2.0 * from - to;
+    a + x * (from + x * (square + x * cubic))
+}
+
+/// Half of the second derivative of the parabola through a row and its neighbours.
+fn bend(places: &[f64], values: &[f64], k: usize) -> f64 {
+    let chord = |k: usize| (values[k + 1] - values[k]) / (places[k + 1] - places[k]);
+    (chord(k) - chord(k - 1)) / (places[k + 1] - places[k - 1])
 }
 
 impl Bodies {
@@ -209,6 +237,42 @@ impl Bodies {
                 profile,
             },
             length,
+        })
+    }
+
+    /// Returns the hardness of both bodies (Pa), where their materials have it.
+    pub fn hardness(&self) -> [Option<f64>; 2] {
+        self.names.each_ref().map(|name| {
+            let material = self.materials.iter().find(|(m, _)| m == name)?;
+            let hardness = material.1.get("hardness")?;
+            hardness_in_pascal(hardness.value, &hardness.unit)
+        })
+    }
+
+    /// Returns a note where the largest pressure (Pa) is above the hardness of a body.
+    pub fn yields(&self, pressure: f64) -> Option<String> {
+        let both = self.hardness().into_iter().zip(&self.names);
+        let known = both.filter_map(|(own, name)| Some((own?, name)));
+        let (softest, name) = known.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (pressure > softest).then(|| {
+            format!(
+                "NOT IN RANGE: the largest pressure, {}, is above the hardness of {name}, {}: the bodies yield, and here they are elastic",
+                quantity(pressure, "Pa"),
+                quantity(softest, "Pa")
+            )
+        })
+    }
+
+    /// Returns a note where a line contact under a load (N) is short beside its width.
+    pub fn short_line(&self, load: f64) -> Option<String> {
+        let length = self.length?;
+        let half = self.line(load, length).half_width;
+        (length < SLENDER * half).then(|| {
+            format!(
+                "NOT IN RANGE: the line is {} long and {} wide, and ends that bulge are not in plane strain; give radii `across` for a short contact",
+                quantity(length, "m"),
+                quantity(2.0 * half, "m")
+            )
         })
     }
 

@@ -8,11 +8,15 @@ use super::setup::Setup;
 use super::spec::{MotionSpec, PatchFile};
 use crate::Error;
 use fretwork_core::laws::Kind;
+use fretwork_observe::quantity::quantity;
+use fretwork_rolling::cells::half_width;
 use fretwork_rolling::{Amplitude, Estimate, RefinedStroke, Strokes};
 use fretwork_scene::InputError;
 
 /// Error of the force by the grid over the force that is no longer small.
 const COARSE: f64 = 0.05;
+/// Force over the load below which it is of the size of the residual of the tractions.
+const LEAST: f64 = 1e-5;
 /// Energy of the drive over that of slip, less 1, that is no longer small.
 const WORK: f64 = 0.1;
 
@@ -54,21 +58,6 @@ impl Stroke {
     }
 }
 
-/// Refuses laws that need the time of a step where it is not known.
-///
-/// # Errors
-/// There is such a law.
-pub fn check_time(setup: &Setup, step: Option<f64>, with: &str) -> Result<(), Error> {
-    let varies = setup.laws.iter().find(|l| !l.is_constant());
-    match varies.filter(|_| step.is_none()) {
-        None => Ok(()),
-        Some(law) => Err(Error::Failed(format!(
-            "friction of the contact law `{}` may depend on the velocity of slip: give {with}",
-            law.interface().contact().plugin.name
-        ))),
-    }
-}
-
 /// Solves a stroke: loading, then a full cycle.
 ///
 /// # Errors
@@ -78,7 +67,7 @@ pub fn solve(setup: &Setup, drive: &Drive) -> Result<Stroke, Error> {
         Amplitude::Displacement(_) => "`frequency`, or `speed`, the mean speed of the stroke",
         Amplitude::Force(_) => "the `frequency` of the stroke",
     };
-    check_time(setup, drive.step, with)?;
+    setup.check_time(drive.step, with)?;
     // The law of the file is solved last, so that what stays with its cells is that of the cycle.
     let others = setup.laws[1..].iter();
     let members = others.map(|law| -> Result<f64, Error> {
@@ -87,6 +76,13 @@ pub fn solve(setup: &Setup, drive: &Drive) -> Result<Stroke, Error> {
     let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
     let law = &setup.laws[0];
     let found = of_law(setup, law, drive)?;
+    if adhesion(setup, &found).value < LEAST {
+        return Err(Error::Failed(format!(
+            "a stroke with a force of {} is too small for the precision of tractions under a load of {}: give a larger one",
+            quantity(found.amplitude[1].value, "N"),
+            quantity(setup.load, "N")
+        )));
+    }
     let point = point(setup, law, drive, &found, &members);
     Ok(Stroke { point, found })
 }
@@ -134,6 +130,16 @@ fn point(
     if !cycle.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the contact may jump to lower friction within a stroke".to_owned());
     }
+    let half = half_width(&found.fine.grid, &found.fine.pressure.pressure, [1.0, 0.0]);
+    if found.amplitude[0].value > half {
+        notes.push(format!(
+            "NOT IN RANGE: the stroke moves the bodies by {} to each side, more than half of the width of the patch, {}: fields are those of a patch that stays in place",
+            quantity(found.amplitude[0].value, "m"),
+            quantity(half, "m")
+        ));
+    }
+    notes.extend(setup.bodies.yields(found.fine.pressure.largest()));
+    notes.extend(setup.bodies.short_line(setup.load));
     let force = found.amplitude[1];
     if force.error > COARSE * force.value {
         notes.push(format!(

@@ -1,7 +1,7 @@
 //! Many cycles of a stroke: scars, debris and friction over the cycles.
 
 use super::answer::{Motion, Point};
-use super::fretting::{check_time, fail};
+use super::fretting::fail;
 use super::fretting_spec::{CyclesSpec, Drive, FrettingSpec};
 use super::law::DEBRIS;
 use super::setup::Setup;
@@ -78,7 +78,7 @@ pub fn solve(
     }
     let mut out = Vec::new();
     for (drive, point) in drives.iter().zip(points) {
-        check_time(setup, drive.step, "the `frequency` of the strokes")?;
+        setup.check_time(drive.step, "the `frequency` of the strokes")?;
         let count = out.len();
         let mut history = of_drive(setup, drive, cycles, ejection, &mut |part| {
             follow(

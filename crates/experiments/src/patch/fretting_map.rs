@@ -1,7 +1,7 @@
 //! Maps of fretting over load and amplitude of displacement: running conditions with the boundaries
 //! of their regimes, energy and wear of a cycle, and what becomes of the material.
 
-use super::fretting::{check_time, fail};
+use super::fretting::fail;
 use super::fretting_spec::{CracksSpec, FrettingSpec, MapSpec};
 use super::law::PatchLaw;
 use super::rolling::bodies_that_wear;
@@ -152,7 +152,7 @@ pub fn solve(
             )
             .into());
     }
-    check_time(setup, setup.speed, "`speed`, the mean speed of the strokes")?;
+    setup.check_time(setup.speed, "`speed`, the mean speed of the strokes")?;
     let cracks = spec.cracks.as_ref();
     let cracks = cracks.map(|c| read_cracks(file, setup, c)).transpose()?;
     let bodies = match setup.laws[0].interface().law(Kind::WEAR) {

@@ -284,12 +284,17 @@ fn shares(
 ) -> Result<([f64; 2], String), InputError> {
     let source = &file.source;
     if let Some((one, other)) = given.shares {
-        let fits = |x: f64| x.is_finite() && x >= 0.0;
-        return match fits(one) && fits(other) && one + other > 0.0 {
+        if factors(setup).is_some() {
+            return Err(source.error_at(
+                "passages.shares",
+                "each body wears by `K` over its own hardness: leave `shares` out, or give the coefficient of both together, `k`",
+            ));
+        }
+        return match one >= 0.0 && other >= 0.0 && (one + other - 1.0).abs() < 1e-9 {
             true => Ok(([one, other], "`shares` of the file".into())),
             false => Err(source.error_at(
                 "passages.shares",
-                "give two numbers of 0 or more, not both 0: the parts of the depth of the law",
+                "give two numbers of 0 or more that add to 1: the parts of the depth of the law",
             )),
         };
     }

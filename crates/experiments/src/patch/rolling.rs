@@ -6,13 +6,16 @@ use super::setup::Setup;
 use super::spec::{MotionSpec, Numbers, PatchFile, value};
 use crate::Error;
 use fretwork_core::laws::Kind;
+use fretwork_observe::quantity::quantity;
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::pull::LARGEST;
 use fretwork_rolling::{Creepage, Refined, Rolling};
 use fretwork_scene::InputError;
-use fretwork_scene::quantity::hardness_in_pascal;
 
+/// Difference of the energies supplied and dissipated over the latter that is no longer small,
+/// where pressures resist by more than this share of T gamma.
+const BALANCE: f64 = 0.2;
 /// Peclet number below which heat flows along the patch too.
 const FAST: f64 = 5.0;
 /// Error of the force by the grid over the force that is no longer small.
@@ -43,7 +46,11 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
         {
             return Err(source.error_at(
                 &path,
-                format!("a creepage of {large} is more than {LARGEST}, where bodies slide rather than roll; in per cent write {large} %"),
+                format!(
+                    "a creepage of {} % is more than {} %, where bodies slide rather than roll; a number without a unit is a share, 1 % is 0.01",
+                    100.0 * large,
+                    100.0 * LARGEST
+                ),
             ));
         }
         Ok(list)
@@ -105,7 +112,12 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     });
     let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
     let speed = setup.rolling_speed();
-    let Refined { fine, force, error } = refined;
+    let Refined {
+        fine,
+        force,
+        moment,
+        error,
+    } = refined;
     let grid = fine.grid;
     let cells = fine.tractions.slip.iter().zip(&fine.pressure.pressure);
     let touching = cells.clone().filter(|(_, p)| **p > 0.0).count();
@@ -114,8 +126,8 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     let most = |list: &[f64]| list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let slips = cells.map(|(s, _)| length(*s));
     let adhesion = length(force) / setup.load;
-    let beyond = [0, 1].map(|k| force[k] - fine.force[k]);
-    let t_gamma = fine.t_gamma - beyond[0] * creepage.along - beyond[1] * creepage.across;
+    let t_gamma =
+        -(force[0] * creepage.along + force[1] * creepage.across + moment.value * creepage.spin);
     let mut notes = Vec::new();
     if !fine.tractions.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the patch has another branch of lower friction at this creepage; a law whose friction follows over a length of slip decides between them".to_owned());
@@ -134,6 +146,18 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
             ));
         }
     }
+    let supplied = fine.t_gamma + fine.resistance;
+    let cancels = fine.resistance.abs() > BALANCE * fine.t_gamma.abs();
+    if cancels && (supplied - fine.dissipation).abs() > BALANCE * fine.dissipation {
+        notes.push(format!(
+            "NOT IN RANGE: T gamma and the work of unlike bodies' pressures, {}, supply {} together, and the slips dissipate {}: wear and temperature are not known better than these differ; take more `cells`",
+            quantity(fine.resistance, "J/m"),
+            quantity(supplied, "J/m"),
+            quantity(fine.dissipation, "J/m")
+        ));
+    }
+    notes.extend(setup.bodies.yields(fine.pressure.largest()));
+    notes.extend(setup.bodies.short_line(setup.load));
     let mut pressed = fine.pressure.pressure.iter().enumerate();
     let distance = &setup.bodies.distance;
     if pressed.any(|(cell, p)| *p > 0.0 && !distance.knows(grid.middle(cell)[1])) {
@@ -149,7 +173,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         adhesion,
         adhesion_error: length(error) / setup.load,
         adhesion_band: Band::of(adhesion, &members),
-        moment: fine.moment,
+        moment: moment.value,
         t_gamma,
         dissipation: fine.dissipation,
         resistance: fine.resistance,
@@ -236,11 +260,6 @@ pub(super) fn bodies_that_wear(setup: &Setup) -> Vec<(String, f64)> {
 /// from the hardness of the softer one: that over its own, if it is known.
 pub(super) fn factors(setup: &Setup) -> Option<[Option<f64>; 2]> {
     let coefficient = setup.wear_coefficient.as_ref()?;
-    let hardness = |name: &String| {
-        let material = setup.bodies.materials.iter().find(|(m, _)| m == name)?;
-        let hardness = material.1.get("hardness")?;
-        hardness_in_pascal(hardness.value, &hardness.unit)
-    };
-    let of = |name| hardness(name).map(|own| coefficient.hardness / own);
-    Some(setup.bodies.names.each_ref().map(of))
+    let hardness = setup.bodies.hardness();
+    Some(hardness.map(|own| own.map(|own| coefficient.hardness / own)))
 }

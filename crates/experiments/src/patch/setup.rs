@@ -129,7 +129,25 @@ impl Setup {
                 out.laws.push(if rolls { law } else { law.staying() });
             }
         }
+        if rolls {
+            out.check_time(out.speed, "the `speed` of rolling")?;
+        }
         Ok(out)
+    }
+
+    /// Refuses laws that may depend on the velocity of slip where the time of a step is not known.
+    ///
+    /// # Errors
+    /// There is such a law; the sentence says what to give.
+    pub fn check_time(&self, known: Option<f64>, with: &str) -> Result<(), Error> {
+        let varies = self.laws.iter().find(|l| !l.is_constant());
+        match varies.filter(|_| known.is_none()) {
+            None => Ok(()),
+            Some(law) => Err(Error::Failed(format!(
+                "friction of the contact law `{}` may depend on the velocity of slip: give {with}",
+                law.interface().contact().plugin.name
+            ))),
+        }
     }
 
     /// Speed of rolling (m/s), with some value where no law reads it.
@@ -258,6 +276,11 @@ pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid,
                         from[k] = from[k].min(x - 1.6 * grid.size[k]);
                         to[k] = to[k].max(x + 1.6 * grid.size[k]);
                     }
+                }
+                // As much around it as around a patch of Hertz, see above.
+                for k in 0..2 {
+                    let more = 0.5 * (to[k] - from[k]) * (wide / AROUND - 1.0);
+                    (from[k], to[k]) = (from[k] - more, to[k] + more);
                 }
                 let filled = (to[0] - from[0]) / grid.extent()[0];
                 let wide = (to[1] - from[1]) / grid.extent()[1];

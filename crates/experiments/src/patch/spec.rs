@@ -5,6 +5,7 @@ use super::fretting_spec::FrettingSpec;
 use super::passages::PassagesSpec;
 use super::third_body::ThirdBodySpec;
 use crate::spec::{Spec, SpecFile};
+use fretwork_observe::quantity::quantity;
 use fretwork_scene::case::{InterfaceSpec, SlotValues};
 use fretwork_scene::material::NumberSpec;
 use fretwork_scene::source::{InputError, Source};
@@ -249,7 +250,7 @@ pub fn positive(
         true => Ok(value),
         false => Err(source.error_at(
             path,
-            format!("it is {value:e} {unit}, and must be above zero"),
+            format!("it is {}, and must be above zero", quantity(value, unit)),
         )),
     }
 }

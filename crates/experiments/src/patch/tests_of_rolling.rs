@@ -128,9 +128,10 @@ fn passages_wear_both_bodies() {
 #[test]
 fn passages_are_written_and_refused() {
     let passages = "motion: Pulling(force: -20 kN), passages: (count: 1000, shares: (0, 1))";
+    let both = WEARS.replace(r#""K": 1e-4"#, r#""k": 5e-14"#);
     let folder = folder("written");
     let path = folder.join("patch.ron");
-    std::fs::write(&path, rolls(WEARS, passages)).unwrap();
+    std::fs::write(&path, rolls(&both, passages)).unwrap();
     let file = PatchFile::read(&path).unwrap();
     let outcome = solve(&file, &laws(), &mut |_, _| ()).unwrap();
     let worn = outcome.answer.passages.as_ref().unwrap();
@@ -185,8 +186,18 @@ fn passages_are_written_and_refused() {
         ),
         (
             WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: 10, shares: (0, 1))",
+            "leave `shares` out",
+        ),
+        (
+            &both,
             "motion: Rolling(along: 1 %), passages: (count: 10, shares: (0, 0))",
-            "not both 0",
+            "add to 1",
+        ),
+        (
+            &both,
+            "motion: Rolling(along: 1 %), passages: (count: 10, shares: (0.3, 0.9))",
+            "add to 1",
         ),
     ] {
         let got = refused(interface, rest);
@@ -277,4 +288,78 @@ fn a_measured_distance_with_two_contacts() {
     write(205);
     assert!(told(&solved()));
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A parabola of 30 mm by ten rows, 3 mm aside: the pressure is that of Hertz at any number of
+/// cells, and the force acts where the patch is.
+#[test]
+fn few_rows_of_a_distance_have_the_pressure_of_hertz() {
+    let folder = folder("rows");
+    let rows = (0..10).map(|k| {
+        let y = -12.0 + 8.0 / 3.0 * f64::from(k);
+        format!("{y},{}", (y - 3.0) * (y - 3.0) / 600.0)
+    });
+    let rows: Vec<String> = rows.collect();
+    let table = format!("y [mm],distance [mm]\n{}\n", rows.join("\n"));
+    std::fs::write(folder.join("gap.csv"), table).unwrap();
+    let body = Solid {
+        young: 209.92e9,
+        poisson: 0.28,
+    };
+    let hertz = point(
+        50e3,
+        [1.0 / 0.625, 1.0 / 0.3],
+        effective_modulus(&[body; 2]),
+    );
+    for cells in [24, 48, 96] {
+        let text = rolls(
+            COULOMB,
+            "motion: Rolling(along: 0.1 %), distance: (file: \"gap.csv\")",
+        );
+        let text = text
+            .replace(", across: 1.776737 m", "")
+            .replace("cells: 24", &format!("cells: {cells}"))
+            .replace("106.7 kN", "50 kN");
+        let path = folder.join("patch.ron");
+        std::fs::write(&path, text).unwrap();
+        let file = PatchFile::read(&path).unwrap();
+        let outcome = solve(&file, &laws(), &mut |_, _| ()).unwrap();
+        near(outcome.answer.pressure, hertz.pressure, 0.01);
+        let found = &outcome.answer.points[0];
+        near(found.moment, -3e-3 * found.force[0], 0.02);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// What the theory does not hold for is noted, or refused where a number is missing.
+#[test]
+fn what_is_out_of_range_is_told() {
+    let told = |text: &str| solved("range", text).unwrap().answer.text();
+    let rolling = rolls(COULOMB, "motion: Rolling(along: 1 %)");
+    assert!(!told(&rolling).contains("NOT IN RANGE"));
+    let hard = told(&rolling.replace("106.7 kN", "1e7 kN"));
+    assert!(hard.contains("above the hardness of wheel"), "{hard}");
+    let line = rolling
+        .replace(", across: 1.776737 m", "")
+        .replace("cells: 24", "cells: 24, length: 20 mm");
+    let line = told(&line);
+    assert!(line.contains("the line is 20.00 mm long"), "{line}");
+    let falls = r#"contact: "rail-falling-friction""#;
+    let refused = solved("range", &rolls(falls, "motion: Rolling(along: 1 %)"));
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.contains("give the `speed`"), "{refused}");
+    let large = solved("range", &rolls(COULOMB, "motion: Rolling(along: 60 %)"));
+    let large = large.unwrap_err().to_string();
+    assert!(
+        large.contains("a creepage of 60 % is more than 50 %"),
+        "{large}"
+    );
+    let stroke = |amplitude: &str| {
+        let motion = format!("motion: Fretting(amplitude: {amplitude})");
+        solved("range", &rolls(COULOMB, &motion))
+    };
+    let long = stroke("20 mm").unwrap().answer.text();
+    assert!(long.contains("more than half of the width"), "{long}");
+    let tiny = stroke("1e-13 m").unwrap_err().to_string();
+    assert!(tiny.contains("give a larger one"), "{tiny}");
 }
