@@ -104,6 +104,11 @@ fn curve(outcome: &Outcome) -> Table {
         "N",
         points().map(|p| Some(p.t_gamma)),
     ));
+    columns.push(Column::real(
+        "resistance",
+        "N",
+        points().map(|p| Some(p.resistance)),
+    ));
     columns.push(Column::real("stuck", "1", points().map(|p| Some(p.stuck))));
     columns.push(Column::real(
         "slip_speed",

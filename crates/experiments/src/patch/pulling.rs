@@ -73,7 +73,7 @@ pub(super) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
     match pull::creepage(wanted, FIRST, FOUND, carried)? {
         Pulled::At(size) => Ok(at(size)),
         Pulled::Most(most) => Err(Error::Failed(format!(
-            "the patch does not carry a force of {} along the rolling: with this law it has at most {}",
+            "the patch does not carry a force of {} along the rolling: with this law it has at most {}; give a smaller `force`",
             quantity(wanted, "N"),
             quantity(most, "N")
         ))),

@@ -41,15 +41,20 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
         let list: Vec<f64> = list
             .map(|n| value(source, &path, n, unit))
             .collect::<Result<_, _>>()?;
-        if unit.is_empty()
-            && let Some(large) = list.iter().find(|x| x.abs() > LARGEST)
-        {
+        let large = list
+            .iter()
+            .position(|x| unit.is_empty() && x.abs() > LARGEST);
+        if let Some(k) = large {
+            // A number without a unit may have been meant in per cent.
+            let advice = match numbers.0[k].unit {
+                Some(_) => String::new(),
+                None => format!("; in per cent write {} %", list[k]),
+            };
             return Err(source.error_at(
                 &path,
                 format!(
-                    "a creepage of {} % is more than {} %, where bodies slide rather than roll; a number without a unit is a share, 1 % is 0.01",
-                    100.0 * large,
-                    100.0 * LARGEST
+                    "a creepage of {} is more than {LARGEST}, where bodies slide rather than roll{advice}",
+                    list[k]
                 ),
             ));
         }

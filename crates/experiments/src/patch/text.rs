@@ -132,11 +132,12 @@ impl Point {
             let (value, error) = (quantity(e.value, unit), quantity(e.error, unit));
             format!("{value} +- {error} by the grid")
         };
-        let mut adhesion = format!(
-            "{} +- {} by the grid",
-            number(self.adhesion, 4),
-            number(self.adhesion_error, 2)
-        );
+        let mut adhesion = number(self.adhesion, 4);
+        // A given force has no error.
+        if !self.stroke.is_some_and(|c| c.by_force) {
+            let error = number(self.adhesion_error, 2);
+            adhesion += &format!(" +- {error} by the grid");
+        }
         if let Some(band) = self.adhesion_band {
             let (low, high) = (number(band.low, 4), number(band.high, 4));
             adhesion += &format!(", {low} to {high} over the {members}");
@@ -152,7 +153,14 @@ impl Point {
                 "on the first body",
                 format!("{} along, {} across, {moment}", forces[0], forces[1]),
             );
-            add("T gamma", quantity(self.t_gamma, "J/m"));
+            let supplied = quantity(self.t_gamma, "J/m");
+            // Pressures of like bodies are alike on both sides.
+            let resist = self.resistance.abs() > ROUNDING * self.t_gamma.abs();
+            let resistance = resist.then(|| {
+                let work = quantity(self.resistance, "J/m");
+                format!(", and {work} by pressures of unlike bodies")
+            });
+            add("T gamma", supplied + &resistance.unwrap_or_default());
         }
         if let Some(cycle) = &self.stroke {
             match cycle.by_force {
