@@ -51,7 +51,7 @@ pub struct Loop {
     pub energy: f64,
     /// Energy dissipated in each cell (J/m²).
     pub dissipated: Vec<f64>,
-    /// Pressure times the way of slip of each cell (Pa m).
+    /// Pressure times the path of slip of each cell (Pa m).
     pub rubbed: Vec<f64>,
     /// Which cells touch and never slip.
     pub sticks: Vec<bool>,

@@ -4,7 +4,7 @@
 //! A crack is expected where the index of a criterion reaches 1 for the averaged cycle, wear where
 //! its largest depth after a number of cycles reaches a limit. In partial slip stresses grow with
 //! the amplitude and wear is little; in gross slip stresses stay as they are, and wear, which grows
-//! with the way of slip, takes away what would crack.
+//! with the path of slip, takes away what would crack.
 
 use crate::below::Below;
 use crate::cells::{ByCells, Contact};

@@ -70,9 +70,9 @@ pub struct Conditions {
     pub stuck: f64,
     /// Energy of a cycle (J).
     pub energy: f64,
-    /// Pressure times way of slip in a cycle, summed over the patch (N m).
+    /// Pressure times path of slip in a cycle, summed over the patch (N m).
     pub rubbed: f64,
-    /// Largest pressure times way of slip of a place (Pa m).
+    /// Largest pressure times path of slip of a place (Pa m).
     pub most_rubbed: f64,
     /// Opening of the loop over the amplitude.
     pub slip_ratio: f64,

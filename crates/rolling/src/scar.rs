@@ -6,10 +6,10 @@
 //!
 //! ```text
 //! e = h + depth + N k s p + u_z(p) - delta        d depth/dN = w, the wear of the law
-//! d rho/dN = w - rho s/l                          s: way of slip in a cycle
+//! d rho/dN = w - rho s/l                          s: path of slip in a cycle
 //! ```
 //!
-//! with rho the debris between the bodies, volume over area, and l the way of slip over which it
+//! with rho the debris between the bodies, volume over area, and l the path of slip over which it
 //! leaves: source and outflow of a third body (N. Fillot, I. Iordanoff, Y. Berthier, Wear 262,
 //! 2007), with an outflow in proportion to the debris. Volume closes by construction.
 
@@ -175,7 +175,9 @@ impl Cycles<'_> {
             };
             for (cell, (p, c)) in pressed.pressure.iter().zip(&compliance).enumerate() {
                 let worn = c * p;
-                let leaves = self.ejection.map_or(0.0, |l| cycles * end.way(cell) / l);
+                let leaves = self
+                    .ejection
+                    .map_or(0.0, |l| cycles * end.slip_path(cell) / l);
                 let before = scar.debris[cell] + worn;
                 let after = before / (1.0 + leaves);
                 scar.depth[cell] += worn;
@@ -265,8 +267,8 @@ impl Cycles<'_> {
 }
 
 impl State {
-    /// Returns the way of slip of a cell in a cycle (m).
-    fn way(&self, cell: usize) -> f64 {
+    /// Returns the path of slip of a cell in a cycle (m).
+    fn slip_path(&self, cell: usize) -> f64 {
         match self.pressure.pressure[cell] {
             p if p > 0.0 => self.cycle.rubbed[cell] / p,
             _ => 0.0,

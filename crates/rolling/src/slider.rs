@@ -10,7 +10,7 @@
 
 /// The course of a passage, at ascending places.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Course {
+pub struct StripHistory {
     /// Places between -1 and 1.
     pub place: Vec<f64>,
     /// Relative displacement of the surfaces (m).
@@ -65,7 +65,7 @@ impl Slider {
     }
 
     /// Returns the tractions along a course (Pa), and where the layer slips.
-    pub fn tractions(&self, course: &Course) -> (Vec<f64>, Vec<bool>) {
+    pub fn tractions(&self, course: &StripHistory) -> (Vec<f64>, Vec<bool>) {
         let mut slipped = 0.0;
         let steps = course.place.iter().zip(&course.path).zip(&course.pressure);
         let step = |((place, path), pressure): ((&f64, &f64), &f64)| {
@@ -93,7 +93,7 @@ impl Fitted {
     /// Fits a layer to a course: its compliance with one coefficient for all of the passage, since
     /// with many of them a rigid layer whose friction rises from 0 fits as well, and then `parts`
     /// coefficients with that compliance. `None` where the course does not slide, or has no rows.
-    pub fn of(course: &Course, parts: usize) -> Option<Self> {
+    pub fn of(course: &StripHistory, parts: usize) -> Option<Self> {
         let most = |list: &[f64]| list.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let (pressure, traction) = (most(&course.pressure), most(&course.traction));
         let largest = most(&course.path) / traction;
@@ -136,7 +136,7 @@ impl Fitted {
         low > 0.0 && high <= KNOWN * low
     }
 
-    fn with_parts(course: &Course, parts: usize, compliance: f64, pressure: f64) -> Self {
+    fn with_parts(course: &StripHistory, parts: usize, compliance: f64, pressure: f64) -> Self {
         let mut slider = Slider {
             friction: vec![course.late_friction(); parts],
             compliance,
@@ -183,7 +183,7 @@ impl Fitted {
     }
 }
 
-impl Course {
+impl StripHistory {
     /// Returns the friction of rows, their tractions over their pressures; `None` without pressure.
     fn friction(&self, of: &dyn Fn(usize) -> bool) -> Option<f64> {
         let rows = (0..self.place.len()).filter(|k| of(*k));
@@ -232,9 +232,9 @@ mod tests {
 
     /// A passage under Hertz' pressure with a slip that grows towards the trailing edge, and the
     /// tractions of a layer of known friction and compliance.
-    fn passage(slip: f64, friction: &[f64], compliance: f64) -> Course {
+    fn passage(slip: f64, friction: &[f64], compliance: f64) -> StripHistory {
         let rows = 400;
-        let mut course = Course::default();
+        let mut course = StripHistory::default();
         for k in 0..rows {
             let place = -1.0 + 2.0 * (k as f64 + 0.5) / rows as f64;
             course.place.push(place);
@@ -286,6 +286,6 @@ mod tests {
             assert!((coefficient(&mu, place) - expected).abs() < 1e-12);
         }
         assert_eq!(coefficient(&[0.2], 0.3), 0.2);
-        assert!(Fitted::of(&Course::default(), 4).is_none());
+        assert!(Fitted::of(&StripHistory::default(), 4).is_none());
     }
 }

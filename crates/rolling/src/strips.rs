@@ -2,7 +2,7 @@
 
 use crate::fields::Vector;
 use crate::friction::{Bound, Cells, Friction};
-use crate::slider::{Course, coefficient};
+use crate::slider::{StripHistory, coefficient};
 use crate::tangential::Tractions;
 use fretwork_elastic::half_space::CellGrid;
 
@@ -115,14 +115,14 @@ pub fn course(
     compliance: f64,
     across: f64,
     sign: f64,
-) -> Option<Course> {
+) -> Option<StripHistory> {
     let columns = grid.cells[0];
     let row = ((across - grid.from[1]) / grid.size[1]).floor();
     let row = (row.max(0.0) as usize).min(grid.cells[1] - 1);
     let range = touching(&pressure[row * columns..(row + 1) * columns])?;
     let cells: Vec<usize> = range.rev().map(|c| row * columns + c).collect();
     let count = cells.len();
-    let mut out = Course::default();
+    let mut out = StripHistory::default();
     let mut slipped = 0.0;
     for edge in 0..=count {
         if let Some(before) = edge.checked_sub(1) {

@@ -1,9 +1,9 @@
 //! Results of a patch, as numbers in SI units.
 
-use super::comparison::Comparison;
-use super::fretting_cycles::History;
-use super::fretting_map::FrettingMap;
-use super::passages::Worn;
+use super::fretting::cycles::History;
+use super::fretting::map::FrettingMap;
+use super::rolling::comparison::Comparison;
+use super::rolling::passages::Worn;
 use super::third_body::ThirdBody;
 use fretwork_rolling::{Creepage, Estimate};
 use serde::Serialize;

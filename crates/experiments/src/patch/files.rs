@@ -2,7 +2,8 @@
 //! of passages, and the page `patch.html`.
 
 use super::answer::Motion;
-use super::{Outcome, PatchFile, page, passages_files};
+use super::rolling::passages_shown;
+use super::{Outcome, PatchFile, page};
 use crate::Error;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
@@ -49,7 +50,7 @@ pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, 
         let path = out.join(format!("loop_{}.csv", k + 1));
         csv::write(&table, &path, NumberFormat::Plain)?;
     }
-    passages_files::write(outcome, out)?;
+    passages_shown::write(outcome, out)?;
     for (k, history) in outcome.answer.cycles.iter().enumerate() {
         history.write(outcome.answer.load, out, k + 1)?;
     }
@@ -210,7 +211,7 @@ fn fields(outcome: &Outcome, path: &Path) -> Result<(), Error> {
             field("pressure", "Pa", "pressure", fine.pressure.pressure.clone()),
             field("traction_x", "Pa", "traction at the end", of(end, 0)),
             field("traction_y", "Pa", "traction at the end", of(end, 1)),
-            field("way", "m", "way of slip in a cycle", stroke.way()),
+            field("slip_path", "m", "slip path in a cycle", stroke.slip_path()),
             field(
                 "dissipated",
                 "J/m^2",

@@ -6,39 +6,27 @@
 //!       ▼
 //! bodies, grid, laws           bodies, setup, law
 //!       ▼
-//! points: creepages, strokes   rolling, pulling, fretting      (fretwork_rolling)
+//! points: creepages, strokes   rolling, fretting               (fretwork_rolling)
 //!       ▲▼
 //! runs of a window             third_body
 //!       ▼
-//! profiles over passages       passages, passages_files
-//! other curves, measurements   comparison
+//! profiles over passages       rolling::passages
+//! maps, many cycles            fretting::{map, cycles}
+//! other curves, measurements   rolling::comparison
 //! numbers, curves, fields      answer, text, files, page
 //! ```
 
 mod answer;
 mod bodies;
-pub mod comparison;
 pub mod files;
 pub mod fretting;
-pub mod fretting_cycles;
-mod fretting_cycles_shown;
-pub mod fretting_map;
-mod fretting_map_shown;
-pub mod fretting_spec;
 pub mod law;
 mod page;
-pub mod passages;
-mod passages_files;
-mod pulling;
 pub mod rolling;
 mod setup;
 pub mod spec;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod tests_fretting;
-#[cfg(test)]
-mod tests_of_rolling;
 mod text;
 pub mod third_body;
 
@@ -52,7 +40,7 @@ use crate::folder::Owner;
 use fretting::Stroke;
 use fretwork_core::laws::SearchPath;
 use fretwork_rolling::{Course, Pressure};
-use rolling::Solved;
+use rolling::{Solved, comparison, passages, pulling};
 
 /// Owner of the folders of patches.
 pub const OWNER: Owner = Owner {
@@ -136,10 +124,10 @@ pub fn solve(
     answer.passages = worn;
     if let Some(spec) = frets {
         let strokes = (&drives[..], &answer.points[..]);
-        answer.cycles = fretting_cycles::solve(file, &setup, spec, strokes, follow)?;
+        answer.cycles = fretting::cycles::solve(file, &setup, spec, strokes, follow)?;
     }
     if let Some((spec, map)) = map {
-        answer.map = Some(fretting_map::solve(file, &setup, spec, map, follow)?);
+        answer.map = Some(fretting::map::solve(file, &setup, spec, map, follow)?);
     }
     Ok(Outcome {
         answer,

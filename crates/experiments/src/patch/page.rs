@@ -1,9 +1,10 @@
 //! The page of a patch: its answer, the curve of adhesion or the loops, and maps over the patch.
 
 use super::answer::Motion;
-use super::comparison::Comparison;
-use super::fretting_map::FrettingMap;
-use super::{Outcome, PatchFile, passages_files};
+use super::fretting::map::FrettingMap;
+use super::rolling::comparison::Comparison;
+use super::rolling::passages_shown;
+use super::{Outcome, PatchFile};
 use crate::Error;
 use crate::page::section;
 use fretwork_elastic::half_space::CellGrid;
@@ -23,7 +24,7 @@ const MAPS: usize = 4;
 pub fn write(file: &PatchFile, outcome: &Outcome, to: &Path) -> Result<(), Error> {
     let mut sections = vec![section("Answer", vec![Block::Code(outcome.answer.text())])];
     sections.extend(curve(outcome));
-    sections.extend(passages_files::page(outcome));
+    sections.extend(passages_shown::page(outcome));
     sections.extend(loops(outcome));
     sections.extend(maps(outcome));
     let histories = outcome.answer.cycles.iter().enumerate();
@@ -210,7 +211,7 @@ fn maps(outcome: &Outcome) -> Vec<Section> {
         let mut blocks = vec![
             map("pressure", "MPa", 1e-6, p.clone(), p),
             map("traction at the end", "MPa", 1e-6, sizes(end), p),
-            map("way of slip in a cycle", "um", 1e6, stroke.way(), p),
+            map("slip path in a cycle", "um", 1e6, stroke.slip_path(), p),
         ];
         if !fine.cycle.worn.is_empty() {
             let worn = fine.cycle.worn.clone();

@@ -1,8 +1,8 @@
 //! The file of a patch.
 
-use super::comparison::{MeasuredSpec, PolachSpec};
-use super::fretting_spec::FrettingSpec;
-use super::passages::PassagesSpec;
+use super::fretting::spec::FrettingSpec;
+use super::rolling::comparison::{MeasuredSpec, PolachSpec};
+use super::rolling::passages::PassagesSpec;
 use super::third_body::ThirdBodySpec;
 use crate::spec::{Spec, SpecFile};
 use fretwork_observe::quantity::quantity;

@@ -1,19 +1,24 @@
 //! The answer as lines of text.
 
 use super::answer::{Answer, Motion, Point};
-use super::comparison::Comparison;
-use super::passages_files;
+use super::rolling::comparison::Comparison;
+use super::rolling::passages_shown;
 use super::third_body::ThirdBody;
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Estimate;
 use std::fmt::Write as _;
+
+/// Adds a line with a label to a text.
+pub(super) fn add_line(out: &mut String, label: &str, text: &str) {
+    let _ = write!(out, "\n  {label:<18} {text}");
+}
 
 impl Answer {
     /// Returns the answer as text.
     pub fn text(&self) -> String {
         let mut out = format!("{}: {} on {}", self.name, self.bodies[0], self.bodies[1]);
         let mut add = |label: &str, text: String| {
-            let _ = write!(out, "\n  {label:<18} {text}");
+            add_line(&mut out, label, &text);
         };
         let speed = self.speed.map(|v| format!(", {}", quantity(v, "m/s")));
         add(
@@ -52,7 +57,7 @@ impl Answer {
                 None => "members",
             }));
             if let Some(settled) = windows.and_then(|w| w.points.get(k)) {
-                let _ = write!(out, "\n  {:<18} {}", "windows", settled.line());
+                add_line(&mut out, "windows", &settled.line());
             }
         }
         for other in &self.comparisons {
@@ -66,8 +71,8 @@ impl Answer {
                 "\nafter {count} passages of point {}",
                 worn.about.point
             );
-            for (label, text) in passages_files::lines(self, worn) {
-                let _ = write!(out, "\n  {label:<18} {text}");
+            for (label, text) in passages_shown::lines(self, worn) {
+                add_line(&mut out, &label, &text);
             }
         }
         for history in &self.cycles {
@@ -126,7 +131,7 @@ impl Point {
         };
         let rolls = self.stroke.is_none();
         let mut add = |label: &str, text: String| {
-            let _ = write!(out, "\n  {label:<18} {text}");
+            add_line(&mut out, label, &text);
         };
         let within = |e: Estimate, unit: &str| {
             let (value, error) = (quantity(e.value, unit), quantity(e.error, unit));
@@ -217,7 +222,7 @@ impl Comparison {
     fn text(&self) -> String {
         let mut out = format!("beside {}", self.name);
         let mut add = |label: &str, text: String| {
-            let _ = write!(out, "\n  {label:<18} {text}");
+            add_line(&mut out, label, &text);
         };
         match &self.off {
             Some(off) => {

@@ -38,7 +38,7 @@ pub fn mean_pressure(case: &Case, folder: &Path) -> Option<f64> {
 
 /// The course of a friction test, a row for each recorded step.
 #[derive(Clone, Debug, Default)]
-pub struct Course {
+pub struct FrictionCourse {
     /// Time (s).
     pub time: Vec<f64>,
     /// Displacement of the moved body (m).
@@ -51,7 +51,7 @@ pub struct Course {
     pub worn: Vec<f64>,
 }
 
-impl Course {
+impl FrictionCourse {
     /// Reads the statistics of a run from a time on (s); `None` where it has no friction test.
     pub fn read(folder: &Path, start: f64) -> Option<Self> {
         let of = |name: &str| since(folder, name, start);

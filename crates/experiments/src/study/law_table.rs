@@ -13,7 +13,7 @@ use crate::Error;
 use crate::factor::Factor;
 use crate::runs::output::OutputName;
 use crate::runs::stored::summary;
-use crate::runs::window::{Course, mean_pressure};
+use crate::runs::window::{FrictionCourse, mean_pressure};
 use crate::table::csv::{NumberFormat, write_below};
 use crate::table::{Column, Table};
 use fretwork_math::statistics::interval::Mean;
@@ -373,7 +373,8 @@ impl LawTable {
         }
         if !self.slip.is_empty() {
             let start = plan.base.case.friction.as_ref().map_or(0.0, |t| t.start);
-            let course = Course::read(&place, start).ok_or("has no course of its friction test")?;
+            let course =
+                FrictionCourse::read(&place, start).ok_or("has no course of its friction test")?;
             return parts_of(&course, &self.slip, what == RATE);
         }
         let output = match what {
@@ -388,7 +389,7 @@ impl LawTable {
 
 /// Returns the work of friction over load and slip in each part of the path between two of
 /// `ends` (m), or the volume worn off in it; or why there is none, as the end of a sentence.
-fn parts_of(course: &Course, ends: &[f64], wear: bool) -> Result<Vec<f64>, String> {
+fn parts_of(course: &FrictionCourse, ends: &[f64], wear: bool) -> Result<Vec<f64>, String> {
     let mut sums = vec![[0.0; 3]; ends.len() - 1];
     let mut path = 0.0;
     for k in 1..course.delta.len() {
@@ -450,12 +451,12 @@ mod tests {
         let (mu, load, elastic) = (0.4, 5.0, 2e-6);
         let delta: Vec<f64> = (0..=100).map(|k| 1e-7 * f64::from(k)).collect();
         let q = |d: &f64| mu * load * (d / elastic).min(1.0);
-        let course = Course {
+        let course = FrictionCourse {
             tangential: delta.iter().map(q).collect(),
             normal: vec![load; delta.len()],
             worn: delta.iter().map(|d| 3e-13 * load * d).collect(),
             delta,
-            ..Course::default()
+            ..FrictionCourse::default()
         };
         let ends = [0.0, 2e-6, 5.05e-6, 9e-6];
         let got = parts_of(&course, &ends, false).unwrap();

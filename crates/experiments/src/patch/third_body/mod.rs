@@ -18,10 +18,11 @@ mod window;
 pub use spec::ThirdBodySpec;
 
 use super::answer::{Band, Wear};
+use super::rolling::comparison;
 use super::rolling::{Solved, of_law};
 use super::setup::Setup;
 use super::spec::MotionSpec;
-use super::{Outcome, PatchFile, comparison, numbers, rolling};
+use super::{Outcome, PatchFile, numbers, rolling};
 use crate::{Error, RunSetup};
 use fretwork_core::laws::{Kind, SearchPath};
 use fretwork_math::statistics::interval::Mean;

@@ -10,7 +10,7 @@ use crate::study::plan::{Location, Plan, Point};
 use crate::study::rows::{DONE, status};
 use crate::study::spec::StudyFile;
 use fretwork_observe::wear::WearSummary;
-use fretwork_rolling::slider::{Course, Fitted};
+use fretwork_rolling::slider::{Fitted, StripHistory};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
@@ -23,7 +23,7 @@ pub struct Wanted {
     /// Its name.
     pub name: String,
     /// What it undergoes.
-    pub course: Course,
+    pub course: StripHistory,
 }
 
 /// What a run gave.

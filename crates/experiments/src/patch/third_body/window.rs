@@ -11,7 +11,7 @@ use crate::patch::PatchFile;
 use crate::runs::window;
 use crate::{Error, load};
 use fretwork_core::bodies::{Dof, TimeFunction};
-use fretwork_rolling::slider::Course;
+use fretwork_rolling::slider::StripHistory;
 use std::path::{Path, PathBuf};
 
 /// Pressure at the edges over the largest one of a strip, below which a window would fall apart.
@@ -114,7 +114,7 @@ impl Window {
     }
 
     /// Returns the changes of the case by which it undergoes a course.
-    pub fn sets(&self, course: &Course) -> Vec<String> {
+    pub fn sets(&self, course: &StripHistory) -> Vec<String> {
         let [enters, begins, ends] = self.times;
         let most = course.pressure.iter().copied().fold(0.0, f64::max);
         let time = |place: f64| begins + 0.5 * (place + 1.0) * (ends - begins);
@@ -139,13 +139,13 @@ impl Window {
     }
 
     /// Returns the course that a run had; `None` where it recorded none.
-    pub fn course(&self, folder: &Path) -> Option<Course> {
+    pub fn course(&self, folder: &Path) -> Option<StripHistory> {
         let [_, begins, ends] = self.times;
-        let rows = window::Course::read(folder, begins)?;
+        let rows = window::FrictionCourse::read(folder, begins)?;
         let place = |t: f64| 2.0 * (t - begins) / (ends - begins) - 1.0;
         let from = rows.delta[0];
         let over = |forces: &[f64]| forces.iter().map(|f| f / self.length).collect();
-        Some(Course {
+        Some(StripHistory {
             place: rows.time.iter().map(|t| place(*t)).collect(),
             path: rows.delta.iter().map(|d| d - from).collect(),
             pressure: over(&rows.normal),

@@ -1,16 +1,16 @@
 //! Many cycles of a stroke as text, tables, fields and figures.
 
-use super::answer::Motion;
-use super::fretting_cycles::History;
 use crate::Error;
 use crate::page::section;
+use crate::patch::answer::Motion;
+use crate::patch::fretting::cycles::History;
+use crate::patch::text::add_line;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Scar;
 use fretwork_store::maps::{MapField, Maps};
 use fretwork_view::{Axis, Block, Chart, Section, Series, Style};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Number of profiles of a scar that are drawn.
@@ -29,7 +29,7 @@ impl History {
             quantity(amplitude, "m")
         );
         let mut add = |label: &str, text: String| {
-            let _ = write!(out, "\n  {label:<18} {text}");
+            add_line(&mut out, label, &text);
         };
         let [volume, depth, force] = self.error_of_grid;
         let ratio = |scar: &Scar| number(scar.amplitude[1] / load, 4);

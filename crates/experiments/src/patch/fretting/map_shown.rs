@@ -1,15 +1,15 @@
 //! A map of fretting as text, tables, fields and figures.
 
-use super::fretting_map::{Edges, FrettingMap, Place};
 use crate::Error;
 use crate::page::{section, table};
+use crate::patch::fretting::map::{Edges, FrettingMap, Place};
+use crate::patch::text::add_line;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Estimate;
 use fretwork_store::maps::{MapField, Maps};
 use fretwork_view::{Axis, Block, Chart, Section, Series, Style};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Names of regimes, in the order of amplitude.
@@ -68,7 +68,7 @@ impl FrettingMap {
             ends(&self.amplitudes, "m")
         );
         let mut add = |label: &str, text: String| {
-            let _ = write!(out, "\n  {label:<18} {text}");
+            add_line(&mut out, label, &text);
         };
         add(
             "grid",

@@ -1,10 +1,10 @@
 //! Profiles over passages: lines of text, tables, fields, and figures of the page.
 
-use super::Outcome;
-use super::answer::Answer;
-use super::passages::Worn;
 use crate::Error;
 use crate::page::section;
+use crate::patch::Outcome;
+use crate::patch::answer::Answer;
+use crate::patch::rolling::passages::Worn;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
@@ -14,7 +14,7 @@ use fretwork_view::{Axis, Block, Chart, Section, Series};
 use std::path::Path;
 
 /// Returns the passages as lines of text: label and text.
-pub(super) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, String)> {
+pub(in crate::patch) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, String)> {
     let (about, start, end) = (&worn.about, &worn.start, &worn.end);
     let mut out = Vec::new();
     let mut add = |label: &str, text: String| out.push((label.to_owned(), text));
@@ -75,7 +75,7 @@ pub(super) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, String)> {
 }
 
 /// Names of both bodies, apart from each other.
-pub(super) fn body_names(answer: &Answer) -> [String; 2] {
+pub(in crate::patch) fn body_names(answer: &Answer) -> [String; 2] {
     let [one, other] = &answer.names;
     match one == other {
         true => ["the first body".into(), "the second body".into()],
@@ -96,7 +96,7 @@ fn part_of_error(worn: &Worn, body: usize) -> f64 {
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(outcome: &Outcome, out: &Path) -> Result<(), Error> {
+pub(in crate::patch) fn write(outcome: &Outcome, out: &Path) -> Result<(), Error> {
     let Some(course) = &outcome.course else {
         return Ok(());
     };
@@ -208,7 +208,7 @@ fn fields(course: &Course, path: &Path) -> Result<(), Error> {
 }
 
 /// The figures of the page.
-pub(super) fn page(outcome: &Outcome) -> Option<Section> {
+pub(in crate::patch) fn page(outcome: &Outcome) -> Option<Section> {
     let course = outcome.course.as_ref()?;
     let (rows, places) = (rows(course), places(course));
     let names = body_names(&outcome.answer);

@@ -1,12 +1,12 @@
 //! Profiles of both bodies over many passages: what a passage is for each body, how they share the
 //! wear, and the course with its errors.
 
-use super::law::PatchLaw;
-use super::pulling::{self, Pull};
-use super::rolling::factors;
-use super::setup::Setup;
-use super::spec::{PatchFile, positive, value};
 use crate::Error;
+use crate::patch::law::PatchLaw;
+use crate::patch::rolling::factors;
+use crate::patch::rolling::pulling::{self, Pull};
+use crate::patch::setup::Setup;
+use crate::patch::spec::{PatchFile, positive, value};
 use fretwork_core::laws::{Kind, LawError};
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_observe::quantity::number;
@@ -55,17 +55,17 @@ const PROFILES: usize = 8;
 
 /// Passages that can be made.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
+pub(in crate::patch) struct Plan {
     steps: Steps,
     parts: [f64; 2],
     drive: Drive,
     /// What the answer says of it.
-    about: About,
+    about: PassageCounts,
 }
 
 /// What a passage is for each body.
 #[derive(Clone, Debug, Serialize)]
-pub struct About {
+pub struct PassageCounts {
     /// The point of the motion that wears, from 1.
     pub point: usize,
     /// Passages of the points of each body.
@@ -80,7 +80,7 @@ pub struct About {
 #[derive(Clone, Debug, Serialize)]
 pub struct Worn {
     /// What a passage is.
-    pub about: About,
+    pub about: PassageCounts,
     /// New bodies.
     pub start: Jump,
     /// Worn bodies.
@@ -100,7 +100,7 @@ pub struct Worn {
 ///
 /// # Errors
 /// A number is out of range, or it is not clear which point wears, and how.
-pub(super) fn plan(
+pub(in crate::patch) fn plan(
     file: &PatchFile,
     setup: &Setup,
     creepages: &[Creepage],
@@ -196,7 +196,7 @@ pub(super) fn plan(
         },
         parts: [0, 1].map(|k| shares[k] * passages[k] / count),
         drive,
-        about: About {
+        about: PassageCounts {
             point,
             passages,
             shares,
@@ -336,7 +336,7 @@ impl Wears for ByLaw<'_> {
 ///
 /// # Errors
 /// A law fails, or there is no solution.
-pub(super) fn wear(setup: &Setup, plan: &Plan) -> Result<(Worn, Course), Error> {
+pub(in crate::patch) fn wear(setup: &Setup, plan: &Plan) -> Result<(Worn, Course), Error> {
     let cells = setup.grid.cells;
     let course = course(setup, plan, &setup.grid)?;
     let coarse = CellGrid {

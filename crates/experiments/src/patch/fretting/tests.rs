@@ -1,8 +1,8 @@
 //! Fretting by the command: maps, lines, forces and many cycles, against closed forms.
 
-use super::Outcome;
-use super::tests::{near, solved};
 use crate::Error;
+use crate::patch::Outcome;
+use crate::patch::tests::{near, solved};
 use fretwork_rolling::running::Regime;
 
 const MU: f64 = 0.6;

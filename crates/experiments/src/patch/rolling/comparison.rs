@@ -1,9 +1,9 @@
 //! The curve of adhesion beside that of Polach, and beside measured points or ranges.
 
-use super::answer::{Motion, Point};
-use super::setup::Setup;
-use super::spec::{PatchFile, value};
 use crate::Error;
+use crate::patch::answer::{Motion, Point};
+use crate::patch::setup::Setup;
+use crate::patch::spec::{PatchFile, value};
 use fretwork_elastic::patch::Solid;
 use fretwork_rolling::{Creepage, Polach};
 use fretwork_scene::InputError;
@@ -73,18 +73,18 @@ pub struct Comparison {
     /// What it is.
     pub name: String,
     /// Ranges of creepage and adhesion, in order.
-    pub points: Vec<Range>,
+    pub points: Vec<MeasuredRange>,
     /// Whether they are points of a curve.
     pub curve: bool,
     /// The solved curve less these, where both are known.
-    pub off: Option<Off>,
+    pub off: Option<Deviation>,
     /// Number of points outside the creepages that were solved.
     pub beyond: usize,
 }
 
 /// Ranges of a point; both ends are equal where it is one number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Range {
+pub struct MeasuredRange {
     /// Creepages along the rolling.
     pub creepage: [f64; 2],
     /// Forces over the load.
@@ -93,7 +93,7 @@ pub struct Range {
 
 /// Distances of the solved curve from points: 0 within a range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Off {
+pub struct Deviation {
     /// Number of points.
     pub points: usize,
     /// Mean: positive where the curve is above.
@@ -148,7 +148,7 @@ impl Solved {
 
     /// Returns the distance of the curve from a range and whether its band reaches it, at the place
     /// of the range where it is largest.
-    fn off(&self, range: &Range) -> Option<(f64, f64, bool)> {
+    fn off(&self, range: &MeasuredRange) -> Option<(f64, f64, bool)> {
         let [from, to] = range.creepage;
         let places = [from, 0.5 * (from + to), to];
         let of = |x: f64| {
@@ -164,7 +164,7 @@ impl Solved {
         all.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 
-    fn compare(&self, points: &[Range]) -> (Option<Off>, usize) {
+    fn compare(&self, points: &[MeasuredRange]) -> (Option<Deviation>, usize) {
         let known: Vec<_> = points.iter().filter_map(|p| self.off(p)).collect();
         let beyond = points.len() - known.len();
         let Some(largest) = known
@@ -175,7 +175,7 @@ impl Solved {
             return (None, beyond);
         };
         let count = known.len() as f64;
-        let off = Off {
+        let off = Deviation {
             points: known.len(),
             mean: known.iter().map(|o| o.0).sum::<f64>() / count,
             rms: (known.iter().map(|o| o.0 * o.0).sum::<f64>() / count).sqrt(),
@@ -191,7 +191,9 @@ impl Solved {
 ///
 /// # Errors
 /// A file or a column is missing, or a number is out of range.
-pub(super) fn measured(file: &PatchFile) -> Result<Vec<(String, Vec<Range>)>, InputError> {
+pub(in crate::patch) fn measured(
+    file: &PatchFile,
+) -> Result<Vec<(String, Vec<MeasuredRange>)>, InputError> {
     let read = |(k, spec): (usize, &MeasuredSpec)| {
         let at = format!("measured.{k}.file");
         let table = MeasuredTable::read(&file.beside(&spec.file));
@@ -219,8 +221,8 @@ pub(super) fn measured(file: &PatchFile) -> Result<Vec<(String, Vec<Range>)>, In
         let creepages = pair(&spec.along, spec.along_to.as_ref())?;
         let adhesions = pair(&spec.adhesion, spec.adhesion_to.as_ref())?;
         let ranges = creepages.into_iter().zip(adhesions);
-        let ranges: Vec<Range> = ranges
-            .map(|(creepage, adhesion)| Range { creepage, adhesion })
+        let ranges: Vec<MeasuredRange> = ranges
+            .map(|(creepage, adhesion)| MeasuredRange { creepage, adhesion })
             .collect();
         let wrong = ranges
             .iter()
@@ -294,7 +296,7 @@ fn polach(file: &PatchFile, setup: &Setup) -> Result<Vec<(String, Polach)>, Inpu
 ///
 /// # Errors
 /// A file or a number is wrong.
-pub(super) fn comparisons(
+pub(in crate::patch) fn comparisons(
     file: &PatchFile,
     setup: &Setup,
     points: &[Point],
@@ -333,17 +335,17 @@ pub(super) fn comparisons(
     for (name, curve) in curves {
         let at = |x: f64| {
             let adhesion = curve.adhesion(&hertz, setup.load, &solids, x, speed)?;
-            Some(Range {
+            Some(MeasuredRange {
                 creepage: [x; 2],
                 adhesion: [adhesion; 2],
             })
         };
-        let same: Option<Vec<Range>> = solved.0.iter().map(|(x, _)| at(*x)).collect();
+        let same: Option<Vec<MeasuredRange>> = solved.0.iter().map(|(x, _)| at(*x)).collect();
         // Outside of Kalker's table there is no curve.
         let Some(same) = same else { continue };
         let (off, beyond) = solved.compare(&same);
         let place = |k: usize| ends[0] * (ends[1] / ends[0]).powf(k as f64 / DRAWN as f64);
-        let drawn: Vec<Range> = match ends[0] > 0.0 && ends[1] > ends[0] {
+        let drawn: Vec<MeasuredRange> = match ends[0] > 0.0 && ends[1] > ends[0] {
             true => (0..=DRAWN).filter_map(|k| at(place(k))).collect(),
             false => same,
         };

@@ -1,7 +1,7 @@
 //! Temperature, passages and comparisons of patches that roll, through the file of a patch.
 
-use super::tests::{COULOMB, folder, laws, near, rolls, solved};
-use super::{Outcome, PatchFile, files, solve};
+use crate::patch::tests::{COULOMB, folder, laws, near, rolls, solved};
+use crate::patch::{Outcome, PatchFile, files, solve};
 use fretwork_elastic::patch::{Solid, effective_modulus, point};
 
 /// The patch of the case `ertz_temperature` of the program CONTACT (github eve70a/CONTACT, commit

@@ -1,13 +1,13 @@
 //! Maps of fretting over load and amplitude of displacement: running conditions with the boundaries
 //! of their regimes, energy and wear of a cycle, and what becomes of the material.
 
-use super::fretting::fail;
-use super::fretting_spec::{CracksSpec, FrettingSpec, MapSpec};
-use super::law::PatchLaw;
-use super::rolling::bodies_that_wear;
-use super::setup::{Setup, grid};
-use super::spec::{PatchFile, positive};
 use crate::Error;
+use crate::patch::fretting::fail;
+use crate::patch::fretting::spec::{CracksSpec, FrettingSpec, MapSpec};
+use crate::patch::law::PatchLaw;
+use crate::patch::rolling::bodies_that_wear;
+use crate::patch::setup::{Setup, grid};
+use crate::patch::spec::{PatchFile, positive};
 use fretwork_core::laws::Kind;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_rolling::Estimate;
@@ -347,7 +347,7 @@ fn read_cracks(file: &PatchFile, setup: &Setup, spec: &CracksSpec) -> Result<Cra
     };
     let bulk = match &spec.bulk {
         None => 0.0,
-        Some(number) => super::spec::value(source, "motion.cracks.bulk", number, "Pa")?,
+        Some(number) => crate::patch::spec::value(source, "motion.cracks.bulk", number, "Pa")?,
     };
     let depth = positive(source, "motion.cracks.depth", &spec.depth, "m")?;
     let block = Block {

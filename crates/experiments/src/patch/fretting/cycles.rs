@@ -1,12 +1,12 @@
 //! Many cycles of a stroke: scars, debris and friction over the cycles.
 
-use super::answer::{Motion, Point};
-use super::fretting::fail;
-use super::fretting_spec::{CyclesSpec, Drive, FrettingSpec};
-use super::law::DEBRIS;
-use super::setup::Setup;
-use super::spec::{PatchFile, positive};
 use crate::Error;
+use crate::patch::answer::{Motion, Point};
+use crate::patch::fretting::fail;
+use crate::patch::fretting::spec::{CyclesSpec, FrettingSpec, StrokeDrive};
+use crate::patch::law::DEBRIS;
+use crate::patch::setup::Setup;
+use crate::patch::spec::{PatchFile, positive};
 use fretwork_core::laws::Kind;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_rolling::patch::coarser;
@@ -48,7 +48,7 @@ pub fn solve(
     file: &PatchFile,
     setup: &Setup,
     spec: &FrettingSpec,
-    (drives, points): (&[Drive], &[Point]),
+    (drives, points): (&[StrokeDrive], &[Point]),
     follow: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<History>, Error> {
     let Some(cycles) = &spec.cycles else {
@@ -94,7 +94,7 @@ pub fn solve(
 
 fn of_drive(
     setup: &Setup,
-    drive: &Drive,
+    drive: &StrokeDrive,
     cycles: &CyclesSpec,
     ejection: Option<f64>,
     follow: &mut dyn FnMut(f64),
@@ -132,7 +132,7 @@ fn of_drive(
 
 fn finished(
     setup: &Setup,
-    drive: &Drive,
+    drive: &StrokeDrive,
     cycles: &CyclesSpec,
     ejection: Option<f64>,
     grid: CellGrid,
@@ -180,7 +180,7 @@ enum Failed {
 
 fn on_grid(
     setup: &Setup,
-    drive: &Drive,
+    drive: &StrokeDrive,
     cycles: &CyclesSpec,
     ejection: Option<f64>,
     grid: CellGrid,

@@ -1,6 +1,6 @@
 //! Fretting in the file of a patch: strokes, maps, cracks and many cycles.
 
-use super::spec::{Numbers, PatchFile, positive};
+use crate::patch::spec::{Numbers, PatchFile, positive};
 use fretwork_rolling::Amplitude;
 use fretwork_scene::InputError;
 use fretwork_scene::material::NumberSpec;
@@ -114,7 +114,7 @@ fn share() -> f64 {
 
 /// A stroke to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drive {
+pub struct StrokeDrive {
     /// Half of its range.
     pub amplitude: Amplitude,
     /// Steps of a quarter of a cycle.
@@ -130,7 +130,7 @@ const STEPS: [usize; 2] = [2, 1000];
 ///
 /// # Errors
 /// A number is out of range, or there is no stroke.
-pub fn drives(file: &PatchFile, spec: &FrettingSpec) -> Result<Vec<Drive>, InputError> {
+pub fn drives(file: &PatchFile, spec: &FrettingSpec) -> Result<Vec<StrokeDrive>, InputError> {
     let source = &file.source;
     let read = |path: &str, numbers: &Numbers, unit: &str| -> Result<Vec<f64>, InputError> {
         let list = numbers.0.iter();
@@ -183,12 +183,12 @@ pub fn drives(file: &PatchFile, spec: &FrettingSpec) -> Result<Vec<Drive>, Input
         ));
     }
     let by_frequency = frequency.map(|f| 1.0 / (4.0 * f * steps));
-    let displaced = amplitudes.iter().map(|size| Drive {
+    let displaced = amplitudes.iter().map(|size| StrokeDrive {
         amplitude: Amplitude::Displacement(*size),
         steps: spec.steps,
         step: by_frequency.or(speed.map(|v| size / (v * steps))),
     });
-    let forced = forces.iter().map(|size| Drive {
+    let forced = forces.iter().map(|size| StrokeDrive {
         amplitude: Amplitude::Force(*size),
         steps: spec.steps,
         step: by_frequency,

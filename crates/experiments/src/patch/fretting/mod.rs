@@ -1,12 +1,20 @@
 //! Strokes of fretting: the loop of force and displacement, and what slips and wears in it.
 
-use super::answer::{Band, Cycle, Motion, Point, Wear};
-use super::fretting_spec::{Drive, FrettingSpec, drives};
-use super::law::PatchLaw;
-use super::rolling::bodies_that_wear;
-use super::setup::Setup;
-use super::spec::{MotionSpec, PatchFile};
+pub mod cycles;
+mod cycles_shown;
+pub mod map;
+mod map_shown;
+pub mod spec;
+#[cfg(test)]
+mod tests;
+
 use crate::Error;
+use crate::patch::answer::{Band, Cycle, Motion, Point, Wear};
+use crate::patch::fretting::spec::{FrettingSpec, StrokeDrive, drives};
+use crate::patch::law::PatchLaw;
+use crate::patch::rolling::bodies_that_wear;
+use crate::patch::setup::Setup;
+use crate::patch::spec::{MotionSpec, PatchFile};
 use fretwork_core::laws::Kind;
 use fretwork_observe::quantity::quantity;
 use fretwork_rolling::cells::half_width;
@@ -24,7 +32,7 @@ const WORK: f64 = 0.1;
 ///
 /// # Errors
 /// A number is out of range.
-pub fn strokes(file: &PatchFile) -> Result<(Option<&FrettingSpec>, Vec<Drive>), InputError> {
+pub fn strokes(file: &PatchFile) -> Result<(Option<&FrettingSpec>, Vec<StrokeDrive>), InputError> {
     match &file.spec.motion {
         MotionSpec::Fretting(spec) => Ok((Some(spec), drives(file, spec)?)),
         _ => Ok((None, Vec::new())),
@@ -48,8 +56,8 @@ impl Stroke {
         [first, &cycle.points[..]].concat()
     }
 
-    /// Returns the way slipped by each cell in the cycle (m).
-    pub fn way(&self) -> Vec<f64> {
+    /// Returns the path slipped by each cell in the cycle (m).
+    pub fn slip_path(&self) -> Vec<f64> {
         let fine = &self.found.fine;
         let cells = fine.cycle.rubbed.iter().zip(&fine.pressure.pressure);
         cells
@@ -62,7 +70,7 @@ impl Stroke {
 ///
 /// # Errors
 /// A law fails, friction does not hold the force, or there is no solution.
-pub fn solve(setup: &Setup, drive: &Drive) -> Result<Stroke, Error> {
+pub fn solve(setup: &Setup, drive: &StrokeDrive) -> Result<Stroke, Error> {
     let with = match drive.amplitude {
         Amplitude::Displacement(_) => "`frequency`, or `speed`, the mean speed of the stroke",
         Amplitude::Force(_) => "the `frequency` of the stroke",
@@ -96,11 +104,11 @@ fn adhesion(setup: &Setup, found: &RefinedStroke) -> Estimate {
 }
 
 /// Turns an error of a layer below into one of the command.
-pub(super) fn fail(error: &dyn std::fmt::Display) -> Error {
+pub(in crate::patch) fn fail(error: &dyn std::fmt::Display) -> Error {
     Error::Failed(error.to_string())
 }
 
-fn of_law(setup: &Setup, law: &PatchLaw, drive: &Drive) -> Result<RefinedStroke, Error> {
+fn of_law(setup: &Setup, law: &PatchLaw, drive: &StrokeDrive) -> Result<RefinedStroke, Error> {
     let strokes = Strokes {
         law,
         along: [1.0, 0.0],
@@ -118,7 +126,7 @@ fn of_law(setup: &Setup, law: &PatchLaw, drive: &Drive) -> Result<RefinedStroke,
 fn point(
     setup: &Setup,
     law: &PatchLaw,
-    drive: &Drive,
+    drive: &StrokeDrive,
     found: &RefinedStroke,
     members: &[f64],
 ) -> Point {

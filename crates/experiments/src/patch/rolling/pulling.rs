@@ -1,8 +1,8 @@
 //! The creepage at which a patch has a force along the rolling.
 
-use super::setup::Setup;
-use super::spec::{MotionSpec, PatchFile, value};
 use crate::Error;
+use crate::patch::setup::Setup;
+use crate::patch::spec::{MotionSpec, PatchFile, value};
 use fretwork_observe::quantity::quantity;
 use fretwork_rolling::Creepage;
 use fretwork_rolling::pull::{self, Pulled};
@@ -15,7 +15,7 @@ const FOUND: f64 = 1e-5;
 
 /// A force on the first body along the rolling (N), and spin (1/m).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pull {
+pub(in crate::patch) struct Pull {
     pub force: f64,
     pub spin: f64,
 }
@@ -24,7 +24,7 @@ pub(super) struct Pull {
 ///
 /// # Errors
 /// A number is out of range.
-pub(super) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError> {
+pub(in crate::patch) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError> {
     let MotionSpec::Pulling { force, spin } = &file.spec.motion else {
         return Ok(Vec::new());
     };
@@ -51,7 +51,7 @@ pub(super) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError> {
 ///
 /// # Errors
 /// A law fails, there is no solution, or the patch does not carry the force.
-pub(super) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
+pub(in crate::patch) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
     let (law, speed) = (&setup.laws[0], setup.rolling_speed());
     // Force opposes creepage.

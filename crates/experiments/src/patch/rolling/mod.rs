@@ -1,10 +1,17 @@
 //! Points of steady rolling: forces, wear and temperature at each creepage.
 
-use super::answer::{Band, Motion, Point, Wear};
-use super::law::{Passage, PatchLaw};
-use super::setup::Setup;
-use super::spec::{MotionSpec, Numbers, PatchFile, value};
+pub mod comparison;
+pub mod passages;
+pub(in crate::patch) mod passages_shown;
+pub(in crate::patch) mod pulling;
+#[cfg(test)]
+mod tests;
+
 use crate::Error;
+use crate::patch::answer::{Band, Motion, Point, Wear};
+use crate::patch::law::{Passage, PatchLaw};
+use crate::patch::setup::Setup;
+use crate::patch::spec::{MotionSpec, Numbers, PatchFile, value};
 use fretwork_core::laws::Kind;
 use fretwork_observe::quantity::quantity;
 use fretwork_rolling::fields::length;
@@ -203,7 +210,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
 ///
 /// # Errors
 /// The law fails, or there is no solution.
-pub(super) fn of_law(
+pub(in crate::patch) fn of_law(
     setup: &Setup,
     creepage: &Creepage,
     law: &PatchLaw,
@@ -252,7 +259,7 @@ fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
 
 /// Returns the bodies and their parts in what the wear law gives: by the law and the hardness of
 /// each, or of both as `interface` where the law does not tell them apart.
-pub(super) fn bodies_that_wear(setup: &Setup) -> Vec<(String, f64)> {
+pub(in crate::patch) fn bodies_that_wear(setup: &Setup) -> Vec<(String, f64)> {
     let Some(factors) = factors(setup) else {
         return vec![("interface".to_owned(), 1.0)];
     };
@@ -263,7 +270,7 @@ pub(super) fn bodies_that_wear(setup: &Setup) -> Vec<(String, f64)> {
 
 /// Returns the depth that each body loses over that of the wear law, where its coefficient follows
 /// from the hardness of the softer one: that over its own, if it is known.
-pub(super) fn factors(setup: &Setup) -> Option<[Option<f64>; 2]> {
+pub(in crate::patch) fn factors(setup: &Setup) -> Option<[Option<f64>; 2]> {
     let coefficient = setup.wear_coefficient.as_ref()?;
     let hardness = setup.bodies.hardness();
     Some(hardness.map(|own| own.map(|own| coefficient.hardness / own)))
