@@ -86,7 +86,11 @@ impl Setup {
             bodies,
         };
         for (k, member) in members.enumerate() {
-            let built = build(file, &out.bodies, member, search)?;
+            let built = build(file, &out.bodies, member, search).map_err(|e| match k {
+                0 => e,
+                // Where a value of a member is wrong, the interface has none in the file.
+                _ => source.error_at(&format!("members.{}", k - 1), e.message()),
+            })?;
             let pair = out.bodies.names.each_ref().map(|name| {
                 let places = out.bodies.materials.iter().position(|(m, _)| m == name);
                 places.unwrap_or_default() as u16

@@ -1,5 +1,6 @@
 //! Temperature, passages and comparisons of patches that roll, through the file of a patch.
 
+use crate::Error;
 use crate::patch::tests::{COULOMB, folder, laws, near, rolls, solved};
 use crate::patch::{Outcome, PatchFile, files, solve};
 use fretwork_elastic::patch::{Solid, effective_modulus, point};
@@ -353,6 +354,19 @@ fn what_is_out_of_range_is_told() {
     assert!(
         large.contains("0.6 is more than 0.5") && !large.contains("per cent"),
         "{large}"
+    );
+    let misspelt = rolls(
+        COULOMB,
+        r#"members: [(contact: {"mo": 0.5})], motion: Rolling(along: 1 %)"#,
+    );
+    let misspelt = solved("range", &misspelt).unwrap_err();
+    let Error::Input(misspelt) = misspelt else {
+        panic!("{misspelt}");
+    };
+    let said = misspelt.compact();
+    assert!(
+        said.contains("`mo`") && misspelt.position().is_some(),
+        "{said}"
     );
     let stroke = |amplitude: &str| {
         let motion = format!("motion: Fretting(amplitude: {amplitude})");

@@ -50,7 +50,8 @@ impl Window {
     /// The case is refused, or is no window with a friction test whose load is a force.
     pub fn read(file: &PatchFile, spec: &ThirdBodySpec) -> Result<Self, Error> {
         let case = file.beside(&spec.case);
-        let loaded = load(&case, &spec.set)?;
+        let named = |e| file.source.named_at("third_body.case", e);
+        let loaded = load(&case, &spec.set).map_err(named)?;
         let fail = |why: &str| {
             let name = spec.case.display();
             let why = format!("the case {name} is no window of a third body: {why}");
