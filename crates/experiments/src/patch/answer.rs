@@ -151,4 +151,7 @@ pub struct Wear {
     pub depth: f64,
     /// Depth across the motion, one number for each row of cells (m); in fretting empty.
     pub profile: Vec<f64>,
+    /// Half-width of the 95 % interval of all of these over the seeds of windows, as a share of
+    /// them; null of a law.
+    pub half_width: Option<f64>,
 }

@@ -1,10 +1,10 @@
 //! The answer as lines of text.
 
-use super::answer::{Answer, Motion, Point};
+use super::answer::{Answer, Motion, Point, Wear};
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::third_body::ThirdBody;
-use fretwork_observe::quantity::{number, quantity};
+use fretwork_observe::quantity::{DETERMINED, number, quantity};
 use fretwork_rolling::Estimate;
 use std::fmt::Write as _;
 
@@ -198,11 +198,14 @@ impl Point {
         for wear in &self.wear {
             let depth = quantity(wear.depth, "m");
             let text = match rolls {
-                true => format!(
-                    "{} mm3 per metre, up to {depth} a passage ({})",
-                    number(1e9 * wear.volume, 4),
-                    wear.law
-                ),
+                true => {
+                    let volume = number(1e9 * wear.volume, 4);
+                    let (undetermined, half) = wear.over_seeds();
+                    format!(
+                        "{undetermined}{volume} mm3 per metre{half}, up to {depth} a passage ({})",
+                        wear.law
+                    )
+                }
                 false => format!(
                     "{} mm3 a cycle, up to {depth} ({})",
                     number(1e9 * wear.volume, 4),
@@ -215,6 +218,21 @@ impl Point {
             add("", note.clone());
         }
         out
+    }
+}
+
+impl Wear {
+    /// Returns that it is not determined, if so, and its half-width over the seeds of windows.
+    fn over_seeds(&self) -> (&'static str, String) {
+        let Some(half) = self.half_width else {
+            return ("", String::new());
+        };
+        let undetermined = match half > DETERMINED {
+            true => "not determined: ",
+            false => "",
+        };
+        let half = number(100.0 * half, 2);
+        (undetermined, format!(" +- {half} % over the seeds"))
     }
 }
 
@@ -260,5 +278,30 @@ impl Comparison {
             add("", others);
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wear_that_seeds_do_not_determine_is_not_shown_as_a_result() {
+        let wear = |half_width| Wear {
+            body: "rail".into(),
+            law: "third body".into(),
+            volume: 1e-11,
+            depth: 1e-9,
+            profile: Vec::new(),
+            half_width,
+        };
+        let of = |half_width| {
+            let wear = wear(half_width);
+            let (undetermined, half) = wear.over_seeds();
+            format!("{undetermined}x{half}")
+        };
+        assert_eq!(of(None), "x");
+        assert_eq!(of(Some(0.2)), "x +- 20 % over the seeds");
+        assert_eq!(of(Some(0.31)), "not determined: x +- 31 % over the seeds");
     }
 }

@@ -175,6 +175,7 @@ fn point(
             volume: factor * found.worn.value,
             depth: factor * deepest,
             profile: Vec::new(),
+            half_width: None,
         });
         of.collect::<Vec<_>>()
     });

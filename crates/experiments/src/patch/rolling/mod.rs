@@ -249,6 +249,7 @@ fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
         volume: factor * rows.iter().sum::<f64>() * grid.size[1],
         depth: factor * rows.iter().copied().fold(0.0, f64::max),
         profile: rows.iter().map(|d| factor * d).collect(),
+        half_width: None,
     };
     let bodies = bodies_that_wear(setup);
     bodies

@@ -397,36 +397,43 @@ impl Point {
             );
         }
         let fine = &solved.rolling;
+        let slip = fine.wearing_slip();
         let columns = fine.grid.cells[0];
         let load = |row: usize| -> f64 {
             let cells = row * columns..(row + 1) * columns;
             cells
-                .map(|c| fine.pressure.pressure[c] * length(fine.tractions.slip[c]))
+                .map(|c| fine.pressure.pressure[c] * length(slip[c]))
                 .sum()
         };
         let rows: Vec<f64> = (0..fine.grid.cells[1]).map(load).collect();
         for (name, rate) in self.rates() {
-            let profile: Vec<f64> = rows.iter().map(|r| rate * r).collect();
+            let profile: Vec<f64> = rows.iter().map(|r| rate.mean * r).collect();
             point.wear.push(Wear {
                 body: name,
                 law: "third body".to_owned(),
                 volume: profile.iter().sum::<f64>() * fine.grid.size[1],
                 depth: profile.iter().copied().fold(0.0, f64::max),
                 profile,
+                half_width: rate.half_width.map(|half| half / rate.mean),
             });
         }
     }
 
-    /// Returns the specific wear rate of each body that all runs have, the mean over them.
-    fn rates(&self) -> Vec<(String, f64)> {
-        let all: Vec<&Ran> = self.ran.iter().flatten().collect();
-        let Some(first) = all.first() else {
+    /// Returns the specific wear rate of each body that all runs have: the mean over the seeds, of
+    /// each that over the strips.
+    fn rates(&self) -> Vec<(String, Mean)> {
+        let Some(first) = self.ran.first().and_then(|seeds| seeds.first()) else {
             return Vec::new();
         };
         let mean = |(name, _): &(String, f64)| {
-            let own = |r: &&Ran| r.wear.iter().find(|w| w.0 == *name).map(|w| w.1);
-            let rates: Option<Vec<f64>> = all.iter().map(own).collect();
-            Some((name.clone(), rates?.iter().sum::<f64>() / all.len() as f64))
+            let own = |r: &Ran| r.wear.iter().find(|w| w.0 == *name).map(|w| w.1);
+            let of_seed = |seed: usize| -> Option<f64> {
+                let strips = self.ran.iter().map(|seeds| own(seeds.get(seed)?));
+                let rates: Vec<f64> = strips.collect::<Option<_>>()?;
+                Some(rates.iter().sum::<f64>() / rates.len() as f64)
+            };
+            let seeds: Option<Vec<f64>> = (0..self.ran[0].len()).map(of_seed).collect();
+            Some((name.clone(), Mean::of(&seeds?)?))
         };
         first.wear.iter().filter_map(mean).collect()
     }
