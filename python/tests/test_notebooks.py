@@ -15,12 +15,12 @@ NOTEBOOKS = sorted((PROJECT / "python" / "notebooks").glob("*.ipynb"))
 
 
 def test_there_are_notebooks() -> None:
-    assert len(NOTEBOOKS) >= 5
+    assert len(NOTEBOOKS) >= 6
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook(path: Path, tmp_path: Path) -> None:
-    for folder in ("cases", "materials"):
+    for folder in ("cases", "materials", "patches"):
         (tmp_path / folder).symlink_to(PROJECT / folder)
     notebook = nbformat.read(path, as_version=4)
     saved = [cell for cell in notebook.cells if cell.cell_type == "code" and (cell.outputs or cell.execution_count)]
