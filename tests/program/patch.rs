@@ -50,6 +50,27 @@ fn a_ball_frets_on_a_flat() {
     assert!(loops.starts_with("displacement [m],force [N]\n"), "{loops}");
 }
 
+/// A wheel S1002 on a rail 60E1 in the middle of the track: the contact angle is that of the
+/// Manchester benchmark there, 0.029 (under 10 kN, by CONTACT), and its spin drives the wheel away
+/// from the track.
+#[test]
+fn standard_profiles_touch_under_an_angle() {
+    let folder = TempFolder::new("patch-profiles");
+    let file = Path::new("patches/wheel_on_rail_profiles.ron");
+    let got = answered(file, &folder.join("out"));
+    let of = |path: &str| got.pointer(path).unwrap().as_f64().unwrap();
+    let angle = of("/contact/inclination");
+    assert!((angle - 0.029).abs() < 0.01, "{angle}");
+    assert!((of("/contact/vertical_load") / 75e3 - 1.0).abs() < 1e-9);
+    assert!((of("/load") * angle.cos() / 75e3 - 1.0).abs() < 1e-9);
+    let spin = -angle.sin() / of("/contact/rolling_radii/0");
+    assert!((of("/contact/spin") / spin - 1.0).abs() < 1e-9);
+    for found in numbers(&got, "/motion/Rolling/spin") {
+        assert_eq!(found, of("/contact/spin"));
+    }
+    assert!(numbers(&got, "/force/1").iter().all(|f| *f > 0.0));
+}
+
 const WHEEL: &str = r#"(
     name: "a wheel", materials: {"wheel": "wheel_steel_er7", "rail": "rail_steel_r260"},
     bodies: ((material: "wheel", radius: 0.46 m), (material: "rail", across: 0.3 m)),

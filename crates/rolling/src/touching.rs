@@ -70,6 +70,8 @@ pub struct Touching {
 /// Places of a distance over those of the profiles, and their largest number.
 const FINER: f64 = 2.0;
 const MOST: f64 = 2e4;
+/// Height of a crest between two places of contact over the approach, at least.
+const CREST: f64 = 0.05;
 
 impl Pair {
     /// Puts the first body down on the second one; returns the place at which they touch, where
@@ -206,15 +208,33 @@ impl Touching {
 
     /// Returns places of the frame outside of a range at which the distance is least all around and
     /// below an approach of the bodies (m), with the distance (m): the bodies may touch there too.
+    /// Between them and the range the bodies are farther apart by a share of the approach, which
+    /// scatter of the profiles is not.
     pub fn others(&self, outside: [f64; 2], approach: f64) -> Vec<[f64; 2]> {
         let (places, values) = (self.distance.places(), self.distance.values());
-        let lowest = |k: &usize| {
-            let [before, at, after] = [values[k - 1], values[*k], values[k + 1]];
-            at < approach && at <= before && at < after
-        };
-        let out = |k: &usize| places[*k] < outside[0] || places[*k] > outside[1];
-        let found = (1..places.len() - 1).filter(|k| out(k) && lowest(k));
-        found.map(|k| [places[k], values[k]]).collect()
+        let below = places.partition_point(|s| *s < outside[0]);
+        let above = places.partition_point(|s| *s <= outside[1]);
+        let sides: [Vec<usize>; 2] = [(0..below).rev().collect(), (above..places.len()).collect()];
+        let mut found = Vec::new();
+        for side in sides {
+            let (mut crest, mut least) = (0.0_f64, None::<usize>);
+            for k in side {
+                match least {
+                    Some(low) if values[k] < values[low] => least = Some(k),
+                    Some(low) if values[k] > values[low] + CREST * approach => {
+                        found.push([places[low], values[low]]);
+                        (crest, least) = (values[k], None);
+                    }
+                    Some(_) => {}
+                    None if values[k] > crest => crest = values[k],
+                    None if values[k] < approach.min(crest - CREST * approach) => {
+                        least = Some(k);
+                    }
+                    None => {}
+                }
+            }
+        }
+        found
     }
 }
 

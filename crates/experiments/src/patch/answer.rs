@@ -2,6 +2,7 @@
 
 use super::fretting::cycles::History;
 use super::fretting::map::FrettingMap;
+use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages::Worn;
 use super::third_body::ThirdBody;
@@ -33,6 +34,9 @@ pub struct Answer {
     pub approach: f64,
     /// Area under pressure (m²).
     pub area: f64,
+    /// The contact of two profiles, where they are given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// The windows of a third body, where they give the friction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub third_body: Option<ThirdBody>,

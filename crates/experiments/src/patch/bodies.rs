@@ -1,11 +1,13 @@
 //! The two bodies of a patch: elasticity and thermal properties of their materials, and their
 //! undeformed distance.
 
+use super::profiles::Profiles;
 use super::spec::{DistanceSpec, PatchFile, positive, value};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::patch::{LinePatch, PointPatch, Solid, effective_modulus, line, point};
 use fretwork_math::diffusion::Conductor;
 use fretwork_observe::quantity::quantity;
+use fretwork_rolling::Curve;
 use fretwork_rolling::temperature::Thermal;
 use fretwork_scene::InputError;
 use fretwork_scene::material::{Material, MaterialLibrary, Sourced};
@@ -29,6 +31,8 @@ pub struct Bodies {
     pub thermal: Option<Thermal>,
     /// Their distance.
     pub distance: Distance,
+    /// Their profiles, where they are given.
+    pub profiles: Option<Profiles>,
     /// Length of a line contact across the motion (m).
     pub length: Option<f64>,
 }
@@ -38,29 +42,25 @@ pub struct Bodies {
 pub struct Distance {
     /// Relative curvatures along the motion and across it (1/m).
     pub curvatures: [f64; 2],
-    /// Places across the motion (m), ascending, and the distance there (m).
-    pub profile: Option<(Vec<f64>, Vec<f64>)>,
+    /// The distance over the place across the motion (m).
+    pub profile: Option<Curve>,
+    /// The curvature along the motion over that place (1/m), where it changes.
+    pub along: Option<Curve>,
 }
 
 impl Distance {
     /// Returns the distance at a place (m).
     pub fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let [along, across] = self.curvatures;
-        let of_profile = self
-            .profile
-            .as_ref()
-            .map(|(places, values)| between(places, values, y));
-        0.5 * along * x * x + of_profile.unwrap_or(0.5 * across * y * y)
+        let along = self.along.as_ref().map(|c| c.at(y));
+        let along = along.unwrap_or(self.curvatures[0]);
+        let across = self.profile.as_ref().map(|c| c.at(y));
+        0.5 * along * x * x + across.unwrap_or(0.5 * self.curvatures[1] * y * y)
     }
 
     /// Whether the distance is known at a place across the motion (m): beyond the ends of its table
     /// it goes on straight.
     pub fn knows(&self, across: f64) -> bool {
-        let Some((places, _)) = &self.profile else {
-            return true;
-        };
-        let ends = places.first().zip(places.last());
-        ends.is_some_and(|(first, last)| (*first..=*last).contains(&across))
+        self.profile.as_ref().is_none_or(|c| c.knows(across))
     }
 
     /// Returns the patch by Hertz; for a profile, that of a parabola like it.
@@ -78,38 +78,6 @@ fn modulus(bodies: &[Elasticity; 2]) -> f64 {
 
 /// Length of a line contact over half of its width below which its ends matter.
 const SLENDER: f64 = 10.0;
-
-/// Returns a table's value at a place, without kinks, in which pressures would be infinite: on a
-/// cubic between two rows with the slopes there of parabolas through three rows, and straight on
-/// beyond the ends.
-fn between(places: &[f64], values: &[f64], at: f64) -> f64 {
-    let last = places.len() - 1;
-    let chord = |k: usize| (values[k + 1] - values[k]) / (places[k + 1] - places[k]);
-    let slope = |k: usize| match k {
-        _ if last == 1 => chord(0),
-        0 => chord(0) - (places[1] - places[0]) * bend(places, values, 1),
-        k if k == last => chord(k - 1) + (places[k] - places[k - 1]) * bend(places, values, k - 1),
-        k => chord(k - 1) + (places[k] - places[k - 1]) * bend(places, values, k),
-    };
-    if at <= places[0] || at >= places[last] {
-        let end = if at <= places[0] { 0 } else { last };
-        return values[end] + slope(end) * (at - places[end]);
-    }
-    let next = places.partition_point(|p| *p <= at).clamp(1, last);
-    let width = places[next] - places[next - 1];
-    let x = (at - places[next - 1]) / width;
-    let [from, to] = [next - 1, next].map(|k| width * slope(k));
-    let (a, b) = (values[next - 1], values[next]);
-    let cubic = 2.0 * (a - b) + from + to;
-    let square = 3.0 * (b - a) - 2.0 * from - to;
-    a + x * (from + x * (square + x * cubic))
-}
-
-/// Half of the second derivative of the parabola through a row and its neighbours.
-fn bend(places: &[f64], values: &[f64], k: usize) -> f64 {
-    let chord = |k: usize| (values[k + 1] - values[k]) / (places[k + 1] - places[k]);
-    (chord(k) - chord(k - 1)) / (places[k + 1] - places[k - 1])
-}
 
 impl Bodies {
     /// Reads materials and radii of a file.
@@ -210,9 +178,19 @@ impl Bodies {
             .as_ref()
             .map(|d| profile(file, d))
             .transpose()?;
-        if let Some((places, values)) = &profile {
-            curvatures[1] = typical(places, values);
+        if let Some(profile) = &profile {
+            curvatures[1] = typical(profile);
         }
+        let mut distance = Distance {
+            curvatures,
+            profile,
+            along: None,
+        };
+        let profiles = Profiles::read(file)?;
+        if let Some(profiles) = &profiles {
+            distance = profiles.distance();
+        }
+        let curvatures = distance.curvatures;
         let length = length(file, curvatures[1])?;
         for (name, curvature) in [("along", curvatures[0]), ("across", curvatures[1])] {
             if curvature <= 0.0 && (name == "along" || length.is_none()) {
@@ -232,10 +210,8 @@ impl Bodies {
                 bodies: [conductors[0], conductors[1]],
                 bulk: bulks,
             }),
-            distance: Distance {
-                curvatures,
-                profile,
-            },
+            distance,
+            profiles,
             length,
         })
     }
@@ -290,17 +266,17 @@ fn length(file: &PatchFile, across: f64) -> Result<Option<f64>, InputError> {
         return Ok(None);
     };
     let length = positive(source, "length", length, "m")?;
-    match across == 0.0 && file.spec.distance.is_none() {
+    match across == 0.0 && file.spec.distance.is_none() && file.spec.profiles.is_none() {
         true => Ok(Some(length)),
         false => Err(source.error_at(
             "length",
-            "a contact along a line of this length is that of bodies straight across the motion: leave out their `across` and the `distance`, or the `length`",
+            "a contact along a line of this length is that of bodies straight across the motion: leave out their `across`, `distance` or `profiles`, or the `length`",
         )),
     }
 }
 
 /// Reads the table of a measured distance.
-fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<(Vec<f64>, Vec<f64>), InputError> {
+fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<Curve, InputError> {
     let source = &file.source;
     if file.spec.bodies.0.across.is_some() || file.spec.bodies.1.across.is_some() {
         return Err(source.error_at(
@@ -321,20 +297,20 @@ fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<(Vec<f64>, Vec<f64>)
         })
     };
     let (places, values) = (column(&spec.across)?, column(&spec.distance)?);
-    let mut rows: Vec<(f64, f64)> = places.into_iter().zip(values).collect();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if rows.len() < 3 || rows.windows(2).any(|w| w[0].0 == w[1].0) {
-        return Err(source.error_at(
+    let rows: Vec<[f64; 2]> = places.into_iter().zip(values).map(Into::into).collect();
+    let curve = Some(rows).filter(|r| r.len() > 2).and_then(Curve::through);
+    curve.ok_or_else(|| {
+        source.error_at(
             "distance.file",
             "three rows or more are expected, each at another place",
-        ));
-    }
-    Ok(rows.into_iter().unzip())
+        )
+    })
 }
 
 /// Returns a curvature of a profile about its lowest point (1/m), the median of those of parabolas
 /// through its rows: the scale of the patch to begin with.
-fn typical(places: &[f64], values: &[f64]) -> f64 {
+fn typical(profile: &Curve) -> f64 {
+    let (places, values) = (profile.places(), profile.values());
     let lowest = (0..values.len())
         .min_by(|a, b| values[*a].total_cmp(&values[*b]))
         .unwrap_or(0);

@@ -4,7 +4,7 @@
 //! ```text
 //! file (RON, as a case)        spec
 //!       ▼
-//! bodies, grid, laws           bodies, setup, law
+//! bodies, grid, laws           bodies, profiles, setup, law
 //!       ▼
 //! points: creepages, strokes   rolling, fretting               (fretwork_rolling)
 //!       ▲▼
@@ -22,6 +22,7 @@ pub mod files;
 pub mod fretting;
 pub mod law;
 mod page;
+pub mod profiles;
 pub mod rolling;
 mod setup;
 pub mod spec;
@@ -32,6 +33,7 @@ pub mod third_body;
 
 pub use answer::{Answer, Band, Motion, Point, Wear};
 pub use bodies::{Bodies, Distance};
+pub use profiles::Contact;
 pub use setup::Setup;
 pub use spec::{PatchFile, PatchSpec};
 
@@ -40,6 +42,7 @@ use crate::folder::Owner;
 use fretting::Stroke;
 use fretwork_core::laws::SearchPath;
 use fretwork_rolling::{Course, Pressure};
+use profiles::Profiles;
 use rolling::{Solved, comparison, passages, pulling};
 
 /// Owner of the folders of patches.
@@ -79,11 +82,18 @@ pub fn solve(
         let why = "the runs of a `third_body` are made by the command `fretwork patch`";
         return Err(file.source.error_at("third_body", why).into());
     }
-    let creepages = rolling::creepages(file)?;
+    let mut creepages = rolling::creepages(file)?;
     let (frets, drives) = fretting::strokes(file)?;
     let map = frets.and_then(|spec| Some((spec, spec.map.as_ref()?)));
-    let pulls = pulling::forces(file)?;
+    let mut pulls = pulling::forces(file)?;
     let setup = Setup::new(file, search)?;
+    let spin = setup
+        .bodies
+        .profiles
+        .as_ref()
+        .map_or(0.0, Profiles::added_spin);
+    creepages.iter_mut().for_each(|c| c.spin += spin);
+    pulls.iter_mut().for_each(|p| p.spin += spin);
     let plan = passages::plan(file, &setup, &creepages, &pulls)?;
     let count = creepages.len() + pulls.len() + drives.len() + usize::from(plan.is_some());
     let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
@@ -158,6 +168,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         pressure: pressure.largest(),
         approach: pressure.approach,
         area: touching as f64 * setup.grid.area(3),
+        contact: setup.contact(),
         third_body: None,
         points,
         comparisons: Vec::new(),

@@ -2,6 +2,7 @@
 
 use super::bodies::Bodies;
 use super::law::PatchLaw;
+use super::profiles::{self, Contact};
 use super::spec::{MotionSpec, PatchFile, positive};
 use crate::Error;
 use fretwork_core::laws::{Interface, Kind, LawField, ParameterOrigin, SearchPath};
@@ -20,7 +21,7 @@ use std::collections::BTreeMap;
 pub struct Setup {
     /// Both bodies.
     pub bodies: Bodies,
-    /// Load (N).
+    /// Load (N), along the normal of the contact.
     pub load: f64,
     /// Speed of rolling (m/s).
     pub speed: Option<f64>,
@@ -73,6 +74,7 @@ impl Setup {
                 thickness / positive(source, path, &layer.shear_modulus, "Pa")?
             }
         };
+        let load = profiles::settle(file, &mut bodies, load)?;
         let own = SlotValues::default();
         let members = std::iter::once(&own).chain(&spec.members);
         let mut out = Self {
@@ -157,6 +159,12 @@ impl Setup {
     /// Speed of rolling (m/s), with some value where no law reads it.
     pub fn rolling_speed(&self) -> f64 {
         self.speed.unwrap_or(ANY_SPEED)
+    }
+
+    /// Returns the contact of two profiles, where they are given.
+    pub fn contact(&self) -> Option<Contact> {
+        let profiles = self.bodies.profiles.as_ref();
+        profiles.map(|p| p.contact(self.load))
     }
 
     /// Calls a function with the patch.

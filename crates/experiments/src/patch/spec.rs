@@ -1,6 +1,7 @@
 //! The file of a patch.
 
 use super::fretting::spec::FrettingSpec;
+use super::profiles::ProfilesSpec;
 use super::rolling::comparison::{MeasuredSpec, PolachSpec};
 use super::rolling::passages::PassagesSpec;
 use super::third_body::ThirdBodySpec;
@@ -55,6 +56,9 @@ pub struct PatchSpec {
     /// Measured distance of the bodies across the motion, in place of the radii across.
     #[serde(default)]
     pub distance: Option<DistanceSpec>,
+    /// Profiles of both bodies across the motion, in place of the radii across.
+    #[serde(default)]
+    pub profiles: Option<ProfilesSpec>,
     /// Length of the contact across the motion (m), where the bodies are straight there, as a
     /// cylinder on a plane.
     #[serde(default)]

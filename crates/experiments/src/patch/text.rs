@@ -1,6 +1,7 @@
 //! The answer as lines of text.
 
 use super::answer::{Answer, Motion, Point, Wear};
+use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::third_body::ThirdBody;
@@ -46,6 +47,10 @@ impl Answer {
                 quantity(self.cell[1], "m")
             ),
         );
+        let contact = self.contact.as_ref().map(Contact::lines);
+        for (label, text) in contact.unwrap_or_default() {
+            add(label, text);
+        }
         let windows = self.third_body.as_ref();
         for (label, text) in windows.map(ThirdBody::lines).unwrap_or_default() {
             add(label, text);

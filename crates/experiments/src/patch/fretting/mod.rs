@@ -12,6 +12,7 @@ use crate::Error;
 use crate::patch::answer::{Band, Cycle, Motion, Point, Wear};
 use crate::patch::fretting::spec::{FrettingSpec, StrokeDrive, drives};
 use crate::patch::law::PatchLaw;
+use crate::patch::profiles::Contact;
 use crate::patch::rolling::bodies_that_wear;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, PatchFile};
@@ -148,6 +149,7 @@ fn point(
     }
     notes.extend(setup.bodies.yields(found.fine.pressure.largest()));
     notes.extend(setup.bodies.short_line(setup.load));
+    notes.extend(setup.contact().iter().flat_map(Contact::notes));
     let force = found.amplitude[1];
     if force.error > COARSE * force.value {
         notes.push(format!(

@@ -10,6 +10,7 @@ mod tests;
 use crate::Error;
 use crate::patch::answer::{Band, Motion, Point, Wear};
 use crate::patch::law::{Passage, PatchLaw};
+use crate::patch::profiles::Contact;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, Numbers, PatchFile, value};
 use fretwork_core::laws::Kind;
@@ -170,6 +171,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     }
     notes.extend(setup.bodies.yields(fine.pressure.largest()));
     notes.extend(setup.bodies.short_line(setup.load));
+    notes.extend(setup.contact().iter().flat_map(Contact::notes));
     let mut pressed = fine.pressure.pressure.iter().enumerate();
     let distance = &setup.bodies.distance;
     if pressed.any(|(cell, p)| *p > 0.0 && !distance.knows(grid.middle(cell)[1])) {
