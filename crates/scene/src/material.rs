@@ -393,7 +393,7 @@ impl MaterialLibrary {
         names.dedup();
         for (shipped, _) in shipped_materials::FILES {
             if !names.iter().any(|n| n == shipped) {
-                names.push(shipped.to_owned());
+                names.push((*shipped).to_owned());
             }
         }
         let folders = self.folders.iter().map(|f| f.display().to_string());
