@@ -62,23 +62,47 @@ pub struct Refined {
     pub error: Vector,
 }
 
-/// A number extrapolated to cells of no size, to first order.
+/// A number with the error of its grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Error of the fine grid: its difference to the number, and half of the difference of the
-    /// coarse grids.
+    /// Error of the grid.
     pub error: f64,
 }
 
 impl Estimate {
-    /// Returns it from a fine grid and two of cells twice as large, half a cell apart.
+    /// Returns the number extrapolated to cells of no size, to first order, from a fine grid and two
+    /// of cells twice as large, half a cell apart. The error is the difference of the fine grid to
+    /// it, and half of that of the coarse grids.
     pub fn of(fine: f64, coarse: [f64; 2]) -> Self {
         let change = fine - 0.5 * (coarse[0] + coarse[1]);
         Self {
             value: fine + change,
             error: change.abs() + 0.5 * (coarse[0] - coarse[1]).abs(),
+        }
+    }
+
+    /// Returns the number extrapolated likewise, with the whole difference of the coarse grids in its
+    /// error: for sums whose parts may cancel, in which more is left to chance, and the extrapolation
+    /// doubles it.
+    pub fn of_sum(fine: f64, coarse: [f64; 2]) -> Self {
+        let found = Self::of(fine, coarse);
+        Self {
+            error: found.error + 0.5 * (coarse[0] - coarse[1]).abs(),
+            ..found
+        }
+    }
+
+    /// Returns the number of a fine grid as it is, with its larger difference to those of two grids
+    /// of cells twice as large, half a cell apart, as its error. For numbers that fall faster than
+    /// to first order, but by jumps, since the edge of what sticks goes from cell to cell: an
+    /// extrapolation would double what is left to chance.
+    pub fn beside(fine: f64, coarse: [f64; 2]) -> Self {
+        let off = coarse.map(|c| (fine - c).abs());
+        Self {
+            value: fine,
+            error: off[0].max(off[1]),
         }
     }
 }

@@ -34,8 +34,9 @@ pub struct Stroke {
     pub cycle: Loop,
 }
 
-/// A cycle with its numbers extrapolated to cells of no size. The error of a law whose bounds
-/// depend on slip also has that of the steps: the difference to half as many on the coarse grid.
+/// A cycle with the error of its grid, the larger difference to two grids of cells twice as large,
+/// and of its steps, the difference to half as many on the coarse grid. Force, displacement and
+/// energy err to about the second order of the cells, by jumps of the edge of what sticks.
 #[derive(Clone, Debug)]
 pub struct RefinedStroke {
     /// On the fine grid.
@@ -50,6 +51,8 @@ pub struct RefinedStroke {
     pub stuck: Estimate,
     /// Volume worn in the cycle (m³).
     pub worn: Estimate,
+    /// Largest depth worn in the cycle (m).
+    pub deepest: Estimate,
 }
 
 /// Reason why there is no cycle.
@@ -97,7 +100,8 @@ impl Patch<'_> {
         })
     }
 
-    /// Follows a cycle over a grid and over two of cells twice as large, half a cell apart.
+    /// Follows a cycle over a grid and over two of cells twice as large, half a cell apart, on one of
+    /// which in half as many steps too.
     ///
     /// # Errors
     /// Those of [`frets`](Self::frets) on one of the grids.
@@ -109,7 +113,8 @@ impl Patch<'_> {
         let [coarse, other] = coarser(&grid);
         let coarse = self.frets(coarse, strokes)?;
         let other = self.frets(other, strokes)?;
-        let slower = match strokes.law.constant() || strokes.quarter < 2 {
+        // Steps matter to all laws: tractions across the motion, of Poisson's ratio, turn with them.
+        let slower = match strokes.quarter < 2 {
             true => None,
             false => {
                 let quarter = strokes.quarter / 2;
@@ -124,22 +129,19 @@ impl Patch<'_> {
         };
         let fine = self.frets(grid, strokes)?;
         let estimate = |of: &dyn Fn(&Stroke) -> f64| {
-            let mut found = Estimate::of(of(&fine), [of(&coarse), of(&other)]);
+            let mut found = Estimate::beside(of(&fine), [of(&coarse), of(&other)]);
             let by_steps = slower.as_ref().map(|s| (of(s) - of(&coarse)).abs());
             found.error += by_steps.unwrap_or(0.0);
             found
         };
         let volume = |s: &Stroke| s.cycle.worn.iter().sum::<f64>() * s.grid.area(3);
-        let stuck = estimate(&|s| s.cycle.stuck);
         Ok(RefinedStroke {
             amplitude: [0, 1].map(|k| estimate(&|s| s.cycle.amplitude[k])),
             energy: estimate(&|s| s.cycle.energy),
             opening: estimate(&|s| s.cycle.opening),
-            stuck: Estimate {
-                value: stuck.value.clamp(0.0, 1.0),
-                ..stuck
-            },
+            stuck: estimate(&|s| s.cycle.stuck),
             worn: estimate(&volume),
+            deepest: estimate(&|s| s.cycle.worn.iter().copied().fold(0.0, f64::max)),
             fine,
         })
     }

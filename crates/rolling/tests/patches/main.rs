@@ -9,6 +9,7 @@
 mod fretting;
 mod grids;
 mod line;
+mod onset;
 mod pressed;
 mod scar;
 mod steady_rolling;
