@@ -15,6 +15,7 @@
 
 pub mod below;
 pub mod cells;
+pub mod closed;
 pub mod convolution;
 pub mod creep;
 pub mod curve;
@@ -46,6 +47,7 @@ pub mod temperature;
 pub mod touching;
 
 pub use below::Below;
+pub use closed::Closed;
 pub use creep::{Creep, Share};
 pub use curve::Curve;
 pub use fastsim::Fastsim;

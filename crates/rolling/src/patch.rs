@@ -62,6 +62,19 @@ pub struct Refined {
     pub error: Vector,
 }
 
+impl Refined {
+    /// Returns results on a grid with their error, from those on [`coarser`] ones.
+    pub(crate) fn of(fine: Rolling, [coarse, other]: [Rolling; 2]) -> Self {
+        let [x, y] = [0, 1].map(|k| Estimate::of(fine.force[k], [coarse.force[k], other.force[k]]));
+        Self {
+            moment: Estimate::of(fine.moment, [coarse.moment, other.moment]),
+            force: [x.value, y.value],
+            error: [x.error, y.error],
+            fine,
+        }
+    }
+}
+
 /// A number with the error of its grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
@@ -177,13 +190,7 @@ impl Patch<'_> {
         let coarse = self.rolls(coarse, creepage, law, speed)?;
         let other = self.rolls_from(other, None, creepage, law, speed)?;
         let fine = self.rolls_from(grid, Some(&coarse), creepage, law, speed)?;
-        let [x, y] = [0, 1].map(|k| Estimate::of(fine.force[k], [coarse.force[k], other.force[k]]));
-        Ok(Refined {
-            moment: Estimate::of(fine.moment, [coarse.moment, other.moment]),
-            force: [x.value, y.value],
-            error: [x.error, y.error],
-            fine,
-        })
+        Ok(Refined::of(fine, [coarse, other]))
     }
 
     fn rolls_from(
@@ -263,7 +270,12 @@ impl Patch<'_> {
 }
 
 impl Rolling {
-    fn new(grid: CellGrid, pressure: Pressure, tractions: Tractions, creepage: &Creepage) -> Self {
+    pub(crate) fn new(
+        grid: CellGrid,
+        pressure: Pressure,
+        tractions: Tractions,
+        creepage: &Creepage,
+    ) -> Self {
         let area = grid.area(3);
         let (mut force, mut moment, mut dissipation) = ([0.0; 2], 0.0, 0.0);
         for (cell, (p, s)) in tractions.traction.iter().zip(&tractions.slip).enumerate() {
