@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""Opens the results of a run with h5py and with VTK's own reader.
+"""Opens the results of a run, or of a patch, with h5py and with VTK's own reader.
 
     pip install h5py vtk
     cargo run --release -- run cases/cylinder_on_flat_fretting.ron
     python3 tests/check_results.py results/wheel_rail_fretting
+    cargo run --release -- patch patches/wheel_on_rail.ron
+    python3 tests/check_results.py results/patch/wheel_on_rail
 
 Exits with a sentence where something cannot be read or does not agree.
 With --live the file is opened as one that is being written, or whose writer was killed.
 """
+import json
 import os
 import sys
 
@@ -293,11 +296,57 @@ def check_vtk(path, name):
         f"t {t:.4e}: {p} points, {c} cells, {a} arrays" for t, p, c, a in seen))
 
 
+def check_image(path):
+    """VTK's image of a patch has the cells and the values that h5py reads, and the load."""
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    reader = vtkHDFReader()
+    reader.SetFileName(path)
+    reader.UpdateInformation()
+    with h5py.File(path.removesuffix(".vtkhdf") + ".h5", "r") as file:
+        axes = [file[name][:] for name in ("x", "y") if name in file]
+        states = file["states"][:] if "states" in file else [None]
+        for k, state in enumerate(states):
+            reader.SetStep(k)
+            reader.Update()
+            image = reader.GetOutputDataObject(0)
+            for axis, places in enumerate(axes):
+                first = image.GetOrigin()[axis] + 0.5 * image.GetSpacing()[axis]
+                expected = first + image.GetSpacing()[axis] * np.arange(image.GetDimensions()[axis] - 1)
+                if not np.allclose(expected, places, rtol=0.0, atol=1e-9 * image.GetSpacing()[axis]):
+                    fail(f"the cells of {path} are not those of its axes")
+            for name, values in file["fields"].items():
+                seen = vtk_to_numpy(image.GetCellData().GetArray(name))
+                own = values[k] if state is not None else values[:]
+                if not np.array_equal(seen, own.ravel(), equal_nan=True):
+                    fail(f"VTK reads other values of {name} than h5py in state {k} of {path}")
+        print(f"VTK and h5py {os.path.basename(path)}: {len(states)} states of {sorted(file['fields'])}")
+        if "pressure" in file["fields"]:
+            return file["fields/pressure"][0].sum() * np.prod([places[1] - places[0] for places in axes if len(places) > 1])
+    return None
+
+
+def check_patch(folder):
+    """The images of a patch; pressures over its cells carry the load."""
+    with open(os.path.join(folder, "patch.json")) as file:
+        answer = json.load(file)
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(".vtkhdf"):
+            load = check_image(os.path.join(folder, name))
+            if name == "patch.vtkhdf" and min(answer["cells"]) > 1 and abs(load / answer["load"] - 1.0) > 1e-9:
+                fail(f"the pressures of {name} carry {load} N of {answer['load']} N")
+
+
 def main():
     live = "--live" in sys.argv
     folders = [a for a in sys.argv[1:] if not a.startswith("--")]
     if len(folders) != 1:
         sys.exit(__doc__)
+    if os.path.exists(os.path.join(folders[0], "patch.json")):
+        check_patch(folders[0])
+        print("all readable")
+        return
     path = os.path.join(folders[0], "results.h5")
     if not os.path.exists(path):
         fail(f"there is no {path}")

@@ -2,12 +2,16 @@
 //! of passages, and the page `patch.html`.
 
 use super::answer::Motion;
-use super::rolling::passages_shown;
+use super::fretting::Stroke;
+use super::rolling::{Solved, passages_shown};
 use super::{Outcome, PatchFile, page};
 use crate::Error;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
-use fretwork_store::maps::{MapField, Maps};
+use fretwork_elastic::half_space::CellGrid;
+use fretwork_rolling::fields::length;
+use fretwork_store::maps::{ImageGrid, MapField, Maps, States};
+use fretwork_store::results::ResultsError;
 use std::path::Path;
 
 /// Returns the answer as JSON.
@@ -95,11 +99,7 @@ fn curve(outcome: &Outcome) -> Table {
             points().map(|p| Some(p.force[k])),
         ));
     }
-    columns.push(Column::real(
-        "moment",
-        "N m",
-        points().map(|p| Some(p.moment)),
-    ));
+    columns.push(Column::real("moment", "N m", points().map(|p| Some(p.moment))));
     columns.push(Column::real(
         "t_gamma",
         "N",
@@ -132,104 +132,130 @@ fn curve(outcome: &Outcome) -> Table {
     Table { columns }
 }
 
-/// Writes the fields of all points.
-fn fields(outcome: &Outcome, path: &Path) -> Result<(), Error> {
-    let grid = &outcome.setup.grid;
-    let places = |axis: usize| -> Vec<f64> {
-        let cells = 0..grid.cells[axis];
-        cells
-            .map(|k| grid.from[axis] + (k as f64 + 0.5) * grid.size[axis])
-            .collect()
-    };
-    let fail = |e: fretwork_store::results::ResultsError| Error::Failed(e.to_string());
-    let mut maps = Maps::create(path, [&places(0), &places(1)]).map_err(fail)?;
-    let field =
-        |name: &'static str, unit: &'static str, doc: &'static str, values: Vec<f64>| MapField {
+/// Returns the cells of a grid as those of an image.
+pub(super) fn image_grid(grid: &CellGrid) -> ImageGrid {
+    ImageGrid {
+        cells: grid.cells,
+        from: grid.from,
+        size: grid.size,
+    }
+}
+
+/// The fields of a point.
+#[derive(Default)]
+struct Fields(Vec<MapField>);
+
+impl Fields {
+    fn add(&mut self, name: &'static str, unit: &'static str, doc: &'static str, values: Vec<f64>) {
+        self.0.push(MapField {
             name,
             unit,
             doc,
             values,
-        };
-    let of = |list: &[[f64; 2]], k: usize| list.iter().map(|v| v[k]).collect::<Vec<f64>>();
-    for (k, solved) in outcome.rolled.iter().enumerate() {
-        let (tractions, passage) = (&solved.rolling.tractions, &solved.passage);
-        let mut list = vec![
-            field(
-                "pressure",
-                "Pa",
-                "pressure",
-                solved.rolling.pressure.pressure.clone(),
-            ),
-            field(
-                "traction_x",
-                "Pa",
-                "traction on the first body",
-                of(&tractions.traction, 0),
-            ),
-            field(
-                "traction_y",
-                "Pa",
-                "traction on the first body",
-                of(&tractions.traction, 1),
-            ),
-            field(
-                "slip_x",
-                "m",
-                "slip in the passage by a cell",
-                of(&tractions.slip, 0),
-            ),
-            field(
-                "slip_y",
-                "m",
-                "slip in the passage by a cell",
-                of(&tractions.slip, 1),
-            ),
-            field("bound", "Pa", "largest traction", tractions.bound.clone()),
-            field(
-                "worn",
-                "m",
-                "depth worn in the passage by the cell",
-                passage.worn.clone(),
-            ),
-        ];
-        if !passage.temperature.is_empty() {
-            let temperature = passage.temperature.clone();
-            list.push(field(
-                "temperature",
-                "K",
-                "temperature of the surfaces",
-                temperature,
-            ));
-        }
-        maps.point(&format!("point_{}", k + 1), &list)
-            .map_err(fail)?;
+        });
     }
-    for (k, stroke) in outcome.strokes.iter().enumerate() {
+
+    /// Adds a field that is empty where the laws do not have it.
+    fn add_known(
+        &mut self,
+        name: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        values: &[f64],
+    ) {
+        if !values.is_empty() {
+            self.add(name, unit, doc, values.to_vec());
+        }
+    }
+
+    fn rolled(solved: &Solved) -> Self {
+        let (pressure, passage) = (&solved.rolling.pressure.pressure, &solved.passage);
+        let tractions = &solved.rolling.tractions;
+        let by_cell = "slip in the passage by a cell";
+        let mut out = Self::default();
+        out.add("pressure", "Pa", "pressure", pressure.clone());
+        for (k, name) in ["traction_x", "traction_y"].into_iter().enumerate() {
+            let values = component(&tractions.traction, k);
+            out.add(name, "Pa", "traction on the first body", values);
+        }
+        for (k, name) in ["slip_x", "slip_y"].into_iter().enumerate() {
+            out.add(name, "m", by_cell, component(&tractions.slip, k));
+        }
+        let sizes = tractions.slip.iter().map(|s| length(*s)).collect();
+        out.add("slip", "m", by_cell, sizes);
+        out.add("bound", "Pa", "largest traction", tractions.bound.clone());
+        let doc = "0 no contact, 1 sticks, 2 slips";
+        out.add("status", "1", doc, status(pressure, &tractions.sticks));
+        let doc = "depth worn in the passage by the cell";
+        out.add_known("worn", "m", doc, &passage.worn);
+        let doc = "temperature of the surfaces";
+        out.add_known("temperature", "K", doc, &passage.temperature);
+        out
+    }
+
+    fn fretted(stroke: &Stroke) -> Self {
         let fine = &stroke.found.fine;
-        let end = fine.cycle.traction.last().map_or(&[][..], |t| &t[..]);
-        let mut list = vec![
-            field("pressure", "Pa", "pressure", fine.pressure.pressure.clone()),
-            field("traction_x", "Pa", "traction at the end", of(end, 0)),
-            field("traction_y", "Pa", "traction at the end", of(end, 1)),
-            field("slip_path", "m", "slip path in a cycle", stroke.slip_path()),
-            field(
-                "dissipated",
-                "J/m^2",
-                "energy of slip in a cycle",
-                fine.cycle.dissipated.clone(),
-            ),
-        ];
-        if !fine.cycle.worn.is_empty() {
-            let worn = fine.cycle.worn.clone();
-            list.push(field(
-                "worn",
-                "m",
-                "depth worn off both bodies in a cycle",
-                worn,
-            ));
+        let (pressure, cycle) = (&fine.pressure.pressure, &fine.cycle);
+        let end = cycle.traction.last().map_or(&[][..], |t| &t[..]);
+        let mut out = Self::default();
+        out.add("pressure", "Pa", "pressure", pressure.clone());
+        for (k, name) in ["traction_x", "traction_y"].into_iter().enumerate() {
+            out.add(name, "Pa", "traction at the end", component(end, k));
         }
-        maps.point(&format!("point_{}", k + 1), &list)
-            .map_err(fail)?;
+        let doc = "slip path in a cycle";
+        out.add("slip_path", "m", doc, stroke.slip_path());
+        let doc = "0 no contact, 1 sticks throughout, 2 slips";
+        out.add("status", "1", doc, status(pressure, &cycle.sticks));
+        let doc = "energy of slip in a cycle";
+        out.add("dissipated", "J/m^2", doc, cycle.dissipated.clone());
+        let doc = "depth worn off both bodies in a cycle";
+        out.add_known("worn", "m", doc, &cycle.worn);
+        out
     }
+}
+
+/// Returns 0 in cells without contact, 1 in those that stick, 2 in those that slip.
+fn status(pressure: &[f64], sticks: &[bool]) -> Vec<f64> {
+    let cells = pressure.iter().zip(sticks);
+    let of = cells.map(|(p, sticks)| match (*p > 0.0, sticks) {
+        (false, _) => 0.0,
+        (true, true) => 1.0,
+        (true, false) => 2.0,
+    });
+    of.collect()
+}
+
+fn component(list: &[[f64; 2]], k: usize) -> Vec<f64> {
+    list.iter().map(|v| v[k]).collect()
+}
+
+/// Writes the fields of all points, as states of an image; no file where no point has any.
+fn fields(outcome: &Outcome, path: &Path) -> Result<(), Error> {
+    let rolled = outcome.rolled.iter().map(Fields::rolled);
+    let points = rolled.chain(outcome.strokes.iter().map(Fields::fretted));
+    let mut points = points.map(|f| f.0);
+    let Some(mut all) = points.next() else {
+        // Those of another method would be taken for the fields of this answer.
+        for old in [path.to_owned(), path.with_extension("vtkhdf")] {
+            let _ = std::fs::remove_file(old);
+        }
+        return Ok(());
+    };
+    let mut count = 1;
+    for point in points {
+        count += 1;
+        for (field, more) in all.iter_mut().zip(point) {
+            field.values.extend(more.values);
+        }
+    }
+    let fail = |e: ResultsError| Error::Failed(e.to_string());
+    let grid = image_grid(&outcome.setup.grid);
+    let states = States {
+        values: (1..=count).map(f64::from).collect(),
+        unit: "1",
+        doc: "number of the point",
+    };
+    let mut maps = Maps::over_cells(path, &grid).map_err(fail)?;
+    maps.image(&grid, Some(&states), &all).map_err(fail)?;
     maps.finish().map_err(fail)
 }

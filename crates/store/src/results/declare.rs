@@ -30,7 +30,7 @@ impl Store {
         self.named(parent.create_group(name)).map(drop)
     }
 
-    /// Creates a link to a group.
+    /// Creates another name for a group or dataset.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -86,6 +86,20 @@ impl Store {
         })
     }
 
+    /// Writes numbers as an attribute of a group.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn real_attribute(
+        &mut self,
+        group: &str,
+        name: &str,
+        values: &[f64],
+    ) -> Result<(), ResultsError> {
+        let group = self.declared_group(group)?;
+        self.named(group.set_attr_array_numeric::<f64>(name, values))
+    }
+
     /// Writes a dataset of texts with a description.
     ///
     /// # Errors
@@ -109,14 +123,29 @@ impl Store {
         values: &[T],
         (unit, doc): (&str, &str),
     ) -> Result<(), ResultsError> {
-        if values.is_empty() {
-            return Ok(());
-        }
         let rows = values.len() / width as usize;
         let shape = match width {
             1 => vec![rows],
             _ => vec![rows, width as usize],
         };
+        self.array(path, &shape, values, (unit, doc))
+    }
+
+    /// Writes a dataset of numbers of a shape with its unit and description; no dataset if there
+    /// are no numbers.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn array<T: H5Type + Number>(
+        &mut self,
+        path: &str,
+        shape: &[usize],
+        values: &[T],
+        (unit, doc): (&str, &str),
+    ) -> Result<(), ResultsError> {
+        if values.is_empty() {
+            return Ok(());
+        }
         let (parent, name) = split(path);
         let group = self.declared_group(parent)?;
         let made = group.new_dataset::<T>().shape(shape).create(name);

@@ -3,13 +3,14 @@
 use crate::Error;
 use crate::page::section;
 use crate::patch::answer::Motion;
+use crate::patch::files::image_grid;
 use crate::patch::fretting::cycles::History;
 use crate::patch::text::add_line;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Scar;
-use fretwork_store::maps::{MapField, Maps};
+use fretwork_store::maps::{MapField, Maps, States};
 use fretwork_view::{Axis, Block, Chart, Section, Series, Style};
 use std::path::Path;
 
@@ -129,26 +130,26 @@ impl History {
 
     fn fields(&self, path: &Path) -> Result<(), Error> {
         let fail = |e: fretwork_store::results::ResultsError| Error::Failed(e.to_string());
-        let places = |k: usize| -> Vec<f64> {
-            (0..self.grid.cells[k])
-                .map(|i| self.grid.from[k] + (i as f64 + 0.5) * self.grid.size[k])
-                .collect()
-        };
-        let mut maps = Maps::create(path, [&places(0), &places(1)]).map_err(fail)?;
-        let field = |name, unit, doc, values: &[f64]| MapField {
+        let grid = image_grid(&self.grid);
+        let mut maps = Maps::over_cells(path, &grid).map_err(fail)?;
+        let both = [&self.scars[0], self.end()];
+        let field = |name, unit, doc, of: fn(&Scar) -> &[f64]| MapField {
             name,
             unit,
             doc,
-            values: values.to_vec(),
+            values: both.iter().flat_map(|s| of(s)).copied().collect(),
         };
-        for (name, scar) in [("first", &self.scars[0]), ("end", self.end())] {
-            let list = [
-                field("depth", "m", "depth worn off both bodies", &scar.depth),
-                field("debris", "m", "debris, volume over area", &scar.debris),
-                field("pressure", "Pa", "pressure", &scar.pressure),
-            ];
-            maps.point(name, &list).map_err(fail)?;
-        }
+        let list = [
+            field("depth", "m", "depth worn off both bodies", |s| &s.depth),
+            field("debris", "m", "debris, volume over area", |s| &s.debris),
+            field("pressure", "Pa", "pressure", |s| &s.pressure),
+        ];
+        let states = States {
+            values: both.map(|s| s.cycles).to_vec(),
+            unit: "1",
+            doc: "cycles",
+        };
+        maps.image(&grid, Some(&states), &list).map_err(fail)?;
         maps.finish().map_err(fail)
     }
 

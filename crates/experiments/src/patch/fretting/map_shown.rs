@@ -8,7 +8,7 @@ use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Estimate;
-use fretwork_store::maps::{MapField, Maps};
+use fretwork_store::maps::{ImageGrid, MapField, Maps};
 use fretwork_view::{Axis, Block, Chart, Section, Series, Style};
 use std::path::Path;
 
@@ -22,6 +22,21 @@ const REGIMES: [&str; 5] = [
 ];
 /// Names of responses.
 const RESPONSES: [&str; 4] = ["no damage", "cracks", "wear", "cracks and wear"];
+
+/// Returns the cells of an image over the logarithms to base 10 of axes in equal ratios; `None`
+/// where an axis has one place.
+fn equal_ratios(axes: [&[f64]; 2]) -> Option<ImageGrid> {
+    let step = |axis: &[f64]| match axis {
+        [first, .., last] => Some((last / first).log10() / (axis.len() - 1) as f64),
+        _ => None,
+    };
+    let size = [step(axes[0])?, step(axes[1])?];
+    Some(ImageGrid {
+        cells: axes.map(<[f64]>::len),
+        from: [0, 1].map(|k| axes[k][0].log10() - 0.5 * size[k]),
+        size,
+    })
+}
 
 fn within(estimate: Estimate, unit: &str) -> String {
     let (value, error) = (
@@ -275,7 +290,10 @@ impl FrettingMap {
                 &|p| class(&RESPONSES, p.response_name()),
             ));
         }
-        maps.point("map", &list).map_err(fail)?;
+        match equal_ratios([&self.amplitudes, &self.loads]) {
+            Some(grid) => maps.image(&grid, None, &list).map_err(fail)?,
+            None => maps.group("fields", &list).map_err(fail)?,
+        }
         maps.finish().map_err(fail)
     }
 

@@ -203,7 +203,7 @@ fn fields(course: &Course, path: &Path) -> Result<(), Error> {
             values: rows.iter().flat_map(|r| r[k].iter().copied()).collect(),
         });
     let list: Vec<MapField> = list.collect();
-    maps.point("profiles", &list).map_err(fail)?;
+    maps.group("profiles", &list).map_err(fail)?;
     maps.finish().map_err(fail)
 }
 
