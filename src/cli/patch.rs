@@ -5,7 +5,7 @@ use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs};
 use crate::experiments::duration::parse as duration;
 use crate::experiments::patch::third_body::{self, Reached, Runs};
-use crate::experiments::patch::{OWNER, Outcome, PatchFile, files, solve};
+use crate::experiments::patch::{OWNER, Outcome, PatchFile, files, solve, trade};
 use crate::interrupt;
 use clap::Args;
 use std::io::IsTerminal;
@@ -19,6 +19,7 @@ Exit code: 0 solved, or with --prepare the missing runs are named; 1 no solution
 
 Example:
   fretwork patch patches/wheel_on_rail.ron
+  fretwork patch patches/wheel_on_rail.ron --trade=2%
 
 docs/patch.md says what the file is made of and what the numbers mean.";
 
@@ -35,9 +36,14 @@ pub struct PatchArgs {
     /// Parallel runs, where the patch has a `third_body`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Stop a run that takes longer: 90s, 10m, 2h
+    /// Stop a run that takes longer: 90s, 10m, 2h; with --trade, leave out settings that are
+    /// expected to (10m)
     #[arg(long, value_name = "TIME", value_parser = duration)]
     limit: Option<Duration>,
+    /// Compare methods and numbers of cells by error and cost, and name the cheapest within an
+    /// error
+    #[arg(long, value_name = "ERROR", num_args = 0..=1, require_equals = true, default_missing_value = "1%", value_parser = wanted)]
+    trade: Option<f64>,
     /// Make no runs of a `third_body`, and name the study of those that are missing, for another
     /// engine
     #[arg(long)]
@@ -46,11 +52,32 @@ pub struct PatchArgs {
     plugins: PluginArgs,
 }
 
+/// Longest expected duration of a setting of a trade.
+const LIMIT: Duration = Duration::from_secs(600);
+
+/// Parses a relative error, `1%` or `0.01`.
+fn wanted(text: &str) -> Result<f64, String> {
+    let (digits, scale) = match text.trim().strip_suffix('%') {
+        Some(digits) => (digits, 0.01),
+        None => (text, 1.0),
+    };
+    let value = digits.trim().parse::<f64>().map(|x| scale * x);
+    match value {
+        Ok(x) if x > 0.0 && x < 1.0 => Ok(x),
+        _ => Err(format!(
+            "`{text}` is not an error between 0 and 100 %, such as 1%"
+        )),
+    }
+}
+
 pub fn patch(args: &PatchArgs) -> Result<(), Failure> {
     let out = results(args.out.as_deref(), "patch", &args.patch);
     let search = args.plugins.search()?;
-    let file = PatchFile::read(&args.patch)?;
+    let mut file = PatchFile::read(&args.patch)?;
     let _lock = OWNER.take(&out)?;
+    if let Some(wanted) = args.trade {
+        return trades(args, &mut file, wanted, &out);
+    }
     let outcome = match file.spec.third_body.is_some() {
         true => match with_runs(args, &file, &out)? {
             Some(outcome) => *outcome,
@@ -70,10 +97,33 @@ pub fn patch(args: &PatchArgs) -> Result<(), Failure> {
         return answer_json(&json);
     }
     inform(&outcome.answer.text());
+    let fields = match out.join("patch.h5").is_file() {
+        true => format!(", {}/patch.h5", out.display()),
+        false => String::new(),
+    };
     inform(&format!(
-        "{0}/patch.html, {0}/patch.json, {0}/patch.h5",
+        "{0}/patch.html, {0}/patch.json{fields}",
         out.display()
     ));
+    Ok(())
+}
+
+/// Compares the methods and grids of a patch.
+fn trades(args: &PatchArgs, file: &mut PatchFile, wanted: f64, out: &Path) -> Result<(), Failure> {
+    let shows = !args.json && std::io::stderr().is_terminal();
+    let limit = args.limit.unwrap_or(LIMIT);
+    let search = args.plugins.search()?;
+    let trade = trade::run(file, &search, (wanted, &trade::CELLS), limit, &mut |name| {
+        if shows {
+            report(name);
+        }
+    })?;
+    let json = trade.write(out)?;
+    if args.json {
+        return answer_json(&json);
+    }
+    inform(&trade.text());
+    inform(&format!("{0}/trade.csv, {0}/trade.json", out.display()));
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use super::fretting::cycles::History;
 use super::fretting::map::FrettingMap;
+use super::method::Method;
 use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages::Worn;
@@ -24,6 +25,11 @@ pub struct Answer {
     pub speed: Option<f64>,
     /// Laws of the interface: kind and name.
     pub laws: Vec<(String, String)>,
+    /// How the patch is solved.
+    pub method: Method,
+    /// What is known of the error of the method, where it is not of the grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub about_method: Option<String>,
     /// Number of cells of the grid along its sides.
     pub cells: [usize; 2],
     /// Sides of a cell (m).
@@ -75,20 +81,21 @@ pub struct Point {
     pub force: [f64; 2],
     /// Tangential force over load, extrapolated to cells of no size.
     pub adhesion: f64,
-    /// Error of it by the grid.
+    /// Error of it, by the grid or by the theory that neglects more.
     pub adhesion_error: f64,
     /// Lowest and highest value over the members.
     pub adhesion_band: Option<Band>,
-    /// Moment on the first body about the normal (N m).
-    pub moment: f64,
-    /// Energy supplied over the distance rolled (N), T gamma; in fretting over a cycle (J).
+    /// Moment on the first body about the normal (N m). A closed form has none.
+    pub moment: Option<f64>,
+    /// Energy supplied over the distance rolled (N), T gamma, without the moment where it is not
+    /// known; in fretting over a cycle (J).
     pub t_gamma: f64,
     /// Energy dissipated by slip over the distance rolled (N); in fretting over a cycle (J).
     pub dissipation: f64,
     /// Resistance to rolling by unlike bodies (N).
     pub resistance: f64,
-    /// Share of the area that sticks; in fretting throughout the cycle.
-    pub stuck: f64,
+    /// Share of the area that sticks; in fretting throughout the cycle. A closed form has none.
+    pub stuck: Option<f64>,
     /// Largest velocity of slip (m/s).
     pub slip_speed: Option<f64>,
     /// Highest temperature (K).

@@ -3,6 +3,7 @@
 
 use super::answer::Motion;
 use super::fretting::Stroke;
+use super::method::Method;
 use super::rolling::{Solved, passages_shown};
 use super::{Outcome, PatchFile, page};
 use crate::Error;
@@ -35,7 +36,7 @@ pub fn write(file: &PatchFile, outcome: &Outcome, out: &Path) -> Result<String, 
     };
     save("patch.ron", file.source.text())?;
     save("patch.json", &json)?;
-    if !outcome.rolled.is_empty() {
+    if outcome.answer.points.iter().any(|p| p.stroke.is_none()) {
         csv::write(
             &curve(outcome),
             &out.join("adhesion.csv"),
@@ -81,7 +82,10 @@ fn curve(outcome: &Outcome) -> Table {
         Column::real("spin", "1/m", creepage(|c| c.spin)),
         Column::real("adhesion", "1", points().map(|p| Some(p.adhesion))),
         Column::real(
-            "adhesion_error_of_grid",
+            match outcome.answer.method {
+                Method::Exact => "adhesion_error_of_grid",
+                _ => "adhesion_error",
+            },
             "1",
             points().map(|p| Some(p.adhesion_error)),
         ),
@@ -99,7 +103,7 @@ fn curve(outcome: &Outcome) -> Table {
             points().map(|p| Some(p.force[k])),
         ));
     }
-    columns.push(Column::real("moment", "N m", points().map(|p| Some(p.moment))));
+    columns.push(Column::real("moment", "N m", points().map(|p| p.moment)));
     columns.push(Column::real(
         "t_gamma",
         "N",
@@ -110,7 +114,7 @@ fn curve(outcome: &Outcome) -> Table {
         "N",
         points().map(|p| Some(p.resistance)),
     ));
-    columns.push(Column::real("stuck", "1", points().map(|p| Some(p.stuck))));
+    columns.push(Column::real("stuck", "1", points().map(|p| p.stuck)));
     columns.push(Column::real(
         "slip_speed",
         "m/s",

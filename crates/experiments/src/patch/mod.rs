@@ -4,7 +4,7 @@
 //! ```text
 //! file (RON, as a case)        spec
 //!       ▼
-//! bodies, grid, laws           bodies, profiles, setup, law
+//! bodies, grid, laws, rung     bodies, profiles, setup, law, method
 //!       ▼
 //! points: creepages, strokes   rolling, fretting               (fretwork_rolling)
 //!       ▲▼
@@ -14,6 +14,7 @@
 //! maps, many cycles            fretting::{map, cycles}
 //! other curves, measurements   rolling::comparison
 //! numbers, curves, fields      answer, text, files, page
+//! methods and grids compared   trade
 //! ```
 
 mod answer;
@@ -21,6 +22,9 @@ mod bodies;
 pub mod files;
 pub mod fretting;
 pub mod law;
+pub mod method;
+#[cfg(test)]
+mod method_tests;
 mod page;
 pub mod profiles;
 pub mod rolling;
@@ -30,6 +34,7 @@ pub mod spec;
 mod tests;
 mod text;
 pub mod third_body;
+pub mod trade;
 
 pub use answer::{Answer, Band, Motion, Point, Wear};
 pub use bodies::{Bodies, Distance};
@@ -41,8 +46,9 @@ use crate::Error;
 use crate::folder::Owner;
 use fretting::Stroke;
 use fretwork_core::laws::SearchPath;
-use fretwork_rolling::{Course, Pressure};
-use profiles::Profiles;
+use fretwork_rolling::{Course, Creepage, Pressure};
+use law::PatchLaw;
+use method::Rung;
 use rolling::{Solved, comparison, passages, pulling};
 
 /// Owner of the folders of patches.
@@ -87,24 +93,31 @@ pub fn solve(
     let map = frets.and_then(|spec| Some((spec, spec.map.as_ref()?)));
     let mut pulls = pulling::forces(file)?;
     let setup = Setup::new(file, search)?;
-    let spin = setup
-        .bodies
-        .profiles
-        .as_ref()
-        .map_or(0.0, Profiles::added_spin);
+    let spin = setup.added_spin();
     creepages.iter_mut().for_each(|c| c.spin += spin);
     pulls.iter_mut().for_each(|p| p.spin += spin);
     let plan = passages::plan(file, &setup, &creepages, &pulls)?;
     let count = creepages.len() + pulls.len() + drives.len() + usize::from(plan.is_some());
     let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
+    let closed = matches!(setup.rung, Rung::Ellipse(_) | Rung::Line(..));
+    let mut points: Vec<Point> = Vec::new();
+    let mut roll = |creepage: &Creepage| -> Result<(), Error> {
+        match closed {
+            true => points.push(rolling::closed::point(&setup, creepage)?),
+            false => {
+                let solved = rolling::solve(&setup, creepage)?;
+                points.push(solved.point.clone());
+                rolled.push(solved);
+            }
+        }
+        follow(points.len(), count);
+        Ok(())
+    };
     for creepage in &creepages {
-        rolled.push(rolling::solve(&setup, creepage)?);
-        follow(rolled.len(), count);
+        roll(creepage)?;
     }
     for pull in &pulls {
-        let creepage = pulling::creepage(&setup, pull)?;
-        rolled.push(rolling::solve(&setup, &creepage)?);
-        follow(rolled.len(), count);
+        roll(&pulling::creepage(&setup, pull)?)?;
     }
     for drive in &drives {
         strokes.push(fretting::solve(&setup, drive)?);
@@ -118,15 +131,13 @@ pub fn solve(
     let mut pressures = pressures.chain(strokes.iter().map(|s| &s.found.fine.pressure));
     let first = match pressures.next() {
         Some(pressure) => pressure.clone(),
+        None if closed => Pressure::default(),
         None => {
             let pressed = setup.with_patch(|patch| patch.pressed(setup.grid));
             pressed.map_err(|e| fretting::fail(&e))?.1
         }
     };
-    let points = rolled.iter().map(|s| s.point.clone());
-    let points: Vec<Point> = points
-        .chain(strokes.iter().map(|s| s.point.clone()))
-        .collect();
+    points.extend(strokes.iter().map(|s| s.point.clone()));
     let comparisons = comparison::comparisons(file, &setup, &points)?;
     let mut answer = numbers(file, &setup, &first, points);
     answer.comparisons = comparisons;
@@ -151,6 +162,10 @@ pub fn solve(
 fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Point>) -> Answer {
     let loaded = setup.laws[0].interface().loaded();
     let touching = pressure.pressure.iter().filter(|p| **p > 0.0).count();
+    let area = touching as f64 * setup.grid.area(3);
+    let of_cells = || [pressure.largest(), pressure.approach, area];
+    let [largest, approach, area] = setup.rung.pressed(&setup.grid).unwrap_or_else(of_cells);
+    let coulomb = setup.laws.iter().all(PatchLaw::is_constant);
     Answer {
         name: file.spec.name.clone(),
         bodies: setup.bodies.names.each_ref().map(|n| {
@@ -163,11 +178,13 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         laws: loaded
             .map(|l| (l.plugin.kind.to_string(), l.plugin.name.clone()))
             .collect(),
+        method: file.spec.method,
+        about_method: setup.rung.about(coulomb),
         cells: setup.grid.cells,
         cell: setup.grid.size,
-        pressure: pressure.largest(),
-        approach: pressure.approach,
-        area: touching as f64 * setup.grid.area(3),
+        pressure: largest,
+        approach,
+        area,
         contact: setup.contact(),
         third_body: None,
         points,

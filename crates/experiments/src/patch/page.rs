@@ -2,6 +2,7 @@
 
 use super::answer::Motion;
 use super::fretting::map::FrettingMap;
+use super::method::Method;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::{Outcome, PatchFile};
@@ -86,7 +87,11 @@ fn curve(outcome: &Outcome) -> Option<Section> {
     let note = match list[0].adhesion_band {
         Some(_) if outcome.answer.third_body.is_some() => "Bars are the range over the seeds.",
         Some(_) => "Bars are the range over the members.",
-        None => "Bars are the error by the grid.",
+        None => match outcome.answer.method {
+            Method::Exact => "Bars are the error by the grid.",
+            Method::Fastsim => "Bars are the error by the simplified theory.",
+            Method::ClosedForm => "Bars are the error by the closed form.",
+        },
     };
     let label = match outcome.answer.comparisons.is_empty() {
         true => "",

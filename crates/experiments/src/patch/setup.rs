@@ -2,13 +2,14 @@
 
 use super::bodies::Bodies;
 use super::law::PatchLaw;
-use super::profiles::{self, Contact};
+use super::method::Rung;
+use super::profiles::{self, Contact, Profiles};
 use super::spec::{MotionSpec, PatchFile, positive};
 use crate::Error;
 use fretwork_core::laws::{Interface, Kind, LawField, ParameterOrigin, SearchPath};
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_rolling::patch::Patch;
-use fretwork_rolling::{NormalError, Surfaces, normal};
+use fretwork_rolling::{Creepage, NormalError, PatchError, Refined, Surfaces, normal};
 use fretwork_scene::case::SlotValues;
 use fretwork_scene::material::MaterialLibrary;
 use fretwork_scene::source::Source;
@@ -29,6 +30,8 @@ pub struct Setup {
     pub layer: f64,
     /// The grid.
     pub grid: CellGrid,
+    /// What its method needs.
+    pub rung: Rung,
     /// The laws, and those of the members.
     pub laws: Vec<PatchLaw>,
     /// The wear coefficient, where it follows from the hardness of a material.
@@ -79,6 +82,7 @@ impl Setup {
         let members = std::iter::once(&own).chain(&spec.members);
         let mut out = Self {
             grid: grid(&bodies, load, spec.cells)?,
+            rung: Rung::new(file, &bodies, load, layer)?,
             load,
             speed,
             layer,
@@ -165,6 +169,24 @@ impl Setup {
     pub fn contact(&self) -> Option<Contact> {
         let profiles = self.bodies.profiles.as_ref();
         profiles.map(|p| p.contact(self.load))
+    }
+
+    /// Returns the spin by the contact angle that adds to that of the motion (1/m).
+    pub fn added_spin(&self) -> f64 {
+        let profiles = self.bodies.profiles.as_ref();
+        profiles.map_or(0.0, Profiles::added_spin)
+    }
+
+    /// Solves steady rolling cell by cell, with the error of the grid.
+    ///
+    /// # Errors
+    /// There is no solution.
+    pub fn refined(&self, creepage: &Creepage, law: &PatchLaw) -> Result<Refined, PatchError> {
+        let speed = self.rolling_speed();
+        match &self.rung {
+            Rung::Fastsim(springs) => Ok(springs.refined(self.grid, creepage, law, speed)),
+            _ => self.with_patch(|patch| patch.refined(self.grid, creepage, law, speed)),
+        }
     }
 
     /// Calls a function with the patch.

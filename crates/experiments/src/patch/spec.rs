@@ -1,6 +1,7 @@
 //! The file of a patch.
 
 use super::fretting::spec::FrettingSpec;
+use super::method::Method;
 use super::profiles::ProfilesSpec;
 use super::rolling::comparison::{MeasuredSpec, PolachSpec};
 use super::rolling::passages::PassagesSpec;
@@ -79,6 +80,9 @@ pub struct PatchSpec {
     pub third_body: Option<ThirdBodySpec>,
     /// How the bodies move over each other.
     pub motion: MotionSpec,
+    /// How the patch is solved.
+    #[serde(default)]
+    pub method: Method,
     /// Passages over which the bodies wear.
     #[serde(default)]
     pub passages: Option<PassagesSpec>,

@@ -28,15 +28,18 @@ impl Answer {
         );
         let laws: Vec<String> = self.laws.iter().map(|(k, n)| format!("{k} {n}")).collect();
         add("laws", laws.join(", "));
-        add(
-            "patch",
-            format!(
-                "{} largest pressure, {} mm2, approach {}",
-                quantity(self.pressure, "Pa"),
-                number(1e6 * self.area, 4),
-                quantity(self.approach, "m")
-            ),
+        let mut patch = format!(
+            "{} largest pressure, {} mm2",
+            quantity(self.pressure, "Pa"),
+            number(1e6 * self.area, 4)
         );
+        if self.approach.is_finite() {
+            patch += &format!(", approach {}", quantity(self.approach, "m"));
+        }
+        add("patch", patch);
+        if let Some(about) = &self.about_method {
+            add("method", about.clone());
+        }
         add(
             "grid",
             format!(
@@ -57,10 +60,11 @@ impl Answer {
         }
         for (k, point) in self.points.iter().enumerate() {
             out.push('\n');
-            out.push_str(&point.text(match windows {
+            let over = match windows {
                 Some(_) => "seeds",
                 None => "members",
-            }));
+            };
+            out.push_str(&point.text(over, self.method.error_of()));
             if let Some(settled) = windows.and_then(|w| w.points.get(k)) {
                 add_line(&mut out, "windows", &settled.line());
             }
@@ -115,8 +119,8 @@ fn short(value: f64) -> String {
 }
 
 impl Point {
-    /// Returns its lines; its band is that over `members`.
-    fn text(&self, members: &str) -> String {
+    /// Returns its lines; its band is that over `members`, its error `by` the grid or a theory.
+    fn text(&self, members: &str, by: &str) -> String {
         let mut out = match self.motion {
             Motion::Rolling(c) => {
                 let percent = |x: f64| format!("{} %", short(100.0 * x));
@@ -146,7 +150,7 @@ impl Point {
         // A given force has no error.
         if !self.stroke.is_some_and(|c| c.by_force) {
             let error = number(self.adhesion_error, 2);
-            adhesion += &format!(" +- {error} by the grid");
+            adhesion += &format!(" +- {error} {by}");
         }
         if let Some(band) = self.adhesion_band {
             let (low, high) = (number(band.low, 4), number(band.high, 4));
@@ -158,10 +162,11 @@ impl Point {
         let seen = |x: f64, least: f64| if x.abs() > least * size { x } else { 0.0 };
         let forces = self.force.map(|f| quantity(seen(f, ROUNDING), "N"));
         if rolls {
-            let moment = quantity(seen(self.moment, ROUNDING_ARM), "N m");
+            let moment = self.moment.map(|m| quantity(seen(m, ROUNDING_ARM), "N m"));
+            let moment = moment.map_or(String::new(), |m| format!(", {m}"));
             add(
                 "on the first body",
-                format!("{} along, {} across, {moment}", forces[0], forces[1]),
+                format!("{} along, {} across{moment}", forces[0], forces[1]),
             );
             let supplied = quantity(self.t_gamma, "J/m");
             // Pressures of like bodies are alike on both sides.
@@ -184,16 +189,16 @@ impl Point {
                 format!("A = E/(4 Q delta) {ratio}, slip ratio {slip}"),
             );
         }
-        let regime = match (rolls, self.stuck) {
-            (false, 0.0) => ": gross slip",
-            (false, x) if x < 1.0 => ": partial slip",
-            (false, _) => ": stick",
-            _ => "",
-        };
-        add(
-            "sticks",
-            format!("{} % of the area{regime}", number(100.0 * self.stuck, 3)),
-        );
+        if let Some(stuck) = self.stuck {
+            let regime = match stuck {
+                _ if rolls => "",
+                0.0 => ": gross slip",
+                x if x < 1.0 => ": partial slip",
+                _ => ": stick",
+            };
+            let share = number(100.0 * stuck, 3);
+            add("sticks", format!("{share} % of the area{regime}"));
+        }
         if let Some(speed) = self.slip_speed {
             add("slip velocity", format!("up to {}", quantity(speed, "m/s")));
         }

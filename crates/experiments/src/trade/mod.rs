@@ -19,7 +19,7 @@ mod deformability;
 mod execute;
 mod figure;
 mod files;
-mod frontier;
+pub(crate) mod frontier;
 mod listed;
 mod ordered;
 mod output;

@@ -1,5 +1,6 @@
 //! Points of steady rolling: forces, wear and temperature at each creepage.
 
+pub mod closed;
 pub mod comparison;
 pub mod passages;
 pub(in crate::patch) mod passages_shown;
@@ -10,6 +11,7 @@ mod tests;
 use crate::Error;
 use crate::patch::answer::{Band, Motion, Point, Wear};
 use crate::patch::law::{Passage, PatchLaw};
+use crate::patch::method::Rung;
 use crate::patch::profiles::Contact;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, Numbers, PatchFile, value};
@@ -18,7 +20,7 @@ use fretwork_observe::quantity::quantity;
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::pull::LARGEST;
-use fretwork_rolling::{Creepage, Refined, Rolling};
+use fretwork_rolling::{Creepage, Fastsim, Refined, Rolling};
 use fretwork_scene::InputError;
 
 /// Difference of the energies supplied and dissipated over the latter that is no longer small,
@@ -179,19 +181,25 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     }
     let time = touching as f64 * grid.size[0] / speed;
     notes.extend(setup.laws[0].outside(&passage, grid.cells[0], time));
+    // The force of full slip is that of the bounds.
+    let bounds = fine.tractions.bound.iter().sum::<f64>() * grid.area(3);
+    let of_theory = match setup.rung {
+        Rung::Fastsim(_) => Fastsim::ERROR[usize::from(creepage.spin != 0.0)] * bounds,
+        _ => 0.0,
+    };
     let temperature = setup.speed.filter(|_| !passage.temperature.is_empty());
     let point = Point {
         motion: Motion::Rolling(*creepage),
         stroke: None,
         force,
         adhesion,
-        adhesion_error: length(error) / setup.load,
+        adhesion_error: (length(error) + of_theory) / setup.load,
         adhesion_band: Band::of(adhesion, &members),
-        moment: moment.value,
+        moment: Some(moment.value),
         t_gamma,
         dissipation: fine.dissipation,
         resistance: fine.resistance,
-        stuck: stuck as f64 / touching as f64,
+        stuck: Some(stuck as f64 / touching as f64),
         slip_speed: setup
             .speed
             .map(|v| slips.fold(0.0, f64::max) * v / grid.size[0]),
@@ -218,7 +226,7 @@ pub(in crate::patch) fn of_law(
     law: &PatchLaw,
 ) -> Result<(Refined, Passage), Error> {
     let speed = setup.rolling_speed();
-    let solved = setup.with_patch(|patch| patch.refined(setup.grid, creepage, law, speed));
+    let solved = setup.refined(creepage, law);
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
     if let Some(error) = law.take_error() {
         return Err(fail(&error));

@@ -1,6 +1,8 @@
 //! The creepage at which a patch has a force along the rolling.
 
 use crate::Error;
+use crate::patch::method::Rung;
+use crate::patch::rolling::closed;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, PatchFile, value};
 use fretwork_observe::quantity::quantity;
@@ -53,7 +55,7 @@ pub(in crate::patch) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError
 /// A law fails, there is no solution, or the patch does not carry the force.
 pub(in crate::patch) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
-    let (law, speed) = (&setup.laws[0], setup.rolling_speed());
+    let law = &setup.laws[0];
     // Force opposes creepage.
     let sign = -pull.force.signum();
     let wanted = pull.force.abs();
@@ -63,7 +65,11 @@ pub(in crate::patch) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage,
         spin: pull.spin,
     };
     let carried = |size: f64| -> Result<f64, Error> {
-        let solved = setup.with_patch(|patch| patch.refined(setup.grid, &at(size), law, speed));
+        if matches!(setup.rung, Rung::Ellipse(_) | Rung::Line(..)) {
+            let (force, _) = closed::of_law(setup, &at(size), law)?;
+            return Ok(-sign * force[0]);
+        }
+        let solved = setup.refined(&at(size), law);
         if let Some(error) = law.take_error() {
             return Err(fail(&error));
         }
