@@ -31,7 +31,7 @@ const SHORT: f64 = 0.2;
 /// Growth of the cost with the number of cells along a side, at least, before it is measured.
 const GROWTH: f64 = 2.0;
 /// Moment over load and extent of the grid below which it is rounding, and is not compared.
-const ROUNDING: f64 = 1e-7;
+const ROUNDING: f64 = 1e-6;
 
 /// A trade of a patch.
 #[derive(Debug, Serialize)]
