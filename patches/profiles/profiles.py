@@ -16,7 +16,7 @@ from collections.abc import Callable
 from math import asin, cos, hypot, sin, sqrt
 from pathlib import Path
 
-COARSE, FINE = 0.1, 0.05
+COARSE, FINE = 0.05, 0.025
 BACK, RIM = -69.0, 60.0
 
 TREAD = (

@@ -9,6 +9,7 @@
 mod fretting;
 mod grids;
 mod line;
+mod manchester;
 mod onset;
 mod pressed;
 mod scar;
