@@ -7,7 +7,7 @@
 50
 
 A :class:`Case` is read, edited, checked and run; a :class:`Simulation` is stepped by hand; :class:`Results` reads what a run wrote,
-:func:`read_study` the table of a study.
+:func:`read_study` the table of a study; :func:`material` has the numbers of a material, with their sources.
 ``fretwork.law`` has laws written in Python. ``docs/python.md`` shows all of it.
 """
 
@@ -19,6 +19,7 @@ from ._check import Check
 from ._contact_patch import contact_patch
 from ._errors import Error, InputError, MissingPackageError, RunError
 from ._fretwork import __version__
+from ._material import Material, Number, material, materials
 from ._observers import Column, Observer, Stop
 from ._patch import patch
 from ._progress import Progress
@@ -40,7 +41,9 @@ __all__ = [
     "Column",
     "Error",
     "InputError",
+    "Material",
     "MissingPackageError",
+    "Number",
     "Observer",
     "Progress",
     "Results",
@@ -53,6 +56,8 @@ __all__ = [
     "compare",
     "contact_patch",
     "law",
+    "material",
+    "materials",
     "patch",
     "read_study",
     "report",

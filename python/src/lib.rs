@@ -11,6 +11,7 @@ mod contact_patch;
 mod errors;
 mod infinity;
 mod law;
+mod material;
 mod observer;
 mod patch;
 mod paths;
@@ -34,6 +35,8 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(report::report, module)?)?;
     module.add_function(wrap_pyfunction!(report::compare, module)?)?;
     module.add_function(wrap_pyfunction!(contact_patch::contact_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(material::material, module)?)?;
+    module.add_function(wrap_pyfunction!(material::materials, module)?)?;
     module.add_function(wrap_pyfunction!(patch::patch, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;

@@ -26,7 +26,8 @@ def uses(case: fretwork.Case) -> float:
     energy: dict[str, float] = case.simulation().energy
     wear: float = fretwork.read_study("results/study/wear", settings=True)["wear.Qs"].max()
     patch: dict[str, Any] = fretwork.contact_patch("75 kN", 0.46, ("flat", 0.3), material="rail_steel_r260", friction=(0.3, 0.5))
-    return wear + float(patch["load"]) + report.error + len(check) + energy["friction"] + float(results.statistics["time"].iloc[-1])
+    young: float = fretwork.material("PTFE").properties["young"].value + fretwork.materials()[0]["density"]
+    return wear + young + float(patch["load"]) + report.error + len(check) + energy["friction"] + float(results.statistics["time"].iloc[-1])
 
 
 def errors() -> int | None:

@@ -1,5 +1,5 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `law`, `solve`,
-//! `study`, `fit`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `law`,
+//! `material`, `solve`, `study`, `fit`, `trade`.
 //!
 //! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
 
@@ -11,6 +11,7 @@ mod ending;
 mod experiment;
 mod fit;
 mod law;
+mod material;
 mod measured;
 mod number;
 mod observers;
@@ -86,6 +87,9 @@ enum Command {
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
+    /// Materials: list them, show all numbers of one with their sources, check own files
+    #[command(subcommand, after_help = material::EXAMPLES)]
+    Material(material::MaterialCommand),
     /// Solve contact problems in FCLIB files, the format of the shared benchmark collection
     #[command(
         allow_negative_numbers = true,
@@ -328,6 +332,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::ContactPatch(args) => contact_patch::contact_patch(&args),
         Command::Patch(args) => patch::patch(&args),
         Command::Law(command) => law::law(&command),
+        Command::Material(command) => material::material(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Study(command) => study::study(&command),
         Command::Fit(args) => fit::fit(&args),

@@ -30,6 +30,7 @@ mod law_new;
 mod layers;
 mod library_features;
 mod line_length;
+mod material;
 mod material_laws;
 mod pages;
 mod patch;

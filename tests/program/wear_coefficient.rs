@@ -32,6 +32,8 @@ fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<B
         let given = hardness.map(|(value, unit)| ("hardness".to_owned(), sourced(value, unit)));
         let material = Material {
             doc: name.to_owned(),
+            class: None,
+            also: Vec::new(),
             density: sourced(1000.0, "kg/m^3"),
             properties: BTreeMap::from_iter(given),
             laws: None,

@@ -1,7 +1,19 @@
 //! Materials and parameters of interface laws: numbers with their units and sources.
 
-use super::shipped_materials;
-use super::source::{InputError, Source, ValidationError, Wanted, nearest};
+mod class;
+mod derived;
+mod library;
+mod plausible;
+mod sheet;
+
+pub use class::{Bounds, MaterialClass, any_solid};
+pub use derived::{Derived, derived};
+pub use library::{Listed, MaterialLibrary, MissingMaterial};
+pub use plausible::doubts;
+pub use sheet::{Sheet, SheetNumber};
+
+use super::quantity::hardness_in_pascal;
+use super::source::ValidationError;
 use super::units::{self, UnitError};
 use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
 use serde::de::value::MapAccessDeserializer;
@@ -9,7 +21,6 @@ use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 /// A number and its source.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -64,6 +75,25 @@ impl Sourced {
     /// The unit is unknown or of another dimension.
     pub fn in_unit(&self, wanted: &str) -> Result<f64, UnitError> {
         units::convert(self.value, &self.unit, wanted)
+    }
+
+    /// Checks the range of the number `name` at a path.
+    ///
+    /// # Errors
+    /// The range does not contain the value.
+    fn range_contains_value(&self, name: &str, path: &str) -> Result<(), ValidationError> {
+        let Some((low, high)) = self.range else {
+            return Ok(());
+        };
+        if low <= self.value && self.value <= high {
+            return Ok(());
+        }
+        let message = format!(
+            "the range of `{name}`, {low} to {high}, does not contain its value {}",
+            self.value
+        );
+        Err(ValidationError::new(format!("{path}.range"), message)
+            .expected("the smallest, then the largest value in the source"))
     }
 }
 
@@ -139,6 +169,12 @@ impl<'de> Deserialize<'de> for NumberSpec {
 pub struct Material {
     /// Description.
     pub doc: String,
+    /// Class, which says between which values its properties are plausible.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<MaterialClass>,
+    /// Other names, by which cases and commands find it too: `AISI 52100`, `SUJ2`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<String>,
     /// Density (kg/m^3).
     pub density: Sourced,
     /// Further properties: laws use those that equal the names of their parameters without `_1` or
@@ -168,7 +204,12 @@ const PROPERTIES: [(&str, &str); 11] = [
 
 /// Returns whether a name is that of a property with a known unit.
 pub fn is_property(name: &str) -> bool {
-    PROPERTIES.iter().any(|p| p.0 == name)
+    unit_of(name).is_some()
+}
+
+/// Returns the unit of a property, empty for a pure number; `None` if any unit is accepted.
+pub fn unit_of(name: &str) -> Option<&'static str> {
+    PROPERTIES.iter().find(|p| p.0 == name).map(|p| p.1)
 }
 
 impl Material {
@@ -186,13 +227,15 @@ impl Material {
             let message = format!("a density must be positive, got {density}");
             return Err(ValidationError::new("density.value", message));
         }
+        self.density.range_contains_value("density", "density")?;
         for (name, property) in &self.properties {
             let at = |field: &str| format!("properties.{name}.{field}");
             if !property.value.is_finite() {
                 let message = format!("`{name}` must be finite, got {}", property.value);
                 return Err(ValidationError::new(at("value"), message));
             }
-            let wanted = PROPERTIES.iter().find(|p| p.0 == name).map(|p| p.1);
+            property.range_contains_value(name, &format!("properties.{name}"))?;
+            let wanted = unit_of(name);
             let pressed = name == "hardness" && units::hardness(&property.unit).is_none();
             match wanted.or(pressed.then_some("Pa")) {
                 Some(wanted) => property.in_unit(wanted).map(|_| ()),
@@ -201,6 +244,17 @@ impl Material {
             .map_err(|e| e.at(at("unit")))?;
         }
         Ok(density)
+    }
+
+    /// Returns a property in SI units, a hardness as a pressure; `None` if the file does not give
+    /// it, or its unit is not one of this property.
+    pub fn property(&self, name: &str) -> Option<f64> {
+        let given = self.properties.get(name)?;
+        match unit_of(name) {
+            Some(wanted) => given.in_unit(wanted).ok(),
+            None if name == "hardness" => hardness_in_pascal(given.value, &given.unit),
+            None => units::in_si(given.value, &given.unit).ok().map(|si| si.0),
+        }
     }
 }
 
@@ -273,146 +327,10 @@ impl InterfaceParameters {
                 for (name, number) in parameters {
                     let at = |field: &str| format!("{slot}.{law}.{name}.{field}");
                     units::known(&number.unit).map_err(|e| e.at(at("unit")))?;
-                    if let Some((low, high)) = number.range
-                        && !(low <= number.value && number.value <= high)
-                    {
-                        let message = format!(
-                            "the range of `{name}`, {low} to {high}, does not contain its value {}",
-                            number.value
-                        );
-                        return Err(ValidationError::new(at("range"), message)
-                            .expected("the smallest, then the largest value in the source"));
-                    }
+                    number.range_contains_value(name, &format!("{slot}.{law}.{name}"))?;
                 }
             }
         }
         Ok(())
     }
-}
-
-/// The folders searched for material files: `materials/` beside the case and in each folder above
-/// it, then in the working folder, then the files built into the program.
-#[derive(Clone, Debug)]
-pub struct MaterialLibrary {
-    folders: Vec<PathBuf>,
-    /// Texts that the program supplies, which precede all files.
-    own: BTreeMap<String, String>,
-}
-
-impl MaterialLibrary {
-    /// The search path for a case file.
-    pub fn beside(case: &Path) -> Self {
-        let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());
-        let mut folders: Vec<PathBuf> = absolute
-            .ancestors()
-            .skip(1)
-            .map(|a| a.join("materials"))
-            .collect();
-        folders.push(PathBuf::from("materials"));
-        folders.retain(|f| f.is_dir());
-        Self {
-            folders,
-            own: BTreeMap::new(),
-        }
-    }
-
-    /// The files built into the program alone.
-    pub fn shipped() -> Self {
-        Self {
-            folders: Vec::new(),
-            own: BTreeMap::new(),
-        }
-    }
-
-    /// Adds texts by name, which are used instead of files of the same names.
-    #[must_use]
-    pub fn with_own(mut self, texts: &BTreeMap<String, String>) -> Self {
-        self.own.clone_from(texts);
-        self
-    }
-
-    /// Reads the file `NAME.ron`. A unit with a value, `value: 200 GPa`, stands beside it in the
-    /// text that is returned.
-    ///
-    /// # Errors
-    /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
-    pub fn read(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
-        let mut source = self.find(name)?;
-        let units = source.replace_quantities(|place| match place.names.last() {
-            Some(name) if name == "value" => Wanted::Pair,
-            _ => Wanted::AsWritten,
-        });
-        units.map_err(Err)?;
-        Ok(source)
-    }
-
-    fn find(&self, name: &str) -> Result<Source, Result<MissingMaterial, InputError>> {
-        if let Some(text) = self.own.get(name) {
-            return Ok(Source::from_text(
-                format!("{name}.ron (built in Rust)"),
-                text.as_str(),
-            ));
-        }
-        let plain = !name.is_empty()
-            && name
-                .chars()
-                .all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
-        let found = plain.then(|| {
-            self.folders
-                .iter()
-                .map(|f| f.join(format!("{name}.ron")))
-                .find(|p| p.is_file())
-        });
-        match found.flatten() {
-            Some(path) => Source::read(&path).map_err(Err),
-            None => match shipped_materials::text(name) {
-                Some(text) => Ok(Source::from_text(
-                    format!("materials/{name}.ron (built in)"),
-                    text,
-                )),
-                None => Err(Ok(self.missing(name))),
-            },
-        }
-    }
-
-    fn missing(&self, name: &str) -> MissingMaterial {
-        let mut names: Vec<String> = self
-            .folders
-            .iter()
-            .filter_map(|f| std::fs::read_dir(f).ok())
-            .flat_map(|entries| entries.flatten())
-            .filter_map(|e| {
-                e.file_name()
-                    .to_str()
-                    .and_then(|n| n.strip_suffix(".ron"))
-                    .map(str::to_owned)
-            })
-            .collect();
-        names.extend(self.own.keys().cloned());
-        names.sort();
-        names.dedup();
-        for (shipped, _) in shipped_materials::FILES {
-            if !names.iter().any(|n| n == shipped) {
-                names.push((*shipped).to_owned());
-            }
-        }
-        let folders = self.folders.iter().map(|f| f.display().to_string());
-        let built_in = std::iter::once("the program itself".to_owned());
-        MissingMaterial {
-            nearest: nearest(name, names.iter().map(String::as_str)).map(str::to_owned),
-            available: names.join(", "),
-            searched: folders.chain(built_in).collect::<Vec<_>>().join(", "),
-        }
-    }
-}
-
-/// A name without a file.
-#[derive(Clone, Debug)]
-pub struct MissingMaterial {
-    /// The nearest name.
-    pub nearest: Option<String>,
-    /// All available names.
-    pub available: String,
-    /// The folders that were searched.
-    pub searched: String,
 }

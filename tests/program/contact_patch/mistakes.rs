@@ -79,7 +79,7 @@ fn wrong_questions_are_refused_with_what_to_change() {
             "did you mean `rail_steel_r260`",
         ),
         (
-            &["--radius", "1m", "--material", "ER7"],
+            &["--radius", "1m", "--material", "steel_er7"],
             "did you mean `wheel_steel_er7`",
         ),
         (

@@ -271,10 +271,7 @@ fn read(name: &str) -> Result<Material, String> {
     let source = library.read(name).map_err(|e| match e {
         Err(error) => error.to_string(),
         Ok(missing) => {
-            let part = name.to_lowercase();
-            let holds = |n: &&str| n.to_lowercase().contains(&part);
-            let holds = || missing.available.split(", ").find(holds).map(str::to_owned);
-            let near = missing.nearest.clone().or_else(holds);
+            let near = missing.nearest.as_ref();
             let near = near.map(|n| format!("; did you mean `{n}`?"));
             format!(
                 "material: there is no file `{name}.ron` in {}{}; there are {}",

@@ -247,7 +247,7 @@ fn build(
     let text =
         r#"(name: "", dimension: 3, time: (step: 1, end: 1), materials: {}, interfaces: [])"#;
     let mut case = Case::read(&Source::from_text("patch", text))?;
-    case.materials.clone_from(&spec.materials);
+    (*case.materials).clone_from(&spec.materials);
     case.interfaces.clone_from(&spec.interfaces);
     case.pins.clone_from(&spec.pins);
     let [one, other] = &bodies.names;

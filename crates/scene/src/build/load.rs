@@ -4,9 +4,8 @@ use super::LoadedCase;
 use crate::case::Case;
 use crate::material::{InterfaceParameters, Material, MaterialLibrary};
 use crate::recorded::RecordReader;
-use crate::source::{self, InputError, Source};
+use crate::source::{self, InputError, Source, ValidationError, join_path};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
 
@@ -85,12 +84,23 @@ impl LoadedCase {
 
     fn checked(source: Source, case: Case, path: &Path) -> Result<Self, InputError> {
         crate::check::numbers(&case).map_err(|f| source.locate(f))?;
+        for (name, material) in case.materials.own() {
+            let within = |fault: ValidationError| {
+                let parts = ["materials".to_owned(), name.clone()];
+                source.locate(fault.under(&join_path(&parts)))
+            };
+            material.density().map_err(within)?;
+            if let Some(laws) = &material.laws {
+                laws.units().map_err(|fault| within(fault.under("laws")))?;
+            }
+        }
+        let own_files = case.materials.own_files()?;
         Ok(Self {
             source,
             case,
             path: path.to_owned(),
             records: None,
-            own_files: BTreeMap::new(),
+            own_files,
         })
     }
 

@@ -87,7 +87,7 @@ impl CaseBuilder {
                 periodic: PeriodicSpec::default(),
                 detection: Default::default(),
                 solver: SolverSpec::default(),
-                materials: BTreeMap::new(),
+                materials: Default::default(),
                 interfaces: Vec::new(),
                 pins: BTreeMap::new(),
                 bodies: Vec::new(),
@@ -176,6 +176,8 @@ impl CaseBuilder {
         let name = name.into();
         let material = Material {
             doc: name.clone(),
+            class: None,
+            also: Vec::new(),
             density: Sourced {
                 value: density,
                 unit: "kg/m^3".to_owned(),

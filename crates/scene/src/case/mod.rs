@@ -8,6 +8,7 @@ mod half_space;
 mod heat;
 mod interface;
 pub(crate) mod key_units;
+mod materials;
 mod read;
 mod shapes;
 pub(crate) mod slots;
@@ -28,6 +29,8 @@ pub use heat::{
     StoreSpec,
 };
 pub use interface::{InterfaceSpec, SlotValues};
+pub use materials::CaseMaterials;
+pub(crate) use materials::TEXT_OR_MATERIAL;
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
 pub use slots::BySlot;
 pub use uncertainty::UncertaintySpec;
@@ -89,8 +92,8 @@ pub struct Case {
     /// Options of the contact solver.
     #[serde(default)]
     pub solver: SolverSpec,
-    /// Materials: name in this case, and name of the file in `materials/`.
-    pub materials: BTreeMap<String, String>,
+    /// Materials: name in this case, and name of the file in `materials/`, or the material itself.
+    pub materials: CaseMaterials,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
     /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without an

@@ -37,6 +37,10 @@ impl Case {
             if of_interface && names.iter().any(|n| n == "parameters") {
                 return Wanted::Pair;
             }
+            let of_material = names.first().is_some_and(|n| n == "materials");
+            if of_material && names.last().is_some_and(|n| n == "value") {
+                return Wanted::Pair;
+            }
             match key_units::of_element(names, place.index, dimension) {
                 Some(unit) => Wanted::In(unit),
                 None => Wanted::AsWritten,

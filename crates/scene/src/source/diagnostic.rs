@@ -208,6 +208,11 @@ impl InputError {
         self.one_line("error")
     }
 
+    /// Returns on one line what is no error, but to be looked at.
+    pub fn as_doubt(&self) -> String {
+        self.one_line("doubt")
+    }
+
     fn one_line(&self, kind: &str) -> String {
         let mut line = match self.position() {
             Some((line, column)) => format!("{}:{line}:{column}: ", self.file),

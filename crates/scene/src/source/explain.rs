@@ -9,6 +9,7 @@ use super::scan::starts_word;
 use super::set::{one_of, shorten};
 use super::tree::{Node, Shape, ValueKind, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
+use crate::case::TEXT_OR_MATERIAL;
 use crate::quantity;
 
 /// Gives the names of the variants of the enum at a path of the schema, if there is one.
@@ -225,7 +226,7 @@ impl Source {
         let ValueKind::Quantity(unit) = &node.kind else {
             return None;
         };
-        if matches!(code, RonError::ExpectedString) {
+        if expects_text(code) {
             return Some(self.wrong_type(node, "a text in quotes"));
         }
         let path = self.path_to(&node.span);
@@ -317,9 +318,7 @@ impl Source {
         }
         let word = self.word_at(token);
         match (expected_type(code), next) {
-            (Some(expected), Some(_))
-                if matches!(code, RonError::ExpectedString) && !word.is_empty() =>
-            {
+            (Some(expected), Some(_)) if expects_text(code) && !word.is_empty() => {
                 let error = self.error_in(
                     &(token..token + word.len()),
                     format!("found the word `{word}`"),
@@ -387,7 +386,8 @@ impl Source {
             format!("wrong type{place}: found {found}"),
         );
         let unquoted_text = matches!(node.kind, ValueKind::Word | ValueKind::Quantity(_));
-        let quotes = unquoted_text && expected == "a text in quotes";
+        let text = expected == "a text in quotes" || expected == TEXT_OR_MATERIAL;
+        let quotes = unquoted_text && text;
         let number = matches!(node.kind, ValueKind::Text) && expected.starts_with("a number");
         let inner = written.trim_matches('"');
         let number = number && quantity::parts(inner).1 == inner.len();
@@ -409,6 +409,15 @@ impl Source {
 const TIME_FUNCTION: &str =
     "a number, or a function of time: `Constant(...)`, `Ramp(...)`, `Sine(...)`, `Table([...])`";
 
+/// Whether the parser wants a text here, alone or beside a struct.
+pub(super) fn expects_text(code: &RonError) -> bool {
+    match code {
+        RonError::ExpectedString => true,
+        RonError::InvalidValueForType { expected, .. } => expected == TEXT_OR_MATERIAL,
+        _ => false,
+    }
+}
+
 /// Returns a description of the type expected at this location.
 fn expected_type(code: &RonError) -> Option<String> {
     Some(match code {
@@ -428,6 +437,9 @@ fn expected_type(code: &RonError) -> Option<String> {
         RonError::ExpectedOption => "`Some(...)` or `None`".into(),
         RonError::ExpectedUnit => "`()`".into(),
         RonError::ExpectedIdentifier => "a name without quotes".into(),
+        RonError::InvalidValueForType { expected, .. } if expected == TEXT_OR_MATERIAL => {
+            expected.clone()
+        }
         _ => return None,
     })
 }

@@ -38,6 +38,7 @@ pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
 pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
+pub(crate) use tree::join_path;
 pub use tree::{Entry, Group, MAX_DEPTH, Node, Shape, SyntaxError, Tree, ValueKind, split_path};
 
 pub(crate) use quantities::{Place, Wanted};
@@ -148,7 +149,7 @@ impl Source {
             }
         }
         // Only the parser knows whether a newly set field is a text: quote its value and try again.
-        if error.code == ron::Error::ExpectedString {
+        if explain::expects_text(&error.code) {
             let offset = source
                 .offset(&error.span.start)
                 .max(source.offset(&error.span.end));

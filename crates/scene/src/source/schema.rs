@@ -12,7 +12,7 @@ use serde::de::{
 };
 use serde::forward_to_deserialize_any;
 
-use super::tree::Node;
+use super::tree::{Node, Shape};
 
 /// The kind of a type at a position.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -112,7 +112,13 @@ impl<'a> Probe<'a> {
 impl<'de> Deserializer<'de> for Probe<'_> {
     type Error = Error;
 
-    fn deserialize_any<V: Visitor<'de>>(mut self, _: V) -> Result<V::Value, Error> {
+    /// A type with several notations, of which the text has one.
+    fn deserialize_any<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Error> {
+        let written = self.node.map(|node| node.unwrap_some(self.text));
+        let group = written.and_then(Node::group);
+        if !self.path.is_empty() && group.is_some_and(|group| group.shape == Shape::Struct) {
+            return self.deserialize_map(visitor);
+        }
         self.note(Level::Value);
         Err(end())
     }
