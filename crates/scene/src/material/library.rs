@@ -114,8 +114,8 @@ impl MaterialLibrary {
     }
 
     /// Reads the file `NAME.ron`, or the file of a material that has this other name, whatever its
-    /// case, blanks and hyphens; files of the folders precede those of the program. A unit with a value, `value: 200 GPa`, stands beside it in the
-    /// text that is returned.
+    /// case, blanks and hyphens; files of the folders precede those of the program. A unit with a
+    /// value, `value: 200 GPa`, stands beside it in the text that is returned.
     ///
     /// # Errors
     /// Returns `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
@@ -131,8 +131,8 @@ impl MaterialLibrary {
         with_units(Source::read(path)?)
     }
 
-    /// Returns all materials, sorted by the names of their files; files with parameters of laws alone
-    /// are none.
+    /// Returns all materials, sorted by the names of their files; files with parameters of laws
+    /// alone are none.
     pub fn list(&self) -> Vec<Listed> {
         let mut out: Vec<Listed> = Vec::new();
         for file in self.files().iter().chain(shipped()) {

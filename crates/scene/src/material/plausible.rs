@@ -15,8 +15,8 @@ const SCALES: [(&str, f64); 6] = [
     ("um/(m K)", 1e-6),
 ];
 
-/// Lorenz number of metals (W ohm/K^2) by the law of Wiedemann and Franz (C. Kittel, Introduction to
-/// Solid State Physics, chapter 6), and temperature of the properties (K).
+/// Lorenz number of metals (W ohm/K^2) by the law of Wiedemann and Franz (C. Kittel, Introduction
+/// to Solid State Physics, chapter 6), and temperature of the properties (K).
 const LORENZ: (f64, f64) = (2.44e-8, 293.0);
 
 /// Conductivity of heat times resistivity over that of the law: from alloys at room temperature, in
@@ -28,8 +28,8 @@ const LORENZ_RATIO: (f64, f64) = (0.5, 3.0);
 /// of two; the bounds are twice as wide.
 const VOLUMETRIC_HEAT: (f64, f64) = (0.5e6, 8e6);
 
-/// Hardness over yield stress: H = 3 Y (D. Tabor, The Hardness of Metals, 1951) of metals, less where
-/// the elastic strains are large (K. L. Johnson, J. Mech. Phys. Solids 18 (1970) 115-126).
+/// Hardness over yield stress: H = 3 Y (D. Tabor, The Hardness of Metals, 1951) of metals, less
+/// where the elastic strains are large (K. L. Johnson, J. Mech. Phys. Solids 18 (1970) 115-126).
 const TABOR: (f64, f64) = (1.0, 8.0);
 
 /// Largest hardness over young: an elastic cone of the indenter's angle bears no more.
