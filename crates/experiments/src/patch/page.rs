@@ -3,6 +3,7 @@
 use super::answer::Motion;
 use super::fretting::map::FrettingMap;
 use super::method::Method;
+use super::profiles::Profiles;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::{Outcome, PatchFile};
@@ -24,6 +25,8 @@ const MAPS: usize = 4;
 /// The file cannot be written.
 pub fn write(file: &PatchFile, outcome: &Outcome, to: &Path) -> Result<(), Error> {
     let mut sections = vec![section("Answer", vec![Block::Code(outcome.answer.text())])];
+    let profiles = outcome.setup.bodies.profiles.as_ref();
+    sections.extend(profiles.map(Profiles::section));
     sections.extend(curve(outcome));
     sections.extend(passages_shown::page(outcome));
     sections.extend(loops(outcome));
