@@ -72,6 +72,14 @@ pub struct Passages<'a> {
     pub wears: &'a dyn Wears,
     /// Depth of each body over that of the law for one passage that is counted.
     pub parts: [f64; 2],
+    /// Largest width of the patch (m), for which the undeformed distance holds.
+    pub widest: f64,
+}
+
+/// Returns the half-width (m) of a cut of a volume per length (m²) that is worn flat into bodies of a
+/// relative radius R across (m): w³ = 3 R V/2.
+pub fn flat(volume: f64, radius: f64) -> f64 {
+    (1.5 * radius * volume).cbrt()
 }
 
 /// The bodies after a jump.
@@ -231,6 +239,12 @@ impl Passages<'_> {
                 self.record(&state, &profile, &mut now);
                 course.jumps.push(now);
                 follow(&now);
+                if now.width > self.widest {
+                    return Err(PatchError::Wide {
+                        passages: now.passages,
+                        width: now.width,
+                    });
+                }
             }
             if course.moments.last().is_none_or(|m| m.passages < stop) {
                 course.moments.push(moment(&state, &profile, stop));

@@ -53,6 +53,8 @@ pub struct Rolling {
 pub struct Refined {
     /// On the fine grid.
     pub fine: Rolling,
+    /// On the grids of larger cells.
+    pub coarse: [Rolling; 2],
     /// Force extrapolated to cells of no size, to first order (N).
     pub force: Vector,
     /// Moment on the first body about the normal through the origin (N m), likewise.
@@ -71,6 +73,7 @@ impl Refined {
             force: [x.value, y.value],
             error: [x.error, y.error],
             fine,
+            coarse: [coarse, other],
         }
     }
 }
@@ -139,6 +142,16 @@ pub enum PatchError {
         wanted: f64,
         /// The largest force (N).
         most: f64,
+    },
+    /// The bodies wear so much that their distance is not known as widely as they touch.
+    #[error(
+        "after {passages:.3e} passages the patch is {width:.3e} m wide, too much for the shape of the bodies"
+    )]
+    Wide {
+        /// Passages so far.
+        passages: f64,
+        /// Width of the patch (m).
+        width: f64,
     },
     /// The bodies wear so much that the patch leaves every grid.
     #[error(

@@ -9,8 +9,8 @@
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::CellGrid;
 use fretwork_elastic::patch::{Solid, effective_modulus, point};
-use fretwork_rolling::passages::{Archard, Course, Drive, Jump, Passages, Steps};
-use fretwork_rolling::{Coulomb, Creepage, Patch};
+use fretwork_rolling::passages::{Archard, Course, Drive, Jump, Passages, Steps, flat};
+use fretwork_rolling::{Coulomb, Creepage, Patch, PatchError};
 use std::f64::consts::PI;
 
 const STEEL: Elasticity = Elasticity {
@@ -74,6 +74,7 @@ fn worn(drive: Drive, parts: [f64; 2], cells: usize, steps: &Steps) -> Course {
         speed: 1.0,
         wears: &Archard(RATE),
         parts,
+        widest: f64::INFINITY,
     };
     passages.wear(&grid(cells), steps, &mut |_| ()).unwrap()
 }
@@ -218,4 +219,31 @@ fn a_force_stays() {
         &steps(1.0, 1.0),
     ));
     assert!((again.adhesion[0] + 0.3).abs() < 1e-3, "{again:?}");
+}
+
+/// Passages end where the patch is wider than the shape of the bodies is known: the width by then is
+/// that of the flat of what is worn.
+#[test]
+fn passages_end_where_the_shape_does() {
+    let passages = Passages {
+        patch: Patch {
+            bodies: [STEEL; 2],
+            layer: 0.0,
+            distance: &distance,
+            load: LOAD,
+        },
+        drive: along(0.3),
+        law: &Coulomb(0.43),
+        speed: 1.0,
+        wears: &Archard(RATE),
+        parts: [0.0, 1.0],
+        widest: 0.05,
+    };
+    let found = passages.wear(&grid(24), &steps(1e9, 0.05), &mut |_| ());
+    let Err(PatchError::Wide { passages, width }) = found else {
+        panic!("{found:?}");
+    };
+    let half = flat(passages * RATE * LOAD * 0.3, RADII[1]);
+    assert!(width > 0.05 && width < 0.08, "{width}");
+    assert!((width / (2.0 * half) - 1.0).abs() < 0.1, "{width} {half}");
 }

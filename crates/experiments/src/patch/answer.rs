@@ -7,6 +7,7 @@ use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages::Worn;
 use super::third_body::ThirdBody;
+use fretwork_observe::quantity::DETERMINED;
 use fretwork_rolling::{Creepage, Estimate};
 use serde::Serialize;
 
@@ -156,13 +157,26 @@ pub struct Wear {
     pub body: String,
     /// The wear law.
     pub law: String,
-    /// Volume over the distance rolled (m²); in fretting the volume of a cycle (m³).
+    /// Volume over the distance rolled (m²), extrapolated to cells of no size; in fretting the
+    /// volume of a cycle (m³).
     pub volume: f64,
-    /// Largest depth (m).
+    /// Error of it by the grid.
+    pub volume_error: f64,
+    /// Largest depth (m), likewise.
     pub depth: f64,
+    /// Error of it by the grid (m).
+    pub depth_error: f64,
     /// Depth across the motion, one number for each row of cells (m); in fretting empty.
     pub profile: Vec<f64>,
     /// Half-width of the 95 % interval of all of these over the seeds of windows, as a share of
     /// them; null of a law.
     pub half_width: Option<f64>,
+}
+
+impl Wear {
+    /// Whether grid and seeds determine the volume.
+    pub fn is_known(&self) -> bool {
+        let by_seeds = self.half_width.is_none_or(|half| half <= DETERMINED);
+        by_seeds && self.volume_error <= DETERMINED * self.volume
+    }
 }

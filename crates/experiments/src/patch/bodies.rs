@@ -6,13 +6,15 @@ use super::spec::{DistanceSpec, PatchFile, positive, value};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::patch::{LinePatch, PointPatch, Solid, effective_modulus, line, point};
 use fretwork_math::diffusion::Conductor;
-use fretwork_observe::quantity::quantity;
+use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Curve;
 use fretwork_rolling::temperature::Thermal;
 use fretwork_scene::InputError;
 use fretwork_scene::material::{Material, MaterialLibrary, Sourced};
 use fretwork_scene::measured::MeasuredTable;
 use fretwork_scene::quantity::hardness_in_pascal;
+use fretwork_scene::source::Source;
+use fretwork_scene::units::convert;
 use std::collections::BTreeMap;
 
 /// Temperature of the bodies by default (K).
@@ -141,7 +143,9 @@ impl Bodies {
             let density = material.density().map_err(|fault| source.locate(fault))?;
             if !(young > 0.0 && (0.0..=0.5).contains(&poisson)) {
                 let message = format!(
-                    "young {young:e} Pa and poisson {poisson} of the material `{}` must be above 0, and from 0 to 0.5",
+                    "young {} and poisson {} of the material `{}` must be above 0, and from 0 to 0.5",
+                    quantity(young, "Pa"),
+                    number(poisson, 4),
                     body.material
                 );
                 return Err(source.error_at(&format!("{at}.material"), message));
@@ -197,7 +201,8 @@ impl Bodies {
                 return Err(source.error_at(
                     "bodies",
                     format!(
-                        "the bodies conform {name} the motion: their curvatures 1/R1 + 1/R2 there add to {curvature:.3e} 1/m, which must be above 0 for a patch that ends; a cylinder on a plane has a `length`"
+                        "the bodies conform {name} the motion: their curvatures 1/R1 + 1/R2 there add to {}, which must be above 0 for a patch that ends; a cylinder on a plane has a `length`",
+                        quantity(curvature, "1/m")
                     ),
                 ));
             }
@@ -286,16 +291,7 @@ fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<Curve, InputError> {
     }
     let path = file.beside(&spec.file);
     let table = MeasuredTable::read(&path).map_err(|e| source.named_at("distance.file", e))?;
-    let column = |name: &str| -> Result<Vec<f64>, InputError> {
-        let column = table.required(name)?;
-        let values = table.values(column)?;
-        let unit = &table.headings[column].unit;
-        let in_metres = |v: f64| fretwork_scene::units::convert(v, unit, "m");
-        let values: Result<Vec<f64>, _> = values.into_iter().map(in_metres).collect();
-        values.map_err(|e| {
-            source.error_at("distance.file", format!("column `{name}`: {}", e.message))
-        })
-    };
+    let column = |name: &str| metres(source, "distance.file", &table, name);
     let (places, values) = (column(&spec.across)?, column(&spec.distance)?);
     let rows: Vec<[f64; 2]> = places.into_iter().zip(values).map(Into::into).collect();
     let curve = Some(rows).filter(|r| r.len() > 2).and_then(Curve::through);
@@ -305,6 +301,30 @@ fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<Curve, InputError> {
             "three rows or more are expected, each at another place",
         )
     })
+}
+
+/// Returns the numbers of a column of lengths (m), of a table whose file stands at a path.
+///
+/// # Errors
+/// There is no such column, or no unit of a length in its heading.
+pub(super) fn metres(
+    source: &Source,
+    path: &str,
+    table: &MeasuredTable,
+    name: &str,
+) -> Result<Vec<f64>, InputError> {
+    let column = table.required(name).map_err(|e| source.named_at(path, e))?;
+    let unit = &table.headings[column].unit;
+    if unit.is_empty() {
+        let why = format!(
+            "the heading `{name}` has no unit: write it as `{name} [mm]`, in the unit of its numbers"
+        );
+        return Err(source.error_at(path, why));
+    }
+    let in_metres = |v: f64| convert(v, unit, "m");
+    let values = table.values(column)?.into_iter().map(in_metres);
+    let values: Result<Vec<f64>, _> = values.collect();
+    values.map_err(|e| source.error_at(path, format!("column `{name}`: {}", e.message)))
 }
 
 /// Returns a curvature of a profile about its lowest point (1/m), the median of those of parabolas

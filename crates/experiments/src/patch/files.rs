@@ -130,6 +130,9 @@ fn curve(outcome: &Outcome) -> Table {
         let name = points().next().map_or("", |p| p.wear[k].body.as_str());
         let of = points().map(|p| p.wear.get(k).map(|w| w.volume));
         columns.push(Column::real(format!("wear_volume_{name}"), "m^2", of));
+        let of = points().map(|p| p.wear.get(k).map(|w| w.volume_error));
+        let error = format!("wear_volume_{name}_error_of_grid");
+        columns.push(Column::real(error, "m^2", of));
         let of = points().map(|p| p.wear.get(k).map(|w| w.depth));
         columns.push(Column::real(format!("wear_depth_{name}"), "m", of));
     }

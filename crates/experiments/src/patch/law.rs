@@ -9,6 +9,7 @@
 use fretwork_core::laws::bench::{Bench, BenchMotion, BenchOutputs, BenchState, ROOM_TEMPERATURE};
 use fretwork_core::laws::{Interface, Kind, LawError};
 use fretwork_elastic::half_space::CellGrid;
+use fretwork_observe::quantity::number;
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::temperature::{Response, Thermal};
@@ -64,6 +65,14 @@ const SEEN: f64 = 0.01;
 
 /// Name of the internal variable to which a patch gives the debris in a cell (m).
 pub const DEBRIS: &str = "debris";
+
+/// Returns the note on a table that is left for a share of the time.
+pub fn outside(table: &str, share: f64) -> String {
+    format!(
+        "NOT IN RANGE: the `{table}` of the law is left for {} % of the time under load, where its value is that at its border",
+        number(100.0 * share, 2)
+    )
+}
 
 /// What the laws give in the cells of a patch; 0 in cells without contact.
 #[derive(Clone, Debug, Default)]
@@ -142,19 +151,21 @@ impl PatchLaw {
         self.constant.is_some()
     }
 
-    /// Returns the internal variables of the contacts that stay in their cells, as they are now.
-    pub fn now(&self) -> Passage {
-        let count = self.interface.variables();
-        let mut variables = vec![Vec::new(); count];
-        for state in self.carried() {
-            for (k, list) in variables.iter_mut().enumerate() {
-                list.push(state.get(k + 1).copied().unwrap_or(0.0));
-            }
-        }
-        Passage {
-            variables,
-            ..Passage::default()
-        }
+    /// Returns the tables that contacts which stay in their cells have left for more than a hundredth
+    /// of the time since they formed, and for which share of it.
+    pub fn left(&self) -> Vec<(String, f64)> {
+        let carried = self.carried();
+        let sum = |k: usize| carried.iter().filter_map(|c| c.get(k)).sum::<f64>();
+        let tables = self.tables().map(|(k, table)| (table, sum(k + 1) / sum(0)));
+        tables.filter(|(_, share)| *share > SEEN).collect()
+    }
+
+    /// Returns the places of the internal variables that count the time outside of a table, and
+    /// what that table is named.
+    fn tables(&self) -> impl Iterator<Item = (usize, String)> {
+        let loaded = self.interface.loaded();
+        let named = loaded.flat_map(|l| l.plugin.variables.iter()).enumerate();
+        named.filter_map(|(k, field)| Some((k, field.name.strip_prefix("outside_")?.to_owned())))
     }
 
     /// Takes the friction of strips in place of that of the law, or that of the law again.
@@ -170,21 +181,11 @@ impl PatchLaw {
     /// Returns a sentence for each table that the contacts leave for more than a hundredth of their
     /// time (s) in all, from the variables of a passage; a contact has `cells` cells.
     pub fn outside(&self, passage: &Passage, cells: usize, time: f64) -> Vec<String> {
-        let named = self
-            .interface
-            .loaded()
-            .flat_map(|l| l.plugin.variables.iter());
-        let left = named.zip(&passage.variables).filter_map(|(field, values)| {
-            let table = field.name.strip_prefix("outside_")?;
-            let rows = values.chunks(cells);
+        let left = self.tables().filter_map(|(k, table)| {
+            let rows = passage.variables.get(k)?.chunks(cells);
             let most = |row: &[f64]| row.iter().copied().fold(0.0, f64::max);
             let share = rows.map(most).sum::<f64>() / time;
-            (share > SEEN).then(|| {
-                format!(
-                    "NOT IN RANGE: the `{table}` of the law is left for {:.0} % of the time under load, where its value is that at its border",
-                    100.0 * share
-                )
-            })
+            (share > SEEN).then(|| outside(&table, share))
         });
         left.collect()
     }

@@ -28,6 +28,7 @@ mod method_tests;
 mod page;
 pub mod profiles;
 pub mod rolling;
+mod said;
 mod setup;
 pub mod spec;
 #[cfg(test)]
@@ -117,13 +118,14 @@ pub fn solve(
         roll(creepage)?;
     }
     for pull in &pulls {
-        roll(&pulling::creepage(&setup, pull)?)?;
+        roll(&pulling::creepage(file, &setup, pull)?)?;
     }
     for drive in &drives {
-        strokes.push(fretting::solve(&setup, drive)?);
+        strokes.push(fretting::solve(file, &setup, drive)?);
         follow(strokes.len(), count);
     }
-    let worn = plan.map(|plan| passages::wear(&setup, &plan)).transpose()?;
+    let worn = plan.map(|plan| passages::wear(file, &setup, &plan, &rolled));
+    let worn = worn.transpose()?;
     if worn.is_some() {
         follow(count, count);
     }

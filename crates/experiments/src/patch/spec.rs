@@ -224,6 +224,16 @@ impl<'de> Deserialize<'de> for Numbers {
     }
 }
 
+impl Numbers {
+    /// Returns the path of one of the numbers, which are at a path.
+    pub fn path(&self, path: &str, k: usize) -> String {
+        match self.0.len() > 1 {
+            true => format!("{path}.{k}"),
+            false => path.to_owned(),
+        }
+    }
+}
+
 /// Returns a number in a unit.
 ///
 /// # Errors

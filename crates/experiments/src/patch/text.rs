@@ -5,7 +5,7 @@ use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::third_body::ThirdBody;
-use fretwork_observe::quantity::{DETERMINED, number, quantity};
+use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Estimate;
 use std::fmt::Write as _;
 
@@ -94,11 +94,14 @@ impl Answer {
         }
         let notes = self.points.iter().map(|p| &p.notes);
         let notes = notes.chain(self.cycles.iter().map(|h| &h.notes));
-        let all = self.points.len() + self.cycles.len();
+        let notes = notes.chain(self.passages.iter().map(|w| &w.notes));
+        let notes = notes.chain(self.map.iter().map(|m| &m.notes));
+        let wholes = usize::from(self.passages.is_some()) + usize::from(self.map.is_some());
+        let all = self.points.len() + self.cycles.len() + wholes;
         let noted = notes.filter(|n| !n.is_empty()).count();
         let verdict = match noted {
             0 => "all points converged, within the range of the theory".to_owned(),
-            n => format!("{n} of {all} points have notes, see above"),
+            n => format!("{n} of {all} results have notes, see above"),
         };
         let _ = write!(out, "\nverdict: {verdict}");
         out
@@ -110,7 +113,7 @@ const ROUNDING: f64 = 1e-6;
 const ROUNDING_ARM: f64 = 1e-9;
 
 /// Returns a number that was typed, without zeros at its end.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let text = number(value, 4);
     match text.contains('.') && !text.contains('e') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -206,23 +209,7 @@ impl Point {
             add("temperature", format!("up to {} K", number(t, 4)));
         }
         for wear in &self.wear {
-            let depth = quantity(wear.depth, "m");
-            let text = match rolls {
-                true => {
-                    let volume = number(1e9 * wear.volume, 4);
-                    let (undetermined, half) = wear.over_seeds();
-                    format!(
-                        "{undetermined}{volume} mm3 per metre{half}, up to {depth} a passage ({})",
-                        wear.law
-                    )
-                }
-                false => format!(
-                    "{} mm3 a cycle, up to {depth} ({})",
-                    number(1e9 * wear.volume, 4),
-                    wear.law
-                ),
-            };
-            add(&format!("wear of {}", wear.body), text);
+            add(&format!("wear of {}", wear.body), wear.text(rolls));
         }
         for note in &self.notes {
             add("", note.clone());
@@ -232,17 +219,29 @@ impl Point {
 }
 
 impl Wear {
-    /// Returns that it is not determined, if so, and its half-width over the seeds of windows.
-    fn over_seeds(&self) -> (&'static str, String) {
-        let Some(half) = self.half_width else {
-            return ("", String::new());
+    /// Returns volume and depth, of a passage or a cycle; where grid or seeds do not determine them
+    /// it begins with that.
+    fn text(&self, rolls: bool) -> String {
+        let undetermined = match self.is_known() {
+            true => "",
+            false => "not determined: ",
         };
-        let undetermined = match half > DETERMINED {
-            true => "not determined: ",
-            false => "",
+        let [volume, error] =
+            [(self.volume, 4), (self.volume_error, 2)].map(|(v, digits)| number(1e9 * v, digits));
+        let [depth, depth_error] = [self.depth, self.depth_error].map(|d| quantity(d, "m"));
+        let [unit, of] = match rolls {
+            true => ["mm3 per metre", "passage"],
+            false => ["mm3 a cycle", "cycle"],
         };
-        let half = number(100.0 * half, 2);
-        (undetermined, format!(" +- {half} % over the seeds"))
+        let seeds = self.half_width.map(|half| {
+            let half = number(100.0 * half, 2);
+            format!(" +- {half} % over the seeds")
+        });
+        format!(
+            "{undetermined}{volume} {unit} +- {error} by the grid{}, up to {depth} +- {depth_error} a {of} ({})",
+            seeds.unwrap_or_default(),
+            self.law
+        )
     }
 }
 
@@ -296,22 +295,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wear_that_seeds_do_not_determine_is_not_shown_as_a_result() {
-        let wear = |half_width| Wear {
-            body: "rail".into(),
-            law: "third body".into(),
-            volume: 1e-11,
-            depth: 1e-9,
-            profile: Vec::new(),
-            half_width,
+    fn wear_that_is_not_determined_is_not_shown_as_a_result() {
+        let of = |volume_error: f64, half_width| {
+            let wear = Wear {
+                body: "rail".into(),
+                law: "third body".into(),
+                volume: 1e-11,
+                volume_error,
+                depth: 1e-9,
+                depth_error: 1e-11,
+                profile: Vec::new(),
+                half_width,
+            };
+            wear.text(true)
         };
-        let of = |half_width| {
-            let wear = wear(half_width);
-            let (undetermined, half) = wear.over_seeds();
-            format!("{undetermined}x{half}")
-        };
-        assert_eq!(of(None), "x");
-        assert_eq!(of(Some(0.2)), "x +- 20 % over the seeds");
-        assert_eq!(of(Some(0.31)), "not determined: x +- 31 % over the seeds");
+        let known = "0.01000 mm3 per metre +- 0.00020 by the grid";
+        let rest = ", up to 1.000 nm +- 10.00 pm a passage (third body)";
+        assert_eq!(of(2e-13, None), format!("{known}{rest}"));
+        let seeds = " +- 20 % over the seeds";
+        assert_eq!(of(2e-13, Some(0.2)), format!("{known}{seeds}{rest}"));
+        let lost = of(2e-13, Some(0.31));
+        assert!(lost.starts_with("not determined: 0.01000 mm3"), "{lost}");
+        let coarse = of(3e-12, None);
+        assert!(
+            coarse.starts_with("not determined: 0.01000 mm3"),
+            "{coarse}"
+        );
     }
 }

@@ -211,10 +211,10 @@ fn measure(file: &PatchFile, search: &SearchPath) -> Result<Measured, Error> {
             points.push(rolled(&setup, creepage)?);
         }
         for pull in &pulls {
-            points.push(rolled(&setup, &pulling::creepage(&setup, pull)?)?);
+            points.push(rolled(&setup, &pulling::creepage(file, &setup, pull)?)?);
         }
         for drive in &drives {
-            points.push(fretting::solve(&setup, drive)?.point);
+            points.push(fretting::solve(file, &setup, drive)?.point);
         }
         Ok(points)
     };

@@ -4,11 +4,13 @@ use crate::Error;
 use crate::patch::answer::{Motion, Point};
 use crate::patch::fretting::fail;
 use crate::patch::fretting::spec::{CyclesSpec, FrettingSpec, StrokeDrive};
-use crate::patch::law::DEBRIS;
+use crate::patch::law::{DEBRIS, outside};
+use crate::patch::said::Said;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{PatchFile, positive};
 use fretwork_core::laws::Kind;
 use fretwork_elastic::half_space::CellGrid;
+use fretwork_observe::quantity::number;
 use fretwork_rolling::patch::coarser;
 use fretwork_rolling::{Cycles, NormalError, Scar, StrokeError, Surfaces};
 use serde::Serialize;
@@ -56,7 +58,7 @@ pub fn solve(
     };
     let source = &file.source;
     if !(cycles.count >= 1.0 && cycles.count <= 1e12) {
-        let text = format!("{} cycles: 1 to 1e12 are expected", cycles.count);
+        let text = format!("{} cycles: 1 to 1e12 are expected", number(cycles.count, 4));
         return Err(source.error_at("motion.cycles.count", text).into());
     }
     if !(1e-5..=0.5).contains(&cycles.error) {
@@ -114,13 +116,15 @@ fn of_drive(
                 let Some(last) = scars.last().filter(|s| s.cycles > 0.0) else {
                     return Err(error);
                 };
-                let note = format!("ends after {:.4e} cycles: {error}", last.cycles);
+                let count = number(last.cycles, 4);
+                let mut notes = vec![format!("ends after {count} cycles: {error}")];
+                notes.extend(left(setup));
                 return Ok(History {
                     motion: Motion::Fretting(last.amplitude[0]),
                     grid,
                     scars,
                     error_of_grid: [f64::NAN; 3],
-                    notes: vec![note],
+                    notes,
                 });
             }
         }
@@ -138,6 +142,8 @@ fn finished(
     grid: CellGrid,
     scars: Vec<Scar>,
 ) -> Result<History, Error> {
+    // Those of the fine grid, on which the cycles were followed last.
+    let mut notes = left(setup);
     let [coarse, _] = coarser(&grid);
     let rough = on_grid(setup, drive, cycles, ejection, coarse, &mut |_| ());
     let end = &scars[scars.len() - 1];
@@ -149,7 +155,6 @@ fn finished(
         ],
         Err(_) => [f64::NAN; 3],
     };
-    let mut notes = Vec::new();
     if setup.laws[0].debris().is_none() && ejection.is_some() {
         notes.push(format!(
             "no law reads the debris: its friction has no internal variable `{DEBRIS}`, as that of debris-friction"
@@ -158,8 +163,8 @@ fn finished(
     let reach = end.amplitude[0] / (0.5 * grid.extent()[0]);
     if reach > 0.2 && end.volume > 0.0 {
         notes.push(format!(
-            "NOT IN RANGE: the amplitude is {:.0} % of half of the grid; wear is that of cells that stay in place, for amplitudes that are small against the patch",
-            100.0 * reach
+            "NOT IN RANGE: the amplitude is {} % of half of the grid; wear is that of cells that stay in place, for amplitudes that are small against the patch",
+            number(100.0 * reach, 3)
         ));
     }
     Ok(History {
@@ -169,6 +174,15 @@ fn finished(
         notes,
         scars,
     })
+}
+
+/// Returns notes on the tables that the contacts have left over the cycles.
+fn left(setup: &Setup) -> Vec<String> {
+    let tables = setup.laws[0].left();
+    tables
+        .iter()
+        .map(|(table, share)| outside(table, *share))
+        .collect()
 }
 
 /// Why cycles end early.
@@ -206,7 +220,7 @@ fn on_grid(
         (Some(error), _) => Err(Failed::Other(fail(&error))),
         (None, Ok(scar)) => Ok(scar),
         (None, Err(StrokeError::Normal(NormalError::Border))) => Err(Failed::Border),
-        (None, Err(error)) => Err(Failed::Other(fail(&error))),
+        (None, Err(error)) => Err(Failed::Other(Error::Failed(error.said()))),
     }
 }
 

@@ -73,10 +73,10 @@ impl History {
             add(
                 "debris",
                 format!(
-                    "{} mm3 between the bodies, {} mm3 have left; {:.0e} of the volume is missing",
+                    "{} mm3 between the bodies, {} mm3 have left; {} of the volume is missing",
                     number(1e9 * end.between, 4),
                     number(1e9 * end.ejected, 4),
-                    end.unaccounted()
+                    number(end.unaccounted(), 1)
                 ),
             );
             add(

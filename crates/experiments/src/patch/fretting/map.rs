@@ -6,10 +6,12 @@ use crate::patch::fretting::fail;
 use crate::patch::fretting::spec::{CracksSpec, FrettingSpec, MapSpec};
 use crate::patch::law::PatchLaw;
 use crate::patch::rolling::bodies_that_wear;
+use crate::patch::said::Said;
 use crate::patch::setup::{Setup, grid};
 use crate::patch::spec::{PatchFile, positive};
 use fretwork_core::laws::Kind;
 use fretwork_elastic::half_space::CellGrid;
+use fretwork_observe::quantity::number;
 use fretwork_rolling::Estimate;
 use fretwork_rolling::cells::{ByCells, Contact};
 use fretwork_rolling::fatigue::materials::{ALUMINIUM_6082_T6, Fatigue, STEEL_30NCD16};
@@ -20,6 +22,7 @@ use fretwork_rolling::running::{
     Boundaries, Conditions, Limits, Loaded, Regime, RunningError, boundaries, strip_transition,
 };
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Materials whose strength under many cycles is known.
 const STRENGTHS: [Fatigue; 2] = [STEEL_30NCD16, ALUMINIUM_6082_T6];
@@ -49,6 +52,8 @@ pub struct FrettingMap {
     pub bodies: Vec<(String, f64)>,
     /// What is known of the cracks.
     pub cracks: Option<Cracks>,
+    /// What limits the trust in it.
+    pub notes: Vec<String>,
     /// Time of the processor (s).
     pub seconds: f64,
 }
@@ -63,6 +68,8 @@ pub struct Place {
     /// Whether members of the laws have partial slip and gross slip here: friction that changes
     /// over the cycles makes the regime mixed.
     pub mixed: bool,
+    /// Whether the contacts leave a table of the laws here, for more than a hundredth of the time.
+    pub outside: bool,
     /// Index of the criterion for cracks.
     pub crack: Option<f64>,
     /// Depth worn after all cycles (m).
@@ -167,10 +174,12 @@ pub fn solve(
         edges: Vec::new(),
         bodies,
         cracks,
+        notes: Vec::new(),
         seconds: 0.0,
         loads,
         amplitudes,
     };
+    let mut left = BTreeMap::new();
     for (k, load) in out.loads.clone().into_iter().enumerate() {
         let grid = grid(&setup.bodies, load, map.cells)?;
         out.cells = grid.cells;
@@ -179,11 +188,19 @@ pub fn solve(
             out.limits.energy_ratio = strip_transition(&setup.bodies.elasticity, length, half);
         }
         let limits = out.limits;
-        let (places, edges) = row(setup, &out, load, grid, &limits)?;
+        let (places, edges) = row(setup, &out, load, grid, &limits, &mut left)?;
         out.places.push(places);
         out.edges.push(edges);
         follow(k + 1, out.loads.len());
     }
+    let all = out.loads.len() * out.amplitudes.len();
+    let notes = left.into_iter().map(|(table, places): (String, usize)| {
+        format!(
+            "NOT IN RANGE: the `{table}` of the law is left at {} % of the places, where its value is that at its border (`outside_table` of map.csv)",
+            number(100.0 * places as f64 / all as f64, 3)
+        )
+    });
+    out.notes = notes.collect();
     out.seconds = started.elapsed().as_secs_f64();
     Ok(out)
 }
@@ -208,17 +225,18 @@ fn with_contact<R>(
     let found = contacts.contact(load).and_then(call);
     match law.take_error() {
         Some(error) => Err(fail(&error)),
-        None => found.map_err(|e| fail(&e)),
+        None => found.map_err(|e| Error::Failed(e.said())),
     }
 }
 
-/// Solves the places and boundaries of a load.
+/// Solves the places and boundaries of a load; `left` counts the places that leave each table.
 fn row(
     setup: &Setup,
     map: &FrettingMap,
     load: f64,
     grid: CellGrid,
     limits: &Limits,
+    left: &mut BTreeMap<String, usize>,
 ) -> Result<(Vec<Place>, Edges), Error> {
     let law = &setup.laws[0];
     let edges_on = |law: &PatchLaw, grid| {
@@ -250,7 +268,13 @@ fn row(
         edges.at_onset = [onset.energy_ratio(), onset.slip_ratio];
         let list = map.amplitudes.iter().map(|amplitude| {
             let found = conditions(&contact, *amplitude)?;
+            let tables = law.left();
+            let outside = !tables.is_empty();
+            for (table, _) in tables {
+                *left.entry(table).or_default() += 1;
+            }
             Ok(Place {
+                outside,
                 regime: found.regime(limits),
                 conditions: found,
                 mixed: lowest < *amplitude && *amplitude <= highest,
@@ -317,16 +341,19 @@ fn read_cracks(file: &PatchFile, setup: &Setup, spec: &CracksSpec) -> Result<Cra
     let criterion = match spec.criterion.as_str() {
         "crossland" if cycles != last => {
             let text = format!(
-                "the strengths of {} in bending and torsion are those at {last:e} cycles: leave `cycles` out, or take the criterion `swt`",
-                material.name
+                "the strengths of {} in bending and torsion are those at {} cycles: leave `cycles` out, or take the criterion `swt`",
+                material.name,
+                number(last, 3)
             );
             return Err(source.error_at("motion.cracks.cycles", text).into());
         }
         "crossland" => Criterion::Crossland(material.crossland),
         "swt" if !(first..=last).contains(&cycles) => {
             let text = format!(
-                "the tests of {} are from {first:e} to {last:e} cycles: take a number between them",
-                material.name
+                "the tests of {} are from {} to {} cycles: take a number between them",
+                material.name,
+                number(first, 3),
+                number(last, 3)
             );
             return Err(source.error_at("motion.cracks.cycles", text).into());
         }

@@ -151,6 +151,9 @@ impl FrettingMap {
             "boundaries",
             "+- by the grid, and 0.1 % by bisection".to_owned(),
         );
+        for note in &self.notes {
+            add("", note.clone());
+        }
         out
     }
 
@@ -181,6 +184,11 @@ impl FrettingMap {
             real("slip_ratio", "1", &|p| Some(p.conditions.slip_ratio)),
             real("stuck", "1", &|p| Some(p.conditions.stuck)),
         ];
+        if !self.notes.is_empty() {
+            columns.push(real("outside_table", "1", &|p| {
+                Some(f64::from(u8::from(p.outside)))
+            }));
+        }
         for (body, part) in &self.bodies {
             let volume = format!("worn_volume_{body}");
             columns.push(real(&volume, "m^3", &|p| Some(part * p.conditions.worn[0])));

@@ -11,19 +11,18 @@ mod tests;
 use crate::Error;
 use crate::patch::answer::{Band, Cycle, Motion, Point, Wear};
 use crate::patch::fretting::spec::{FrettingSpec, StrokeDrive, drives};
-use crate::patch::law::PatchLaw;
+use crate::patch::law::{PatchLaw, outside};
 use crate::patch::profiles::Contact;
-use crate::patch::rolling::bodies_that_wear;
+use crate::patch::rolling::{bodies_that_wear, coarse};
+use crate::patch::said::Said;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, PatchFile};
 use fretwork_core::laws::Kind;
-use fretwork_observe::quantity::quantity;
+use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::cells::half_width;
 use fretwork_rolling::{Amplitude, Estimate, RefinedStroke, Strokes};
 use fretwork_scene::InputError;
 
-/// Error of the force by the grid over the force that is no longer small.
-const COARSE: f64 = 0.05;
 /// Force over the load below which it is of the size of the residual of the tractions.
 const LEAST: f64 = 1e-5;
 /// Energy of the drive over that of slip, less 1, that is no longer small.
@@ -71,7 +70,7 @@ impl Stroke {
 ///
 /// # Errors
 /// A law fails, friction does not hold the force, or there is no solution.
-pub fn solve(setup: &Setup, drive: &StrokeDrive) -> Result<Stroke, Error> {
+pub fn solve(file: &PatchFile, setup: &Setup, drive: &StrokeDrive) -> Result<Stroke, Error> {
     let with = match drive.amplitude {
         Amplitude::Displacement(_) => "`frequency`, or `speed`, the mean speed of the stroke",
         Amplitude::Force(_) => "the `frequency` of the stroke",
@@ -80,17 +79,18 @@ pub fn solve(setup: &Setup, drive: &StrokeDrive) -> Result<Stroke, Error> {
     // The law of the file is solved last, so that what stays with its cells is that of the cycle.
     let others = setup.laws[1..].iter();
     let members = others.map(|law| -> Result<f64, Error> {
-        Ok(adhesion(setup, &of_law(setup, law, drive)?).value)
+        Ok(adhesion(setup, &of_law(file, setup, law, drive)?).value)
     });
     let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
     let law = &setup.laws[0];
-    let found = of_law(setup, law, drive)?;
+    let found = of_law(file, setup, law, drive)?;
     if adhesion(setup, &found).value < LEAST {
-        return Err(Error::Failed(format!(
+        let why = format!(
             "a stroke with a force of {} is too small for the precision of tractions under a load of {}: give a larger one",
             quantity(found.amplitude[1].value, "N"),
             quantity(setup.load, "N")
-        )));
+        );
+        return Err(file.source.error_at(&drive.path, why).into());
     }
     let point = point(setup, law, drive, &found, &members);
     Ok(Stroke { point, found })
@@ -109,7 +109,12 @@ pub(in crate::patch) fn fail(error: &dyn std::fmt::Display) -> Error {
     Error::Failed(error.to_string())
 }
 
-fn of_law(setup: &Setup, law: &PatchLaw, drive: &StrokeDrive) -> Result<RefinedStroke, Error> {
+fn of_law(
+    file: &PatchFile,
+    setup: &Setup,
+    law: &PatchLaw,
+    drive: &StrokeDrive,
+) -> Result<RefinedStroke, Error> {
     let strokes = Strokes {
         law,
         along: [1.0, 0.0],
@@ -120,7 +125,7 @@ fn of_law(setup: &Setup, law: &PatchLaw, drive: &StrokeDrive) -> Result<RefinedS
     let solved = setup.with_patch(|patch| patch.frets_refined(setup.grid, &strokes));
     match law.take_error() {
         Some(error) => Err(fail(&error)),
-        None => solved.map_err(|e| fail(&e)),
+        None => solved.map_err(|e| file.source.error_at(&drive.path, e.said()).into()),
     }
 }
 
@@ -133,8 +138,6 @@ fn point(
 ) -> Point {
     let cycle = &found.fine.cycle;
     let adhesion = adhesion(setup, found);
-    let touching = found.fine.pressure.pressure.iter().filter(|p| **p > 0.0);
-    let touching = touching.count() as f64;
     let mut notes = Vec::new();
     if !cycle.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the contact may jump to lower friction within a stroke".to_owned());
@@ -151,31 +154,37 @@ fn point(
     notes.extend(setup.bodies.short_line(setup.load));
     notes.extend(setup.contact().iter().flat_map(Contact::notes));
     let force = found.amplitude[1];
-    if force.error > COARSE * force.value {
-        notes.push(format!(
-            "the grid errs by {:.1} % of the force: take more `cells`",
-            100.0 * force.error / force.value
-        ));
-    }
     let slips = found.energy.value > 1e-3 * cycle.amplitude[0] * cycle.amplitude[1];
+    let energy = if slips {
+        found.energy
+    } else {
+        Estimate::default()
+    };
+    notes.extend(coarse(&[
+        ("the force", force.error, force.value),
+        ("the energy", energy.error, energy.value),
+    ]));
     if slips && (cycle.work() / cycle.energy - 1.0).abs() > WORK {
         notes.push(format!(
-            "the work of the drive is {:.0} % of the energy of slip: take more `steps`",
-            100.0 * cycle.work() / cycle.energy
+            "the work of the drive is {} % of the energy of slip: take more `steps`",
+            number(100.0 * cycle.work() / cycle.energy, 3)
         ));
     }
-    let quarters = 5.0 * drive.steps as f64;
-    let time = drive.step.map_or(1.0, |s| touching * s * quarters);
-    notes.extend(law.outside(&law.now(), 1, time));
+    notes.extend(
+        law.left()
+            .iter()
+            .map(|(table, share)| outside(table, *share)),
+    );
     let wears = law.interface().law(Kind::WEAR);
     let wear = wears.map(|wear| {
-        let deepest = cycle.worn.iter().copied().fold(0.0, f64::max);
         let bodies = bodies_that_wear(setup).into_iter();
         let of = bodies.map(|(body, factor)| Wear {
             body,
             law: wear.plugin.name.clone(),
             volume: factor * found.worn.value,
-            depth: factor * deepest,
+            volume_error: factor * found.worn.error,
+            depth: factor * found.deepest.value,
+            depth_error: factor * found.deepest.error,
             profile: Vec::new(),
             half_width: None,
         });

@@ -1,6 +1,7 @@
 //! Fretting in the file of a patch: strokes, maps, cracks and many cycles.
 
 use crate::patch::spec::{Numbers, PatchFile, positive};
+use fretwork_observe::quantity::quantity;
 use fretwork_rolling::Amplitude;
 use fretwork_scene::InputError;
 use fretwork_scene::material::NumberSpec;
@@ -113,7 +114,7 @@ fn share() -> f64 {
 }
 
 /// A stroke to be solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StrokeDrive {
     /// Half of its range.
     pub amplitude: Amplitude,
@@ -121,6 +122,8 @@ pub struct StrokeDrive {
     pub steps: usize,
     /// Time of a step (s), where the file tells it.
     pub step: Option<f64>,
+    /// Path of the amplitude in the file.
+    pub path: String,
 }
 
 /// Fewest and most steps of a quarter of a cycle.
@@ -133,8 +136,9 @@ const STEPS: [usize; 2] = [2, 1000];
 pub fn drives(file: &PatchFile, spec: &FrettingSpec) -> Result<Vec<StrokeDrive>, InputError> {
     let source = &file.source;
     let read = |path: &str, numbers: &Numbers, unit: &str| -> Result<Vec<f64>, InputError> {
-        let list = numbers.0.iter();
-        list.map(|n| positive(source, path, n, unit)).collect()
+        let list = numbers.0.iter().enumerate();
+        let one = |(k, n)| positive(source, &numbers.path(path, k), n, unit);
+        list.map(one).collect()
     };
     let amplitudes = read("motion.amplitude", &spec.amplitude, "m")?;
     let forces = read("motion.force", &spec.force, "N")?;
@@ -183,12 +187,14 @@ pub fn drives(file: &PatchFile, spec: &FrettingSpec) -> Result<Vec<StrokeDrive>,
         ));
     }
     let by_frequency = frequency.map(|f| 1.0 / (4.0 * f * steps));
-    let displaced = amplitudes.iter().map(|size| StrokeDrive {
+    let displaced = amplitudes.iter().enumerate().map(|(k, size)| StrokeDrive {
+        path: spec.amplitude.path("motion.amplitude", k),
         amplitude: Amplitude::Displacement(*size),
         steps: spec.steps,
         step: by_frequency.or(speed.map(|v| size / (v * steps))),
     });
-    let forced = forces.iter().map(|size| StrokeDrive {
+    let forced = forces.iter().enumerate().map(|(k, size)| StrokeDrive {
+        path: spec.force.path("motion.force", k),
         amplitude: Amplitude::Force(*size),
         steps: spec.steps,
         step: by_frequency,
@@ -217,7 +223,11 @@ impl RangeSpec {
         if from >= to {
             return Err(source.error_at(
                 &format!("{path}.to"),
-                format!("the last number, {to:e} {unit}, must be above the first, {from:e} {unit}"),
+                format!(
+                    "the last number, {}, must be above the first, {}",
+                    quantity(to, unit),
+                    quantity(from, unit)
+                ),
             ));
         }
         let ratio = to / from;

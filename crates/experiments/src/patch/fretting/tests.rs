@@ -2,7 +2,8 @@
 
 use crate::Error;
 use crate::patch::Outcome;
-use crate::patch::tests::{near, solved};
+use crate::patch::tests::{folder, laws, near, solved};
+use crate::patch::{PatchFile, solve};
 use fretwork_rolling::running::Regime;
 
 const MU: f64 = 0.6;
@@ -209,4 +210,56 @@ fn debris_changes_friction_over_the_cycles() {
     let nothing = "motion: Fretting(amplitude: 20 um, cycles: (count: 10))";
     let text = failed(ball("nothing", COULOMB, nothing));
     assert!(text.contains("nothing changes"), "{text}");
+}
+
+/// A table that ends at 1 m/s is left by strokes of 2 m/s that slide, not by those that stick: maps
+/// tell at how many places, cycles for how much of the time.
+#[test]
+fn maps_and_cycles_tell_that_a_table_is_left() {
+    let folder = folder("left");
+    std::fs::write(
+        folder.join("mu.csv"),
+        "slip_rate [m/s],friction\n0,0.5\n1,0.6\n",
+    )
+    .unwrap();
+    let path = folder.join("patch.ron");
+    let of = |rest: &str| {
+        let text = format!(
+            r#"(
+                name: "a ball", materials: {{"ball": "simple"}},
+                bodies: ((material: "ball", radius: 50 mm, across: 50 mm), (material: "ball")),
+                interfaces: [(name: "dry", between: ("ball", "ball"), contact: "tabulated", tables: (contact: "mu.csv"))],
+                load: 100 N, cells: 12, {rest}
+            )"#
+        );
+        std::fs::write(&path, text).unwrap();
+        let file = PatchFile::read(&path).unwrap();
+        solve(&file, &laws(), &mut |_, _| ()).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let map = of(
+        "speed: 2 m/s, motion: Fretting(map: (load: (from: 50 N, to: 100 N, count: 2), amplitude: (from: 0.01 um, to: 40 um, count: 2), cells: 12))",
+    );
+    let found = map.answer.map.as_ref().unwrap();
+    for row in &found.places {
+        let outside: Vec<bool> = row.iter().map(|p| p.outside).collect();
+        assert_eq!(outside, [false, true]);
+    }
+    let text = map.answer.text();
+    assert!(text.contains("is left at 50.0 % of the places"), "{text}");
+    assert!(text.contains("1 of 1 results have notes"), "{text}");
+    for (frequency, left) in [("25 kHz", true), ("1 Hz", false)] {
+        let rest = format!(
+            "motion: Fretting(amplitude: 20 um, steps: 4, frequency: {frequency}, cycles: (count: 4))"
+        );
+        let cycles = of(&rest);
+        let notes = &cycles.answer.cycles[0].notes;
+        assert_eq!(
+            notes
+                .iter()
+                .any(|n| n.contains("NOT IN RANGE: the `table`")),
+            left,
+            "{notes:?}"
+        );
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -7,16 +7,17 @@ pub(in crate::patch) mod passages_shown;
 pub(in crate::patch) mod pulling;
 #[cfg(test)]
 mod tests;
+pub(in crate::patch) mod wear;
 
 use crate::Error;
-use crate::patch::answer::{Band, Motion, Point, Wear};
+use crate::patch::answer::{Band, Motion, Point};
 use crate::patch::law::{Passage, PatchLaw};
 use crate::patch::method::Rung;
 use crate::patch::profiles::Contact;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, Numbers, PatchFile, value};
-use fretwork_core::laws::Kind;
-use fretwork_observe::quantity::quantity;
+use crate::patch::text::short;
+use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::pull::LARGEST;
@@ -28,7 +29,7 @@ use fretwork_scene::InputError;
 const BALANCE: f64 = 0.2;
 /// Peclet number below which heat flows along the patch too.
 const FAST: f64 = 5.0;
-/// Error of the force by the grid over the force that is no longer small.
+/// Error of a number by the grid over it that is no longer small.
 const COARSE: f64 = 0.05;
 
 /// Returns the creepages of all points.
@@ -47,9 +48,9 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
     let source = &file.source;
     let read = |name: &str, numbers: &Numbers, unit: &str| -> Result<Vec<f64>, InputError> {
         let path = format!("motion.{name}");
-        let list = numbers.0.iter();
+        let list = numbers.0.iter().enumerate();
         let list: Vec<f64> = list
-            .map(|n| value(source, &path, n, unit))
+            .map(|(k, n)| value(source, &numbers.path(&path, k), n, unit))
             .collect::<Result<_, _>>()?;
         let large = list
             .iter()
@@ -58,13 +59,13 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
             // A number without a unit may have been meant in per cent.
             let advice = match numbers.0[k].unit {
                 Some(_) => String::new(),
-                None => format!("; in per cent write {} %", list[k]),
+                None => format!("; in per cent write {} %", short(list[k])),
             };
             return Err(source.error_at(
-                &path,
+                &numbers.path(&path, k),
                 format!(
                     "a creepage of {} is more than {LARGEST}, where bodies slide rather than roll{advice}",
-                    list[k]
+                    short(list[k])
                 ),
             ));
         }
@@ -127,11 +128,13 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     });
     let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
     let speed = setup.rolling_speed();
+    let wear = wear::of_passage(setup, &setup.laws[0], &refined, &passage.worn)?;
     let Refined {
         fine,
         force,
         moment,
         error,
+        ..
     } = refined;
     let grid = fine.grid;
     let cells = fine.tractions.slip.iter().zip(&fine.pressure.pressure);
@@ -147,17 +150,20 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     if !fine.tractions.unique {
         notes.push("NOT UNIQUE: friction falls so fast with slip that the patch has another branch of lower friction at this creepage; a law whose friction follows over a length of slip decides between them".to_owned());
     }
-    if length(error) > COARSE * length(force) {
-        notes.push(format!(
-            "the grid errs by {:.1} % of the force: take more `cells`",
-            100.0 * length(error) / length(force)
-        ));
-    }
+    notes.extend(coarse(&[
+        ("the force", length(error), length(force)),
+        (
+            "the wear",
+            wear.first().map_or(0.0, |w| w.volume_error),
+            wear.first().map_or(0.0, |w| w.volume),
+        ),
+    ]));
     if let Some(thermal) = setup.laws[0].thermal() {
         let peclet = thermal.peclet(0.5 * grid.extent()[0], speed);
         if peclet < FAST {
             notes.push(format!(
-                "NOT IN RANGE: at a Peclet number of {peclet:.1} heat also flows along the patch, and the temperatures are those of heat that flows into the depth alone"
+                "NOT IN RANGE: at a Peclet number of {} heat also flows along the patch, and the temperatures are those of heat that flows into the depth alone",
+                number(peclet, 2)
             ));
         }
     }
@@ -165,7 +171,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     let cancels = fine.resistance.abs() > BALANCE * fine.t_gamma.abs();
     if cancels && (supplied - fine.dissipation).abs() > BALANCE * fine.dissipation {
         notes.push(format!(
-            "NOT IN RANGE: T gamma and the work of unlike bodies' pressures, {}, supply {} together, and the slips dissipate {}: wear and temperature are not known better than these differ; take more `cells`",
+            "NOT IN RANGE: T gamma and the work of unlike bodies' pressures, {}, supply {} together, and the slips dissipate {}: slips and temperature are not known better than these differ; take more `cells`",
             quantity(fine.resistance, "J/m"),
             quantity(supplied, "J/m"),
             quantity(fine.dissipation, "J/m")
@@ -204,7 +210,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
             .speed
             .map(|v| slips.fold(0.0, f64::max) * v / grid.size[0]),
         temperature: temperature.map(|_| most(&passage.temperature)),
-        wear: wear(setup, &fine, &passage),
+        wear,
         iterations: fine.tractions.iterations,
         unique: fine.tractions.unique,
         notes,
@@ -214,6 +220,19 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         rolling: fine,
         passage,
     })
+}
+
+/// Returns a note where the grid errs by more than a small part of numbers, each with its name and
+/// its error.
+pub(in crate::patch) fn coarse(numbers: &[(&str, f64, f64)]) -> Option<String> {
+    let large = numbers.iter().filter(|(_, error, of)| *error > COARSE * of);
+    let parts = large.map(|(name, error, of)| match error < of {
+        true => format!("{} % of {name}", number(100.0 * error / of, 2)),
+        false => format!("as much as all of {name}"),
+    });
+    let parts: Vec<String> = parts.collect();
+    let all = parts.join(" and ");
+    (!parts.is_empty()).then(|| format!("the grid errs by {all}: take more `cells`"))
 }
 
 /// Solves a point with a law.
@@ -240,32 +259,6 @@ pub(in crate::patch) fn of_law(
     };
     let passage = law.passage(cells, &fine.wearing_slip());
     Ok((refined, passage.map_err(|e| fail(&e))?))
-}
-
-/// Returns the wear of a passage, of each body where it follows from their hardness.
-fn wear(setup: &Setup, rolling: &Rolling, passage: &Passage) -> Vec<Wear> {
-    let Some(law) = setup.laws[0].interface().law(Kind::WEAR) else {
-        return Vec::new();
-    };
-    let grid = &rolling.grid;
-    let rows: Vec<f64> = passage
-        .worn
-        .chunks(grid.cells[0])
-        .map(|row| row.iter().sum())
-        .collect();
-    let of = |body: &str, factor: f64| Wear {
-        body: body.to_owned(),
-        law: law.plugin.name.clone(),
-        volume: factor * rows.iter().sum::<f64>() * grid.size[1],
-        depth: factor * rows.iter().copied().fold(0.0, f64::max),
-        profile: rows.iter().map(|d| factor * d).collect(),
-        half_width: None,
-    };
-    let bodies = bodies_that_wear(setup);
-    bodies
-        .iter()
-        .map(|(body, factor)| of(body, *factor))
-        .collect()
 }
 
 /// Returns the bodies and their parts in what the wear law gives: by the law and the hardness of

@@ -3,15 +3,17 @@
 
 use crate::Error;
 use crate::patch::law::PatchLaw;
-use crate::patch::rolling::factors;
 use crate::patch::rolling::pulling::{self, Pull};
+use crate::patch::rolling::wear::Rows;
+use crate::patch::rolling::{Solved, coarse as coarse_note, factors};
+use crate::patch::said::Said;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{PatchFile, positive, value};
 use fretwork_core::laws::{Kind, LawError};
 use fretwork_elastic::half_space::CellGrid;
-use fretwork_observe::quantity::number;
+use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::friction::Cells;
-use fretwork_rolling::passages::{Course, Drive, Jump, Passages, Steps};
+use fretwork_rolling::passages::{Course, Drive, Jump, Passages, Steps, flat};
 use fretwork_rolling::{Creepage, Vector, Wears};
 use fretwork_scene::InputError;
 use fretwork_scene::material::NumberSpec;
@@ -87,8 +89,12 @@ pub struct Worn {
     pub end: Jump,
     /// Error of the largest depth of each body by the cells (m), from cells twice as large.
     pub error_of_grid: [f64; 2],
-    /// Error of the largest pressure by the cells (Pa).
+    /// Error of the largest pressure of the worn bodies by the cells (Pa).
     pub pressure_error: f64,
+    /// That of the new bodies (Pa).
+    pub start_error: f64,
+    /// What limits the trust in it.
+    pub notes: Vec<String>,
     /// Number of jumps, and of those that were made again.
     pub jumps: [usize; 2],
     /// Difference between the volume that the law took and that which the profiles miss, over the
@@ -143,11 +149,14 @@ pub(in crate::patch) fn plan(
             );
         }
     };
-    let above = |name: &str, number: f64, least: f64| match number.is_finite() && number >= least {
-        true => Ok(number),
+    let above = |name: &str, given: f64, least: f64| match given.is_finite() && given >= least {
+        true => Ok(given),
         false => Err(source.error_at(
             &format!("passages.{name}"),
-            format!("it is {number}, and must be a number of {least} or more"),
+            format!(
+                "it is {}, and must be a number of {least} or more",
+                number(given, 4)
+            ),
         )),
     };
     let count = above("count", given.count, 1.0)?;
@@ -159,7 +168,10 @@ pub(in crate::patch) fn plan(
     if !(1e-4..=0.5).contains(&share) {
         return refuse(
             "passages.error",
-            format!("it is {share}, and must be between 0.01 % and 50 % of the depth of a jump"),
+            format!(
+                "it is {} %, and must be between 0.01 % and 50 % of the depth of a jump",
+                number(100.0 * share, 4)
+            ),
         );
     }
     let mut moments = given.profiles.clone();
@@ -168,7 +180,11 @@ pub(in crate::patch) fn plan(
     if let Some(wrong) = moments.iter().find(|m| !(**m > 0.0 && **m <= count)) {
         return refuse(
             "passages.profiles",
-            format!("a profile after {wrong} passages is not among the {count}"),
+            format!(
+                "a profile after {} passages is not among the {}",
+                number(*wrong, 4),
+                number(count, 4)
+            ),
         );
     }
     if moments.is_empty() {
@@ -182,7 +198,7 @@ pub(in crate::patch) fn plan(
         Some(creepage) => Drive::Creepage(*creepage),
         None => {
             let pull = &pulls[point - 1];
-            let start = pulling::creepage(setup, pull)?;
+            let start = pulling::creepage(file, setup, pull)?;
             let force = pull.force;
             Drive::Force { force, start }
         }
@@ -266,9 +282,9 @@ fn passages_of(
         (Some(one), Some(fixed)) => {
             all[other] = count * (fixed / one).abs();
             format!(
-                "a point of each body passes once a turn, that of {} {:.4} times as often",
+                "a point of each body passes once a turn, that of {} {} times as often",
                 name(other),
-                all[other] / count
+                number(all[other] / count, 4)
             )
         }
         _ => "each point of both bodies passes as often".into(),
@@ -332,11 +348,60 @@ impl Wears for ByLaw<'_> {
     }
 }
 
-/// Makes all passages.
+/// Largest half-width of a patch over the relative radius across: a parabola is 6 % off the arc.
+const WIDEST: f64 = 0.5;
+
+/// Returns the largest half-width of a patch (m), and the relative radius of the bodies across (m),
+/// where they have one.
+fn room(setup: &Setup) -> Option<[f64; 2]> {
+    let distance = &setup.bodies.distance;
+    let radius = 1.0 / distance.curvatures[1];
+    distance
+        .profile
+        .is_none()
+        .then_some([WIDEST * radius, radius])
+}
+
+/// Refuses passages that wear bodies, at the rate of the new ones, wider than their shape is known.
+fn check_count(
+    file: &PatchFile,
+    setup: &Setup,
+    plan: &Plan,
+    new: &Solved,
+) -> Result<(), InputError> {
+    let Some([widest, radius]) = room(setup) else {
+        return Ok(());
+    };
+    let each = Rows::of(&new.rolling, &new.passage.worn).volume();
+    let each = each * plan.parts.iter().sum::<f64>();
+    let half = flat(each * plan.steps.count, radius);
+    if half <= widest {
+        return Ok(());
+    }
+    let most = plan.steps.count * (widest / half).powi(3);
+    let why = format!(
+        "{} passages wear the bodies over some {} to each side, where the arcs of their radii, {} together, are no parabola: give a `count` below {}",
+        number(plan.steps.count, 4),
+        quantity(half, "m"),
+        quantity(radius, "m"),
+        number(most, 2)
+    );
+    Err(file.source.error_at("passages.count", why))
+}
+
+/// Makes all passages; `solved` has the points of the new bodies.
 ///
 /// # Errors
 /// A law fails, or there is no solution.
-pub(in crate::patch) fn wear(setup: &Setup, plan: &Plan) -> Result<(Worn, Course), Error> {
+pub(in crate::patch) fn wear(
+    file: &PatchFile,
+    setup: &Setup,
+    plan: &Plan,
+    solved: &[Solved],
+) -> Result<(Worn, Course), Error> {
+    if let Some(new) = solved.get(plan.about.point - 1) {
+        check_count(file, setup, plan, new)?;
+    }
     let cells = setup.grid.cells;
     let course = course(setup, plan, &setup.grid)?;
     let coarse = CellGrid {
@@ -346,16 +411,31 @@ pub(in crate::patch) fn wear(setup: &Setup, plan: &Plan) -> Result<(Worn, Course
     };
     let rough = self::course(setup, plan, &coarse)?;
     let ends = |course: &Course| {
-        let jumps = course.jumps.iter().copied();
-        jumps.last().unwrap_or_default()
+        let [first, last] = [course.jumps.first(), course.jumps.last()];
+        [first, last].map(|jump| jump.copied().unwrap_or_default())
     };
-    let (end, other) = (ends(&course), ends(&rough));
+    let ([start, end], [rough_start, rough_end]) = (ends(&course), ends(&rough));
+    let error_of_grid = [0, 1].map(|k| (end.depth[k] - rough_end.depth[k]).abs());
+    let pressure_error = (end.pressure - rough_end.pressure).abs();
+    let start_error = (start.pressure - rough_start.pressure).abs();
+    let deepest = usize::from(end.depth[1] > end.depth[0]);
+    let notes = coarse_note(&[
+        (
+            "the pressure of the new bodies",
+            start_error,
+            start.pressure,
+        ),
+        ("that of the worn ones", pressure_error, end.pressure),
+        ("the depth", error_of_grid[deepest], end.depth[deepest]),
+    ]);
     let worn = Worn {
         about: plan.about.clone(),
-        start: course.jumps.first().copied().unwrap_or_default(),
+        start,
         end,
-        error_of_grid: [0, 1].map(|k| (end.depth[k] - other.depth[k]).abs()),
-        pressure_error: (end.pressure - other.pressure).abs(),
+        error_of_grid,
+        pressure_error,
+        start_error,
+        notes: notes.into_iter().collect(),
         jumps: [course.jumps.len() - 1, course.repeated],
         ledger: course.ledger(),
     };
@@ -376,6 +456,7 @@ fn course(setup: &Setup, plan: &Plan, grid: &CellGrid) -> Result<Course, Error> 
             speed: setup.rolling_speed(),
             wears: &wears,
             parts: plan.parts,
+            widest: room(setup).map_or(f64::INFINITY, |[widest, _]| 2.0 * widest),
         };
         passages.wear(grid, &plan.steps, &mut |_| ())
     });
@@ -383,5 +464,5 @@ fn course(setup: &Setup, plan: &Plan, grid: &CellGrid) -> Result<Course, Error> 
     if let Some(error) = error {
         return Err(Error::Failed(error.to_string()));
     }
-    made.map_err(|e| Error::Failed(e.to_string()))
+    made.map_err(|e| Error::Failed(e.said()))
 }

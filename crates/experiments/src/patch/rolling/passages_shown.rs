@@ -8,6 +8,7 @@ use crate::patch::rolling::passages::Worn;
 use crate::table::csv::{self, NumberFormat};
 use crate::table::{Column, Table};
 use fretwork_observe::quantity::{number, quantity};
+use fretwork_rolling::fields::length;
 use fretwork_rolling::passages::{Course, Jump, Moment};
 use fretwork_store::maps::{MapField, Maps};
 use fretwork_view::{Axis, Block, Chart, Section, Series};
@@ -37,8 +38,9 @@ pub(in crate::patch) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, Stri
     add(
         "largest pressure",
         format!(
-            "{}, then {} +- {} by the cells",
+            "{} +- {} by the cells, then {} +- {}",
             quantity(start.pressure, "Pa"),
+            quantity(worn.start_error, "Pa"),
             quantity(end.pressure, "Pa"),
             quantity(worn.pressure_error, "Pa"),
         ),
@@ -51,7 +53,7 @@ pub(in crate::patch) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, Stri
             quantity(end.width, "m")
         ),
     );
-    let size = |jump: &Jump| number(jump.adhesion[0].hypot(jump.adhesion[1]), 4);
+    let size = |jump: &Jump| number(length(jump.adhesion), 4);
     add("adhesion", format!("{}, then {}", size(start), size(end)));
     if start.creepage != end.creepage {
         let percent = |x: f64| format!("{} %", number(100.0 * x, 4));
@@ -67,10 +69,15 @@ pub(in crate::patch) fn lines(answer: &Answer, worn: &Worn) -> Vec<(String, Stri
     add(
         "jumps",
         format!(
-            "{}, {} more made again; the volumes of law and profiles differ by {:.0e} of them",
-            worn.jumps[0], worn.jumps[1], worn.ledger
+            "{}, {} more made again; the volumes of law and profiles differ by {} of them",
+            worn.jumps[0],
+            worn.jumps[1],
+            number(worn.ledger, 1)
         ),
     );
+    for note in &worn.notes {
+        add("", note.clone());
+    }
     out
 }
 
@@ -101,28 +108,32 @@ pub(in crate::patch) fn write(outcome: &Outcome, out: &Path) -> Result<(), Error
         return Ok(());
     };
     let over = |table: &Table, name: &str| csv::write(table, &out.join(name), NumberFormat::Plain);
-    over(&jumps(course), "passages.csv")?;
+    over(&jumps(course, outcome.answer.load), "passages.csv")?;
     over(&profiles(course), "profiles.csv")?;
     fields(course, &out.join("profiles.h5"))
 }
 
-fn jumps(course: &Course) -> Table {
-    let column = |name: &str, unit: &str, of: fn(&Jump) -> f64| {
-        Column::real(name, unit, course.jumps.iter().map(move |j| Some(of(j))))
+/// The bodies after each jump, under a load (N). As in `adhesion.csv`, adhesion is the size of the
+/// force over the load, and forces are those on the first body.
+fn jumps(course: &Course, load: f64) -> Table {
+    let column = |name: &str, unit: &str, of: &dyn Fn(&Jump) -> f64| {
+        let values: Vec<_> = course.jumps.iter().map(|j| Some(of(j))).collect();
+        Column::real(name, unit, values)
     };
     Table {
         columns: vec![
-            column("passages", "1", |j| j.passages),
-            column("depth_first", "m", |j| j.depth[0]),
-            column("depth_second", "m", |j| j.depth[1]),
-            column("area_first", "m^2", |j| j.volume[0]),
-            column("area_second", "m^2", |j| j.volume[1]),
-            column("error_of_jumps", "m", |j| j.error),
-            column("pressure", "Pa", |j| j.pressure),
-            column("width", "m", |j| j.width),
-            column("creepage_along", "1", |j| j.creepage),
-            column("adhesion_along", "1", |j| j.adhesion[0]),
-            column("adhesion_across", "1", |j| j.adhesion[1]),
+            column("passages", "1", &|j| j.passages),
+            column("depth_first", "m", &|j| j.depth[0]),
+            column("depth_second", "m", &|j| j.depth[1]),
+            column("area_first", "m^2", &|j| j.volume[0]),
+            column("area_second", "m^2", &|j| j.volume[1]),
+            column("error_of_jumps", "m", &|j| j.error),
+            column("pressure", "Pa", &|j| j.pressure),
+            column("width", "m", &|j| j.width),
+            column("creepage_along", "1", &|j| j.creepage),
+            column("adhesion", "1", &|j| length(j.adhesion)),
+            column("force_x", "N", &|j| load * j.adhesion[0]),
+            column("force_y", "N", &|j| load * j.adhesion[1]),
         ],
     }
 }
@@ -275,7 +286,7 @@ pub(in crate::patch) fn page(outcome: &Outcome) -> Option<Section> {
     blocks.push(over(
         "friction over passages",
         Axis::new("force over load", ""),
-        vec![(String::new(), each(|j| j.adhesion[0].hypot(j.adhesion[1])))],
+        vec![(String::new(), each(|j| length(j.adhesion)))],
     ));
     if course
         .jumps

@@ -16,10 +16,12 @@ const FIRST: f64 = 1e-5;
 const FOUND: f64 = 1e-5;
 
 /// A force on the first body along the rolling (N), and spin (1/m).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::patch) struct Pull {
     pub force: f64,
     pub spin: f64,
+    /// Path of the force in the file.
+    path: String,
 }
 
 /// Returns the forces of all points.
@@ -34,17 +36,17 @@ pub(in crate::patch) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError
     let spin = spin.as_ref();
     let spin = spin.map(|s| value(source, "motion.spin", s, "1/m"));
     let spin = spin.transpose()?.unwrap_or(0.0);
-    let path = "motion.force";
-    let list = force.0.iter();
-    let list = list.map(|f| -> Result<Pull, InputError> {
-        Ok(Pull {
-            force: value(source, path, f, "N")?,
-            spin,
-        })
+    let list = force.0.iter().enumerate();
+    let list = list.map(|(k, f)| -> Result<Pull, InputError> {
+        let path = force.path("motion.force", k);
+        match value(source, &path, f, "N")? {
+            0.0 => Err(source.error_at(&path, "forces other than 0 are expected")),
+            force => Ok(Pull { force, spin, path }),
+        }
     });
     let list: Vec<Pull> = list.collect::<Result<_, _>>()?;
-    match list.iter().any(|p| p.force == 0.0) || list.is_empty() {
-        true => Err(source.error_at(path, "forces other than 0 are expected")),
+    match list.is_empty() {
+        true => Err(source.error_at("motion.force", "there is no force: give one, or a list")),
         false => Ok(list),
     }
 }
@@ -53,7 +55,11 @@ pub(in crate::patch) fn forces(file: &PatchFile) -> Result<Vec<Pull>, InputError
 ///
 /// # Errors
 /// A law fails, there is no solution, or the patch does not carry the force.
-pub(in crate::patch) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage, Error> {
+pub(in crate::patch) fn creepage(
+    file: &PatchFile,
+    setup: &Setup,
+    pull: &Pull,
+) -> Result<Creepage, Error> {
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
     let law = &setup.laws[0];
     // Force opposes creepage.
@@ -78,10 +84,13 @@ pub(in crate::patch) fn creepage(setup: &Setup, pull: &Pull) -> Result<Creepage,
     };
     match pull::creepage(wanted, FIRST, FOUND, carried)? {
         Pulled::At(size) => Ok(at(size)),
-        Pulled::Most(most) => Err(Error::Failed(format!(
-            "the patch does not carry a force of {} along the rolling: with this law it has at most {}; give a smaller `force`",
-            quantity(wanted, "N"),
-            quantity(most, "N")
-        ))),
+        Pulled::Most(most) => {
+            let why = format!(
+                "the patch does not carry a force of {} along the rolling: with this law it has at most {}; give a smaller `force`",
+                quantity(wanted, "N"),
+                quantity(most, "N")
+            );
+            Err(file.source.error_at(&pull.path, why).into())
+        }
     }
 }

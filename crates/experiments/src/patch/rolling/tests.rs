@@ -140,6 +140,27 @@ fn passages_are_written_and_refused() {
     assert_eq!(worn.end.depth[0], 0.0);
     files::write(&file, &outcome, &folder).unwrap();
     let table = std::fs::read_to_string(folder.join("passages.csv")).unwrap();
+    // Adhesion is a size, and forces those on the first body, in both tables.
+    let cell = |name: &str, column: &str| -> f64 {
+        let text = std::fs::read_to_string(folder.join(name)).unwrap();
+        let mut lines = text.lines();
+        let headings = lines.next().unwrap().split(',');
+        let mut names = headings.map(|h| h.split(" [").next().unwrap());
+        let place = names.position(|h| h == column).unwrap();
+        lines
+            .next()
+            .unwrap()
+            .split(',')
+            .nth(place)
+            .unwrap()
+            .parse()
+            .unwrap()
+    };
+    for name in ["adhesion.csv", "passages.csv"] {
+        near(cell(name, "adhesion"), 20e3 / 106.7e3, 1e-4);
+        near(cell(name, "force_x"), -20e3, 1e-4);
+        assert!(cell(name, "force_y").abs() < 1.0);
+    }
     assert_eq!(
         table.lines().count(),
         outcome.course.as_ref().unwrap().jumps.len() + 1
@@ -169,6 +190,11 @@ fn passages_are_written_and_refused() {
             WEARS,
             "motion: Rolling(along: 1 %), passages: (count: -1)",
             "1 or more",
+        ),
+        (
+            WEARS,
+            "motion: Rolling(along: 1 %), passages: (count: 1e12)",
+            "give a `count` below",
         ),
         (
             WEARS,
@@ -376,4 +402,94 @@ fn what_is_out_of_range_is_told() {
     assert!(long.contains("more than half of the width"), "{long}");
     let tiny = stroke("1e-13 m").unwrap_err().to_string();
     assert!(tiny.contains("give a larger one"), "{tiny}");
+}
+
+/// A force that the patch does not carry is refused where it stands in the list.
+#[test]
+fn a_force_that_is_not_carried_is_found_in_the_file() {
+    let text = rolls(COULOMB, "motion: Pulling(force: [-1 kN, -40 kN])");
+    let error = solved("carried", &text).unwrap_err();
+    let Error::Input(error) = error else {
+        panic!("{error}");
+    };
+    assert!(
+        error.compact().contains("at most 35.21 kN"),
+        "{}",
+        error.compact()
+    );
+    let (line, column) = error.position().unwrap();
+    let found = text.lines().nth(line - 1).unwrap();
+    let at = found.char_indices().nth(column - 1).unwrap().0;
+    assert!(found[at..].starts_with("-40"), "{found} {column}");
+}
+
+/// Bodies start with the pressure of Hertz within the error of few cells, which is told where it is
+/// large.
+#[test]
+fn passages_tell_the_error_of_new_bodies() {
+    let passages = "motion: Rolling(along: 20 %), passages: (count: 20)";
+    let of = |cells: &str| {
+        let text = rolls(WEARS, passages).replace("cells: 24", cells);
+        solved("start", &text).unwrap().answer
+    };
+    let body = Solid {
+        young: 209.92e9,
+        poisson: 0.28,
+    };
+    let curvatures = [1.0 / 0.625, 1.0 / 1.776737];
+    let hertz = point(106.7e3, curvatures, effective_modulus(&[body; 2]));
+    for cells in ["cells: 12", "cells: 24"] {
+        let answer = of(cells);
+        let worn = answer.passages.as_ref().unwrap();
+        let off = (worn.start.pressure - hertz.pressure).abs();
+        assert!(off < worn.start_error, "{off:e} {:e}", worn.start_error);
+        let large = worn.start_error > 0.05 * worn.start.pressure;
+        let text = answer.text();
+        let told = text.contains("of the pressure of the new bodies");
+        assert_eq!(told, large, "{text}");
+        assert_eq!(
+            told || !worn.notes.is_empty(),
+            text.contains("results have notes")
+        );
+    }
+}
+
+/// A distance has units in its headings.
+#[test]
+fn a_distance_without_units_is_refused() {
+    let folder = folder("units");
+    let rest = "motion: Rolling(along: 1 %), distance: (file: \"gap.csv\")";
+    let text = rolls(COULOMB, rest).replace(", across: 1.776737 m", "");
+    let path = folder.join("patch.ron");
+    std::fs::write(&path, text).unwrap();
+    let file = PatchFile::read(&path).unwrap();
+    for (headings, says) in [
+        ("y,distance [um]", "write it as `y [mm]`"),
+        ("y [mm],distance", "write it as `distance [mm]`"),
+    ] {
+        let table = format!("{headings}\n-10,100\n0,0\n10,100\n");
+        std::fs::write(folder.join("gap.csv"), table).unwrap();
+        let refused = solve(&file, &laws(), &mut |_, _| ())
+            .unwrap_err()
+            .to_string();
+        assert!(refused.contains(says), "{refused}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Archard's wear is k/mu of T gamma, both extrapolated, of like bodies and of unlike ones with the
+/// work of their pressures.
+#[test]
+fn wear_follows_t_gamma_to_cells_of_no_size() {
+    let interface = r#"contact: "coulomb", wear: "archard", parameters: (contact: {"mu": 0.33}, wear: {"k": 1e-14})"#;
+    let outcome = solved("k", &rolls(interface, "motion: Rolling(along: 0.1 %)")).unwrap();
+    let point = &outcome.answer.points[0];
+    let wear = &point.wear[0];
+    near(wear.volume, 1e-14 / 0.33 * point.t_gamma, 1e-3);
+    near(
+        wear.volume_error / wear.volume,
+        point.adhesion_error / point.adhesion,
+        1.0,
+    );
+    assert!(outcome.answer.text().contains("by the grid, up to"));
 }

@@ -19,6 +19,7 @@ pub use spec::ThirdBodySpec;
 
 use super::answer::{Band, Wear};
 use super::rolling::comparison;
+use super::rolling::wear::{Grids, Rows};
 use super::rolling::{Solved, of_law};
 use super::setup::Setup;
 use super::spec::MotionSpec;
@@ -29,7 +30,7 @@ use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::fields::length;
 use fretwork_rolling::strips::{course, places};
-use fretwork_rolling::{Creepage, Refined, Strip, Strips};
+use fretwork_rolling::{Creepage, Refined, Rolling, Strip, Strips};
 use runs::{Made, Ran, Wanted, make};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -396,25 +397,20 @@ impl Point {
                 "NOT SETTLED: the adhesion still changes by more than the error of its mean over the seeds; take more `iterations`".to_owned(),
             );
         }
-        let fine = &solved.rolling;
-        let slip = fine.wearing_slip();
-        let columns = fine.grid.cells[0];
-        let load = |row: usize| -> f64 {
-            let cells = row * columns..(row + 1) * columns;
-            cells
-                .map(|c| fine.pressure.pressure[c] * length(slip[c]))
-                .sum()
+        let rows = |rolling: &Rolling| {
+            let slip = rolling.wearing_slip();
+            let cells = rolling.pressure.pressure.iter().zip(&slip);
+            let rubbed: Vec<f64> = cells.map(|(p, s)| p * length(*s)).collect();
+            Rows::of(rolling, &rubbed)
         };
-        let rows: Vec<f64> = (0..fine.grid.cells[1]).map(load).collect();
+        let grids = Grids {
+            fine: rows(&solved.rolling),
+            coarse: self.refined.coarse.each_ref().map(rows),
+        };
         for (name, rate) in self.rates() {
-            let profile: Vec<f64> = rows.iter().map(|r| rate.mean * r).collect();
             point.wear.push(Wear {
-                body: name,
-                law: "third body".to_owned(),
-                volume: profile.iter().sum::<f64>() * fine.grid.size[1],
-                depth: profile.iter().copied().fold(0.0, f64::max),
-                profile,
                 half_width: rate.half_width.map(|half| half / rate.mean),
+                ..grids.wear(name, "third body", rate.mean)
             });
         }
     }

@@ -1,0 +1,130 @@
+//! Wear of a passage of bodies that roll, with the error of its grid.
+
+use crate::Error;
+use crate::patch::answer::Wear;
+use crate::patch::law::PatchLaw;
+use crate::patch::setup::Setup;
+use fretwork_core::laws::Kind;
+use fretwork_rolling::friction::Cells;
+use fretwork_rolling::{Estimate, Refined, Rolling};
+
+/// Depths that a passage takes off the rows of a grid.
+#[derive(Clone, Debug, Default)]
+pub(in crate::patch) struct Rows {
+    /// Depth of each row (m).
+    pub depth: Vec<f64>,
+    /// Width of a row (m).
+    pub width: f64,
+}
+
+impl Rows {
+    /// Returns the rows of a grid from the depth that each cell takes (m).
+    pub fn of(rolling: &Rolling, worn: &[f64]) -> Self {
+        let rows = worn.chunks(rolling.grid.cells[0]);
+        Self {
+            depth: rows.map(|row| row.iter().sum()).collect(),
+            width: rolling.grid.size[1],
+        }
+    }
+
+    /// Returns the volume per length along the rolling (m²).
+    pub fn volume(&self) -> f64 {
+        self.depth.iter().sum::<f64>() * self.width
+    }
+
+    fn deepest(&self) -> f64 {
+        self.depth.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Wear on a fine grid and two coarse ones.
+pub(in crate::patch) struct Grids {
+    pub fine: Rows,
+    pub coarse: [Rows; 2],
+}
+
+impl Grids {
+    /// Returns the wear of a body that loses a part of these depths. Volume and largest depth are
+    /// extrapolated as forces are, since the energy of slip errs to the first order of the cells.
+    pub fn wear(&self, body: String, law: &str, part: f64) -> Wear {
+        let of = |number: fn(&Rows) -> f64| {
+            let coarse = self.coarse.each_ref().map(number);
+            let found = Estimate::of_sum(number(&self.fine), coarse);
+            // Nothing grows by wear.
+            (part * found.value.max(0.0), part * found.error)
+        };
+        let ((volume, volume_error), (depth, depth_error)) = (of(Rows::volume), of(Rows::deepest));
+        Wear {
+            body,
+            law: law.to_owned(),
+            volume,
+            volume_error,
+            depth,
+            depth_error,
+            profile: self.fine.depth.iter().map(|d| part * d).collect(),
+            half_width: None,
+        }
+    }
+}
+
+/// Returns the wear of a passage, of each body where it follows from their hardness; `fine` has the
+/// depths of the cells of the fine grid (m).
+///
+/// # Errors
+/// The law fails.
+pub(super) fn of_passage(
+    setup: &Setup,
+    law: &PatchLaw,
+    refined: &Refined,
+    fine: &[f64],
+) -> Result<Vec<Wear>, Error> {
+    let Some(wear) = law.interface().law(Kind::WEAR) else {
+        return Ok(Vec::new());
+    };
+    let of = |rolling: &Rolling| -> Result<Rows, Error> {
+        let cells = Cells {
+            grid: &rolling.grid,
+            pressure: &rolling.pressure.pressure,
+            speed: setup.rolling_speed(),
+        };
+        let passage = law.passage(cells, &rolling.wearing_slip());
+        let passage = passage.map_err(|e| Error::Failed(e.to_string()))?;
+        Ok(Rows::of(rolling, &passage.worn))
+    };
+    let [one, other] = &refined.coarse;
+    let grids = Grids {
+        fine: Rows::of(&refined.fine, fine),
+        coarse: [of(one)?, of(other)?],
+    };
+    let bodies = super::bodies_that_wear(setup).into_iter();
+    let bodies = bodies.map(|(body, part)| grids.wear(body, &wear.plugin.name, part));
+    Ok(bodies.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A volume that falls to first order with the cells is found, and one that the cells do not
+    /// determine has an error as large as itself.
+    #[test]
+    fn wear_is_extrapolated_to_cells_of_no_size() {
+        let of = |[fine, one, other]: [f64; 3]| {
+            let rows = |depth: f64| Rows {
+                depth: vec![0.0, depth, 0.5 * depth],
+                width: 2.0,
+            };
+            let grids = Grids {
+                fine: rows(fine),
+                coarse: [rows(one), rows(other)],
+            };
+            grids.wear("rail".into(), "archard", 0.5)
+        };
+        let found = of([0.9, 0.8, 0.8]);
+        assert!((found.volume - 1.5).abs() < 1e-12 && (found.depth - 0.5).abs() < 1e-12);
+        assert!((found.volume_error - 0.15).abs() < 1e-12, "{found:?}");
+        assert!(found.is_known());
+        let lost = of([0.1, 0.5, 0.2]);
+        assert!(lost.volume == 0.0 && !lost.is_known(), "{lost:?}");
+    }
+}
