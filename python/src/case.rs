@@ -7,6 +7,7 @@ use crate::search::search_path;
 use fretwork::cli;
 use fretwork::scene::source::{Names, Tree, nearest, split_path};
 use fretwork::scene::{Case as CaseSpec, InputError, LoadedCase, check, load, load_text};
+use fretwork::shipped::inputs::{self, InputKind};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -24,9 +25,11 @@ type Lines = Vec<cli::CheckLine>;
 
 #[pymethods]
 impl Case {
-    /// Reads a file.
+    /// Reads a file, or the shipped case of a name.
     #[staticmethod]
     fn load(path: PathBuf, sets: Vec<String>) -> PyResult<Self> {
+        let path = inputs::find(InputKind::Case, &path)
+            .map_err(|e| wrong(&path.display().to_string(), e))?;
         let loaded = load(&path, &sets).map_err(|e| input(&e))?;
         Ok(Self { loaded })
     }

@@ -4,6 +4,7 @@ use crate::errors;
 use crate::search::search_path;
 use fretwork::experiments::Error;
 use fretwork::experiments::patch::{OWNER, PatchFile, files, solve};
+use fretwork::shipped::inputs::{self, InputKind};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -18,6 +19,8 @@ pub(crate) fn patch(
     trust_plugins: bool,
 ) -> PyResult<String> {
     let search = search_path(&plugin_path, trust_plugins)?;
+    let path = inputs::find(InputKind::Patch, &file);
+    let file = path.map_err(|e| errors::wrong("patch", e))?;
     let solved = py.detach(|| -> Result<String, Error> {
         let read = PatchFile::read(&file)?;
         let _lock = out.as_deref().map(|out| OWNER.take(out)).transpose()?;

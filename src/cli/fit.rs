@@ -2,7 +2,7 @@
 
 use super::experiment::{RunsBar, interrupted, results};
 use super::output::{answer_json, inform, report};
-use super::{Failure, PluginArgs};
+use super::{Failure, PluginArgs, cases};
 use crate::experiments::duration::parse as duration;
 use crate::experiments::fit::evaluate::Tests;
 use crate::experiments::fit::half_step::half_step;
@@ -11,6 +11,7 @@ use crate::experiments::fit::search::{Progress, Search, SearchResult, Stage};
 use crate::experiments::fit::spec::FitFile;
 use crate::experiments::fit::{OWNER, files, page};
 use crate::interrupt;
+use crate::shipped::inputs::InputKind;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -19,7 +20,8 @@ use std::time::Duration;
 
 #[derive(Args, Debug)]
 pub struct FitArgs {
-    /// The file of the fit (RON)
+    /// The file of the fit (RON), or the name of a shipped fit
+    #[arg(value_parser = cases::input(InputKind::Fit))]
     fit: PathBuf,
     /// Folder of the results, in which an interrupted fit also continues; results/fit/<fit> by
     /// default

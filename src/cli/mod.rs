@@ -1,9 +1,10 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `law`,
-//! `material`, `solve`, `study`, `fit`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `cases`, `new`,
+//! `law`, `material`, `solve`, `study`, `fit`, `trade`.
 //!
 //! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
 
 mod again;
+mod cases;
 mod check;
 mod compare;
 mod contact_patch;
@@ -13,6 +14,7 @@ mod fit;
 mod law;
 mod material;
 mod measured;
+mod new;
 mod number;
 mod observers;
 mod output;
@@ -40,6 +42,7 @@ use crate::laws::{LawError, SearchPath, child, library, loading};
 use crate::record::{RunError, check_names};
 use crate::scene::InputError;
 use crate::shipped::built_in;
+use crate::shipped::inputs::InputKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -84,6 +87,12 @@ enum Command {
     /// temperature, fields over the patch
     #[command(after_help = patch::EXAMPLES)]
     Patch(patch::PatchArgs),
+    /// Shipped cases, studies, fits and patches: list them, copy one to change it
+    #[command(subcommand)]
+    Cases(cases::CasesCommand),
+    /// Make a case from what is known about a test
+    #[command(subcommand)]
+    New(new::NewCommand),
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
@@ -139,7 +148,8 @@ impl ChildArgs {
 /// The case and changes to it.
 #[derive(Args, Debug)]
 struct CaseArgs {
-    /// The case file (RON)
+    /// The case file (RON), or the name of a shipped case
+    #[arg(value_parser = cases::input(InputKind::Case))]
     case: PathBuf,
     /// Change a value of the case, e.g. time.step=1e-6 or interfaces.third_body.damage=mac
     #[arg(long = "set", value_name = "KEY.PATH=VALUE")]
@@ -331,6 +341,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Check(args) => check::check(&args),
         Command::ContactPatch(args) => contact_patch::contact_patch(&args),
         Command::Patch(args) => patch::patch(&args),
+        Command::Cases(command) => cases::run(&command),
+        Command::New(command) => new::run(&command),
         Command::Law(command) => law::law(&command),
         Command::Material(command) => material::material(&command),
         Command::Solve(args) => solve::solve(&args),

@@ -2,11 +2,12 @@
 
 use super::experiment::{interrupted, results};
 use super::output::{answer, answer_json, inform, report};
-use super::{Failure, PluginArgs};
+use super::{Failure, PluginArgs, cases};
 use crate::experiments::duration::parse as duration;
 use crate::experiments::patch::third_body::{self, Reached, Runs};
 use crate::experiments::patch::{OWNER, Outcome, PatchFile, files, solve, trade};
 use crate::interrupt;
+use crate::shipped::inputs::InputKind;
 use clap::Args;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,8 @@ docs/patch.md says what the file is made of and what the numbers mean.";
 
 #[derive(Args, Debug)]
 pub struct PatchArgs {
-    /// The file of the patch (RON)
+    /// The file of the patch (RON), or the name of a shipped patch
+    #[arg(value_parser = cases::input(InputKind::Patch))]
     patch: PathBuf,
     /// Folder of the results; results/patch/<patch> by default
     #[arg(long, value_name = "DIR")]

@@ -13,6 +13,7 @@ use crate::experiments::study::rows::{DONE, Rows, status};
 use crate::experiments::study::spec::StudyFile;
 use crate::experiments::study::{OWNER, answers, of_case, write};
 use crate::interrupt;
+use crate::shipped::inputs::{self, InputKind};
 use clap::{Args, Subcommand, ValueEnum};
 use fretwork_store::folder_lock::FolderLock;
 use std::path::PathBuf;
@@ -36,7 +37,7 @@ pub enum StudyCommand {
 /// A study and the folders of its results.
 #[derive(Args, Debug)]
 struct StudyArgs {
-    /// The file of the study (RON); with --ranges or --seeds that of a case
+    /// The file of the study (RON), or the name of a shipped study; with --ranges or --seeds a case
     study: PathBuf,
     /// Take a case, and vary its inputs over the ranges that their sources give
     #[arg(long)]
@@ -184,17 +185,23 @@ impl StudyArgs {
             cache: self.cache.as_deref(),
             setup: &self.plugins.run_setup()?,
         };
-        let file = match self.ranges || self.seeds.is_some() {
+        let of_a_case = self.ranges || self.seeds.is_some();
+        let kind = match of_a_case {
+            true => InputKind::Case,
+            false => InputKind::Study,
+        };
+        let path = inputs::find(kind, &self.study).map_err(Failure::Usage)?;
+        let file = match of_a_case {
             true => {
                 let seeds = self.seeds.unwrap_or(1);
                 let search = self.plugins.search()?;
-                of_case(&self.study, self.ranges, seeds, &self.outputs, &search)?
+                of_case(&path, self.ranges, seeds, &self.outputs, &search)?
             }
             false if !self.outputs.is_empty() => {
                 let text = "--output goes with a case, and --seeds or --ranges; a study has `outputs` in its file";
                 return Err(Failure::Usage(text.to_owned()));
             }
-            false => StudyFile::read(&self.study)?,
+            false => StudyFile::read(&path)?,
         };
         Ok(Plan::new(&file, place)?)
     }

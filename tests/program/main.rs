@@ -45,6 +45,7 @@ mod same_bits;
 mod samples;
 #[path = "../support/scene.rs"]
 mod scene;
+mod shipped_inputs;
 mod solve;
 mod study;
 #[path = "../support/temp.rs"]

@@ -32,6 +32,7 @@ mod expression;
 pub mod factor;
 pub mod fit;
 pub mod folder;
+pub mod new_case;
 mod page;
 pub mod patch;
 pub mod runs;

@@ -7,8 +7,9 @@ mod table;
 
 use super::super::number::positive;
 use super::super::output::{answer, answer_json, inform};
-use super::super::{Failure, PluginArgs};
+use super::super::{Failure, PluginArgs, cases};
 use crate::laws::bench::ROOM_TEMPERATURE;
+use crate::shipped::inputs::InputKind;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -32,7 +33,7 @@ pub struct DriveArgs {
     laws: Vec<String>,
     /// Drive the laws of an interface of this case, with its parameters, on contacts of their size
     /// in the case
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = cases::input(InputKind::Case))]
     case: Option<PathBuf>,
     /// Name of the interface in the case; may be omitted if there is only one
     #[arg(long, value_name = "NAME", requires = "case")]

@@ -34,7 +34,7 @@ mod wear;
 
 pub use alike::{ACCEPTABLE, Conditions};
 pub use friction::Friction;
-pub use question::Question;
+pub use question::{Question, material};
 pub use range::Range;
 pub use regime::WearRegime;
 pub use rolling::Rolling;

@@ -168,7 +168,7 @@ impl Question {
 
     fn body(&self, side: usize, curvature: [f64; 2]) -> Result<Body, String> {
         let material = of_side("material", &self.material, side)?;
-        let file = material.map(read).transpose()?;
+        let file = material.map(self::material).transpose()?;
         let property = |name: &str, unit: &str| {
             let given = file.as_ref().and_then(|m| m.properties.get(name));
             given.and_then(|p| p.in_unit(unit).ok())
@@ -266,7 +266,10 @@ fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
 }
 
 /// Returns a material of a folder `materials` here or above, or of the program.
-fn read(name: &str) -> Result<Material, String> {
+///
+/// # Errors
+/// There is none of this name, or its file is wrong.
+pub fn material(name: &str) -> Result<Material, String> {
     let library = MaterialLibrary::beside(Path::new("case.ron"));
     let source = library.read(name).map_err(|e| match e {
         Err(error) => error.to_string(),

@@ -1,4 +1,7 @@
-//! The shipped laws, linked into the program so that it runs without library files.
+//! What is shipped inside the program: the laws, so that it runs without library files, and cases.
+
+#[cfg(feature = "program")]
+pub mod inputs;
 
 use crate::laws::{BuiltInLaws, SearchPath};
 use std::sync::OnceLock;

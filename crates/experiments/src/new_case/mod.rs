@@ -1,0 +1,228 @@
+//! A first case from what is known about a test: geometry, load, motion, materials, debris.
+//!
+//! Two elastic bodies without debris between them make the file of a [patch](crate::patch), which
+//! is solved exactly; everything else makes a case. Each number that is chosen stands in the file
+//! with its formula.
+//!
+//! ```
+//! use fretwork_experiments::new_case::{Geometry, Question};
+//!
+//! let made = Question::new(Geometry::PinOnDisc)
+//!     .with("material", "rail_steel_r260")
+//!     .with("radius", "3 mm")
+//!     .with("track-radius", "10 mm")
+//!     .with("load", "10 N")
+//!     .with("speed", "0.1 m/s")
+//!     .with("friction", "0.5")
+//!     .make()?;
+//! assert!(made.text.contains("HalfSpace"));
+//! # Ok::<(), String>(())
+//! ```
+
+mod inputs;
+mod patch;
+mod rigid;
+#[cfg(test)]
+mod tests;
+mod window;
+
+pub use inputs::{Geometry, Input};
+
+use fretwork_observe::quantity::quantity as shown;
+use fretwork_scene::quantity::quantity;
+use std::collections::BTreeMap;
+
+/// What is known about the test: texts of numbers with units, and names, by the keys of
+/// [`Geometry::inputs`].
+#[derive(Clone, Debug)]
+pub struct Question {
+    geometry: Geometry,
+    values: BTreeMap<String, String>,
+}
+
+/// What a file is the input of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Made {
+    /// `fretwork run`.
+    Case,
+    /// `fretwork patch`.
+    Patch,
+}
+
+/// A file.
+#[derive(Clone, Debug)]
+pub struct NewCase {
+    /// What it is the input of.
+    pub made: Made,
+    /// Text of the file.
+    pub text: String,
+}
+
+impl Question {
+    /// A test of which only the geometry is known.
+    pub fn new(geometry: Geometry) -> Self {
+        Self {
+            geometry,
+            values: BTreeMap::new(),
+        }
+    }
+
+    /// Adds what is known, under a key of [`Geometry::inputs`].
+    #[must_use]
+    pub fn with(mut self, key: &str, value: &str) -> Self {
+        self.values.insert(key.to_owned(), value.trim().to_owned());
+        self
+    }
+
+    /// Returns what must still be said, in the order of [`Geometry::inputs`].
+    pub fn missing(&self) -> impl Iterator<Item = &'static Input> {
+        self.inputs()
+            .filter(|input| input.default.is_none() && self.given(input.key).is_none())
+    }
+
+    /// Returns what may be said about this test, with what was said of it in mind.
+    pub fn inputs(&self) -> impl Iterator<Item = &'static Input> {
+        let debris = self.given("debris").is_some();
+        self.geometry.inputs(debris)
+    }
+
+    /// Makes the file.
+    ///
+    /// # Errors
+    /// A sentence that says which value is missing, wrong or belongs to another geometry, and what
+    /// to write.
+    pub fn make(&self) -> Result<NewCase, String> {
+        for key in self.values.keys() {
+            if !self.inputs().any(|input| input.key == key) {
+                return Err(self.foreign(key));
+            }
+        }
+        if let Some(input) = self.missing().next() {
+            return Err(format!(
+                "{}: give {}, such as {}",
+                input.key, input.asks, input.example
+            ));
+        }
+        let debris = self.given("debris").is_some();
+        match self.geometry {
+            _ if debris => window::make(self),
+            Geometry::Window => Err(
+                "debris: a window is one of debris between two surfaces; give its material".into(),
+            ),
+            Geometry::CylinderOnFlat | Geometry::SphereOnFlat | Geometry::WheelOnRail => {
+                patch::make(self)
+            }
+            Geometry::PinOnDisc => rigid::pin(self),
+            Geometry::FlatOnFlat => rigid::flat(self),
+        }
+    }
+
+    /// A value that this test does not have.
+    fn foreign(&self, key: &str) -> String {
+        let here: Vec<&str> = self.inputs().map(|input| input.key).collect();
+        let with_debris = self.geometry.inputs(true).any(|input| input.key == key);
+        let hint = match (
+            with_debris,
+            self.geometry.inputs(false).any(|i| i.key == key),
+        ) {
+            (true, false) => " without `debris`",
+            (false, true) => " with `debris`",
+            _ => "",
+        };
+        format!(
+            "{key}: a {} has none{hint}; it has {}",
+            self.geometry.name(),
+            here.join(", ")
+        )
+    }
+
+    /// What was said under a key.
+    pub fn given(&self, key: &str) -> Option<&str> {
+        let text = self.values.get(key).map(String::as_str);
+        text.filter(|text| !text.is_empty())
+    }
+
+    /// What was said under a key, or its default; empty where it has none.
+    fn text(&self, key: &str) -> &str {
+        let default = || {
+            let mut inputs = self.inputs();
+            inputs
+                .find(|input| input.key == key)
+                .and_then(|input| input.default)
+        };
+        self.given(key).or_else(default).unwrap_or_default()
+    }
+
+    /// A number above zero.
+    fn number(&self, key: &str, unit: &str) -> Result<f64, String> {
+        let text = self.text(key);
+        let value = quantity(text, unit).map_err(|e| {
+            let expected = e.expected.map(|x| format!("; give {x}"));
+            format!("{key}: {}{}", e.message, expected.unwrap_or_default())
+        })?;
+        match value > 0.0 {
+            true => Ok(value),
+            false => Err(format!("{key}: `{text}` must be above zero")),
+        }
+    }
+
+    /// Names of the materials of the two bodies: one alone is that of both.
+    fn materials(&self) -> Result<[&str; 2], String> {
+        let names: Vec<&str> = self.text("material").split(',').map(str::trim).collect();
+        match names[..] {
+            [both] => Ok([both, both]),
+            [first, second] => Ok([first, second]),
+            _ => Err(format!(
+                "material: {} names for two bodies; give one or two, with a comma between them",
+                names.len()
+            )),
+        }
+    }
+
+    /// The wear coefficient as a case writes it: `{"K": 1e-4}`, or `{"k": 1e-14}` where it has a
+    /// unit; `None` where none was given.
+    fn wear(&self) -> Result<Option<String>, String> {
+        let Some(text) = self.given("wear") else {
+            return Ok(None);
+        };
+        if let Ok(plain) = text.parse::<f64>() {
+            return match plain > 0.0 && plain < 1.0 {
+                true => Ok(Some(format!("{{\"K\": {plain:e}}}"))),
+                false => Err(format!(
+                    "wear: K is `{text}`, and lies between 0 and 1: 1e-4 is mild wear of steels; with a unit (1e-14 1/Pa) it is k"
+                )),
+            };
+        }
+        let k = self.number("wear", "1/Pa")?;
+        Ok(Some(format!("{{\"k\": {k:e}}}")))
+    }
+}
+
+/// A number with its unit as a case reads it and an engineer writes it, of four digits.
+fn q(value: f64, unit: &str) -> String {
+    shown(value, unit)
+}
+
+/// Comment lines, wrapped, with an indent.
+fn comment(indent: usize, text: &str) -> String {
+    let width = 96 - indent;
+    let mut out = String::new();
+    let mut line = String::new();
+    let mut end = |line: &mut String| {
+        out += &format!("{:indent$}// {line}\n", "");
+        line.clear();
+    };
+    for word in text.split_whitespace() {
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
+            end(&mut line);
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    if !line.is_empty() {
+        end(&mut line);
+    }
+    out
+}

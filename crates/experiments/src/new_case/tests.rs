@@ -1,0 +1,149 @@
+//! Files are made for every geometry, are read as they are meant, and wrong answers are corrected.
+
+use super::*;
+use crate::patch::PatchFile;
+use fretwork_core::laws::SearchPath;
+use fretwork_scene::load_text;
+use std::path::Path;
+
+fn ball() -> Question {
+    Question::new(Geometry::SphereOnFlat)
+        .with("material", "rail_steel_r260")
+        .with("radius", "10mm")
+        .with("load", "50 N")
+        .with("amplitude", "20 um")
+}
+
+#[test]
+fn what_is_missing_or_does_not_belong_is_named() {
+    let keys = |question: &Question| question.missing().map(|i| i.key).collect::<Vec<_>>();
+    assert_eq!(
+        keys(&Question::new(Geometry::SphereOnFlat)),
+        ["material", "radius", "load", "amplitude"]
+    );
+    assert_eq!(keys(&ball().with("debris", "magnetite")), ["debris-size"]);
+    assert_eq!(keys(&ball()), [""; 0]);
+    for (question, words) in [
+        (
+            Question::new(Geometry::Window),
+            "material: give the materials",
+        ),
+        (
+            ball().with("creepage", "1%"),
+            "creepage: a sphere-on-flat has none; it has",
+        ),
+        (
+            ball().with("debris-size", "1um"),
+            "debris-size: a sphere-on-flat has none without `debris`",
+        ),
+        (ball().with("load", "200 N/mm"), "load: "),
+        (
+            ball().with("load", "-5 N"),
+            "load: `-5 N` must be above zero",
+        ),
+        (
+            ball().with("material", "rail_steel_r26"),
+            "did you mean `rail_steel_r260`?",
+        ),
+        (ball().with("wear", "3"), "wear: K is `3`"),
+        (
+            ball()
+                .with("debris", "magnetite")
+                .with("debris-size", "1um")
+                .with("amplitude", "0.1um"),
+            "the middle of the contact sticks",
+        ),
+        (
+            ball()
+                .with("debris", "magnetite")
+                .with("debris-size", "1mm"),
+            "debris-size: 20 grains are wider than the contact",
+        ),
+        (
+            ball()
+                .with("debris", "magnetite")
+                .with("debris-size", "1nm"),
+            "take fewer cycles, a smaller amplitude or larger grains",
+        ),
+    ] {
+        let error = question.make().unwrap_err();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn the_window_of_a_ball_has_its_pressure_slip_and_inertia() {
+    let question = ball()
+        .with("debris", "magnetite")
+        .with("debris-size", "2 um");
+    let made = question.make().unwrap();
+    let loaded = load_text("new.ron", &made.text, Path::new(""), &[]).unwrap();
+    let built = loaded.build(&SearchPath::new(&[]));
+    // Laws are not here; everything else of the case is checked before they are looked for.
+    let refused = built.map(|_| ()).unwrap_err().to_string();
+    assert!(refused.contains("hertz-mindlin"), "{refused}");
+    let case = &loaded.case;
+    // Hertz: E* 115.38 GPa, a = (3 P R/(4 E*))^(1/3), p0 = 3 P/(2 pi a^2).
+    let modulus = 210e9 / (2.0 * (1.0 - 0.3f64.powi(2)));
+    let a = (3.0 * 50.0 * 0.01 / (4.0 * modulus)).cbrt();
+    let p0 = 3.0 * 50.0 / (2.0 * std::f64::consts::PI * a * a);
+    let length = case.periodic.as_ref().and_then(|p| p.x).unwrap();
+    assert!(length <= 0.2 * a + 1e-12, "{length} of {a}");
+    let text = &made.text;
+    assert!(text.contains(&q(p0, "Pa")), "{text}");
+    // Mindlin: delta* = 3 mu P (2 - nu)/(8 G a).
+    let shear = 210e9 / 2.6;
+    let onset = 3.0 * 0.6 * 50.0 * 1.7 / (8.0 * shear * a);
+    assert!(
+        text.contains(&format!("amplitude: {}", q(20e-6 - onset, "m"))),
+        "{text}"
+    );
+    // I = v d/h sqrt(rho/P) at the largest velocity is what the comment says.
+    let velocity = 2.0 * std::f64::consts::PI * 20.0 * (20e-6 - onset);
+    let height = 0.83 * 8.0 * 2e-6;
+    let scaled = 5170.0 * case.inertia_scaling;
+    let inertial = velocity * 2e-6 / height * (scaled / p0).sqrt();
+    assert!((inertial / 5e-3 - 1.0).abs() < 1e-2, "{inertial}");
+}
+
+#[test]
+fn elastic_bodies_without_debris_make_a_patch() {
+    let wheel = Question::new(Geometry::WheelOnRail)
+        .with("material", "wheel_steel_er7,rail_steel_r260")
+        .with("radius", "0.46m")
+        .with("load", "75kN")
+        .with("speed", "100km/h")
+        .with("creepage", "0.5%");
+    let cylinder = Question::new(Geometry::CylinderOnFlat)
+        .with("material", "rail_steel_r260")
+        .with("radius", "10mm")
+        .with("length", "10mm")
+        .with("load", "200N/mm")
+        .with("amplitude", "20um")
+        .with("wear", "1e-14 1/Pa");
+    for question in [ball(), wheel, cylinder] {
+        let made = question.make().unwrap();
+        assert_eq!(made.made, Made::Patch);
+        let folder = std::env::temp_dir().join(format!("fretwork-new-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("new.ron");
+        std::fs::write(&path, &made.text).unwrap();
+        PatchFile::read(&path).unwrap_or_else(|e| panic!("{e}\n{}", made.text));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
+#[test]
+fn every_line_fits_a_page() {
+    let pad = Question::new(Geometry::FlatOnFlat)
+        .with("material", "rail_steel_r260")
+        .with("area", "25 mm^2")
+        .with("load", "100 N")
+        .with("amplitude", "50 um")
+        .with("debris", "rail_steel_r260")
+        .with("debris-size", "5 um");
+    let text = pad.make().unwrap().text;
+    for line in text.lines().filter(|l| l.trim_start().starts_with("//")) {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+}
