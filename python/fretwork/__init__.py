@@ -20,6 +20,7 @@ from ._contact_patch import contact_patch
 from ._errors import Error, InputError, MissingPackageError, RunError
 from ._fretwork import __version__
 from ._material import Material, Number, material, materials
+from ._new_case import NewCase, new_case
 from ._observers import Column, Observer, Stop
 from ._patch import patch
 from ._progress import Progress
@@ -44,6 +45,7 @@ __all__ = [
     "Material",
     "MissingPackageError",
     "Number",
+    "NewCase",
     "Observer",
     "Progress",
     "Results",
@@ -58,6 +60,7 @@ __all__ = [
     "law",
     "material",
     "materials",
+    "new_case",
     "patch",
     "read_study",
     "report",

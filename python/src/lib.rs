@@ -12,6 +12,7 @@ mod errors;
 mod infinity;
 mod law;
 mod material;
+mod new_case;
 mod observer;
 mod patch;
 mod paths;
@@ -37,6 +38,7 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(contact_patch::contact_patch, module)?)?;
     module.add_function(wrap_pyfunction!(material::material, module)?)?;
     module.add_function(wrap_pyfunction!(material::materials, module)?)?;
+    module.add_function(wrap_pyfunction!(new_case::new_case, module)?)?;
     module.add_function(wrap_pyfunction!(patch::patch, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;

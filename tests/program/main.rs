@@ -32,6 +32,7 @@ mod library_features;
 mod line_length;
 mod material;
 mod material_laws;
+mod new_case;
 mod pages;
 mod patch;
 mod patch_windows;
