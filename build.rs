@@ -6,13 +6,14 @@ use std::path::Path;
 use std::{env, fs};
 
 /// Folders whose files are carried.
-const FOLDERS: [&str; 6] = [
+const FOLDERS: [&str; 7] = [
     "cases",
     "cases/large",
     "studies",
     "fits",
     "fits/cases",
     "patches",
+    "patches/profiles",
 ];
 /// Endings of files that are inputs.
 const INPUTS: [&str; 2] = ["ron", "csv"];
