@@ -2,6 +2,7 @@
 
 use crate::errors::wrong;
 use fretwork::experiments::new_case::{Geometry, Made, Question};
+use fretwork::shipped::search_path;
 use pyo3::prelude::*;
 
 /// Makes the file of a test; returns whether it is a case or a patch, and its text.
@@ -16,7 +17,7 @@ pub(crate) fn new_case(
     let question = known.fold(Question::new(geometry), |q, (key, value)| {
         q.with(key, value)
     });
-    let made = question.make().map_err(refused)?;
+    let made = question.make(&search_path()).map_err(refused)?;
     let kind = match made.made {
         Made::Case => "case",
         Made::Patch => "patch",

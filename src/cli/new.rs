@@ -3,6 +3,7 @@
 use super::Failure;
 use super::output::{answer, report};
 use crate::experiments::new_case::{Geometry, Input, Made, Question};
+use crate::shipped::search_path;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::io::{BufRead, IsTerminal};
@@ -144,7 +145,7 @@ pub fn run(command: &NewCommand) -> Result<(), Failure> {
         question = ask(question, *from)?;
     }
     let made = question
-        .make()
+        .make(&search_path())
         .map_err(|e| Failure::Usage(format!("--{e}")))?;
     std::fs::write(&args.file, &made.text)
         .map_err(|e| Failure::Failed(format!("{}: {e}", args.file.display())))?;

@@ -129,9 +129,9 @@ fn pins_and_pads_without_debris() {
 #[test]
 fn windows_of_debris() {
     for (k, more) in [
-        "--pressure 1GPa --amplitude 3um --debris magnetite --debris-size 4um --cycles 1",
-        "--pressure 50MPa --amplitude 3um --debris magnetite --debris-size 4um --cycles 1 --friction 0.4",
-        "--pressure 300MPa --amplitude 10um --debris sand --debris-size 20um --cycles 1",
+        "--pressure 1GPa --amplitude 1.5um --debris magnetite --debris-size 4um --cycles 1",
+        "--pressure 50MPa --amplitude 1.5um --debris magnetite --debris-size 4um --cycles 1 --friction 0.4",
+        "--pressure 300MPa --amplitude 5um --debris sand --debris-size 20um --cycles 1",
         "--pressure 2GPa --amplitude 1um --debris rail_steel_r260 --debris-size 1um --cycles 1 --layer 5um",
     ].iter().enumerate() {
         runs(&format!("window-{k}"), &format!("--geometry window {STEEL} {more}"));
@@ -141,9 +141,9 @@ fn windows_of_debris() {
 #[test]
 fn debris_in_contacts() {
     for (k, line) in [
-        "--geometry sphere-on-flat --radius 20mm --load 100N --amplitude 5um --debris magnetite --debris-size 2um --cycles 1",
-        "--geometry cylinder-on-flat --radius 20mm --load 200N/mm --amplitude 4um --debris magnetite --debris-size 3um --cycles 1 --wear 1e-4",
-        "--geometry flat-on-flat --area 25mm^2 --load 1kN --amplitude 5um --debris clay --debris-size 5um --cycles 1",
+        "--geometry sphere-on-flat --radius 20mm --load 100N --amplitude 3um --debris magnetite --debris-size 2um --cycles 1",
+        "--geometry cylinder-on-flat --radius 20mm --load 200N/mm --amplitude 1.5um --debris magnetite --debris-size 3um --cycles 1 --wear 1e-4",
+        "--geometry flat-on-flat --area 25mm^2 --load 1kN --amplitude 2um --debris clay --debris-size 5um --cycles 1",
         "--geometry pin-on-disc --radius 50mm --load 10N --speed 0.1m/s --debris magnetite --debris-size 2um --layer 10um",
     ].iter().enumerate() {
         runs(&format!("debris-{k}"), &format!("{STEEL} {line}"));

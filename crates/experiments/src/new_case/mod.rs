@@ -14,7 +14,7 @@
 //!     .with("load", "10 N")
 //!     .with("speed", "0.1 m/s")
 //!     .with("friction", "0.5")
-//!     .make()?;
+//!     .make(&fretwork_core::laws::SearchPath::new(&[]))?;
 //! assert!(made.text.contains("HalfSpace"));
 //! # Ok::<(), String>(())
 //! ```
@@ -28,6 +28,7 @@ mod window;
 
 pub use inputs::{Geometry, Input};
 
+use fretwork_core::laws::SearchPath;
 use fretwork_observe::quantity::quantity as shown;
 use fretwork_scene::quantity::quantity;
 use std::collections::BTreeMap;
@@ -86,12 +87,12 @@ impl Question {
         self.geometry.inputs(debris)
     }
 
-    /// Makes the file.
+    /// Makes the file; the laws are those of the wear of rolling steel.
     ///
     /// # Errors
     /// A sentence that says which value is missing, wrong or belongs to another geometry, and what
     /// to write.
-    pub fn make(&self) -> Result<NewCase, String> {
+    pub fn make(&self, laws: &SearchPath) -> Result<NewCase, String> {
         for key in self.values.keys() {
             if !self.inputs().any(|input| input.key == key) {
                 return Err(self.foreign(key));
@@ -105,12 +106,12 @@ impl Question {
         }
         let debris = self.given("debris").is_some();
         match self.geometry {
-            _ if debris => window::make(self),
+            _ if debris => window::make(self, laws),
             Geometry::Window => Err(
                 "debris: a window is one of debris between two surfaces; give its material".into(),
             ),
             Geometry::CylinderOnFlat | Geometry::SphereOnFlat | Geometry::WheelOnRail => {
-                patch::make(self)
+                patch::make(self, laws)
             }
             Geometry::PinOnDisc => rigid::pin(self),
             Geometry::FlatOnFlat => rigid::flat(self),
@@ -200,7 +201,14 @@ impl Question {
 
 /// A number with its unit as a case reads it and an engineer writes it, of four digits.
 fn q(value: f64, unit: &str) -> String {
-    shown(value, unit)
+    let text = shown(value, unit);
+    match text.split_once(' ') {
+        Some((number, unit)) if number.contains('.') && !number.contains('e') => {
+            let short = number.trim_end_matches('0').trim_end_matches('.');
+            format!("{short} {unit}")
+        }
+        _ => text,
+    }
 }
 
 /// Comment lines, wrapped, with an indent.

@@ -5,9 +5,9 @@ use crate::contact_patch::{self, Answer};
 use fretwork_core::laws::SearchPath;
 use std::fmt::Write as _;
 
-pub(super) fn make(question: &Question) -> Result<NewCase, String> {
+pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, String> {
     let [first, second] = question.materials()?;
-    let contact = contact(question)?;
+    let contact = contact(question, laws)?;
     let mu = question.number("friction", "")?;
     let radius = q(question.number("radius", "m")?, "m");
     let geometry = question.geometry;
@@ -140,7 +140,7 @@ impl Question {
 }
 
 /// The contact of the elastic bodies by Hertz.
-pub(super) fn contact(question: &Question) -> Result<Answer, String> {
+pub(super) fn contact(question: &Question, laws: &SearchPath) -> Result<Answer, String> {
     let radius = question.text("radius").to_owned();
     let creepage =
         (question.geometry == Geometry::WheelOnRail).then(|| question.text("creepage").to_owned());
@@ -162,7 +162,7 @@ pub(super) fn contact(question: &Question) -> Result<Answer, String> {
             displacement: displaced,
             ..contact_patch::Question::default()
         },
-        &SearchPath::new(&[]),
+        laws,
     )
 }
 

@@ -3,6 +3,7 @@
 use super::patch::{contact, hertz};
 use super::{Geometry, Made, NewCase, Question, comment, q};
 use crate::contact_patch::material;
+use fretwork_core::laws::SearchPath;
 use fretwork_scene::material::Material;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -21,8 +22,9 @@ const ROUGHNESS: f64 = 0.2;
 /// Inertial number: adds 1.1 times itself to friction (F. da Cruz et al., Phys. Rev. E 72 (2005)
 /// 021309).
 const INERTIAL: f64 = 5e-3;
-/// Slip of a step over the size of a grain.
-const SLIP_OF_STEP: f64 = 4e-3;
+/// Slip of a step over the size of a grain, at most; and over it and Young's modulus over the
+/// pressure, since grains that are pressed harder lie deeper in the corners of the surfaces.
+const SLIP_OF_STEP: [f64; 2] = [4e-3, 1.6e-5];
 /// Steps in which the layer is compacted.
 const COMPACTION: f64 = 1000.0;
 /// Path over the thickness of the layer in which a layer that slides one way becomes steady and is
@@ -67,7 +69,7 @@ struct Local {
     width: Option<f64>,
 }
 
-pub(super) fn make(question: &Question) -> Result<NewCase, String> {
+pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, String> {
     let [upper, lower] = question.materials()?;
     let debris = question.text("debris");
     let powder = material(debris)?;
@@ -82,7 +84,7 @@ pub(super) fn make(question: &Question) -> Result<NewCase, String> {
             FEWEST.1
         ));
     }
-    let local = local(question, d * rows)?;
+    let local = local(question, laws, d * rows)?;
     let mut columns = COLUMNS.max(2.0 * rows).round();
     if let Some(width) = local.width {
         // Over a tenth of the contact its pressure changes by a half of a per cent.
@@ -104,7 +106,7 @@ pub(super) fn make(question: &Question) -> Result<NewCase, String> {
 }
 
 /// Returns pressure and motion in the middle of the contact.
-fn local(question: &Question, thickness: f64) -> Result<Local, String> {
+fn local(question: &Question, laws: &SearchPath, thickness: f64) -> Result<Local, String> {
     let mut why = Vec::new();
     let (pressure, width) = match question.geometry {
         Geometry::Window => (question.number("pressure", "Pa")?, None),
@@ -123,7 +125,7 @@ fn local(question: &Question, thickness: f64) -> Result<Local, String> {
         | Geometry::CylinderOnFlat
         | Geometry::SphereOnFlat
         | Geometry::WheelOnRail => {
-            let contact = contact(question)?;
+            let contact = contact(question, laws)?;
             why.push(
                 hertz(&contact, question.geometry)
                     + " The window is in the middle, under the largest pressure.",
@@ -142,7 +144,7 @@ fn local(question: &Question, thickness: f64) -> Result<Local, String> {
             Motion::OneWay { path, speed }
         }
         Geometry::WheelOnRail => {
-            let contact = contact(question)?;
+            let contact = contact(question, laws)?;
             let slip = contact.window.slip.map(|s| s.value);
             let path = slip.ok_or("creepage: give the creepage, such as 0.5%")?;
             let speed = question.number("speed", "m/s")?;
@@ -159,7 +161,7 @@ fn local(question: &Question, thickness: f64) -> Result<Local, String> {
             let cycles = question.number("cycles", "")?.round().max(1.0);
             let mut local = amplitude;
             if geometry == Geometry::SphereOnFlat {
-                let onset = contact(question)?
+                let onset = contact(question, laws)?
                     .tangential
                     .and_then(|t| t.slip_displacement);
                 let onset = onset.map_or(0.0, |range| range.value);
@@ -200,6 +202,8 @@ struct Numbers {
     /// Load (N/m).
     load: f64,
     scaling: f64,
+    /// Slip of a step (m).
+    slip: f64,
     step: f64,
     /// Begin of the motion, end of the run (s).
     start: f64,
@@ -220,7 +224,12 @@ impl Numbers {
         let velocity = local.motion.velocity();
         let compacted = COMPACTED * height;
         let scaling = (INERTIAL * compacted / (velocity * d)).powi(2) * local.pressure / density;
-        let step = SLIP_OF_STEP * d / velocity;
+        let young = material.properties.get("young");
+        let young = young.and_then(|e| e.in_unit("Pa").ok()).ok_or(
+            "debris: its material has no `young`, which elastic contacts need: add it to the file, or take another",
+        )?;
+        let slip = d * SLIP_OF_STEP[0].min(SLIP_OF_STEP[1] * young / local.pressure);
+        let step = slip / velocity;
         let start = COMPACTION * step;
         let duration = match local.motion {
             Motion::Stroke {
@@ -230,9 +239,10 @@ impl Numbers {
         };
         if duration / step > MOST_STEPS {
             return Err(format!(
-                "debris-size: the motion is {:.0} steps in which grains of {} slip by {SLIP_OF_STEP} of their size: take fewer cycles, a smaller amplitude or larger grains",
+                "debris-size: the motion is {:.0} steps in which grains of {} slip by {} each: take fewer cycles, a smaller amplitude or larger grains",
                 duration / step,
-                q(d, "m")
+                q(d, "m"),
+                q(slip, "m")
             ));
         }
         Ok(Self {
@@ -241,6 +251,7 @@ impl Numbers {
             height,
             load: local.pressure * length,
             scaling,
+            slip,
             step,
             start,
             end: start + duration,
@@ -273,7 +284,7 @@ impl Numbers {
         text += "//\n";
         text += &comment(
             0,
-            "What to vary before a number is quoted: docs/build_your_case.md, section 9; `fretwork study check FILE --seeds 4` for the scatter of samples.",
+            "What to vary before a number is quoted: docs/build_your_case.md, section 9; `fretwork study run FILE --seeds 4` for the scatter of samples.",
         );
         let _ = writeln!(
             text,
@@ -283,9 +294,9 @@ impl Numbers {
         text += &comment(
             4,
             &format!(
-                "step: at {} the surfaces slip by {SLIP_OF_STEP} of a grain, {}; the layer is compacted in {COMPACTION} steps",
+                "step: at {} the surfaces slip by {}, the smaller of 0.004 d and 1.6e-5 d E/p with E of the debris; the layer is compacted in {COMPACTION} steps",
                 q(local.motion.velocity(), "m/s"),
-                q(SLIP_OF_STEP * d, "m")
+                q(self.slip, "m")
             ),
         );
         let _ = writeln!(
