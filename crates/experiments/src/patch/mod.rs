@@ -32,7 +32,7 @@ mod said;
 mod setup;
 pub mod spec;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod text;
 pub mod third_body;
 pub mod trade;

@@ -10,7 +10,7 @@ use fretwork_rolling::Friction;
 use fretwork_rolling::friction::Cells;
 use std::path::PathBuf;
 
-pub(super) fn laws() -> SearchPath {
+pub(crate) fn laws() -> SearchPath {
     let shipped = BuiltInLaws::new(fretwork_laws::plugins());
     SearchPath::new(&[]).with_built_in(shipped)
 }
