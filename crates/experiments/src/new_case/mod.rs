@@ -25,6 +25,8 @@ mod rigid;
 #[cfg(test)]
 mod tests;
 mod window;
+mod window_laws;
+mod window_numbers;
 
 pub use inputs::{Geometry, Input};
 
