@@ -52,8 +52,8 @@ impl Closed {
         })
     }
 
-    /// Returns the forces on the first body along the rolling and across it (N) where friction holds
-    /// at most `held` (N), and the error of their vector (N).
+    /// Returns the forces on the first body along the rolling and across it (N) where friction
+    /// holds at most `held` (N), and the error of their vector (N).
     ///
     /// The error is the largest difference to the exact theory over creepages in all directions,
     /// ratios of the axes from 0.2 to 5 and all Poisson's ratios: 3 % of `held` along and across

@@ -88,9 +88,9 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns the number extrapolated to cells of no size, to first order, from a fine grid and two
-    /// of cells twice as large, half a cell apart. The error is the difference of the fine grid to
-    /// it, and half of that of the coarse grids.
+    /// Returns the number extrapolated to cells of no size, to first order, from a fine grid and
+    /// two of cells twice as large, half a cell apart. The error is the difference of the fine grid
+    /// to it, and half of that of the coarse grids.
     pub fn of(fine: f64, coarse: [f64; 2]) -> Self {
         let change = fine - 0.5 * (coarse[0] + coarse[1]);
         Self {
@@ -99,9 +99,9 @@ impl Estimate {
         }
     }
 
-    /// Returns the number extrapolated likewise, with the whole difference of the coarse grids in its
-    /// error: for sums whose parts may cancel, in which more is left to chance, and the extrapolation
-    /// doubles it.
+    /// Returns the number extrapolated likewise, with the whole difference of the coarse grids in
+    /// its error: for sums whose parts may cancel, in which more is left to chance, and the
+    /// extrapolation doubles it.
     pub fn of_sum(fine: f64, coarse: [f64; 2]) -> Self {
         let found = Self::of(fine, coarse);
         Self {

@@ -100,8 +100,8 @@ impl Patch<'_> {
         })
     }
 
-    /// Follows a cycle over a grid and over two of cells twice as large, half a cell apart, on one of
-    /// which in half as many steps too.
+    /// Follows a cycle over a grid and over two of cells twice as large, half a cell apart, on one
+    /// of which in half as many steps too.
     ///
     /// # Errors
     /// Those of [`frets`](Self::frets) on one of the grids.
@@ -113,7 +113,8 @@ impl Patch<'_> {
         let [coarse, other] = coarser(&grid);
         let coarse = self.frets(coarse, strokes)?;
         let other = self.frets(other, strokes)?;
-        // Steps matter to all laws: tractions across the motion, of Poisson's ratio, turn with them.
+        // Steps matter to all laws: tractions across the motion, of Poisson's ratio, turn with
+        // them.
         let slower = match strokes.quarter < 2 {
             true => None,
             false => {

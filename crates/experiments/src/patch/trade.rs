@@ -84,8 +84,9 @@ impl Setting {
     }
 }
 
-/// Runs the trade of a patch for a wanted error on grids of some cells along each side: no setting begins that is expected to take longer than `limit`.
-/// `follow` gets the name of each setting that begins.
+/// Runs the trade of a patch for a wanted error on grids of some cells along each side: no setting
+/// begins that is expected to take longer than `limit`. `follow` gets the name of each setting that
+/// begins.
 ///
 /// # Errors
 /// A law fails, a point has no solution on the grids, or the patch has windows of a third body.

@@ -1,5 +1,5 @@
-//! Profiles of wheel and rail against the Manchester contact benchmark as the program CONTACT has it
-//! (E. A. H. Vollebregt, github eve70a/CONTACT, commit d431cdb).
+//! Profiles of wheel and rail against the Manchester contact benchmark as the program CONTACT has
+//! it (E. A. H. Vollebregt, github eve70a/CONTACT, commit d431cdb).
 
 use super::pressed::steel;
 use fretwork_elastic::half_space::CellGrid;
