@@ -76,8 +76,8 @@ pub struct Passages<'a> {
     pub widest: f64,
 }
 
-/// Returns the half-width (m) of a cut of a volume per length (m²) that is worn flat into bodies of a
-/// relative radius R across (m): w³ = 3 R V/2.
+/// Returns the half-width (m) of a cut of a volume per length (m²) that is worn flat into bodies of
+/// a relative radius R across (m): w³ = 3 R V/2.
 pub fn flat(volume: f64, radius: f64) -> f64 {
     (1.5 * radius * volume).cbrt()
 }

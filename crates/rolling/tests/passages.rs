@@ -221,8 +221,8 @@ fn a_force_stays() {
     assert!((again.adhesion[0] + 0.3).abs() < 1e-3, "{again:?}");
 }
 
-/// Passages end where the patch is wider than the shape of the bodies is known: the width by then is
-/// that of the flat of what is worn.
+/// Passages end where the patch is wider than the shape of the bodies is known: the width by then
+/// is that of the flat of what is worn.
 #[test]
 fn passages_end_where_the_shape_does() {
     let passages = Passages {

@@ -151,8 +151,8 @@ impl PatchLaw {
         self.constant.is_some()
     }
 
-    /// Returns the tables that contacts which stay in their cells have left for more than a hundredth
-    /// of the time since they formed, and for which share of it.
+    /// Returns the tables that contacts which stay in their cells have left for more than a
+    /// hundredth of the time since they formed, and for which share of it.
     pub fn left(&self) -> Vec<(String, f64)> {
         let carried = self.carried();
         let sum = |k: usize| carried.iter().filter_map(|c| c.get(k)).sum::<f64>();

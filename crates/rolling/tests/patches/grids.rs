@@ -56,10 +56,10 @@ fn the_error_of_the_grid_covers_finer_ones() {
     }
 }
 
-/// The energy of slip by which unlike bodies wear, T gamma and the work of their pressures, falls to
-/// the first order of the cells: what is stated on grids of 24 and 48 cells agrees with that on 96
-/// within the errors, with both of one sign and where they cancel. There the error tells that it is
-/// not known.
+/// The energy of slip by which unlike bodies wear, T gamma and the work of their pressures, falls
+/// to the first order of the cells: what is stated on grids of 24 and 48 cells agrees with that on
+/// 96 within the errors, with both of one sign and where they cancel. There the error tells that it
+/// is not known.
 #[test]
 fn wear_of_unlike_bodies_has_its_error() {
     let bodies = [steel(210e9, 0.3), steel(60e9, 0.25)];
