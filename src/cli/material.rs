@@ -5,7 +5,7 @@ use super::output::{answer, answer_json, report};
 use crate::scene::material::{
     InterfaceParameters, Material, MaterialClass, MaterialLibrary, Sheet, SheetNumber, doubts,
 };
-use crate::scene::source::{Source, ValidationError};
+use crate::scene::source::ValidationError;
 use clap::Subcommand;
 use fretwork_observe::quantity::{number, quantity};
 use serde::Serialize;
