@@ -207,7 +207,7 @@ fn ask(mut question: Question, from: &mut dyn BufRead) -> Result<Question, Failu
 
 /// Reads one answer.
 fn line(from: &mut dyn BufRead, what: &str) -> Result<String, Failure> {
-    eprint!("{what}: ");
+    report(&format!("{what}:"));
     let mut text = String::new();
     match from.read_line(&mut text) {
         Ok(0) | Err(_) => Err(Failure::Usage(
