@@ -93,6 +93,8 @@ fn bits<S: Space>(through_text: bool) -> Vec<u64> {
         let text = builder.case().to_ron().unwrap_or_else(|e| panic!("{e}"));
         let material = fretwork::scene::material::Material {
             doc: String::new(),
+            class: None,
+            also: Vec::new(),
             density: fretwork::scene::material::Sourced {
                 value: 3000.0,
                 unit: String::new(),
