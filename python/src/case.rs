@@ -28,8 +28,7 @@ impl Case {
     /// Reads a file, or the shipped case of a name.
     #[staticmethod]
     fn load(path: PathBuf, sets: Vec<String>) -> PyResult<Self> {
-        let path = inputs::find(InputKind::Case, &path)
-            .map_err(|e| wrong(&path.display().to_string(), e))?;
+        let path = inputs::find(InputKind::Case, &path).map_err(|e| wrong(path.display(), e))?;
         let loaded = load(&path, &sets).map_err(|e| input(&e))?;
         Ok(Self { loaded })
     }
