@@ -55,7 +55,7 @@ pub struct Refined {
     pub fine: Rolling,
     /// On the grids of larger cells.
     pub coarse: [Rolling; 2],
-    /// Force extrapolated to cells of no size, to first order (N).
+    /// Force extrapolated to cells of no size, to first order; of a line that of the fine grid (N).
     pub force: Vector,
     /// Moment on the first body about the normal through the origin (N m), likewise.
     pub moment: Estimate,
@@ -67,9 +67,14 @@ pub struct Refined {
 impl Refined {
     /// Returns results on a grid with their error, from those on [`coarser`] ones.
     pub(crate) fn of(fine: Rolling, [coarse, other]: [Rolling; 2]) -> Self {
-        let [x, y] = [0, 1].map(|k| Estimate::of(fine.force[k], [coarse.force[k], other.force[k]]));
+        // In one row the edges of contact and stick go from cell to cell; many rows average that.
+        let estimate = match fine.grid.cells[1] {
+            1 => Estimate::by_jumps,
+            _ => Estimate::of,
+        };
+        let [x, y] = [0, 1].map(|k| estimate(fine.force[k], [coarse.force[k], other.force[k]]));
         Self {
-            moment: Estimate::of(fine.moment, [coarse.moment, other.moment]),
+            moment: estimate(fine.moment, [coarse.moment, other.moment]),
             force: [x.value, y.value],
             error: [x.error, y.error],
             fine,
@@ -106,6 +111,17 @@ impl Estimate {
         let found = Self::of(fine, coarse);
         Self {
             error: found.error + 0.5 * (coarse[0] - coarse[1]).abs(),
+            ..found
+        }
+    }
+
+    /// Returns the number of a fine grid as it is, with its larger difference to those of two grids
+    /// of cells twice as large, half a cell apart, half as large again, and half of that of these:
+    /// for numbers of which one of the three may be right by chance, and two may be wrong alike.
+    pub fn by_jumps(fine: f64, coarse: [f64; 2]) -> Self {
+        let found = Self::beside(fine, coarse);
+        Self {
+            error: 1.5 * found.error + 0.5 * (coarse[0] - coarse[1]).abs(),
             ..found
         }
     }

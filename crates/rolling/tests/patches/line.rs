@@ -167,3 +167,25 @@ fn a_strip_rolls_as_carters() {
     let found = found.unwrap_or_else(|e| panic!("{e}"));
     near(found.force[0], -0.64 * MU * LOAD, 0.01);
 }
+
+/// Forces are Carter's within the error of their grid, until what sticks is smaller than a cell.
+#[test]
+fn a_strip_rolls_as_carters_within_the_error_of_its_grid() {
+    let mut wrong = Vec::new();
+    for cells in [48, 64, 96, 128, 192] {
+        let (grid, half) = grid(cells);
+        for part in [0.02, 0.05, 0.1, 0.139, 0.2, 0.3, 0.5, 0.694, 0.8, 0.9] {
+            let creepage = Creepage {
+                along: part * MU * half * CURVATURE,
+                ..Creepage::default()
+            };
+            let found = with_patch(|p| p.refined(grid, &creepage, &Coulomb(MU), 1.0)).unwrap();
+            let carter = -(1.0 - (1.0 - part).powi(2)) * MU * LOAD;
+            let off = (found.force[0] - carter).abs();
+            if off > found.error[0] {
+                wrong.push((cells, part, off / carter, found.error[0] / carter));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
