@@ -219,7 +219,7 @@ fn maps_and_cycles_tell_that_a_table_is_left() {
     let folder = folder("left");
     std::fs::write(
         folder.join("mu.csv"),
-        "slip_rate [m/s],friction\n0,0.5\n1,0.6\n",
+        "slip_rate [m/s],friction\n0,0.5\n1,0.5\n",
     )
     .unwrap();
     let path = folder.join("patch.ron");

@@ -102,6 +102,9 @@ pub struct Worn {
     pub ledger: f64,
 }
 
+/// Fewest cells along a side: half as many still lay a grid around the patch as it widens.
+const FEWEST_CELLS: usize = 20;
+
 /// Reads the passages of a file, of points with creepages or forces.
 ///
 /// # Errors
@@ -122,6 +125,15 @@ pub(in crate::patch) fn plan(
             "passages",
             "nothing wears: give the interface of the bodies a `wear` law, such as \"archard\""
                 .into(),
+        );
+    }
+    if spec.cells < FEWEST_CELLS {
+        return refuse(
+            "cells",
+            format!(
+                "{} cells are too few for passages, whose error is from half as many: take {FEWEST_CELLS} or more",
+                spec.cells
+            ),
         );
     }
     let points = creepages.len() + pulls.len();

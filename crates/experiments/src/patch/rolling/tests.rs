@@ -438,7 +438,10 @@ fn passages_tell_the_error_of_new_bodies() {
     };
     let curvatures = [1.0 / 0.625, 1.0 / 1.776737];
     let hertz = point(106.7e3, curvatures, effective_modulus(&[body; 2]));
-    for cells in ["cells: 12", "cells: 24"] {
+    let few = rolls(WEARS, passages).replace("cells: 24", "cells: 18");
+    let refused = solved("start", &few).map(|_| ()).unwrap_err().to_string();
+    assert!(refused.contains("take 20 or more"), "{refused}");
+    for cells in ["cells: 20", "cells: 24"] {
         let answer = of(cells);
         let worn = answer.passages.as_ref().unwrap();
         let off = (worn.start.pressure - hertz.pressure).abs();
