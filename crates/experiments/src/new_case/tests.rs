@@ -75,7 +75,7 @@ fn what_is_missing_or_does_not_belong_is_named() {
 fn the_window_of_a_ball_has_its_pressure_slip_and_inertia() {
     let question = ball()
         .with("debris", "magnetite")
-        .with("debris-size", "2 um");
+        .with("debris-size", "1 um");
     let made = question.make(&laws()).unwrap();
     let loaded = load_text("new.ron", &made.text, Path::new(""), &[]).unwrap();
     loaded.build(&laws()).unwrap();
