@@ -8,7 +8,7 @@ use super::spec::{MotionSpec, PatchFile, positive};
 use crate::Error;
 use fretwork_core::laws::{Interface, Kind, LawField, ParameterOrigin, SearchPath};
 use fretwork_elastic::half_space::CellGrid;
-use fretwork_rolling::patch::Patch;
+use fretwork_rolling::patch::{Patch, coarser};
 use fretwork_rolling::{Creepage, NormalError, PatchError, Refined, Surfaces, normal};
 use fretwork_scene::case::SlotValues;
 use fretwork_scene::material::MaterialLibrary;
@@ -47,6 +47,8 @@ const AROUND: f64 = 1.1;
 /// Distance of the middles of the outermost cells from the middle of the patch over its semi-axis,
 /// at least, in all grids that are compared.
 const OUTSIDE: f64 = 1.005;
+/// Growth of a grid at whose border a patch of thin ends has pressure, and most times of it.
+const CLEAR: (f64, usize) = (1.1, 8);
 /// Cells along a side of the grids on which the size of a patch is found, the growth of the grid
 /// from one to the next, and their largest number.
 const SEARCH: (usize, f64, usize) = (32, 1.5, 20);
@@ -319,7 +321,7 @@ pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid,
                 let filled = (to[0] - from[0]) / grid.extent()[0];
                 let wide = (to[1] - from[1]) / grid.extent()[1];
                 if filled.min(wide) > 0.4 || last == Some([from, to]) {
-                    return Ok(around(from, to, cells));
+                    return clear(bodies, load, around(from, to, cells));
                 }
                 last = Some([from, to]);
                 half = [0, 1].map(|k| 1.2 * to[k].max(-from[k]));
@@ -332,4 +334,32 @@ pub(super) fn grid(bodies: &Bodies, load: f64, cells: usize) -> Result<CellGrid,
         "the size of the patch was not found: its distance may be flat up to the ends of the table"
             .into(),
     ))
+}
+
+/// Returns a grid on which a patch does not reach the border, nor on the ones of larger cells with
+/// which it is compared: as given, or larger where ends of the patch are thinner than the cells on
+/// which its size was found.
+fn clear(bodies: &Bodies, load: f64, mut grid: CellGrid) -> Result<CellGrid, Error> {
+    let reaches = |grid: CellGrid| {
+        let surfaces = Surfaces::new(grid, bodies.elasticity, 0.0);
+        let distance = (0..grid.len()).map(|c| bodies.distance.at(grid.middle(c)));
+        let distance: Vec<f64> = distance.collect();
+        match normal(&surfaces, &distance, load, None) {
+            Err(NormalError::Border) => Ok(true),
+            Err(other) => Err(Error::Failed(other.to_string())),
+            Ok(_) => Ok(false),
+        }
+    };
+    for _ in 0..CLEAR.1 {
+        let [coarse, other] = coarser(&grid);
+        if !(reaches(coarse)? || reaches(other)? || reaches(grid)?) {
+            return Ok(grid);
+        }
+        for k in 0..2 {
+            let more = (CLEAR.0 - 1.0) * grid.extent()[k];
+            grid.from[k] -= 0.5 * more;
+            grid.size[k] *= CLEAR.0;
+        }
+    }
+    Ok(grid)
 }
