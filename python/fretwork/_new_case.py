@@ -25,7 +25,7 @@ class NewCase(NamedTuple):
         """
         if self.kind != "case":
             raise ValueError("elastic bodies without debris make a patch: write it with save(), and solve it by fretwork.patch(path)")
-        return Case.from_text("new_case.ron", self.text)
+        return Case.from_text(self.text, name="new_case.ron")
 
     def save(self, path: Union[str, PathLike[str]]) -> Path:
         """Writes the file, and returns its path."""
