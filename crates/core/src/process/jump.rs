@@ -56,7 +56,7 @@ const TAPER: f64 = 1.0 / 3.0;
 
 /// Safety factor on the sum of the estimated errors: the parabola underestimates the error of
 /// growth that accelerates within a jump. For the fatigue bond the error of whole runs was up to
-/// 1.47 times the sum (docs/wear.md).
+/// 1.47 times the sum (docs/wear/jumps.md).
 const SAFETY: f64 = 1.5;
 
 /// A jump that waits for its control cycles.

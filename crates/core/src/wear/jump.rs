@@ -24,7 +24,7 @@
 //! times that of one of them, sqrt(6) for jumps of equal length. Real changes of the scar's shape
 //! are included in the estimate. Protruding material is worn off later: a misplaced volume S, as a
 //! sum of differences, is reduced to at most S exp(-W/(2 S)) after a further wear volume W. This is
-//! an assumption, compared with complete runs in `docs/wear.md`.
+//! an assumption, compared with complete runs in `docs/wear/jumps.md`.
 
 /// Accumulated quantities, or their increments: one list of values per quantity.
 pub type Amounts = Vec<Vec<f64>>;

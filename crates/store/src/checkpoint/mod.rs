@@ -7,7 +7,7 @@
 //! A frame contains the identity of the run (case, materials, laws, scene: [`Identity`]) and its
 //! state, protected by a checksum. The file has two frames. While one is being written the other is
 //! intact, so there is always one to resume from. The guarantees are documented in
-//! `docs/checkpoints.md`.
+//! `docs/checkpoints/guarantees.md`.
 
 mod error;
 mod find;
