@@ -238,7 +238,7 @@ struct Counts<'a> {
 
 fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64) -> String {
     let mut out = String::from(
-        "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](solvers.md) for the methods.\n\n",
+        "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](../solvers.md) for the methods.\n\n",
     );
     let _ = writeln!(
         out,

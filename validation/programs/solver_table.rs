@@ -292,7 +292,7 @@ fn page(rows: &Path, budget: f64, short: f64) -> Result<String, Any> {
     let mut out = format!(
         "# Every method in a run
 
-Made by `cargo run --release --example solver_table`; for the methods see [solvers](solvers.md).
+Made by `cargo run --release --example solver_table`; for the methods see [solvers](../solvers.md).
 
 ## The fretting case
 
@@ -356,9 +356,9 @@ counted, and the run continues. The machine was shared: times vary by a factor o
     }
     out += "
 In the first steps of the slip no method reaches 1e-6 or 1e-8, not even with fifty times as many sweeps:
-[why](solvers.md#the-first-slip-of-the-fretting-case). `nlgs-symmetric`, the gradients, `newton` and `interior` treat a
+[why](solver_logs.md#the-first-slip-of-the-fretting-case). `nlgs-symmetric`, the gradients, `newton` and `interior` treat a
 bond and its contact as two blocks of unknowns, while the sweeps over bodies solve both at once:
-[cost of this](solvers.md#bonds-as-unknowns-of-their-own).
+[cost of this](../solvers/hyperstatic.md#bonds-as-unknowns-of-their-own).
 ";
     out += "\nThe case is chaotic: another order of the same sums leads to other rearrangements. The resulting scatter, by `auto` at 1e-4 with other samples:\n\n| seed | friction by cycle | time (s) |\n|---|---|---|\n";
     for seed in SEEDS {

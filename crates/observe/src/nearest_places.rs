@@ -89,7 +89,7 @@ impl NearestPlaces {
             format!(
                 "up to {} of {} loaded contacts between deformable bodies, over the run with {share} of the load, act on the nearest place of the surface, \
                  not on the mean place that their points face: pressure there alternates from point to point by about a tenth where meshes do not match; let \
-                 surfaces reach beyond the points that touch them, and see the limits in docs/deformable.md",
+                 surfaces reach beyond the points that touch them, and see docs/deformable/limits.md",
                 self.contacts, self.of,
             )
         })

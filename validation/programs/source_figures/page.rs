@@ -11,7 +11,7 @@ const HEAD: &str = "# The figures of Renouf's lecture, computed with Fretwork
 
 M. Renouf's lecture on the non-smooth dynamics of divided media (2007; the method is that of Renouf and Alart, Comput.
 Methods Appl. Mech. Eng. 194, 2005) compares conjugate projected gradients with Gauss-Seidel. This page has the same
-figures from the cases and solvers of this program; [solvers](solvers.md) describes the methods. The lecture gives
+figures from the cases and solvers of this program; [solvers](../solvers.md) describes the methods. The lecture gives
 no sizes, tolerances or numbers, so that only its qualitative statements can be compared. This page, its numbers
 and its conclusions are written by
 
@@ -51,7 +51,7 @@ pub fn page(singles: &[Single], quasi: &[Run], dynamic: &[Run], samples: &Sample
 
 fn one_step(out: &mut String, singles: &[Single]) {
     *out += "## One step of a packing\n\n";
-    *out += "The contact problem of one step in the middle of the compression of [the biaxial case](../cases/biaxial.ron) with 500\ngrains, one sample for each friction coefficient, solved from zero. The error is the one that runs use\n(`Balance`, [design](design.md)).\n\n";
+    *out += "The contact problem of one step in the middle of the compression of [the biaxial case](../cases/biaxial.ron) with 500\ngrains, one sample for each friction coefficient, solved from zero. The error is the one that runs use\n(`Balance`, [design](../design.md)).\n\n";
     *out += "![error against iterations](figures/solver_one_step.png)\n\n";
     *out += "Iterations to reach an error, at most 10,000; for NLGS and Anderson the error is evaluated at every tenth.\n\n";
     *out += "| μ | contacts | method | to 1e-2 | to 1e-4 | to 1e-6 | time of an iteration (µs) | over NLGS |\n|---|---|---|---|---|---|---|---|\n";

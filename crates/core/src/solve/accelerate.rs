@@ -13,7 +13,7 @@ use crate::geometry::space::Space;
 const FIRST_ANDERSON: u32 = 20;
 /// Number of iterations in which the squared residual has to fall by half; otherwise momentum is
 /// given up. With momentum an impulse crosses n contacts in a row in about n iterations; the factor
-/// of ten, and both bounds, come from trials (`docs/solvers.md`).
+/// of ten, and both bounds, come from trials (`docs/solvers/gauss_seidel.md`).
 fn patience(contacts: usize) -> u32 {
     (10 * contacts).clamp(50, 1000) as u32
 }

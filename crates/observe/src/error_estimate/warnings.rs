@@ -44,13 +44,13 @@ impl Repeats {
         let text = if share > LARGE_ERROR {
             format!(
                 "the time integration takes {percent} of the energy (`scheme`), as if contacts had damping that no law gives: take a smaller \
-                 time.step, to which this loss is proportional (docs/compliant.md)"
+                 time.step, to which this loss is proportional (docs/compliant/energy.md)"
             )
         } else if share < -LARGE_ERROR {
             format!(
                 "the time integration adds {percent} to the energy (`scheme`): springs of contacts that are found with an overlap bring energy. Take \
                  a smaller time.step; between bodies with corners, whose points of contact come and go, that does not help, but rigid contacts do \
-                 (docs/compliant.md)"
+                 (docs/compliant/energy.md)"
             )
         } else {
             return None;

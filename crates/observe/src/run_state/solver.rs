@@ -181,7 +181,7 @@ impl SolverSummary {
         let told: Vec<String> = found.into_iter().chain(left).collect();
         (!told.is_empty()).then(|| {
             format!(
-                "{}; compliant contacts (docs/compliant.md) have one (docs/solvers.md, several solutions)",
+                "{}; compliant contacts (docs/compliant.md) have one (docs/solvers/several_solutions.md)",
                 told.join("; ")
             )
         })
