@@ -1,4 +1,4 @@
-"""Temperatures of the two surfaces of a sliding contact: a run of cases/surface_temperatures.ron beside a one-dimensional reference (docs/heat.md).
+"""Temperatures of the two surfaces of a sliding contact: a run of cases/surface_temperatures.ron beside a one-dimensional reference (docs/heat/surface_temperatures.md).
 
 Variant B as an example, in bash: its options, from the head of the case, go to both runs (none for A). `fretwork` stands for `cargo run --release --` in a clone.
 Other seeds (`--set seed=2` in the first run) go with the second run as it is.

@@ -65,7 +65,7 @@ def contact_patch(
     ``friction_of`` takes the friction coefficient from folders of runs, with its interval over them, and ``accept`` takes them although
     they differ from the patch in ``"materials"``, ``"pressure"`` or ``"drive"``, from each other (``"inputs"``), or are ``"untrusted"``;
     ``wear`` is Archard's K, a pure number. Answers with an interval are ``{"low", "value", "high"}``; all are in SI units, of a line contact per metre.
-    ``docs/steel_to_number.md`` has the meaning of each.
+    ``docs/steel_to_number/patch.md`` has the meaning of each.
 
     >>> import fretwork
     >>> patch = fretwork.contact_patch(
