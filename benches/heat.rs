@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench heat` steps the main example in the middle of its fretting, and boxes of
 //! disks of several sizes, without heat, with heat, and with heat and a current, and prints their
-//! shares of a step, as in `docs/dev/heat.md`. The steps without heat are bit-identical to those of a
-//! case without it. With `-- headline` it runs only the main example.
+//! shares of a step, as in `docs/dev/heat.md`. The steps without heat are bit-identical to those of
+//! a case without it. With `-- headline` it runs only the main example.
 //!
 //! Each variant steps in a separate process. The processes take turns of ten steps, so that other
 //! load on the machine affects all of them equally: on a shared machine equal steps may take 30 %

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// One section of the page. `validation/NAME.csv` has the published numbers, `validation/NAME.md`
+/// One page. `validation/NAME.csv` has the published numbers, `validation/NAME.md`
 /// the text.
 pub struct Comparison {
     pub name: &'static str,

@@ -1,10 +1,11 @@
 //! Published numbers beside ours: runs the studies of `validation/`, draws a figure for each
-//! comparison and writes `docs/validation.md`.
+//! comparison and writes `docs/validation.md` and a page of each in `docs/validation/`.
 //!
 //! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`,
-//! from the root of the project. With names only their studies are run; the page always has all
-//! comparisons. Runs are kept in `target/validation` and are not made twice by one program; another
-//! program makes them anew. With `--no-runs` the page is written from the tables that are there.
+//! from the root of the project. With names only their studies are run; the pages are always those
+//! of all comparisons. Runs are kept in `target/validation` and are not made twice by one program;
+//! another program makes them anew. With `--no-runs` the pages are written from the tables that are
+//! there.
 
 mod biaxial;
 mod cohesive_shear;
@@ -82,8 +83,15 @@ fn main() -> Result<(), Failure> {
         section.draw(root)?;
         sections.push(section);
     }
-    std::fs::write(root.join("docs/validation.md"), page::page(&sections))?;
-    println!("written to docs/validation.md");
+    let pages = root.join("docs/validation");
+    std::fs::create_dir_all(&pages)?;
+    for section in &sections {
+        let path = pages.join(format!("{}.md", section.name()));
+        std::fs::write(path, section.page())?;
+    }
+    let overview = root.join("docs/validation.md");
+    std::fs::write(overview, page::overview(&sections))?;
+    println!("written to docs/validation.md and docs/validation");
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! The page.
+//! The pages: one for each comparison, and an overview.
 
 use crate::comparison::{Comparison, Failure, Inputs, Results, folder, markdown};
 use crate::published::Published;
@@ -92,8 +92,14 @@ impl Section {
         })
     }
 
-    fn markdown(&self) -> String {
-        let mut text = format!("## {}\n\n{}\n", self.title, self.text.trim());
+    /// Name of the comparison, and of its page.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The page of the comparison, in `docs/validation`.
+    pub fn page(&self) -> String {
+        let mut text = format!("# {}\n\n{}\n", self.title, self.text.trim());
         for (study, table) in &self.studies {
             let measured = |version: &String| {
                 format!("\nMeasured with version {version}: `validation/{study}.ron`.")
@@ -110,7 +116,7 @@ impl Section {
         }
         if let Some(results) = &self.results {
             for (chart, file) in self.figures() {
-                text += &format!("\n![{}](figures/{file})\n", chart.title);
+                text += &format!("\n![{}](../figures/{file})\n", chart.title);
             }
             text += &format!("\n{}", results.points);
         }
@@ -141,18 +147,14 @@ fn programs(folder: &Path, table: &Table) -> Result<Vec<String>, Failure> {
 impl Section {
     /// Returns the rows of the summary. A verdict from an incomplete study says so.
     fn rows(&self) -> Vec<Vec<String>> {
-        let link = format!(
-            "[{}](#{})",
-            self.title,
-            self.title.to_lowercase().replace(' ', "-")
-        );
+        let link = format!("[{}](validation/{}.md)", self.title, self.name);
         let Some(results) = &self.results else {
             let mut cells = vec![link];
             cells.extend(std::iter::repeat_n("-".to_owned(), 5));
             let ran = self.studies.iter().any(|s| !s.1.runs.is_empty());
             cells.push(
                 if ran {
-                    "not decided: see below"
+                    "not decided: see its page"
                 } else {
                     "not run"
                 }
@@ -179,8 +181,8 @@ impl Section {
     }
 }
 
-/// The whole page.
-pub fn page(sections: &[Section]) -> String {
+/// The overview, `docs/validation.md`.
+pub fn overview(sections: &[Section]) -> String {
     let mut text = include_str!("head.md")
         .replace("CLOSE", &format!("{:.0} %", 100.0 * CLOSE))
         .replace("WIDE", &format!("{:.0} %", 100.0 * WIDE));
@@ -205,8 +207,12 @@ pub fn page(sections: &[Section]) -> String {
         ];
         text += &format!("\n{heading}\n\n{}", markdown(&columns, &rows));
     }
-    for section in sections {
-        text += &format!("\n{}", section.markdown());
+    let tables = sections.iter().flat_map(|s| &s.studies);
+    let versions: BTreeSet<&String> = tables.flat_map(|(_, table)| &table.programs).collect();
+    for version in versions {
+        text += &format!(
+            "\nMeasured with version {version}: `cargo run --release --example validation`.\n"
+        );
     }
     text
 }
