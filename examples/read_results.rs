@@ -3,7 +3,7 @@
 //! ```sh
 //! cargo run --release --no-default-features --features laws,results --example read_results
 //! ```
-//! The file `results.h5` is described in `docs/outputs.md`.
+//! The file `results.h5` is described in `docs/outputs/results_h5.md`.
 
 use fretwork::record::results::{Reader, state};
 use fretwork::record::{Run, RunOptions};

@@ -81,6 +81,14 @@ pub(crate) fn pages() -> Vec<PathBuf> {
     out
 }
 
+/// Pages of the outputs: `docs/outputs.md`, and those of its folder.
+pub(crate) fn output_pages() -> Vec<PathBuf> {
+    let (page, folder) = (root().join("docs/outputs.md"), root().join("docs/outputs"));
+    let mut all = pages();
+    all.retain(|path| *path == page || path.starts_with(&folder));
+    all
+}
+
 /// Pages of the parts of `docs/SUMMARY.md` that are for users, and the README.
 fn pages_for_users() -> Vec<PathBuf> {
     let summary = read(&root().join("docs/SUMMARY.md"));

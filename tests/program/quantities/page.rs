@@ -1,7 +1,7 @@
-//! The tables of docs/outputs.md list what the shipped observers declare. With
-//! `FRETWORK_WRITE_PAGES=1` the test writes them.
+//! The tables of docs/outputs.md and of the pages in docs/outputs list what the shipped observers
+//! declare. With `FRETWORK_WRITE_PAGES=1` the test writes them.
 
-use crate::pages::{read, settle};
+use crate::pages::{output_pages, read, settle};
 use fretwork::record::RunEnd;
 use fretwork::record::quantity::{Findings, Role, Topic};
 use fretwork::record::statistics::Table;
@@ -11,7 +11,7 @@ use fretwork::scene::{Built, LoadedCase, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::first_bodies::WearMaterials;
 use fretwork_observe::standard;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// Cases that together have all observers.
@@ -272,38 +272,75 @@ fn table_of_measures(cases: &[(LoadedCase, Built)]) -> String {
     out
 }
 
-fn table(of_run: bool) -> String {
+/// The first name of a path: `energy` of `energy.friction`.
+fn group(path: &str) -> &str {
+    path.split('.').next().unwrap_or(path)
+}
+
+/// The table of the numbers of these groups.
+fn table(declared: &[&Declared], groups: &[&str]) -> String {
     let mut out = String::from("| path | unit | meaning |\n|---|---|---|\n");
-    for (path, [space, plane], doc, _) in declared().into_iter().filter(|d| d.3 == of_run) {
-        let unit = units(&space, &plane);
+    let wanted = declared.iter().filter(|d| groups.contains(&group(&d.0)));
+    for (path, [space, plane], doc, _) in wanted {
+        let unit = units(space, plane);
         let doc = doc.replace('|', "\\|");
         out += &format!("| `{path}` | {unit} | {doc} |\n");
     }
     out
 }
 
+/// The tables of numbers, by their marks: `<!-- results: energy wear -->` in a page is the place of
+/// the results whose paths begin with `energy` or `wear`. Each group has one mark.
+fn tables_of_groups(pages: &[String]) -> Vec<(String, String)> {
+    let all = declared();
+    let mut tables = Vec::new();
+    for (kind, of_run) in [("results", false), ("run", true)] {
+        let declared: Vec<&Declared> = all.iter().filter(|d| d.3 == of_run).collect();
+        let mut left: BTreeSet<&str> = declared.iter().map(|d| group(&d.0)).collect();
+        let begin = format!("<!-- {kind}: ");
+        let lines = pages.iter().flat_map(|page| page.lines());
+        let marks = lines.filter_map(|l| l.strip_prefix(&*begin)?.strip_suffix(" -->"));
+        for mark in marks {
+            let groups: Vec<&str> = mark.split_whitespace().collect();
+            for of in &groups {
+                let once = left.remove(of);
+                assert!(once, "`{of}` has several marks, or no number, of {kind}");
+            }
+            tables.push((format!("{kind}: {mark}"), table(&declared, &groups)));
+        }
+        assert!(
+            left.is_empty(),
+            "no page of the outputs has a mark {begin}... --> with {left:?}"
+        );
+    }
+    tables
+}
+
 #[test]
 fn the_page_lists_every_quantity_with_its_unit() {
-    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
-    let mut made = read(path.as_ref());
-    let quantities = [("results", false), ("run", true)];
-    let quantities = quantities.map(|(name, of_run)| (name.to_owned(), table(of_run)));
+    let paths = output_pages();
+    let mut pages: Vec<String> = paths.iter().map(|path| read(path)).collect();
     let cases = all_cases();
     let columns = columns(&cases).into_iter();
     let columns = columns.map(|(of, list)| (format!("columns: {of}"), table_of_columns(&list)));
     let measures = ("measures".to_owned(), table_of_measures(&cases));
     let events = events(&cases).into_iter();
     let events = events.map(|(of, list)| (format!("events: {of}"), table_of_columns(&list)));
-    let tables = quantities.into_iter().chain([measures]);
-    for (name, table) in tables.chain(columns).chain(events) {
+    let mut tables = tables_of_groups(&pages);
+    tables.push(measures);
+    tables.extend(columns.chain(events));
+    for (name, table) in tables {
         let begin = format!("<!-- {name} -->\n");
         let end = format!("<!-- end of {name} -->");
-        let place = |mark: &str| {
-            let place = made.find(mark);
-            place.unwrap_or_else(|| panic!("docs/outputs.md has no mark {mark}"))
-        };
-        let (from, to) = (place(&begin) + begin.len(), place(&end));
-        made.replace_range(from..to, &table);
+        let page = pages.iter_mut().find(|page| page.contains(&begin));
+        let page = page.unwrap_or_else(|| panic!("no page of the outputs has the mark {begin}"));
+        let from = page.find(&begin).unwrap() + begin.len();
+        let to = page[from..].find(&end).map(|k| from + k);
+        let to = to.unwrap_or_else(|| panic!("no page of the outputs has the mark {end}"));
+        page.replace_range(from..to, &table);
     }
-    settle(path.as_ref(), &made, "the_page_lists_every").unwrap();
+    let made = paths.iter().zip(&pages);
+    let settled = made.map(|(path, made)| settle(path, made, "the_page_lists_every"));
+    let old: Vec<String> = settled.filter_map(Result::err).collect();
+    assert!(old.is_empty(), "{}", old.join("\n"));
 }

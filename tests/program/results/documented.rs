@@ -1,5 +1,6 @@
-//! Every column and every key that a run writes is in docs/outputs.md.
+//! Every column and every key that a run writes is in docs/outputs.md or a page in docs/outputs.
 
+use crate::pages::{output_pages, read};
 use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
@@ -9,10 +10,14 @@ use fretwork::shipped::search_path;
 use fretwork_observe::standard::declared;
 use std::collections::BTreeSet;
 
-/// Texts between backticks in the page.
+/// The pages of the outputs, one after another.
+fn text() -> String {
+    output_pages().iter().map(|path| read(path)).collect()
+}
+
+/// Texts between backticks in the pages.
 fn documented() -> BTreeSet<String> {
-    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(path).unwrap();
+    let page = text();
     let words = page
         .lines()
         .flat_map(|line| line.split('`').skip(1).step_by(2));
@@ -58,15 +63,14 @@ fn every_column_of_the_shipped_cases_is_documented() {
         let missing = missing(&loaded, &built.unwrap_or_else(|e| panic!("{e}")), &page);
         assert!(
             missing.is_empty(),
-            "{case}: docs/outputs.md lacks {missing:?}"
+            "{case}: the pages of the outputs lack {missing:?}"
         );
     }
 }
 
-/// Fields without a row in the page, or whose row has another unit.
+/// Fields without a row in the pages, or whose row has another unit.
 pub(super) fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a str> {
-    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(path).unwrap();
+    let page = text();
     let described = |(name, unit): &(&str, &str)| {
         let mut rows = page.lines().filter(|l| l.starts_with('|'));
         rows.any(|row| row.contains(&format!("`{name}`")) && row.contains(unit))
@@ -75,10 +79,9 @@ pub(super) fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>)
     missing.map(|(name, _)| name).collect()
 }
 
-/// Tables of fields in the page: their objects, and the names in their first column.
+/// Tables of fields in the pages: their objects, and the names in their first column.
 pub(super) fn field_tables() -> Vec<(String, BTreeSet<String>)> {
-    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(path).unwrap();
+    let page = text();
     let mut tables: Vec<(String, BTreeSet<String>)> = Vec::new();
     let mut open = false;
     for line in page.lines() {
@@ -113,7 +116,10 @@ fn every_field_of_the_views_is_documented() {
         missing.into_iter().map(str::to_owned).collect()
     }
     for missing in [missing::<Dim2>(), missing::<Dim3>()] {
-        assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
+        assert!(
+            missing.is_empty(),
+            "the pages of the outputs lack {missing:?}"
+        );
     }
 }
 
@@ -131,5 +137,8 @@ fn every_key_of_the_summary_is_documented() {
     let summary = serde_json::to_value(&found).unwrap();
     let keys = summary.as_object().unwrap().keys();
     let missing: Vec<&String> = keys.filter(|key| !page.contains(*key)).collect();
-    assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "the pages of the outputs lack {missing:?}"
+    );
 }

@@ -118,7 +118,10 @@ fn views_agree<S: Space>(file: &H5File) {
         (name.as_str(), unit)
     });
     let missing = undocumented(units);
-    assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "the pages of the outputs lack {missing:?}"
+    );
     let bodies = written(file, &["views/bodies/CellData"]);
     assert_eq!(bodies.keys().collect::<Vec<_>>(), ["body"]);
     // Vectors have three numbers, with which viewers draw arrows.
@@ -198,7 +201,7 @@ fn no_field_is_documented_that_no_registry_has() {
         unknown.retain(|name| !space[k].contains(*name) && !more[k].contains(&name.as_str()));
         assert!(
             unknown.is_empty(),
-            "docs/outputs.md has fields of {kind} that no run writes: {unknown:?}"
+            "the pages of the outputs have fields of {kind} that no run writes: {unknown:?}"
         );
     }
 }
