@@ -1,6 +1,7 @@
 //! `fretwork law new`, followed literally: the printed commands build a law, certify it and run a
 //! case with it.
 
+use crate::pages::{read, root};
 use crate::temp::TempFolder;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -88,6 +89,15 @@ fn in_fortran() {
         return;
     }
     follow("fortran");
+}
+
+#[test]
+fn the_page_begins_with_the_function_of_the_template() {
+    let page = read(&root().join("docs/write_your_own_law.md"));
+    let (_, rest) = page.split_once("```c\n").unwrap();
+    let (function, _) = rest.split_once("```").unwrap();
+    let template = read(&root().join("crates/core/src/laws/kind/templates/damage.c"));
+    assert!(template.contains(function), "{function}");
 }
 
 /// Runs a case with the damage law `my-damage` in `folder`; returns exit code and error.

@@ -7,6 +7,7 @@
 #[cfg(unix)]
 mod commands;
 mod console;
+mod glossary;
 mod links;
 mod measured;
 
