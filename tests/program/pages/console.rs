@@ -60,7 +60,7 @@ impl Printed {
 }
 
 /// The words of a command of a shell up to a comment, and the comment.
-fn words(command: &str) -> Result<(Vec<String>, Option<String>), String> {
+pub(super) fn words(command: &str) -> Result<(Vec<String>, Option<String>), String> {
     let (mut out, mut word, mut quote) = (Vec::new(), None::<String>, None);
     let mut rest = command.chars();
     while let Some(c) = rest.next() {

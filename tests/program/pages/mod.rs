@@ -10,6 +10,7 @@ mod console;
 mod glossary;
 mod links;
 mod measured;
+mod unrun;
 
 use std::path::{Path, PathBuf};
 
