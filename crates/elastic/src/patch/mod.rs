@@ -52,9 +52,34 @@ pub fn like_bodies(bodies: &[Solid; 2]) -> Solid {
     }
 }
 
+/// Dundurs' second constant of two bodies above which the theories of like bodies are no longer
+/// close: pressure alone makes the surfaces slip.
+pub const UNLIKE: f64 = 0.05;
+
+/// Returns Dundurs' second constant of two bodies, beta = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/(2 (1 -
+/// nu1)/G1 + 2 (1 - nu2)/G2): displacements along the surfaces by pressures, over those along the
+/// normal (Johnson, 5.3). It is 0 for like bodies.
+pub fn dundurs([one, other]: &[Solid; 2]) -> f64 {
+    let along = |s: &Solid| (1.0 - 2.0 * s.poisson) / s.shear();
+    let normal = |s: &Solid| 2.0 * (1.0 - s.poisson) / s.shear();
+    (along(one) - along(other)) / (normal(one) + normal(other))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The constant lies between -1/2 and 1/2; a rigid body under an incompressible one has 0, and
+    /// under one of no Poisson's ratio 1/2 (J. Dundurs, Journal of Applied Mechanics 36, 1969).
+    #[test]
+    fn dundurs_constant_has_its_limits() {
+        let body = |young, poisson| Solid { young, poisson };
+        let rigid = body(1e30, 0.3);
+        assert!(dundurs(&[body(1e6, 0.5), rigid]).abs() < 1e-12);
+        assert!((dundurs(&[body(1e6, 0.0), rigid]) - 0.5).abs() < 1e-12);
+        assert!((dundurs(&[rigid, body(1e6, 0.0)]) + 0.5).abs() < 1e-12);
+        assert_eq!(dundurs(&[body(210e9, 0.3); 2]), 0.0);
+    }
 
     #[test]
     fn two_equal_bodies_are_like_themselves() {

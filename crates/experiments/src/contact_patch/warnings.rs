@@ -1,6 +1,7 @@
 //! Limits of Hertz' theory, and open points of an answer.
 
 use super::{Answer, Contact, Question, Strength, Wear, Yield, YieldKind};
+use fretwork_elastic::patch::{UNLIKE, dundurs};
 use fretwork_observe::quantity::{number, quantity};
 
 /// Ratio of the largest semi-axis to a radius above which the parabola of Hertz' theory has an
@@ -30,13 +31,8 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
         None => out.push("NO STRENGTH: neither material has a hardness or a yield stress; whether the bodies stay elastic is not known; give hardness or yield".into()),
         Some(s) => out.extend(of_pressure(patch.pressure, s)),
     }
-    let [one, other] = contact.solids();
-    // Dundurs' second constant describes tangential displacements under pressure, which the
-    // theories here neglect.
-    let soft = |s: &fretwork_elastic::patch::Solid| (1.0 - 2.0 * s.poisson) / s.shear();
-    let stiff = |s: &fretwork_elastic::patch::Solid| 2.0 * (1.0 - s.poisson) / s.shear();
-    let beta = (soft(&one) - soft(&other)) / (stiff(&one) + stiff(&other));
-    if beta.abs() > 0.05 && answer.friction.is_some() {
+    let beta = dundurs(&contact.solids());
+    if beta.abs() > UNLIKE && answer.friction.is_some() {
         out.push(format!(
             "UNLIKE MATERIALS: Dundurs' constant is {beta:.2}; pressure alone makes the surfaces slip, which where slip begins and the creep curve leave out"
         ));
