@@ -425,7 +425,7 @@ impl Passages<'_> {
         };
         let rigid = rigid_slip(&grid, &creepage);
         let part = -grid.area(3) / grid.size[0];
-        let supplied = part * dot(&traction, &rigid) + self.patch.resistance(&grid, &pressure);
+        let supplied = part * dot(&traction, &rigid) + self.patch.resistance(&surfaces, &pressure);
         let slip = balanced(&slip, supplied, part * dot(&traction, &slip));
         let worn = self.wears.worn(cells, &slip);
         let columns = grid.cells[0];

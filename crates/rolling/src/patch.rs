@@ -243,12 +243,18 @@ impl Patch<'_> {
         let (pressure, tractions) =
             self.steady(&surfaces, &distance, start, creepage, friction, TOLERANCE)?;
         let mut rolling = Rolling::new(grid, pressure, tractions, creepage);
-        rolling.resistance = self.resistance(&grid, &rolling.pressure.pressure);
+        rolling.resistance = self.resistance(&surfaces, &rolling.pressure.pressure);
         Ok(rolling)
     }
 
-    /// Returns the force against rolling by pressures, the integral of p dh/dx (N).
-    pub(crate) fn resistance(&self, grid: &CellGrid, pressure: &[f64]) -> f64 {
+    /// Returns the force against rolling by pressures on the surfaces, the integral of p dh/dx (N).
+    /// It is 0 for like bodies, whose pressures follow the distance alone: the sum over cells would
+    /// have the error of the grid.
+    pub(crate) fn resistance(&self, surfaces: &Surfaces, pressure: &[f64]) -> f64 {
+        if !surfaces.couple() {
+            return 0.0;
+        }
+        let grid = &surfaces.grid;
         let half = 0.5 * grid.size[0];
         let slope = |[x, y]: [f64; 2]| {
             ((self.distance)([x + half, y]) - (self.distance)([x - half, y])) / (2.0 * half)
