@@ -3,7 +3,7 @@
 use super::bodies::Bodies;
 use super::spec::{MotionSpec, PatchFile};
 use fretwork_elastic::half_space::CellGrid;
-use fretwork_elastic::patch::{LinePatch, Solid, StripCreep};
+use fretwork_elastic::patch::{LinePatch, Solid, StripCreep, UNLIKE, dundurs};
 use fretwork_rolling::{Closed, Fastsim};
 use fretwork_scene::InputError;
 use serde::{Deserialize, Serialize};
@@ -42,6 +42,9 @@ impl Method {
         }
     }
 }
+
+/// Ratios of the axes over which the errors of the cheaper methods are known.
+const RATIOS: [f64; 2] = [0.2, 5.0];
 
 /// A patch as its method needs it.
 #[derive(Debug)]
@@ -93,6 +96,16 @@ impl Rung {
                 "has the ellipse of Hertz, and a `distance` or `profiles` have none".into(),
             );
         }
+        let solids = bodies.elasticity.map(|b| Solid {
+            young: b.young,
+            poisson: b.poisson,
+        });
+        let beta = dundurs(&solids);
+        if beta.abs() > UNLIKE {
+            return refuse(format!(
+                "is a theory of like bodies, and pressure alone makes these slip (Dundurs' constant {beta:.2})"
+            ));
+        }
         if let Some(length) = bodies.length {
             if method == Method::Fastsim {
                 return refuse("has compliances of ellipses, and this is a line contact".into());
@@ -115,19 +128,16 @@ impl Rung {
             return Ok(Self::Line(patch, creep));
         }
         let hertz = bodies.distance.hertz(load, &bodies.elasticity);
-        let solids = bodies.elasticity.map(|b| Solid {
-            young: b.young,
-            poisson: b.poisson,
-        });
         let rung = match method {
             Method::Fastsim => Fastsim::new(&hertz, load, &solids, layer).map(Self::Fastsim),
             _ => Closed::new(&hertz, load, &solids, layer).map(Self::Ellipse),
         };
-        match rung {
+        let ratio = hertz.along / hertz.across;
+        match rung.filter(|_| (RATIOS[0]..=RATIOS[1]).contains(&ratio)) {
             Some(rung) => Ok(rung),
             None => refuse(format!(
-                "needs Kalker's coefficients, which are known for ratios of the axes from 0.1 to 10, and this patch has {:.3}",
-                hertz.along / hertz.across
+                "has a known error for ratios of the axes from {} to {}, and this patch has {ratio:.3}",
+                RATIOS[0], RATIOS[1]
             )),
         }
     }

@@ -127,7 +127,22 @@ fn what_a_method_has_no_means_for_is_refused() {
     }
     let slender = with_method(&rolls(COULOMB, roll), "Fastsim").replace("1.776737 m", "200 m");
     let said = solved("method-slender", &slender).unwrap_err().to_string();
-    assert!(said.contains("from 0.1 to 10"), "{said}");
+    assert!(said.contains("from 0.2 to 5"), "{said}");
+}
+
+/// Cheaper methods are theories of like bodies: what pressure alone does to unlike ones is left out
+/// by more than the errors that they state.
+#[test]
+fn cheaper_methods_refuse_unlike_bodies() {
+    let text = rolls(COULOMB, "motion: Rolling(along: 0.1 %)");
+    let unlike = text.replace(r#""rail": "harder""#, r#""rail": "simple""#);
+    for method in ["Fastsim", "ClosedForm"] {
+        let refused = solved("method-unlike", &with_method(&unlike, method));
+        let said = refused.unwrap_err().to_string();
+        assert!(said.contains("theory of like bodies"), "{said}");
+        assert!(said.contains("method: Exact"), "{said}");
+    }
+    assert!(solved("method-unlike", &unlike).is_ok());
 }
 
 fn traded(name: &str, text: &str, cells: &[usize]) -> PatchTrade {

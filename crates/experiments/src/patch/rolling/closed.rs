@@ -35,6 +35,12 @@ pub fn point(setup: &Setup, creepage: &Creepage) -> Result<Point, Error> {
             100.0 * error / length(force)
         ));
     }
+    if creepage.spin != 0.0 {
+        notes.push(
+            "T gamma is without the work of spin, since the closed form has no moment: take `Fastsim` or `Exact` for it"
+                .to_owned(),
+        );
+    }
     Ok(Point {
         motion: Motion::Rolling(*creepage),
         stroke: None,
