@@ -91,10 +91,10 @@ impl Conditions {
         self.amplitude[1] / self.load
     }
 
-    /// Returns the regime.
-    pub fn regime(&self, limits: &Limits) -> Regime {
+    /// Returns the regime, with the boundaries under this load.
+    pub fn regime(&self, boundaries: &Boundaries, limits: &Limits) -> Regime {
         if self.stuck > 0.0 {
-            match 1.0 - self.stuck <= limits.ring {
+            match self.amplitude[0] <= boundaries.stick {
                 true => Regime::Stick,
                 false => Regime::PartialSlip,
             }
@@ -211,6 +211,10 @@ const BOUNDARY: f64 = 1e-3;
 /// Largest number of times that a range is doubled, or halved.
 const DOUBLINGS: usize = 60;
 
+/// Shares of the patch that slip, whose rings are wider than cells. The displacement of a narrower
+/// ring follows from theirs by a power of the share, the first for a sphere on a flat (Mindlin).
+const RINGS: [f64; 2] = [0.2, 0.4];
+
 /// Returns the map over loads (N) and amplitudes of displacement (m).
 ///
 /// # Errors
@@ -255,9 +259,18 @@ pub fn boundaries(
         })
     };
     let gross_slip = of(&|c| c.stuck <= 0.0)?;
+    let slips = |share: f64| of(&|c| 1.0 - c.stuck > share);
+    let stick = match limits.ring < RINGS[0] {
+        true => {
+            let [one, other] = [slips(RINGS[0])?, slips(RINGS[1])?];
+            let power = (other / one).ln() / (RINGS[1] / RINGS[0]).ln();
+            one * (limits.ring / RINGS[0]).powf(power)
+        }
+        false => slips(limits.ring)?,
+    };
     Ok(Boundaries {
         load,
-        stick: of(&|c| 1.0 - c.stuck > limits.ring)?,
+        stick,
         gross_slip,
         energy_ratio: of(&|c| c.energy_ratio() >= limits.energy_ratio)?,
         reciprocating: (limits.cover * loaded.half_width()).max(gross_slip),

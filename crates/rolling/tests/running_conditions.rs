@@ -8,7 +8,7 @@ use fretwork_elastic::patch::{Solid, effective_modulus, point};
 use fretwork_rolling::Coulomb;
 use fretwork_rolling::cells::ByCells;
 use fretwork_rolling::mindlin::Mindlin;
-use fretwork_rolling::running::{Contacts, Limits, Map, Regime, RunningError, map};
+use fretwork_rolling::running::{Conditions, Contacts, Limits, Map, Regime, RunningError, map};
 
 const MU: f64 = 0.6;
 const CURVATURE: f64 = 20.0;
@@ -97,12 +97,16 @@ fn a_map_by_cells_is_mindlins() {
         let closed = closed.unwrap_or_else(|e| panic!("{e}"));
         let found = by_cells(poisson, &loads, &displacements).unwrap_or_else(|e| panic!("{e}"));
         let mut regimes = Vec::new();
+        let regime = |map: &Map, conditions: &Conditions| {
+            let edges = map.boundaries.iter().find(|b| b.load == conditions.load);
+            conditions.regime(edges.unwrap(), &limits)
+        };
         let rows = found.conditions.iter().zip(&closed.conditions);
         for (got, expected) in rows.flat_map(|(row, expected)| row.iter().zip(expected)) {
-            regimes.push(got.regime(&limits));
+            regimes.push(regime(&found, got));
             assert_eq!(
-                got.regime(&limits),
-                expected.regime(&limits),
+                regime(&found, got),
+                regime(&closed, expected),
                 "{got:?} {expected:?}"
             );
             near(got.amplitude[1], expected.amplitude[1], 0.015);
@@ -127,6 +131,8 @@ fn a_map_by_cells_is_mindlins() {
             assert!(regimes.contains(&regime), "{regimes:?}");
         }
         for (got, expected) in found.boundaries.iter().zip(&closed.boundaries) {
+            println!("stick {} {}", got.stick, expected.stick);
+            near(got.stick, expected.stick, 0.2);
             near(got.gross_slip, expected.gross_slip, 0.1 * poisson + 0.02);
             near(got.energy_ratio, expected.energy_ratio, 0.05);
             near(got.reciprocating, expected.reciprocating, 0.06);

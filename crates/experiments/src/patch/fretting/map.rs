@@ -275,7 +275,7 @@ fn row(
             }
             Ok(Place {
                 outside,
-                regime: found.regime(limits),
+                regime: found.regime(&fine, limits),
                 conditions: found,
                 mixed: lowest < *amplitude && *amplitude <= highest,
                 crack: None,
