@@ -41,6 +41,8 @@ pub struct Loop {
     pub loading: Vec<[f64; 2]>,
     /// Tractions on the first body at the points (Pa).
     pub traction: Vec<Field>,
+    /// Largest tractions of the cells at the first point (Pa), where the cycle was followed.
+    pub bound: Vec<f64>,
     /// Load (N).
     pub load: f64,
     /// Half of the range of the displacement (m) and of the force (N).
@@ -195,6 +197,7 @@ impl Fretting<'_> {
         let mut out = Loop {
             points: vec![[place.displacement, place.force]],
             traction: vec![place.found.traction.clone()],
+            bound: place.found.bound.clone(),
             load: self.load(),
             dissipated: vec![0.0; n],
             rubbed: vec![0.0; n],

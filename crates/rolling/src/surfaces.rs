@@ -102,6 +102,12 @@ impl Surfaces {
         })
     }
 
+    /// Returns the displacement of a cell along the rolling by a traction on it (m/Pa), including
+    /// that of the layer.
+    pub fn own_compliance(&self) -> f64 {
+        of_cell(&self.grid, &self.bodies, [0.0; 2])[0][0] + self.layer
+    }
+
     /// Returns the map from tractions to slip.
     pub fn slip(&self, passage: Passage) -> Slip<'_> {
         Slip::new(self, passage)

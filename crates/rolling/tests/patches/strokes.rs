@@ -178,3 +178,28 @@ fn steps_err_where_friction_has_a_state() {
         );
     });
 }
+
+/// At small amplitudes the ring that slips is thinner than the cells, which have no energy or that
+/// of some cells: Mindlin's energy lies within the error.
+#[test]
+fn the_energy_of_a_ring_thinner_than_the_cells_lies_within_its_error() {
+    with_patch(|patch, grid, gross| {
+        for cells in [40, 56, 80] {
+            for d in [1e-6, 1e-3, 0.003, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3] {
+                let left: f64 = 1.0 - d;
+                let force = 1.0 - left.powf(1.5);
+                let energy = 8.0 * (d - 0.4 * (1.0 - left.powf(2.5))) - 4.0 * force * d;
+                // The difference of large numbers, for small ones 0.5 d³.
+                let energy = if d < 0.01 { 0.5 * d * d * d } else { energy };
+                let energy = energy * MU * LOAD * gross;
+                let stroke = strokes(&Coulomb(MU), Amplitude::Displacement(d * gross), 2);
+                let found = patch.frets_refined(grid(cells), &stroke);
+                let found = found.unwrap_or_else(|e| panic!("{e}"));
+                let off = (found.energy.value - energy).abs();
+                assert!(off <= found.energy.error, "{cells} {d}: {:?}", found.energy);
+                let known = found.energy.error < 0.2 * energy;
+                assert!(d < 0.2 || known, "{cells} {d}: {:?}", found.energy);
+            }
+        }
+    });
+}
