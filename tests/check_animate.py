@@ -48,6 +48,19 @@ def test_pixels_are_kept_in_the_order_of_steps(run, suffix):
             assert film.info["duration"] == 200
 
 
+def test_smaller_pictures_have_their_width(run):
+    out = run / "a.webp"
+    done = animate(run, out, "--width", "50")
+    assert done.returncode == 0, done.stderr
+    with Image.open(out) as film:
+        assert film.n_frames == 3 and film.size == (50, 30)
+        film.seek(2)
+        page = film.convert("RGB")
+        assert max(abs(a - b) for a, b in zip(page.getpixel((25, 15)), COLOURS[2])) < 12
+    refused = animate(run, out, "--width", "0")
+    assert refused.returncode == 1 and "--width" in refused.stderr
+
+
 def test_a_video_has_all_pictures(run):
     imageio = pytest.importorskip("imageio.v3")
     out = run / "a.mp4"
