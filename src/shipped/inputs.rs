@@ -1,7 +1,7 @@
 //! The shipped cases, studies, fits and patches: inside the program, so that they run by name
 //! wherever it is installed.
 
-use crate::scene::source::nearest;
+use crate::scene::source::{Source, nearest};
 use etcetera::BaseStrategy;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -45,6 +45,35 @@ impl InputKind {
             Self::Fit => "fit",
             Self::Patch => "patch",
         }
+    }
+
+    /// Keys that all of its files have, and no files of other kinds together.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Case => &["dimension"],
+            Self::Study => &["case", "factors"],
+            Self::Fit => &["tests", "parameters"],
+            Self::Patch => &["load", "motion"],
+        }
+    }
+
+    /// Returns what the text of a file is the input of, if its keys tell.
+    fn of(text: &str) -> Option<Self> {
+        let source = Source::from_text("input", text);
+        let has = |key: &&str| source.position_of(key).is_some();
+        let mut kinds = Self::ALL.into_iter();
+        kinds.find(|kind| kind.keys().iter().all(|key| has(&key)))
+    }
+
+    /// The sentence on an input of another kind, with the command that takes it.
+    fn instead_of(self, wanted: Self, given: &Path) -> String {
+        let file = given.display();
+        format!(
+            "`{file}` is a {}, and a {} is expected here; to run it: fretwork {} {file}",
+            self.word(),
+            wanted.word(),
+            self.command()
+        )
     }
 
     /// Words that run one.
@@ -157,10 +186,15 @@ impl ShippedInput {
 /// where it is neither, for the sentence of the reader of the file.
 ///
 /// # Errors
-/// A name that is neither, or the cache folder cannot be written.
+/// A name that is neither, an input of another kind, or the cache folder cannot be written.
 pub fn find(kind: InputKind, given: &Path) -> Result<PathBuf, String> {
     if given.exists() {
-        return Ok(given.to_owned());
+        // What cannot be read is said by the reader of the file.
+        let read = Source::read(given).ok();
+        return match read.and_then(|source| InputKind::of(source.text())) {
+            Some(other) if other != kind => Err(other.instead_of(kind, given)),
+            _ => Ok(given.to_owned()),
+        };
     }
     let Some(text) = given.to_str() else {
         return Ok(given.to_owned());
@@ -175,6 +209,10 @@ pub fn find(kind: InputKind, given: &Path) -> Result<PathBuf, String> {
             )
         })?;
         return Ok(folder.join(input.path));
+    }
+    let mut others = ShippedInput::all();
+    if let Some(other) = others.find(|input| input.name() == text || input.path == text) {
+        return Err(other.kind.instead_of(kind, given));
     }
     let names = ShippedInput::all().filter(|i| i.kind == kind);
     let is_a_name = given.extension().is_none() && given.components().count() == 1;
@@ -272,6 +310,19 @@ mod tests {
             ["studies/four_laws.ron", "cases/wheel_rail_fretting.ron"]
         );
         assert_eq!(files_of("patches/wheel_on_powder.ron").len(), 2);
+    }
+
+    #[test]
+    fn every_input_is_known_by_its_keys() {
+        for input in ShippedInput::all() {
+            assert_eq!(
+                InputKind::of(input.text),
+                Some(input.kind),
+                "{}",
+                input.path
+            );
+        }
+        assert_eq!(InputKind::of("(name: \"a\""), None);
     }
 
     #[test]

@@ -85,6 +85,35 @@ fn they_are_listed_and_copied() {
     );
 }
 
+/// An input of another kind is named, with the command that takes it, by its file and by its name.
+#[test]
+fn inputs_of_another_kind_are_named() {
+    let machine = Machine::new("kinds");
+    for name in ["ball_on_flat", "newton_cradle", "four_laws", "bond_opening"] {
+        machine.done(&format!("cases copy {name}"));
+    }
+    let kinds = [
+        ("patch", "patches/ball_on_flat.ron", "ball_on_flat"),
+        ("run", "cases/newton_cradle.ron", "newton_cradle"),
+        ("study run", "studies/four_laws.ron", "four_laws"),
+        ("fit", "fits/bond_opening.ron", "bond_opening"),
+    ];
+    for (command, _, _) in kinds {
+        for (other, file, name) in kinds.iter().filter(|k| k.0 != command) {
+            for given in [file, name] {
+                let said = machine.refused(&format!("{command} {given}"));
+                let right = format!("fretwork {other} {given}");
+                assert!(said.contains(&right), "{command} {given}: {said}");
+            }
+        }
+    }
+    let said = machine.refused("check patches/ball_on_flat.ron");
+    assert!(
+        said.contains("is a patch, and a case is expected here"),
+        "{said}"
+    );
+}
+
 #[test]
 fn other_names_are_corrected() {
     let machine = Machine::new("names");
