@@ -246,6 +246,13 @@ impl Material {
         Ok(density)
     }
 
+    /// Returns its class, else that which its description or the `name` of its file tells.
+    pub fn class_or_described(&self, name: &str) -> Option<MaterialClass> {
+        let described = format!("{name} {}", self.doc);
+        let told = || MaterialClass::of_description(&described);
+        self.class.or_else(told)
+    }
+
     /// Returns a property in SI units, a hardness as a pressure; `None` if the file does not give
     /// it, or its unit is not one of this property.
     pub fn property(&self, name: &str) -> Option<f64> {

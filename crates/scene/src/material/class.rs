@@ -81,6 +81,17 @@ impl MaterialClass {
         matches!(self, Steel | Aluminium | Copper | Titanium | Nickel)
     }
 
+    /// Returns the temperature (K) at which all of its materials have melted, where it is known:
+    /// the melting point of the pure metal, which alloying lowers (CRC Handbook of Chemistry and
+    /// Physics).
+    pub fn molten(self) -> Option<f64> {
+        match self {
+            Self::Steel | Self::CastIron => Some(1811.0),
+            Self::Aluminium => Some(933.5),
+            _ => None,
+        }
+    }
+
     /// Returns the class that a description names: the file of a material need not give one.
     pub fn of_description(words: &str) -> Option<Self> {
         const WORDS: [(&str, MaterialClass); 24] = [

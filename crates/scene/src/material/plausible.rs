@@ -40,10 +40,7 @@ const HARDNESS_OF_YOUNG: f64 = 0.25;
 /// material has none.
 pub fn doubts(material: &Material, name: &str) -> Vec<ValidationError> {
     let mut out = Vec::new();
-    let described = format!("{name} {}", material.doc);
-    let class = material
-        .class
-        .or_else(|| MaterialClass::of_description(&described));
+    let class = material.class_or_described(name);
     if material.doc.trim().is_empty() {
         out.push(ValidationError::new(
             "doc",
