@@ -37,7 +37,7 @@ class NewCase(NamedTuple):
 def new_case(geometry: str, **known: object) -> NewCase:
     """A case from what is known about a test: geometry, load, motion, materials, debris.
 
-    ``geometry`` and the other words are those of ``fretwork new case --help``, with ``_`` for ``-``; numbers with units are texts.
+    ``geometry`` and the other words are those of ``fretwork new case --help``, with ``_`` for ``-``; numbers are texts with their units.
 
     >>> import fretwork
     >>> made = fretwork.new_case("window", pressure="1 GPa", amplitude="4 um", material="rail_steel_r260", debris="magnetite", debris_size="4um")

@@ -19,7 +19,8 @@ def patch(
     """Adhesion, wear and temperature of two bodies that roll or fret, by the laws of their interface.
 
     ``file`` is that of ``fretwork patch`` (``docs/patch.md``); the answer is its ``patch.json`` in SI units. With ``out`` all files of
-    the command are written into that folder. A patch with a ``third_body`` needs runs, which the command makes.
+    the command are written into that folder. Under a list of loads the answer has those of all as ``loads``. A patch with a
+    ``third_body`` needs runs, which the command makes.
 
     >>> import fretwork
     >>> found = fretwork.patch("patches/wheel_on_rail.ron")  # doctest: +SKIP

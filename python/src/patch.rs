@@ -3,7 +3,7 @@
 use crate::errors;
 use crate::search::search_path;
 use fretwork::experiments::Error;
-use fretwork::experiments::patch::{OWNER, PatchFile, files, solve};
+use fretwork::experiments::patch::{OWNER, PatchFile, loads, solve_loads};
 use fretwork::shipped::inputs::{self, InputKind};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -24,10 +24,10 @@ pub(crate) fn patch(
     let solved = py.detach(|| -> Result<String, Error> {
         let read = PatchFile::read(&file)?;
         let _lock = out.as_deref().map(|out| OWNER.take(out)).transpose()?;
-        let outcome = solve(&read, &search, &mut |_, _| ())?;
+        let outcomes = solve_loads(&read, &search, &mut |_, _| ())?;
         match &out {
-            Some(out) => files::write(&read, &outcome, out),
-            None => files::json(&outcome),
+            Some(out) => loads::write(&read, &outcomes, out),
+            None => loads::json(&read, &outcomes),
         }
     });
     solved.map_err(|e| match e {

@@ -136,7 +136,11 @@ pub fn contact_patch(args: &ContactPatchArgs) -> Result<(), Failure> {
         wear: args.wear.clone(),
         window: args.window.clone(),
     };
-    let found = contact_patch::answer(&question, &search_path()).map_err(Failure::Usage)?;
+    let found = contact_patch::answer(&question, &search_path());
+    let found = found.map_err(|e| {
+        let e = e.replacen("yield_stress: ", "yield: ", 1);
+        Failure::of_options::<ContactPatchArgs>(e)
+    })?;
     if args.json {
         let text = serde_json::to_string_pretty(&found);
         return answer_json(&text.map_err(|e| Failure::Failed(e.to_string()))?);

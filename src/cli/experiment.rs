@@ -35,6 +35,11 @@ pub fn interrupted() -> Failure {
     ))
 }
 
+/// Returns whether there is a terminal on which bars are wanted.
+fn shows_bars() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("FRETWORK_QUIET").is_none()
+}
+
 /// A bar over runs on a terminal; nothing elsewhere.
 #[derive(Debug, Default)]
 pub struct RunsBar(Option<ProgressBar>);
@@ -42,9 +47,7 @@ pub struct RunsBar(Option<ProgressBar>);
 impl RunsBar {
     /// Makes a bar over `count` runs, with a name if there are several bars.
     pub fn new(count: usize, name: &str) -> Self {
-        let terminal =
-            std::io::stderr().is_terminal() && std::env::var_os("FRETWORK_QUIET").is_none();
-        Self((terminal && count > 0).then(|| {
+        Self((shows_bars() && count > 0).then(|| {
             let template = match name {
                 "" => "{bar:40} {pos}/{len} runs  {elapsed} of about {duration}",
                 _ => "{msg:16} {bar:30} {pos}/{len} runs  {elapsed} of about {duration}",
@@ -70,6 +73,44 @@ impl RunsBar {
             Some(bar) if must => bar.println(text),
             Some(_) => {}
             None => report(text),
+        }
+    }
+}
+
+/// A bar over the parts of a computation on a terminal; nothing elsewhere.
+#[derive(Debug, Default)]
+pub struct PartsBar(Option<ProgressBar>);
+
+/// Length of the bar of a part.
+const WHOLE: f64 = 1000.0;
+
+impl PartsBar {
+    /// Makes a bar, unless it is to be `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        Self((!quiet && shows_bars()).then(|| {
+            let template = "{msg:10} {bar:40} {percent:>3} %  {elapsed} of about {duration}";
+            let style = ProgressStyle::with_template(template);
+            let bar = ProgressBar::new(WHOLE as u64);
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        }))
+    }
+
+    /// Shows how much of a part is done; another part begins a new bar.
+    pub fn reached(&self, part: &str, done: f64) {
+        let Some(bar) = &self.0 else { return };
+        if bar.message() != part {
+            bar.reset();
+            bar.set_message(part.to_owned());
+        }
+        bar.set_position((WHOLE * done.clamp(0.0, 1.0)) as u64);
+    }
+}
+
+impl Drop for PartsBar {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
         }
     }
 }

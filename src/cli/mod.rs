@@ -293,6 +293,24 @@ impl From<LawError> for Failure {
     }
 }
 
+impl Failure {
+    /// Invalid words, by a sentence that may begin with the names of options of a command and a
+    /// colon, which are then written as on the command line.
+    fn of_options<A: Args>(sentence: String) -> Self {
+        let command = A::augment_args(clap::Command::new(""));
+        let known: Vec<&str> = command.get_opts().filter_map(|o| o.get_long()).collect();
+        let written = sentence.split_once(": ").and_then(|(names, rest)| {
+            let names = names.split(", ").map(|name| {
+                let name = name.replace('_', "-");
+                known.contains(&name.as_str()).then(|| format!("--{name}"))
+            });
+            let names: Option<Vec<String>> = names.collect();
+            Some(format!("{}: {rest}", names?.join(", ")))
+        });
+        Self::Usage(written.unwrap_or(sentence))
+    }
+}
+
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();

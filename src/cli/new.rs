@@ -19,7 +19,7 @@ pub enum NewCommand {
 
 /// Text below the options of the help.
 const EXAMPLES: &str = "\
-Numbers have units as one writes them: 20um, 200N/mm, '1.1 GPa'. What is missing is asked for on a terminal. Without --debris two elastic
+Numbers are written with their units: 20um, 200N/mm, '1.1 GPa'. What is missing is asked for on a terminal. Without --debris two elastic
 bodies make the file of a patch (fretwork patch); everything else makes a case (fretwork run). Each number that is chosen is explained in it.
 
 Examples:
@@ -144,9 +144,8 @@ pub fn run(command: &NewCommand) -> Result<(), Failure> {
     {
         question = ask(question, *from)?;
     }
-    let made = question
-        .make(&search_path())
-        .map_err(|e| Failure::Usage(format!("--{e}")))?;
+    let made = question.make(&search_path());
+    let made = made.map_err(Failure::of_options::<NewCaseArgs>)?;
     std::fs::write(&args.file, &made.text)
         .map_err(|e| Failure::Failed(format!("{}: {e}", args.file.display())))?;
     let file = args.file.display();
@@ -198,9 +197,14 @@ fn ask(mut question: Question, from: &mut dyn BufRead) -> Result<Question, Failu
         if text.is_empty() && input.default.is_none() {
             continue;
         }
+        let answered = question.clone().with(input.key, &text);
+        if let Err(why) = answered.check(input.key) {
+            report(&why);
+            continue;
+        }
         asked.push(input.key);
         if !text.is_empty() {
-            question = question.with(input.key, &text);
+            question = answered;
         }
     }
 }

@@ -1,11 +1,11 @@
 //! `fretwork patch`: a contact patch that rolls or frets, by the laws of an interface.
 
-use super::experiment::{interrupted, results};
+use super::experiment::{PartsBar, interrupted, results};
 use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs, cases};
 use crate::experiments::duration::parse as duration;
 use crate::experiments::patch::third_body::{self, Reached, Runs};
-use crate::experiments::patch::{OWNER, Outcome, PatchFile, files, solve, trade};
+use crate::experiments::patch::{OWNER, Outcome, PatchFile, loads, solve_loads, trade};
 use crate::interrupt;
 use crate::shipped::inputs::InputKind;
 use clap::Args;
@@ -80,33 +80,32 @@ pub fn patch(args: &PatchArgs) -> Result<(), Failure> {
     if let Some(wanted) = args.trade {
         return trades(args, &mut file, wanted, &out);
     }
-    let outcome = match file.spec.third_body.is_some() {
+    let outcomes = match file.spec.third_body.is_some() {
         true => match with_runs(args, &file, &out)? {
-            Some(outcome) => *outcome,
+            Some(outcome) => vec![*outcome],
             None => return Ok(()),
         },
         false => {
-            let shows = !args.json && std::io::stderr().is_terminal();
-            solve(&file, &search, &mut |done, all| {
-                if shows {
-                    report(&format!("point {done} of {all}"));
-                }
-            })?
+            let bar = PartsBar::new(args.json);
+            solve_loads(&file, &search, &mut |part, done| bar.reached(part, done))?
         }
     };
-    let json = files::write(&file, &outcome, &out)?;
+    let json = loads::write(&file, &outcomes, &out)?;
     if args.json {
         return answer_json(&json);
     }
-    inform(&outcome.answer.text());
+    for outcome in &outcomes {
+        inform(&outcome.answer.text());
+    }
+    let at = out.display();
     let fields = match out.join("patch.h5").is_file() {
-        true => format!(", {}/patch.h5", out.display()),
+        true => format!(", {at}/patch.h5"),
         false => String::new(),
     };
-    inform(&format!(
-        "{0}/patch.html, {0}/patch.json{fields}",
-        out.display()
-    ));
+    inform(&match outcomes.len() {
+        1 => format!("{at}/patch.html, {at}/patch.json{fields}"),
+        count => format!("{at}/loads.html, {at}/loads.csv, {at}/load_1 to load_{count}"),
+    });
     Ok(())
 }
 

@@ -117,6 +117,108 @@ fn friction_from_a_table() {
     }
 }
 
+const COULOMB: &str = r#"(
+    name: "a wheel", materials: {"wheel": "wheel_steel_er7", "rail": "rail_steel_r260"},
+    bodies: ((material: "wheel", radius: 0.46 m), (material: "rail", across: 0.3 m)),
+    interfaces: [(name: "dry", between: ("wheel", "rail"), contact: "coulomb", parameters: (contact: {"mu": 0.4}))],
+    load: 75 kN, speed: 20 m/s, cells: 24, motion: Rolling(along: 10 %),
+)"#;
+
+/// Solves a changed file; returns its exit code, what it printed, and its errors.
+fn changed(folder: &Path, changes: &[(&str, &str)]) -> (Option<i32>, String, String) {
+    let mut text = COULOMB.to_owned();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let output = with_table(folder, "slip_rate [m/s],friction\n0,0.5\n4,0.3\n", &text);
+    let [said, errors] = [output.stdout, output.stderr].map(|t| String::from_utf8(t).unwrap());
+    (output.status.code(), said, errors)
+}
+
+/// What the theory does not hold for is said beside the results, in the words of `contact-patch`.
+#[test]
+fn limits_of_the_theory_are_noted() {
+    let folder = TempFolder::new("patch-limits");
+    let small = ("radius: 0.46 m", "radius: 5 mm");
+    let narrow = ("across: 0.3 m", "radius: 5 mm, across: 5 mm");
+    for (changes, noted, words) in [
+        (
+            &[("radius: 0.46 m", "radius: 460")][..],
+            true,
+            "RADIUS IN METRES: `460` without a unit is 460 m; if it is in millimetres write 460mm",
+        ),
+        (&[small, narrow], true, "NOT HERTZ: the patch, "),
+        (&[small, narrow], true, "NOT ELASTIC: "),
+        (
+            &[("speed: 20 m/s", "speed: 150 m/s"), ("10 %", "50 %")],
+            true,
+            "where wheel has melted",
+        ),
+        (&[], false, "BEYOND SHAKEDOWN: 1.120 GPa is above"),
+        (
+            &[
+                ("load: 75 kN", "load: 10 kN"),
+                ("\"mu\": 0.4", "\"mu\": 0.1"),
+            ],
+            false,
+            "\nverdict: all points converged, within the range of the theory\n",
+        ),
+        // The force of full slip is the largest one, and no creepage follows from it.
+        (
+            &[("Rolling(along: 10 %)", "Pulling(force: -30 kN)")],
+            true,
+            "AT THE LIMIT: a force of 30.00 kN",
+        ),
+        (
+            &[("Rolling(along: 10 %)", "Pulling(force: -20 kN)")],
+            false,
+            " % +- ",
+        ),
+    ] {
+        let (code, said, errors) = changed(&folder, changes);
+        assert_eq!(code, Some(0), "{changes:?}: {errors}");
+        assert!(said.contains(words), "{changes:?}: {said}");
+        let verdict = said.lines().find(|l| l.starts_with("verdict")).unwrap();
+        assert_eq!(verdict.contains("notes"), noted, "{changes:?}: {verdict}");
+    }
+}
+
+/// A list of loads has a result under each, by itself and in one table.
+#[test]
+fn a_patch_is_solved_under_each_of_its_loads() {
+    let folder = TempFolder::new("patch-loads");
+    let both = [
+        ("load: 75 kN", "load: [10 kN, 80 kN]"),
+        ("10 %", "[0.1 %, 10 %]"),
+    ];
+    let (code, said, errors) = changed(&folder, &both);
+    assert_eq!(code, Some(0), "{errors}");
+    assert!(
+        said.contains("loads.html") && said.contains("load_2"),
+        "{said}"
+    );
+    let json = std::fs::read_to_string(folder.join("out/patch.json")).unwrap();
+    let all: Value = serde_json::from_str(&json).unwrap();
+    let [small, large] = [0, 1].map(|k| &all["loads"][k]);
+    // By Hertz the pressure grows with the cube root of the load.
+    let pressure = |of: &Value| of["pressure"].as_f64().unwrap();
+    assert!((pressure(large) / pressure(small) - 2.0).abs() < 0.02);
+    // The creepage at which all slips grows with the patch.
+    let [few, many] = [small, large].map(|of| numbers(of, "/adhesion"));
+    assert!(few[0] > many[0] && (few[1] - many[1]).abs() < 1e-6);
+    let table = std::fs::read_to_string(folder.join("out/loads.csv")).unwrap();
+    assert_eq!(table.lines().count(), 5, "{table}");
+    assert!(table.starts_with("load [N],pressure [Pa],area [m^2],creepage_along"));
+    for (k, answer) in [small, large].into_iter().enumerate() {
+        let own = folder.join(format!("out/load_{}/patch.json", k + 1));
+        let own: Value = serde_json::from_str(&std::fs::read_to_string(own).unwrap()).unwrap();
+        assert_eq!(&own, answer);
+    }
+    let none = [("load: 75 kN", "load: []")];
+    assert!(changed(&folder, &none).2.contains("give one, or a list"));
+}
+
 #[test]
 fn wrong_files_are_refused_with_a_sentence() {
     let folder = TempFolder::new("patch-wrong");
@@ -151,6 +253,17 @@ fn wrong_files_are_refused_with_a_sentence() {
             "(material: \"rail\"",
             "(material: \"rails\"",
             "no material `rails`",
+        ),
+        ("speed: 20 m/s,", "", "such as `speed: 100 km/h`"),
+        (
+            "speed: 20 m/s,",
+            "speed: 20 m/s, temperature: 20,",
+            "write 293.1 K for 20 degrees Celsius, or 20 K",
+        ),
+        (
+            "Rolling(along: 10 %)",
+            "Pulling(force: -60 kN)",
+            "does not carry a force of 60.00 kN",
         ),
     ] {
         assert!(WHEEL.contains(from), "{from}");

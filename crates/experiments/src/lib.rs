@@ -23,6 +23,7 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod amounts;
 mod case;
 mod changes;
 pub mod contact_patch;
@@ -32,6 +33,7 @@ mod expression;
 pub mod factor;
 pub mod fit;
 pub mod folder;
+mod limits;
 pub mod new_case;
 mod page;
 pub mod patch;

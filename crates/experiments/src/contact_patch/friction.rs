@@ -2,9 +2,9 @@
 
 use super::Contact;
 use super::alike::{self, Conditions};
-use super::question::{Question, range};
-use super::range::Range;
+use super::question::Question;
 use super::runs::{self, Runs, WindowRun};
+use crate::amounts::{self, Range};
 use fretwork_math::statistics::interval::Mean;
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ impl Friction {
                 "friction: give the coefficient, or the runs that it is from, not both".to_owned(),
             ),
             (Some(text), []) => Ok(Some(Self {
-                coefficient: range("friction", text)?,
+                coefficient: amounts::friction("friction", text)?,
                 runs: 0,
                 scatter: None,
                 numerical: None,

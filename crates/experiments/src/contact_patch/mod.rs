@@ -19,29 +19,29 @@
 mod alike;
 mod friction;
 mod question;
-mod range;
 mod regime;
 mod rolling;
 mod runs;
 mod setup;
 mod slip;
-mod strength;
 #[cfg(test)]
 mod tests;
 mod text;
 mod warnings;
 mod wear;
 
+pub use crate::amounts::Range;
+pub use crate::limits::{Strength, Traction, Yield, YieldKind};
 pub use alike::{ACCEPTABLE, Conditions};
 pub use friction::Friction;
-pub use question::{Question, material};
-pub use range::Range;
+pub use question::Question;
+pub(crate) use question::material;
 pub use regime::WearRegime;
 pub use rolling::Rolling;
 pub use slip::{Tangential, Window};
-pub use strength::{Strength, Traction, Yield, YieldKind};
 pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
 
+use crate::amounts;
 use fretwork_core::laws::SearchPath;
 use fretwork_elastic::patch::{self, LinePatch, PointPatch};
 use question::Body;
@@ -164,13 +164,11 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
     let mut friction = Friction::of(question, &contact, &runs)?;
     let tangential = Tangential::of(question, &contact, friction.as_ref())?;
     let rolling = Rolling::of(question, &contact, friction.as_ref())?;
-    let strength = Strength::of(
-        question,
-        &contact,
-        friction.as_ref(),
-        tangential.as_ref(),
-        rolling.as_ref(),
-    )?;
+    let given = question.yield_stress.as_ref();
+    let given = given.map(|text| amounts::stress("yield_stress", text));
+    let strengths = contact.bodies.each_ref().map(|b| &b.strength);
+    let traction = traction(friction.as_ref(), tangential.as_ref(), rolling.as_ref());
+    let strength = Strength::of(strengths, contact.is_line(), given.transpose()?, traction);
     let wear = Wear::of(
         question,
         &contact,
@@ -211,7 +209,7 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
     let mut answer = Answer {
         shape,
         load: contact.load,
-        bodies: contact.bodies.each_ref().map(|b| b.name.clone()),
+        bodies: contact.bodies.each_ref().map(|b| b.strength.name.clone()),
         effective_modulus: patch::effective_modulus(&contact.solids()),
         patch,
         strength,
@@ -224,4 +222,20 @@ pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> 
     };
     answer.warnings = warnings::of(question, &contact, &answer);
     Ok(answer)
+}
+
+/// Returns the tangential force of a contact, that of full slip where none was asked for.
+fn traction(
+    friction: Option<&Friction>,
+    tangential: Option<&Tangential>,
+    rolling: Option<&Rolling>,
+) -> Option<Traction> {
+    let mu = friction?.coefficient.value;
+    let rolls = rolling.and_then(|r| r.adhesion).map(|a| a.value);
+    let share = tangential.and_then(|t| t.share).map(|s| s.value * mu);
+    let asked = rolls.or(share);
+    Some(Traction {
+        ratio: asked.unwrap_or(mu),
+        asked: asked.is_some(),
+    })
 }

@@ -1,6 +1,7 @@
 //! The question: numbers with units, and materials by name.
 
-use super::range::Range;
+use crate::amounts::{number, positive, stress};
+use crate::limits::BodyStrength;
 use fretwork_elastic::patch::Solid;
 use fretwork_observe::quantity::quantity as shown;
 use fretwork_observe::quantity::unit::FORCE;
@@ -8,6 +9,7 @@ use fretwork_scene::material::{Material, MaterialLibrary};
 use fretwork_scene::quantity::{hardness_in_pascal, quantity};
 use fretwork_scene::units::hardness as scale_of_hardness;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The question. Texts are numbers with units, `75 kN`; without a unit they are in SI units.
@@ -59,61 +61,12 @@ const STANDARD_GRAVITY: f64 = 9.806_65;
 /// One of the two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
-    /// Name of its material, or a name for it without one.
-    pub name: String,
     /// Curvature along the motion and perpendicular to it (1/m).
     pub curvature: [f64; 2],
     /// Elasticity.
     pub solid: Solid,
-    /// Hardness (Pa).
-    pub hardness: Option<f64>,
-    /// Yield stress of its material (Pa), before it is deformed, with its source.
-    pub yield_stress: Option<(f64, String)>,
-    /// Yield stress (Pa) once service has hardened it, with its source.
-    pub yield_stress_hardened: Option<(f64, String)>,
-}
-
-/// A number with a unit.
-pub(super) fn number(what: &str, text: &str, unit: &str) -> Result<f64, String> {
-    quantity(text, unit).map_err(|e| {
-        let expected = e.expected.map(|x| format!("; give {x}"));
-        format!("{what}: {}{}", e.message, expected.unwrap_or_default())
-    })
-}
-
-/// A number with a unit, above zero.
-pub(super) fn positive(what: &str, text: &str, unit: &str) -> Result<f64, String> {
-    let value = number(what, text, unit)?;
-    match value > 0.0 {
-        true => Ok(value),
-        false => Err(format!("{what}: `{text}` must be above zero")),
-    }
-}
-
-/// Smallest stress without a unit that is taken to be in pascal: below it the unit was forgotten.
-const FORGOTTEN: f64 = 1e4;
-
-/// A stress above zero. A number like `260` or `210` is meant in another unit than pascal.
-pub(super) fn stress(what: &str, text: &str) -> Result<f64, String> {
-    let pascal = positive(what, text, "Pa")?;
-    let bare = text.trim().parse::<f64>().is_ok();
-    if !bare || pascal >= FORGOTTEN {
-        return Ok(pascal);
-    }
-    let plain = text.trim();
-    let units = match what {
-        "hardness" => format!("`{plain} HBW` or `{plain} MPa`"),
-        "young" => format!("`{plain} GPa`"),
-        _ => format!("`{plain} MPa`"),
-    };
-    Err(format!(
-        "{what}: `{plain}` has no unit, and would be in pascal; write {units}, or `{plain} Pa`"
-    ))
-}
-
-/// Returns the friction coefficient or the wear coefficient given as a range.
-pub(super) fn range(what: &str, text: &str) -> Result<Range, String> {
-    Range::parse(text).map_err(|e| format!("{what}: {e}"))
+    /// What is known of its strength.
+    pub strength: BodyStrength,
 }
 
 impl Question {
@@ -168,14 +121,11 @@ impl Question {
 
     fn body(&self, side: usize, curvature: [f64; 2]) -> Result<Body, String> {
         let material = of_side("material", &self.material, side)?;
-        let file = material.map(self::material).transpose()?;
+        let file = material.map(|name| self::material("material", name));
+        let file = file.transpose()?;
         let property = |name: &str, unit: &str| {
             let given = file.as_ref().and_then(|m| m.properties.get(name));
             given.and_then(|p| p.in_unit(unit).ok())
-        };
-        let sourced = |name: &str| {
-            let given = file.as_ref()?.properties.get(name)?;
-            Some((given.in_unit("Pa").ok()?, given.source.clone()))
         };
         let elastic = |what: &str, given: &[String], unit: &str| {
             let own = of_side(what, given, side)?.map(|text| match unit {
@@ -196,20 +146,17 @@ impl Question {
                 "young and poisson: {young:e} Pa and {poisson} must be above zero and within 0 to 0.5"
             ));
         }
-        let hardness = match of_side("hardness", &self.hardness, side)? {
-            Some(text) => Some(hardness(text)?),
-            None => file.as_ref().and_then(|m| {
-                let given = m.properties.get("hardness")?;
-                hardness_in_pascal(given.value, &given.unit)
-            }),
-        };
+        let name = material.map_or_else(|| format!("body {}", side + 1), ToOwned::to_owned);
+        let none = BTreeMap::new();
+        let properties = file.as_ref().map_or(&none, |m| &m.properties);
+        let mut strength = BodyStrength::of(&name, properties);
+        if let Some(text) = of_side("hardness", &self.hardness, side)? {
+            strength.hardness = Some(hardness(text)?);
+        }
         Ok(Body {
-            name: material.map_or_else(|| format!("body {}", side + 1), ToOwned::to_owned),
             curvature,
             solid: Solid { young, poisson },
-            hardness,
-            yield_stress: sourced("yield_stress"),
-            yield_stress_hardened: sourced("yield_stress_hardened"),
+            strength,
         })
     }
 }
@@ -268,8 +215,8 @@ fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
 /// Returns a material of a folder `materials` here or above, or of the program.
 ///
 /// # Errors
-/// There is none of this name, or its file is wrong.
-pub fn material(name: &str) -> Result<Material, String> {
+/// There is none of this name, which begins with `what` it is, or its file is wrong.
+pub(crate) fn material(what: &str, name: &str) -> Result<Material, String> {
     let library = MaterialLibrary::beside(Path::new("case.ron"));
     let source = library.read(name).map_err(|e| match e {
         Err(error) => error.to_string(),
@@ -277,7 +224,7 @@ pub fn material(name: &str) -> Result<Material, String> {
             let near = missing.nearest.as_ref();
             let near = near.map(|n| format!("; did you mean `{n}`?"));
             format!(
-                "material: there is no file `{name}.ron` in {}{}; there are {}",
+                "{what}: there is no file `{name}.ron` in {}{}; there are {}",
                 missing.searched,
                 near.unwrap_or_default(),
                 missing.available

@@ -1,7 +1,7 @@
 //! Regimes of wear of wheel and rail steels over slip speed and pressure.
 
-use super::range::Range;
 use super::{Contact, Rolling};
+use crate::amounts::Range;
 use serde::Serialize;
 
 /// Slip speeds between which wear is severe (m/s).
@@ -35,7 +35,7 @@ pub struct WearRegime {
 impl WearRegime {
     /// The regime of a patch that rolls; `None` without a speed or a hardness.
     pub(super) fn of(contact: &Contact, rolling: &Rolling) -> Option<Self> {
-        let hardness = contact.bodies.iter().filter_map(|b| b.hardness);
+        let hardness = contact.bodies.iter().filter_map(|b| b.strength.hardness);
         let hardness = hardness.reduce(f64::min)?;
         Some(Self::at(rolling.slip_speed?, contact.pressure() / hardness))
     }

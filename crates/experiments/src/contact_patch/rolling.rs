@@ -1,8 +1,8 @@
 //! Rolling with a longitudinal creepage: by Carter for a line, by cells for an ellipse.
 
-use super::question::{Question, number, positive};
-use super::range::Range;
+use super::question::Question;
 use super::{Contact, Friction, Theory};
+use crate::amounts::{Range, number, positive};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::patch::{StripCreep, like_bodies};
 use fretwork_rolling::Creep;

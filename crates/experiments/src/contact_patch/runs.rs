@@ -1,7 +1,7 @@
 //! Results of runs of a window, from their summaries: friction, and the wear of its first bodies.
 
-use super::range::Range;
 use super::setup::{Motion, Setup};
+use crate::amounts::Range;
 use crate::runs::stored::numerical_error;
 use crate::runs::window::normal_force;
 use fretwork_math::statistics::interval::Mean;

@@ -1,8 +1,8 @@
 //! Slip of the patch under a tangential force or displacement, and in the window of a third body.
 
-use super::question::{Question, number, positive};
-use super::range::Range;
+use super::question::Question;
 use super::{Contact, Friction, Rolling, Theory};
+use crate::amounts::{Range, number, positive};
 use fretwork_elastic::patch::{PartialSlip, stuck_strip};
 use fretwork_observe::quantity::unit::FORCE;
 use serde::Serialize;

@@ -1,14 +1,12 @@
 //! Wear of rolling bodies: Archard's law with K and the hardness of each body, and the map over T
 //! gamma/A.
 
-use super::question::{Question, range};
-use super::range::Range;
+use super::question::Question;
 use super::regime::WearRegime;
 use super::runs::{self, WindowRun};
 use super::{Contact, Friction, Rolling, Theory};
+use crate::amounts::{self, Range};
 use fretwork_core::laws::{Kind, Plugin, SearchPath};
-use fretwork_observe::quantity::{number, quantity as shown};
-use fretwork_scene::quantity::quantity;
 use serde::Serialize;
 
 /// Wear while rolling with a creepage.
@@ -110,7 +108,7 @@ impl Wear {
             .unwrap_or_default();
         let map = match &contact.theory {
             Theory::Point(point) => Some(EnergyMap {
-                same_rail: rail(contact).hardness.map(is_of_map),
+                same_rail: rail(contact).strength.hardness.map(is_of_map),
                 ..EnergyMap::of(&energy, point.area(), laws)?
             }),
             Theory::Line(_) => None,
@@ -127,30 +125,13 @@ impl Wear {
     }
 }
 
-/// Smallest K of metals: well lubricated they wear with 1e-7 or so, and 1e-13 is a k in 1/Pa.
-const LEAST: f64 = 1e-10;
-
 /// Returns Archard's K of a text.
 ///
 /// # Errors
-/// It is no range of numbers up to 1, or k = K/H, whose unit is one over a pressure.
+/// It is none, see [`amounts::archard`].
 fn coefficient(text: &str, contact: &Contact) -> Result<Range, String> {
-    let of_pressure = |k: f64| {
-        let hardness = contact.bodies.iter().filter_map(|b| b.hardness);
-        let times = hardness.reduce(f64::min).map_or(String::new(), |h| {
-            format!(": {} with {}", number(k * h, 3), shown(h, "Pa"))
-        });
-        format!(
-            "wear: `{text}` looks like k in 1/Pa, and K is k times the hardness, a pure number{times}"
-        )
-    };
-    let with_unit = || quantity(text, "1/Pa").ok().filter(|k| *k > 0.0);
-    let k = range("wear", text).map_err(|why| with_unit().map_or(why, of_pressure))?;
-    match k.high {
-        high if high > 1.0 => Err(format!("wear: K = {high} is above 1")),
-        high if high < LEAST => Err(of_pressure(k.value)),
-        _ => Ok(k),
-    }
+    let hardness = contact.bodies.iter().filter_map(|b| b.strength.hardness);
+    amounts::archard("wear", text, hardness.reduce(f64::min))
 }
 
 /// The specific wear rates of a window times load and slip of the patch.
@@ -179,14 +160,14 @@ fn width(contact: &Contact) -> f64 {
 /// Returns V = K/H times load and slip, for each body with its own hardness.
 fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
     let of = |body: &super::Body| {
-        let hardness = body.hardness?;
+        let hardness = body.strength.hardness?;
         let coefficient = k.map(|k| k / hardness);
         let volume = Range::of(&coefficient, slipped, |k, s| k * s);
         let depth = volume.map(|v| v / width(contact));
         let curvature = body.curvature[0];
         let round = std::f64::consts::TAU / curvature;
         Some(BodyWear {
-            body: body.name.clone(),
+            body: body.strength.name.clone(),
             coefficient,
             volume,
             depth_per_metre: (curvature > 0.0).then(|| depth.map(|d| d / round)),

@@ -102,7 +102,7 @@ static INPUTS: [Input; 19] = [
     input(
         "rail-radius",
         "the radius of the rail head across the rail",
-        "0.3m",
+        "300mm",
         Some("0.3m"),
         &[WheelOnRail],
         None,

@@ -20,6 +20,7 @@
 //! ```
 
 mod inputs;
+mod interface;
 mod patch;
 mod rigid;
 #[cfg(test)]
@@ -30,10 +31,16 @@ mod window_numbers;
 
 pub use inputs::{Geometry, Input};
 
+use crate::amounts;
+use crate::contact_patch::material;
+use crate::patch::rolling::too_large;
 use fretwork_core::laws::SearchPath;
 use fretwork_observe::quantity::quantity as shown;
-use fretwork_scene::quantity::quantity;
 use std::collections::BTreeMap;
+
+/// Distance of atoms in a metal (m), and least amplitude: a few of them.
+const ATOMS: f64 = 2.5e-10;
+const LEAST_AMPLITUDE: f64 = 4.0 * ATOMS;
 
 /// What is known about the test: texts of numbers with units, and names, by the keys of
 /// [`Geometry::inputs`].
@@ -106,6 +113,9 @@ impl Question {
                 input.key, input.asks, input.example
             ));
         }
+        for key in self.values.keys() {
+            self.check(key)?;
+        }
         let debris = self.given("debris").is_some();
         match self.geometry {
             _ if debris => window::make(self, laws),
@@ -118,6 +128,55 @@ impl Question {
             Geometry::PinOnDisc => rigid::pin(self),
             Geometry::FlatOnFlat => rigid::flat(self),
         }
+    }
+
+    /// Checks what was said under a key by itself.
+    ///
+    /// # Errors
+    /// A sentence that begins with the key.
+    pub fn check(&self, key: &str) -> Result<(), String> {
+        if self.given(key).is_none() {
+            return Ok(());
+        }
+        match key {
+            "material" => {
+                let [first, second] = self.materials()?;
+                material(key, first)?;
+                material(key, second)?;
+            }
+            "debris" => {
+                material(key, self.text(key))?;
+            }
+            "wear" => {
+                self.wear()?;
+            }
+            "load" => {
+                self.load()?;
+            }
+            "friction" => {
+                self.friction()?;
+            }
+            "creepage" => {
+                self.creepage()?;
+            }
+            "amplitude" => {
+                self.amplitude()?;
+            }
+            "cycles" => {
+                self.number(key, "")?;
+            }
+            _ => {
+                let unit = match key {
+                    "area" => "m^2",
+                    "pressure" => "Pa",
+                    "frequency" => "Hz",
+                    "speed" => "m/s",
+                    _ => "m",
+                };
+                self.number(key, unit)?;
+            }
+        }
+        Ok(())
     }
 
     /// A value that this test does not have.
@@ -156,16 +215,39 @@ impl Question {
         self.given(key).or_else(default).unwrap_or_default()
     }
 
-    /// A number above zero.
+    /// A number above zero, with its unit.
     fn number(&self, key: &str, unit: &str) -> Result<f64, String> {
-        let text = self.text(key);
-        let value = quantity(text, unit).map_err(|e| {
-            let expected = e.expected.map(|x| format!("; give {x}"));
-            format!("{key}: {}{}", e.message, expected.unwrap_or_default())
-        })?;
-        match value > 0.0 {
-            true => Ok(value),
-            false => Err(format!("{key}: `{text}` must be above zero")),
+        let mut inputs = self.inputs();
+        let example = inputs.find(|input| input.key == key).map(|i| i.example);
+        amounts::with_unit(key, self.text(key), unit, example.unwrap_or_default())
+    }
+
+    /// The friction coefficient.
+    fn friction(&self) -> Result<f64, String> {
+        amounts::friction("friction", self.text("friction"))?;
+        self.number("friction", "")
+    }
+
+    /// The creepage.
+    fn creepage(&self) -> Result<f64, String> {
+        let value = self.number("creepage", "")?;
+        let bare = amounts::bare(self.text("creepage")).is_some();
+        match too_large(value, bare) {
+            None => Ok(value),
+            Some(why) => Err(format!("creepage: {why}")),
+        }
+    }
+
+    /// Half of the range of the displacement (m).
+    fn amplitude(&self) -> Result<f64, String> {
+        let value = self.number("amplitude", "m")?;
+        match value < LEAST_AMPLITUDE {
+            false => Ok(value),
+            true => Err(format!(
+                "amplitude: {} is {} of the distance of atoms in a metal, 0.25 nm, and no contact slips by so little; give the displacement of the test, such as 20um",
+                q(value, "m"),
+                fretwork_observe::quantity::number(value / ATOMS, 2)
+            )),
         }
     }
 
@@ -188,15 +270,20 @@ impl Question {
         let Some(text) = self.given("wear") else {
             return Ok(None);
         };
-        if let Ok(plain) = text.parse::<f64>() {
-            return match plain > 0.0 && plain < 1.0 {
-                true => Ok(Some(format!("{{\"K\": {plain:e}}}"))),
-                false => Err(format!(
-                    "wear: K is `{text}`, and lies between 0 and 1: 1e-4 is mild wear of steels; with a unit (1e-14 1/Pa) it is k"
-                )),
-            };
+        let mut hardness: Option<f64> = None;
+        for name in self.materials()? {
+            let own = material("material", name)?.property("hardness");
+            hardness = hardness.into_iter().chain(own).reduce(f64::min);
         }
-        let k = self.number("wear", "1/Pa")?;
+        if amounts::bare(text).is_some() {
+            let pure = amounts::archard("wear", text, hardness);
+            let pure = pure.map_err(|e| match e.contains("looks like k") {
+                true => format!("{e}; with its unit, `{text} 1/Pa`, it is taken as k"),
+                false => e,
+            })?;
+            return Ok(Some(format!("{{\"K\": {:e}}}", pure.value)));
+        }
+        let k = amounts::wear_rate("wear", text, hardness)?;
         Ok(Some(format!("{{\"k\": {k:e}}}")))
     }
 }

@@ -1,14 +1,22 @@
 //! Two elastic bodies without debris: the file of a patch.
 
+use super::interface::interface;
 use super::{Geometry, Made, NewCase, Question, comment, q};
 use crate::contact_patch::{self, Answer};
 use fretwork_core::laws::SearchPath;
+use fretwork_observe::quantity::number;
+use fretwork_rolling::pull::LARGEST;
 use std::fmt::Write as _;
+
+/// Creepages of the curve over that of the question.
+const CREEPAGES: [f64; 5] = [0.1, 0.2, 0.5, 1.0, 2.0];
+/// Least amplitude over the displacement at which all of the contact slips: below it the ring that
+/// slips, of a width of half of this share of the radius, is far narrower than a cell.
+const LEAST_SLIP: f64 = 1e-3;
 
 pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, String> {
     let [first, second] = question.materials()?;
     let contact = contact(question, laws)?;
-    let mu = question.number("friction", "")?;
     let radius = q(question.number("radius", "m")?, "m");
     let geometry = question.geometry;
     let (title, names) = match geometry {
@@ -45,32 +53,12 @@ pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, St
         };
         let _ = writeln!(text, "        (material: \"{name}\"{round}),");
     }
-    text += "    ),\n    interfaces: [(\n        name: \"contact\",\n";
-    let _ = writeln!(
-        text,
-        "        between: (\"{}\", \"{}\"),",
-        names[0], names[1]
-    );
-    text += "        contact: \"coulomb\",\n";
-    let wear = question.wear()?;
-    if wear.is_some() {
-        text += &comment(
-            8,
-            "depth = K/H times pressure times slip, H the hardness of each body",
-        );
-        text += "        wear: \"archard\",\n";
-    }
-    if question.given("friction").is_none() {
-        text += &comment(
-            8,
-            "not given, and chosen: dry metals have 0.3 to 1; take that of your pair, or of a run with debris",
-        );
-    }
-    let wear = wear.map_or(String::new(), |wear| format!(", wear: {wear}"));
-    let _ = writeln!(
-        text,
-        "        parameters: (contact: {{\"mu\": {mu}}}{wear}),\n    )],"
-    );
+    text += "    ),\n";
+    text += &interface(
+        question,
+        names,
+        "depth = K/H times pressure times slip, H the hardness of each body",
+    )?;
     let load = question.load()?;
     match geometry {
         Geometry::CylinderOnFlat => {
@@ -94,10 +82,11 @@ pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, St
     }
     match geometry {
         Geometry::WheelOnRail => {
-            let creepage = question.number("creepage", "")?;
+            let creepage = question.creepage()?;
             let speed = question.number("speed", "m/s")?;
-            let shares =
-                [0.1, 0.2, 0.5, 1.0, 2.0].map(|part| format!("{:.3} %", 100.0 * part * creepage));
+            let all = CREEPAGES.iter().map(|part| part * creepage);
+            let shares = all.filter(|c| *c <= LARGEST);
+            let shares: Vec<String> = shares.map(|c| format!("{:.3} %", 100.0 * c)).collect();
             let _ = writeln!(text, "    speed: {},", q(speed, "m/s"));
             text += &comment(
                 4,
@@ -106,7 +95,8 @@ pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, St
             let _ = writeln!(text, "    motion: Rolling(along: [{}]),", shares.join(", "));
         }
         _ => {
-            let amplitude = question.number("amplitude", "m")?;
+            let amplitude = question.amplitude()?;
+            slips(&contact, amplitude)?;
             let frequency = question.number("frequency", "Hz")?;
             let strokes = [0.25, 0.5, 1.0].map(|part| q(part * amplitude, "m"));
             text += &comment(
@@ -126,6 +116,24 @@ pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, St
         made: Made::Patch,
         text,
     })
+}
+
+/// Refuses strokes under which next to nothing of a ball's contact slips.
+fn slips(contact: &Answer, amplitude: f64) -> Result<(), String> {
+    let onset = contact
+        .tangential
+        .as_ref()
+        .and_then(|t| t.slip_displacement);
+    let Some(onset) = onset.filter(|onset| amplitude < LEAST_SLIP * onset.value) else {
+        return Ok(());
+    };
+    Err(format!(
+        "amplitude: {} is {} % of the displacement at which all of this contact slips, {}, and next to nothing of it slips; take {} or more",
+        q(amplitude, "m"),
+        number(100.0 * amplitude / onset.value, 2),
+        q(onset.value, "m"),
+        q(LEAST_SLIP * onset.value, "m")
+    ))
 }
 
 impl Question {
@@ -150,7 +158,6 @@ pub(super) fn contact(question: &Question, laws: &SearchPath) -> Result<Answer, 
         Geometry::WheelOnRail => vec!["flat".to_owned(), question.text("rail-radius").to_owned()],
         _ => Vec::new(),
     };
-    question.load()?;
     contact_patch::answer(
         &contact_patch::Question {
             load: question.text("load").to_owned(),
@@ -166,7 +173,7 @@ pub(super) fn contact(question: &Question, laws: &SearchPath) -> Result<Answer, 
     )
 }
 
-/// Pressure and size of the contact in words.
+/// Pressure and size of the contact in words, and where the theory does not hold.
 pub(super) fn hertz(contact: &Answer, geometry: Geometry) -> String {
     let patch = &contact.patch;
     let formula = match geometry {
@@ -174,10 +181,12 @@ pub(super) fn hertz(contact: &Answer, geometry: Geometry) -> String {
         Geometry::WheelOnRail => "an ellipse by elliptic integrals",
         _ => "a = (3 P R/(4 E*))^(1/3), p0 = 3 P/(2 pi a^2)",
     };
-    format!(
+    let hertz = format!(
         "Hertz (K. L. Johnson, Contact Mechanics, 1985, chapter 4): E* {}, {formula}: half-width along the motion {}, largest pressure {}.",
         q(contact.effective_modulus, "Pa"),
         q(patch.semi_axis, "m"),
         q(patch.pressure, "Pa"),
-    )
+    );
+    let limits = contact.warnings.iter().map(|w| format!(" {w}."));
+    hertz + &limits.collect::<String>()
 }

@@ -1,5 +1,6 @@
 //! Contacts in which friction and wear are given: a pin on a disc and a pad on a flat.
 
+use super::interface::interface;
 use super::{Made, NewCase, Question, comment, q};
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -10,6 +11,8 @@ const TURN: (f64, f64) = (200.0, 2e5);
 const CYCLE: f64 = 200.0;
 /// Mass over the load (kg/N) of a pin, whose weight is then a hundredth of it.
 const MASS: f64 = 1e-3;
+/// The law of wear.
+const LAW: &str = "volume = K/H times load times slip, H the hardness of each body";
 
 pub(super) fn pin(question: &Question) -> Result<NewCase, String> {
     let tip = question.number("radius", "m")?;
@@ -33,7 +36,6 @@ pub(super) fn pin(question: &Question) -> Result<NewCase, String> {
     }
     let omega = speed / track;
     let mass = MASS * load;
-    let [first, second] = question.materials()?;
     let mut text = comment(
         0,
         "A pin with a round tip on a disc that turns. Friction and wear coefficients are inputs: this is the bookkeeping of a rig. With --debris the layer between them is computed from its grains.",
@@ -47,17 +49,7 @@ pub(super) fn pin(question: &Question) -> Result<NewCase, String> {
             q(distance, "m")
         ),
     );
-    let _ = writeln!(
-        text,
-        "    time: (step: {}, end: {}),",
-        q(step, "s"),
-        q(end, "s")
-    );
-    let _ = writeln!(
-        text,
-        "    materials: {{\"pin\": \"{first}\", \"disc\": \"{second}\"}},"
-    );
-    text += &interface(question, ["pin", "disc"])?;
+    text += &head(question, step, end, ["pin", "disc"])?;
     text += "    bodies: [\n";
     text += &comment(8, &format!("speed/radius of the track = {omega:.4} 1/s"));
     let _ = writeln!(
@@ -95,9 +87,8 @@ pub(super) fn pin(question: &Question) -> Result<NewCase, String> {
 pub(super) fn flat(question: &Question) -> Result<NewCase, String> {
     let area = question.number("area", "m^2")?;
     let load = question.number("load", "N")?;
-    let amplitude = question.number("amplitude", "m")?;
+    let amplitude = question.amplitude()?;
     let frequency = question.number("frequency", "Hz")?;
-    let [first, second] = question.materials()?;
     let side = area.sqrt();
     let step = 1.0 / frequency / CYCLE;
     let start = 0.2 / frequency;
@@ -118,17 +109,7 @@ pub(super) fn flat(question: &Question) -> Result<NewCase, String> {
         4,
         &format!("{CYCLE:.0} steps of a cycle; a fifth of a cycle to load, then three cycles"),
     );
-    let _ = writeln!(
-        text,
-        "    time: (step: {}, end: {}),",
-        q(step, "s"),
-        q(end, "s")
-    );
-    let _ = writeln!(
-        text,
-        "    materials: {{\"pad\": \"{first}\", \"flat\": \"{second}\"}},"
-    );
-    text += &interface(question, ["pad", "flat"])?;
+    text += &head(question, step, end, ["pad", "flat"])?;
     text += "    bodies: [\n        (name: \"flat\", material: \"flat\", shapes: [HalfSpace(normal: [0, 0, 1])]),\n        (\n            name: \"pad\",\n            material: \"pad\",\n";
     let height = q(side / 2.0, "m");
     let _ = writeln!(
@@ -166,32 +147,17 @@ fn mass_text(mass: f64) -> String {
     format!("{mass:.3e}")
 }
 
-fn interface(question: &Question, names: [&str; 2]) -> Result<String, String> {
-    let mu = question.number("friction", "")?;
-    let wear = question.wear()?;
-    let mut text = String::from("    interfaces: [(\n        name: \"contact\",\n");
-    let _ = writeln!(
-        text,
-        "        between: (\"{}\", \"{}\"),\n        contact: \"coulomb\",",
+/// Time, materials and interface of two bodies.
+fn head(question: &Question, step: f64, end: f64, names: [&str; 2]) -> Result<String, String> {
+    let [first, second] = question.materials()?;
+    let time = format!(
+        "    time: (step: {}, end: {}),\n",
+        q(step, "s"),
+        q(end, "s")
+    );
+    let materials = format!(
+        "    materials: {{\"{}\": \"{first}\", \"{}\": \"{second}\"}},\n",
         names[0], names[1]
     );
-    if wear.is_some() {
-        text += &comment(
-            8,
-            "volume = K/H times load times slip, H the hardness of each body",
-        );
-        text += "        wear: \"archard\",\n";
-    }
-    if question.given("friction").is_none() {
-        text += &comment(
-            8,
-            "not given, and chosen: dry metals have 0.3 to 1; take that of your pair, or of a run with debris",
-        );
-    }
-    let wear = wear.map_or(String::new(), |wear| format!(", wear: {wear}"));
-    let _ = writeln!(
-        text,
-        "        parameters: (contact: {{\"mu\": {mu}}}{wear}),\n    )],"
-    );
-    Ok(text)
+    Ok(time + &materials + &interface(question, names, LAW)?)
 }

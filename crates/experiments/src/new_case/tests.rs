@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::patch::PatchFile;
+use crate::patch::fretting::strokes;
+use crate::patch::rolling::creepages;
 use crate::patch::tests::laws;
 use fretwork_scene::load_text;
 use std::path::Path;
@@ -12,6 +14,15 @@ fn ball() -> Question {
         .with("radius", "10mm")
         .with("load", "50 N")
         .with("amplitude", "20 um")
+}
+
+fn wheel() -> Question {
+    Question::new(Geometry::WheelOnRail)
+        .with("material", "wheel_steel_er7,rail_steel_r260")
+        .with("radius", "0.46m")
+        .with("load", "75kN")
+        .with("speed", "100km/h")
+        .with("creepage", "0.5%")
 }
 
 #[test]
@@ -45,7 +56,51 @@ fn what_is_missing_or_does_not_belong_is_named() {
             ball().with("material", "rail_steel_r26"),
             "did you mean `rail_steel_r260`?",
         ),
-        (ball().with("wear", "3"), "wear: K is `3`"),
+        (ball().with("wear", "3"), "wear: K = 3 is above 1"),
+        (
+            ball().with("wear", "1e-15"),
+            "a pure number: 2.55e-6 with 2.550 GPa; with its unit, `1e-15 1/Pa`, it is taken as k",
+        ),
+        (
+            ball().with("wear", "1e-4 1/Pa"),
+            "a K is written without a unit",
+        ),
+        (
+            ball().with("radius", "10"),
+            "radius: `10` has no unit; write `10 mm`, or `10 m`",
+        ),
+        (
+            ball().with("load", "50"),
+            "load: `50` has no unit; write `50 N`",
+        ),
+        (
+            ball().with("friction", "60"),
+            "friction: no pair of solids has a friction coefficient of 60",
+        ),
+        (
+            ball().with("amplitude", "1e-12 m"),
+            "amplitude: 1 pm is 0.0040 of the distance of atoms",
+        ),
+        (
+            ball()
+                .with("load", "1 MN")
+                .with("radius", "10 m")
+                .with("amplitude", "5nm"),
+            "next to nothing of it slips; take",
+        ),
+        (
+            ball().with("debris", "magnetit").with("debris-size", "1um"),
+            "debris: there is no file `magnetit.ron`",
+        ),
+        (
+            wheel().with("creepage", "60 %"),
+            "creepage: a creepage of 0.6 is more than 0.5",
+        ),
+        (wheel().with("creepage", "2"), "in per cent write 2 %"),
+        (
+            wheel().with("rail-radius", "300"),
+            "rail-radius: `300` has no unit; write `300 mm`, or `300 m`",
+        ),
         (
             ball()
                 .with("debris", "magnetite")
@@ -105,12 +160,6 @@ fn the_window_of_a_ball_has_its_pressure_slip_and_inertia() {
 
 #[test]
 fn elastic_bodies_without_debris_make_a_patch() {
-    let wheel = Question::new(Geometry::WheelOnRail)
-        .with("material", "wheel_steel_er7,rail_steel_r260")
-        .with("radius", "0.46m")
-        .with("load", "75kN")
-        .with("speed", "100km/h")
-        .with("creepage", "0.5%");
     let cylinder = Question::new(Geometry::CylinderOnFlat)
         .with("material", "rail_steel_r260")
         .with("radius", "10mm")
@@ -118,14 +167,17 @@ fn elastic_bodies_without_debris_make_a_patch() {
         .with("load", "200N/mm")
         .with("amplitude", "20um")
         .with("wear", "1e-14 1/Pa");
-    for question in [ball(), wheel, cylinder] {
+    let fast = wheel().with("creepage", "30 %");
+    for (question, points) in [(ball(), 3), (wheel(), 5), (fast, 4), (cylinder, 3)] {
         let made = question.make(&laws()).unwrap();
         assert_eq!(made.made, Made::Patch);
         let folder = std::env::temp_dir().join(format!("fretwork-new-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let path = folder.join("new.ron");
         std::fs::write(&path, &made.text).unwrap();
-        PatchFile::read(&path).unwrap_or_else(|e| panic!("{e}\n{}", made.text));
+        let file = PatchFile::read(&path).unwrap_or_else(|e| panic!("{e}\n{}", made.text));
+        let (creepages, strokes) = (creepages(&file).unwrap(), strokes(&file).unwrap().1);
+        assert_eq!(creepages.len() + strokes.len(), points);
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

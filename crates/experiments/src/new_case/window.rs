@@ -57,7 +57,7 @@ pub(super) struct Local {
 pub(super) fn make(question: &Question, laws: &SearchPath) -> Result<NewCase, String> {
     let [upper, lower] = question.materials()?;
     let debris = question.text("debris");
-    let powder = material(debris)?;
+    let powder = material("debris", debris)?;
     let d = question.number("debris-size", "m")?;
     let rows = match question.given("layer") {
         None => ROWS,
@@ -133,7 +133,7 @@ fn local(question: &Question, laws: &SearchPath, thickness: f64) -> Result<Local
             let slip = contact.window.slip.map(|s| s.value);
             let path = slip.ok_or("creepage: give the creepage, such as 0.5%")?;
             let speed = question.number("speed", "m/s")?;
-            let creepage = question.number("creepage", "")?;
+            let creepage = question.creepage()?;
             why.push(format!("Slip: {}, by which a point in the middle slips while it passes the contact at a creepage of {:.3} %, with the friction that is given (`fretwork contact-patch` has the formula).", q(path, "m"), 100.0 * creepage));
             Motion::OneWay {
                 path,
@@ -141,7 +141,7 @@ fn local(question: &Question, laws: &SearchPath, thickness: f64) -> Result<Local
             }
         }
         geometry => {
-            let amplitude = question.number("amplitude", "m")?;
+            let amplitude = question.amplitude()?;
             let frequency = question.number("frequency", "Hz")?;
             let cycles = question.number("cycles", "")?.round().max(1.0);
             let mut local = amplitude;

@@ -29,10 +29,7 @@ pub(super) fn interfaces(
     };
     let contact = match own {
         true => "{}".to_owned(),
-        false => format!(
-            "{{\"mu\": {}, \"restitution\": 0.1}}",
-            question.number("friction", "")?
-        ),
+        false => format!("{{\"mu\": {}, \"restitution\": 0.1}}", question.friction()?),
     };
     let mut text = String::from("    interfaces: [\n");
     text += &comment(

@@ -7,6 +7,7 @@ use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages::Worn;
 use super::third_body::ThirdBody;
+use crate::limits::Strength;
 use fretwork_observe::quantity::DETERMINED;
 use fretwork_rolling::{Creepage, Estimate};
 use serde::Serialize;
@@ -31,6 +32,12 @@ pub struct Answer {
     /// What is known of the error of the method, where it is not of the grid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub about_method: Option<String>,
+    /// What limits the trust in all points.
+    pub notes: Vec<String>,
+    /// Pressures at which the steel yields, under the largest tangential force of the points.
+    pub strength: Option<Strength>,
+    /// Of what the errors of points are: of the grid, or of the method and under which law.
+    pub errors: String,
     /// Number of cells of the grid along its sides.
     pub cells: [usize; 2],
     /// Sides of a cell (m).
@@ -99,8 +106,16 @@ pub struct Point {
     pub stuck: Option<f64>,
     /// Largest velocity of slip (m/s).
     pub slip_speed: Option<f64>,
+    /// Error of it, by the grid and the theory (m/s).
+    pub slip_speed_error: Option<f64>,
     /// Highest temperature (K).
     pub temperature: Option<f64>,
+    /// Error of it, by the grid and the theory (K).
+    pub temperature_error: Option<f64>,
+    /// Error of the creepage (1) where the force is given, by those of the force; null where it is
+    /// not determined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creepage_error: Option<f64>,
     /// Wear of a passage; in fretting of a cycle.
     pub wear: Vec<Wear>,
     /// Steps of Newton's method, and iterations of the linear equations.
@@ -160,11 +175,11 @@ pub struct Wear {
     /// Volume over the distance rolled (m²), extrapolated to cells of no size; in fretting the
     /// volume of a cycle (m³).
     pub volume: f64,
-    /// Error of it by the grid.
+    /// Error of it, by the grid and the theory.
     pub volume_error: f64,
     /// Largest depth (m), likewise.
     pub depth: f64,
-    /// Error of it by the grid (m).
+    /// Error of it, by the grid and the theory (m).
     pub depth_error: f64,
     /// Depth across the motion, one number for each row of cells (m); in fretting empty.
     pub profile: Vec<f64>,

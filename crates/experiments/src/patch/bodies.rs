@@ -1,8 +1,11 @@
 //! The two bodies of a patch: elasticity and thermal properties of their materials, and their
 //! undeformed distance.
 
+use super::columns::column;
 use super::profiles::Profiles;
-use super::spec::{DistanceSpec, PatchFile, positive, value};
+use super::spec::{DistanceSpec, PatchFile, positive, temperature, value};
+use crate::amounts::short;
+use crate::limits::{BodyStrength, Strength, Traction, not_hertz, radius_in_metres};
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::patch::{LinePatch, PointPatch, Solid, effective_modulus, line, point};
 use fretwork_math::diffusion::Conductor;
@@ -10,11 +13,8 @@ use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Curve;
 use fretwork_rolling::temperature::Thermal;
 use fretwork_scene::InputError;
-use fretwork_scene::material::{Material, MaterialLibrary, Sourced};
+use fretwork_scene::material::{Material, MaterialClass, MaterialLibrary, Sourced};
 use fretwork_scene::measured::MeasuredTable;
-use fretwork_scene::quantity::hardness_in_pascal;
-use fretwork_scene::source::Source;
-use fretwork_scene::units::convert;
 use std::collections::BTreeMap;
 
 /// Temperature of the bodies by default (K).
@@ -37,6 +37,14 @@ pub struct Bodies {
     pub profiles: Option<Profiles>,
     /// Length of a line contact across the motion (m).
     pub length: Option<f64>,
+    /// What is known of the strength of the bodies.
+    pub strengths: [BodyStrength; 2],
+    /// Temperatures at which the materials have melted (K), where they are known.
+    molten: [Option<f64>; 2],
+    /// Curvatures of each body along the motion and across it, by their radii (1/m).
+    curvatures: [[f64; 2]; 2],
+    /// What is doubtful in the radii of the file.
+    doubts: Vec<String>,
 }
 
 /// Undeformed distance of the bodies: x²/(2 R) along the motion, and a table or y²/(2 R) across it.
@@ -111,7 +119,8 @@ impl Bodies {
         let pair = [&spec.bodies.0, &spec.bodies.1];
         let mut elasticity = Vec::new();
         let mut conductors = Vec::new();
-        let mut curvatures = [0.0; 2];
+        let mut by_radii = [[0.0; 2]; 2];
+        let mut doubts = Vec::new();
         for (k, body) in pair.into_iter().enumerate() {
             let material = &files[&body.material];
             let at = format!("bodies.{k}");
@@ -119,13 +128,16 @@ impl Bodies {
                 .into_iter()
                 .enumerate()
             {
-                let Some(radius) = radius else { continue };
+                let Some(given) = radius else { continue };
                 let path = format!("{at}.{name}");
-                let radius = value(source, &path, radius, "m")?;
+                let radius = value(source, &path, given, "m")?;
+                if given.unit.is_none() {
+                    doubts.extend(radius_in_metres(radius, &short(radius)));
+                }
                 if radius == 0.0 {
                     return Err(source.error_at(&path, "a radius is not 0; a plane has none"));
                 }
-                curvatures[axis] += 1.0 / radius;
+                by_radii[k][axis] = 1.0 / radius;
             }
             let property = |name: &str, unit: &str| {
                 let given = material.properties.get(name)?;
@@ -167,16 +179,17 @@ impl Bodies {
             );
         }
         let bulk = match &spec.temperature {
-            Some(number) => positive(source, "temperature", number, "K")?,
+            Some(number) => temperature(source, "temperature", number)?,
             None => ROOM,
         };
         let mut bulks = [bulk; 2];
         for (k, body) in pair.into_iter().enumerate() {
             let path = format!("bodies.{k}.temperature");
             if let Some(own) = &body.temperature {
-                bulks[k] = positive(source, &path, own, "K")?;
+                bulks[k] = temperature(source, &path, own)?;
             }
         }
+        let mut curvatures = [0, 1].map(|axis| by_radii[0][axis] + by_radii[1][axis]);
         let profile = spec
             .distance
             .as_ref()
@@ -218,28 +231,53 @@ impl Bodies {
             distance,
             profiles,
             length,
+            strengths: pair.map(|b| BodyStrength::of(&b.material, &files[&b.material].properties)),
+            molten: pair.map(|b| {
+                let class = files[&b.material].class_or_described(&spec.materials[&b.material]);
+                class.and_then(MaterialClass::molten)
+            }),
+            curvatures: by_radii,
+            doubts,
         })
+    }
+
+    /// Returns what limits the trust in all points under a load (N): radii in another unit, and a
+    /// patch that is not small beside them.
+    pub fn limits(&self, load: f64) -> Vec<String> {
+        let axes = match self.length {
+            Some(length) => [Some(self.line(load, length).half_width), None],
+            None => {
+                let hertz = self.distance.hertz(load, &self.elasticity);
+                [hertz.along, hertz.across].map(Some)
+            }
+        };
+        let bodies = self.names.iter().map(String::as_str).zip(self.curvatures);
+        let mut out = self.doubts.clone();
+        out.extend(not_hertz(bodies, axes));
+        out
+    }
+
+    /// Returns the strength of the bodies under a tangential force.
+    pub fn strength(&self, traction: Option<Traction>) -> Option<Strength> {
+        let [one, other] = &self.strengths;
+        Strength::of([one, other], self.length.is_some(), None, traction)
     }
 
     /// Returns the hardness of both bodies (Pa), where their materials have it.
     pub fn hardness(&self) -> [Option<f64>; 2] {
-        self.names.each_ref().map(|name| {
-            let material = self.materials.iter().find(|(m, _)| m == name)?;
-            let hardness = material.1.get("hardness")?;
-            hardness_in_pascal(hardness.value, &hardness.unit)
-        })
+        self.strengths.each_ref().map(|s| s.hardness)
     }
 
-    /// Returns a note where the largest pressure (Pa) is above the hardness of a body.
-    pub fn yields(&self, pressure: f64) -> Option<String> {
-        let both = self.hardness().into_iter().zip(&self.names);
+    /// Returns a note where a temperature of the surfaces (K) is one at which a body has melted.
+    pub fn melts(&self, temperature: f64) -> Option<String> {
+        let both = self.molten.into_iter().zip(&self.names);
         let known = both.filter_map(|(own, name)| Some((own?, name)));
-        let (softest, name) = known.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (pressure > softest).then(|| {
+        let (lowest, name) = known.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (temperature > lowest).then(|| {
             format!(
-                "NOT IN RANGE: the largest pressure, {}, is above the hardness of {name}, {}: the bodies yield, and here they are elastic",
-                quantity(pressure, "Pa"),
-                quantity(softest, "Pa")
+                "NOT IN RANGE: {} K is above {} K, where {name} has melted: long before, its surface softens, and friction and temperature fall; take a contact law whose friction falls with temperature, or a smaller creepage, load or speed",
+                number(temperature, 4),
+                number(lowest, 4)
             )
         })
     }
@@ -291,8 +329,8 @@ fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<Curve, InputError> {
     }
     let path = file.beside(&spec.file);
     let table = MeasuredTable::read(&path).map_err(|e| source.named_at("distance.file", e))?;
-    let column = |name: &str| metres(source, "distance.file", &table, name);
-    let (places, values) = (column(&spec.across)?, column(&spec.distance)?);
+    let lengths = |name: &str| column(source, "distance.file", &table, (name, "m"));
+    let (places, values) = (lengths(&spec.across)?, lengths(&spec.distance)?);
     let rows: Vec<[f64; 2]> = places.into_iter().zip(values).map(Into::into).collect();
     let curve = Some(rows).filter(|r| r.len() > 2).and_then(Curve::through);
     curve.ok_or_else(|| {
@@ -301,30 +339,6 @@ fn profile(file: &PatchFile, spec: &DistanceSpec) -> Result<Curve, InputError> {
             "three rows or more are expected, each at another place",
         )
     })
-}
-
-/// Returns the numbers of a column of lengths (m), of a table whose file stands at a path.
-///
-/// # Errors
-/// There is no such column, or no unit of a length in its heading.
-pub(super) fn metres(
-    source: &Source,
-    path: &str,
-    table: &MeasuredTable,
-    name: &str,
-) -> Result<Vec<f64>, InputError> {
-    let column = table.required(name).map_err(|e| source.named_at(path, e))?;
-    let unit = &table.headings[column].unit;
-    if unit.is_empty() {
-        let why = format!(
-            "the heading `{name}` has no unit: write it as `{name} [mm]`, in the unit of its numbers"
-        );
-        return Err(source.error_at(path, why));
-    }
-    let in_metres = |v: f64| convert(v, unit, "m");
-    let values = table.values(column)?.into_iter().map(in_metres);
-    let values: Result<Vec<f64>, _> = values.collect();
-    values.map_err(|e| source.error_at(path, format!("column `{name}`: {}", e.message)))
 }
 
 /// Returns a curvature of a profile about its lowest point (1/m), the median of those of parabolas

@@ -131,7 +131,10 @@ fn curve(outcome: &Outcome) -> Table {
         let of = points().map(|p| p.wear.get(k).map(|w| w.volume));
         columns.push(Column::real(format!("wear_volume_{name}"), "m^2", of));
         let of = points().map(|p| p.wear.get(k).map(|w| w.volume_error));
-        let error = format!("wear_volume_{name}_error_of_grid");
+        let error = match outcome.answer.method {
+            Method::Exact => format!("wear_volume_{name}_error_of_grid"),
+            _ => format!("wear_volume_{name}_error"),
+        };
         columns.push(Column::real(error, "m^2", of));
         let of = points().map(|p| p.wear.get(k).map(|w| w.depth));
         columns.push(Column::real(format!("wear_depth_{name}"), "m", of));

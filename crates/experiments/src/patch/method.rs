@@ -159,7 +159,9 @@ impl Rung {
     pub fn about(&self, coulomb: bool) -> Option<String> {
         let other = match coulomb {
             true => "",
-            false => ", under Coulomb's law; for this law no error is known",
+            false => {
+                ", under Coulomb's law, of which the printed errors are; for this law none is known"
+            }
         };
         let compare = "`--trade` compares it with half-spaces";
         match self {
@@ -177,8 +179,9 @@ impl Rung {
                 "closed form of F. W. Carter (1926), without fields, wear and temperature: exact for a long line{}",
                 match coulomb {
                     true => " under Coulomb's law".to_owned(),
-                    false =>
-                        format!(" under Coulomb's law; for this law no error is known; {compare}"),
+                    false => format!(
+                        " under Coulomb's law, of which the printed errors are; for this law none is known; {compare}"
+                    ),
                 }
             )),
         }

@@ -57,6 +57,16 @@ fn springs_follow_the_laws_and_closed_forms_have_forces_alone() {
     near(closed.adhesion, exact.adhesion, 0.01);
     near(springs.wear[0].volume, exact.wear[0].volume, 0.02);
     assert!(closed.wear.is_empty() && closed.stuck.is_none());
+    // What is printed as an error is one of another law, and says so.
+    for outcome in [&of("Fastsim"), &of("ClosedForm")] {
+        let text = outcome.answer.text();
+        assert!(
+            text.contains("the printed errors are; for this law none"),
+            "{text}"
+        );
+        let mut errors = text.lines().filter(|l| l.contains(" +- "));
+        assert!(errors.all(|l| l.contains("under Coulomb's law")), "{text}");
+    }
 }
 
 /// A creepage is found for a force by each method.

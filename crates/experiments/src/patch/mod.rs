@@ -19,9 +19,11 @@
 
 mod answer;
 mod bodies;
+mod columns;
 pub mod files;
 pub mod fretting;
 pub mod law;
+pub mod loads;
 pub mod method;
 #[cfg(test)]
 mod method_tests;
@@ -45,12 +47,16 @@ pub use spec::{PatchFile, PatchSpec};
 
 use crate::Error;
 use crate::folder::Owner;
+use crate::limits::Traction;
 use fretting::Stroke;
 use fretwork_core::laws::SearchPath;
+use fretwork_observe::quantity::quantity;
 use fretwork_rolling::{Course, Creepage, Pressure};
 use law::PatchLaw;
-use method::Rung;
+use method::{Method, Rung};
+use rolling::pulling::Pull;
 use rolling::{Solved, comparison, passages, pulling};
+use spec::one_load;
 
 /// Owner of the folders of patches.
 pub const OWNER: Owner = Owner {
@@ -74,16 +80,49 @@ pub struct Outcome {
     pub course: Option<Course>,
 }
 
-/// Solves all points of a patch; `follow` gets the number of each point that is done, and that of
-/// all.
+/// Gets the name of the part of a patch that is being solved, and the share of it that is done.
+pub type Follow<'a> = dyn FnMut(&str, f64) + 'a;
+
+/// Solves a patch under each of its loads, see [`solve`].
 ///
 /// # Errors
-/// The file names what does not exist, a law cannot act in a patch or fails, or a point has no
-/// solution.
+/// As of [`solve`].
+pub fn solve_loads(
+    file: &PatchFile,
+    search: &SearchPath,
+    follow: &mut Follow<'_>,
+) -> Result<Vec<Outcome>, Error> {
+    let all = spec::loads(file)?;
+    let many = all.len() > 1;
+    let each = all.into_iter().map(|load| {
+        let mut under = |part: &str, done: f64| match many {
+            true => follow(&format!("{}, {part}", quantity(load, "N")), done),
+            false => follow(part, done),
+        };
+        solve_under(file, load, search, &mut under)
+    });
+    each.collect()
+}
+
+/// Solves a patch under one load: all points, then passages, cycles and map, each of which is
+/// followed.
+///
+/// # Errors
+/// The file names what does not exist or has several loads, a law cannot act in a patch or fails,
+/// or a point has no solution.
 pub fn solve(
     file: &PatchFile,
     search: &SearchPath,
-    follow: &mut dyn FnMut(usize, usize),
+    follow: &mut Follow<'_>,
+) -> Result<Outcome, Error> {
+    solve_under(file, one_load(file, "this patch")?, search, follow)
+}
+
+fn solve_under(
+    file: &PatchFile,
+    load: f64,
+    search: &SearchPath,
+    follow: &mut Follow<'_>,
 ) -> Result<Outcome, Error> {
     if file.spec.third_body.is_some() {
         let why = "the runs of a `third_body` are made by the command `fretwork patch`";
@@ -92,43 +131,48 @@ pub fn solve(
     let mut creepages = rolling::creepages(file)?;
     let (frets, drives) = fretting::strokes(file)?;
     let map = frets.and_then(|spec| Some((spec, spec.map.as_ref()?)));
+    if map.is_some() {
+        one_load(file, "a patch with a `map` over loads of its own")?;
+    }
     let mut pulls = pulling::forces(file)?;
-    let setup = Setup::new(file, search)?;
+    let setup = Setup::new(file, load, search)?;
     let spin = setup.added_spin();
     creepages.iter_mut().for_each(|c| c.spin += spin);
     pulls.iter_mut().for_each(|p| p.spin += spin);
     let plan = passages::plan(file, &setup, &creepages, &pulls)?;
-    let count = creepages.len() + pulls.len() + drives.len() + usize::from(plan.is_some());
+    let count = (creepages.len() + pulls.len() + drives.len()) as f64;
     let (mut rolled, mut strokes) = (Vec::new(), Vec::new());
     let closed = matches!(setup.rung, Rung::Ellipse(_) | Rung::Line(..));
     let mut points: Vec<Point> = Vec::new();
-    let mut roll = |creepage: &Creepage| -> Result<(), Error> {
-        match closed {
-            true => points.push(rolling::closed::point(&setup, creepage)?),
+    let mut roll = |creepage: &Creepage, pull: Option<&Pull>| -> Result<(), Error> {
+        let mut point = match closed {
+            true => rolling::closed::point(&setup, creepage)?,
             false => {
                 let solved = rolling::solve(&setup, creepage)?;
-                points.push(solved.point.clone());
+                let point = solved.point.clone();
                 rolled.push(solved);
+                point
             }
+        };
+        if let Some(pull) = pull {
+            pulling::determine(&setup, pull, &mut point)?;
         }
-        follow(points.len(), count);
+        points.push(point);
+        follow("points", points.len() as f64 / count);
         Ok(())
     };
     for creepage in &creepages {
-        roll(creepage)?;
+        roll(creepage, None)?;
     }
     for pull in &pulls {
-        roll(&pulling::creepage(file, &setup, pull)?)?;
+        roll(&pulling::creepage(file, &setup, pull)?, Some(pull))?;
     }
     for drive in &drives {
         strokes.push(fretting::solve(file, &setup, drive)?);
-        follow(strokes.len(), count);
+        follow("points", strokes.len() as f64 / count);
     }
-    let worn = plan.map(|plan| passages::wear(file, &setup, &plan, &rolled));
+    let worn = plan.map(|plan| passages::wear(file, &setup, &plan, &rolled, follow));
     let worn = worn.transpose()?;
-    if worn.is_some() {
-        follow(count, count);
-    }
     let pressures = rolled.iter().map(|s| &s.rolling.pressure);
     let mut pressures = pressures.chain(strokes.iter().map(|s| &s.found.fine.pressure));
     let first = match pressures.next() {
@@ -168,7 +212,11 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
     let of_cells = || [pressure.largest(), pressure.approach, area];
     let [largest, approach, area] = setup.rung.pressed(&setup.grid).unwrap_or_else(of_cells);
     let coulomb = setup.laws.iter().all(PatchLaw::is_constant);
+    let ratio = points.iter().map(|p| p.adhesion).reduce(f64::max);
+    let traction = ratio.map(|ratio| Traction { ratio, asked: true });
     Answer {
+        notes: setup.bodies.limits(setup.load),
+        strength: traction.and_then(|t| setup.bodies.strength(Some(t))),
         name: file.spec.name.clone(),
         bodies: setup.bodies.names.each_ref().map(|n| {
             let from = file.spec.materials.get(n);
@@ -182,6 +230,10 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
             .collect(),
         method: file.spec.method,
         about_method: setup.rung.about(coulomb),
+        errors: match (file.spec.method, coulomb) {
+            (Method::Exact, _) | (_, true) => file.spec.method.error_of().to_owned(),
+            (other, false) => format!("{} under Coulomb's law", other.error_of()),
+        },
         cells: setup.grid.cells,
         cell: setup.grid.size,
         pressure: largest,

@@ -2,7 +2,6 @@
 
 use super::answer::Motion;
 use super::fretting::map::FrettingMap;
-use super::method::Method;
 use super::profiles::Profiles;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
@@ -87,15 +86,12 @@ fn curve(outcome: &Outcome) -> Option<Section> {
             (p.adhesion - p.adhesion_error, p.adhesion + p.adhesion_error)
         }
     });
-    let note = match list[0].adhesion_band {
-        Some(_) if outcome.answer.third_body.is_some() => "Bars are the range over the seeds.",
-        Some(_) => "Bars are the range over the members.",
-        None => match outcome.answer.method {
-            Method::Exact => "Bars are the error by the grid.",
-            Method::Fastsim => "Bars are the error by the simplified theory.",
-            Method::ClosedForm => "Bars are the error by the closed form.",
-        },
+    let bars = match list[0].adhesion_band {
+        Some(_) if outcome.answer.third_body.is_some() => "range over the seeds",
+        Some(_) => "range over the members",
+        None => &format!("error {}", outcome.answer.errors),
     };
+    let note = format!("Bars are the {bars}.");
     let label = match outcome.answer.comparisons.is_empty() {
         true => "",
         false => "this patch",

@@ -54,15 +54,14 @@ const CLEAR: (f64, usize) = (1.1, 8);
 const SEARCH: (usize, f64, usize) = (32, 1.5, 20);
 
 impl Setup {
-    /// Makes a patch from its file, with laws from a search path.
+    /// Makes a patch from its file under a load (N), with laws from a search path.
     ///
     /// # Errors
     /// The file names what does not exist, a number is out of range, or a law cannot act in a
     /// patch.
-    pub fn new(file: &PatchFile, search: &SearchPath) -> Result<Self, Error> {
+    pub fn new(file: &PatchFile, load: f64, search: &SearchPath) -> Result<Self, Error> {
         let (spec, source) = (&file.spec, &file.source);
         let mut bodies = Bodies::read(file)?;
-        let load = positive(source, "load", &spec.load, "N")?;
         let speed = spec.speed.as_ref();
         let speed = speed
             .map(|s| positive(source, "speed", s, "m/s"))
@@ -142,7 +141,8 @@ impl Setup {
             }
         }
         if rolls {
-            out.check_time(out.speed, "the `speed` of rolling")?;
+            let with = "the `speed` of rolling, such as `speed: 100 km/h`";
+            out.check_time(file, out.speed, with)?;
         }
         Ok(out)
     }
@@ -151,15 +151,28 @@ impl Setup {
     ///
     /// # Errors
     /// There is such a law; the sentence says what to give.
-    pub fn check_time(&self, known: Option<f64>, with: &str) -> Result<(), Error> {
+    pub fn check_time(
+        &self,
+        file: &PatchFile,
+        known: Option<f64>,
+        with: &str,
+    ) -> Result<(), InputError> {
         let varies = self.laws.iter().find(|l| !l.is_constant());
-        match varies.filter(|_| known.is_none()) {
-            None => Ok(()),
-            Some(law) => Err(Error::Failed(format!(
-                "friction of the contact law `{}` may depend on the velocity of slip: give {with}",
-                law.interface().contact().plugin.name
-            ))),
-        }
+        let Some(law) = varies.filter(|_| known.is_none()) else {
+            return Ok(());
+        };
+        let interface = law.interface();
+        let place = file
+            .spec
+            .interfaces
+            .iter()
+            .position(|i| i.name == interface.name);
+        let path = format!("interfaces.{}.contact", place.unwrap_or_default());
+        let why = format!(
+            "friction of the contact law `{}` may depend on the velocity of slip: give {with}",
+            interface.contact().plugin.name
+        );
+        Err(file.source.error_at(&path, why))
     }
 
     /// Speed of rolling (m/s), with some value where no law reads it.
@@ -171,6 +184,18 @@ impl Setup {
     pub fn contact(&self) -> Option<Contact> {
         let profiles = self.bodies.profiles.as_ref();
         profiles.map(|p| p.contact(self.load))
+    }
+
+    /// Returns what limits the trust in a point with a largest pressure (Pa).
+    pub fn notes(&self, pressure: f64) -> Vec<String> {
+        let strength = self.bodies.strength(None);
+        let mut out: Vec<String> = strength
+            .and_then(|s| s.indents(pressure))
+            .into_iter()
+            .collect();
+        out.extend(self.bodies.short_line(self.load));
+        out.extend(self.contact().iter().flat_map(Contact::notes));
+        out
     }
 
     /// Returns the spin by the contact angle that adds to that of the motion (1/m).

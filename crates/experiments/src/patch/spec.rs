@@ -6,6 +6,7 @@ use super::profiles::ProfilesSpec;
 use super::rolling::comparison::{MeasuredSpec, PolachSpec};
 use super::rolling::passages::PassagesSpec;
 use super::third_body::ThirdBodySpec;
+use crate::amounts::short;
 use crate::spec::{Spec, SpecFile};
 use fretwork_observe::quantity::quantity;
 use fretwork_scene::case::{InterfaceSpec, SlotValues};
@@ -64,8 +65,8 @@ pub struct PatchSpec {
     /// cylinder on a plane.
     #[serde(default)]
     pub length: Option<NumberSpec>,
-    /// Load (N).
-    pub load: NumberSpec,
+    /// Load (N), a number or a list, under each of which the patch is solved.
+    pub load: Numbers,
     /// Speed of rolling (m/s); in fretting the mean speed of the stroke.
     #[serde(default)]
     pub speed: Option<NumberSpec>,
@@ -270,6 +271,58 @@ pub fn positive(
             path,
             format!("it is {}, and must be above zero", quantity(value, unit)),
         )),
+    }
+}
+
+/// Zero of degrees Celsius (K), and lowest temperature without a unit that is taken to be in
+/// kelvin: below it degrees Celsius were meant.
+const CELSIUS: f64 = 273.15;
+const COLDEST: f64 = 200.0;
+
+/// Returns a temperature (K).
+///
+/// # Errors
+/// It is not above zero, in another unit, or without one and likely to be in degrees Celsius.
+pub fn temperature(source: &Source, path: &str, number: &NumberSpec) -> Result<f64, InputError> {
+    let kelvin = positive(source, path, number, "K")?;
+    match number.unit.is_none() && kelvin < COLDEST {
+        false => Ok(kelvin),
+        true => {
+            let why = format!(
+                "a temperature without a unit is in kelvin: write {} K for {given} degrees Celsius, or {given} K if that is meant",
+                short(kelvin + CELSIUS),
+                given = short(kelvin)
+            );
+            Err(source.error_at(path, why))
+        }
+    }
+}
+
+/// Returns the loads of a file (N).
+///
+/// # Errors
+/// There is none, or one is not above zero.
+pub fn loads(file: &PatchFile) -> Result<Vec<f64>, InputError> {
+    let (load, source) = (&file.spec.load, &file.source);
+    let each = load.0.iter().enumerate();
+    let each = each.map(|(k, n)| positive(source, &load.path("load", k), n, "N"));
+    let all: Vec<f64> = each.collect::<Result<_, _>>()?;
+    match all.is_empty() {
+        false => Ok(all),
+        true => Err(source.error_at("load", "there is no load: give one, or a list")),
+    }
+}
+
+/// Returns the load of a file (N) that has one.
+///
+/// # Errors
+/// As of [`loads`], or there are several, which `what` cannot have.
+pub fn one_load(file: &PatchFile, what: &str) -> Result<f64, InputError> {
+    match loads(file)?[..] {
+        [load] => Ok(load),
+        _ => Err(file
+            .source
+            .error_at("load", format!("{what} has one load: give a number"))),
     }
 }
 

@@ -5,6 +5,7 @@ use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
 use super::rolling::passages_shown;
 use super::third_body::ThirdBody;
+use crate::amounts::short;
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::Estimate;
 use std::fmt::Write as _;
@@ -37,6 +38,13 @@ impl Answer {
             patch += &format!(", approach {}", quantity(self.approach, "m"));
         }
         add("patch", patch);
+        let yields = self.strength.as_ref().and_then(|s| s.yields(self.pressure));
+        if let Some(yields) = &yields {
+            add("steel", yields.clone());
+        }
+        for note in &self.notes {
+            add("note", note.clone());
+        }
         if let Some(about) = &self.about_method {
             add("method", about.clone());
         }
@@ -64,7 +72,7 @@ impl Answer {
                 Some(_) => "seeds",
                 None => "members",
             };
-            out.push_str(&point.text(over, self.method.error_of()));
+            out.push_str(&point.text(over, &self.errors));
             if let Some(settled) = windows.and_then(|w| w.points.get(k)) {
                 add_line(&mut out, "windows", &settled.line());
             }
@@ -99,10 +107,14 @@ impl Answer {
         let wholes = usize::from(self.passages.is_some()) + usize::from(self.map.is_some());
         let all = self.points.len() + self.cycles.len() + wholes;
         let noted = notes.filter(|n| !n.is_empty()).count();
-        let verdict = match noted {
-            0 => "all points converged, within the range of the theory".to_owned(),
-            n => format!("{n} of {all} results have notes, see above"),
+        let mut verdict = match (noted, self.notes.len()) {
+            (0, 0) => "all points converged, within the range of the theory".to_owned(),
+            (0, _) => "the patch has notes, see above".to_owned(),
+            (n, _) => format!("{n} of {all} results have notes, see above"),
         };
+        if yields.is_some() {
+            verdict += "; bodies are elastic here, and the steel yields, see `steel`";
+        }
         let _ = write!(out, "\nverdict: {verdict}");
         out
     }
@@ -112,22 +124,18 @@ impl Answer {
 const ROUNDING: f64 = 1e-6;
 const ROUNDING_ARM: f64 = 1e-9;
 
-/// Returns a number that was typed, without zeros at its end.
-pub(super) fn short(value: f64) -> String {
-    let text = number(value, 4);
-    match text.contains('.') && !text.contains('e') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
 impl Point {
     /// Returns its lines; its band is that over `members`, its error `by` the grid or a theory.
     fn text(&self, members: &str, by: &str) -> String {
         let mut out = match self.motion {
             Motion::Rolling(c) => {
                 let percent = |x: f64| format!("{} %", short(100.0 * x));
-                let mut parts = vec![format!("creepage {}", percent(c.along))];
+                let error = self.creepage_error.map(|e| match e.is_finite() {
+                    true => format!(" +- {} % {by}", number(100.0 * e, 2)),
+                    false => ", not determined".to_owned(),
+                });
+                let along = percent(c.along) + &error.unwrap_or_default();
+                let mut parts = vec![format!("creepage {along}")];
                 if c.across != 0.0 {
                     parts.push(format!("across {}", percent(c.across)));
                 }
@@ -151,7 +159,9 @@ impl Point {
         };
         let mut adhesion = number(self.adhesion, 4);
         // A given force has no error.
-        if !self.stroke.is_some_and(|c| c.by_force) {
+        let spun = matches!(self.motion, Motion::Rolling(c) if c.spin != 0.0);
+        let pulled = self.creepage_error.is_some() && !spun;
+        if !(pulled || self.stroke.is_some_and(|c| c.by_force)) {
             let error = number(self.adhesion_error, 2);
             adhesion += &format!(" +- {error} {by}");
         }
@@ -203,13 +213,19 @@ impl Point {
             add("sticks", format!("{share} % of the area{regime}"));
         }
         if let Some(speed) = self.slip_speed {
-            add("slip velocity", format!("up to {}", quantity(speed, "m/s")));
+            let mut text = format!("up to {}", quantity(speed, "m/s"));
+            if let Some(error) = self.slip_speed_error {
+                text += &format!(" +- {} {by}", quantity(error, "m/s"));
+            }
+            add("slip velocity", text);
         }
         if let Some(t) = self.temperature {
-            add("temperature", format!("up to {} K", number(t, 4)));
+            let error = self.temperature_error.unwrap_or(f64::NAN);
+            let [t, error] = [(t, 4), (error, 2)].map(|(x, digits)| number(x, digits));
+            add("temperature", format!("up to {t} K +- {error} K {by}"));
         }
         for wear in &self.wear {
-            add(&format!("wear of {}", wear.body), wear.text(rolls));
+            add(&format!("wear of {}", wear.body), wear.text(rolls, by));
         }
         for note in &self.notes {
             add("", note.clone());
@@ -221,7 +237,7 @@ impl Point {
 impl Wear {
     /// Returns volume and depth, of a passage or a cycle; where grid or seeds do not determine them
     /// it begins with that.
-    fn text(&self, rolls: bool) -> String {
+    fn text(&self, rolls: bool, by: &str) -> String {
         let undetermined = match self.is_known() {
             true => "",
             false => "not determined: ",
@@ -238,7 +254,7 @@ impl Wear {
             format!(" +- {half} % over the seeds")
         });
         format!(
-            "{undetermined}{volume} {unit} +- {error} by the grid{}, up to {depth} +- {depth_error} a {of} ({})",
+            "{undetermined}{volume} {unit} +- {error} {by}{}, up to {depth} +- {depth_error} a {of} ({})",
             seeds.unwrap_or_default(),
             self.law
         )
@@ -307,7 +323,7 @@ mod tests {
                 profile: Vec::new(),
                 half_width,
             };
-            wear.text(true)
+            wear.text(true, "by the grid")
         };
         let known = "0.01000 mm3 per metre +- 0.00020 by the grid";
         let rest = ", up to 1.000 nm +- 10.00 pm a passage (third body)";

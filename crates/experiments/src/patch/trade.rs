@@ -11,7 +11,7 @@ use super::fretting;
 use super::method::{Method, Rung};
 use super::rolling::{self, pulling};
 use super::setup::Setup;
-use super::spec::MotionSpec;
+use super::spec::{MotionSpec, one_load};
 use crate::Error;
 use crate::duration::seconds;
 use crate::table::csv::{self, NumberFormat};
@@ -101,6 +101,7 @@ pub fn run(
         let why = "a trade compares grids and methods under one law: leave out the `third_body`";
         return Err(file.source.error_at("third_body", why).into());
     }
+    one_load(file, "a trade")?;
     let mut settings: Vec<Setting> = Vec::new();
     let mut left_out = Vec::new();
     let mut arm = 0.0;
@@ -200,7 +201,7 @@ fn measure(file: &PatchFile, search: &SearchPath) -> Result<Measured, Error> {
     let mut creepages = rolling::creepages(file)?;
     let (_, drives) = fretting::strokes(file)?;
     let mut pulls = pulling::forces(file)?;
-    let mut setup = Setup::new(file, search)?;
+    let mut setup = Setup::new(file, one_load(file, "a trade")?, search)?;
     setup.laws.truncate(1);
     let spin = setup.added_spin();
     creepages.iter_mut().for_each(|c| c.spin += spin);

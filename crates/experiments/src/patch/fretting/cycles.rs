@@ -1,9 +1,10 @@
 //! Many cycles of a stroke: scars, debris and friction over the cycles.
 
 use crate::Error;
+use crate::patch::Follow;
 use crate::patch::answer::{Motion, Point};
-use crate::patch::fretting::fail;
 use crate::patch::fretting::spec::{CyclesSpec, FrettingSpec, StrokeDrive};
+use crate::patch::fretting::{FREQUENCY, fail};
 use crate::patch::law::{DEBRIS, outside};
 use crate::patch::said::Said;
 use crate::patch::setup::Setup;
@@ -51,7 +52,7 @@ pub fn solve(
     setup: &Setup,
     spec: &FrettingSpec,
     (drives, points): (&[StrokeDrive], &[Point]),
-    follow: &mut dyn FnMut(usize, usize),
+    follow: &mut Follow<'_>,
 ) -> Result<Vec<History>, Error> {
     let Some(cycles) = &spec.cycles else {
         return Ok(Vec::new());
@@ -80,13 +81,10 @@ pub fn solve(
     }
     let mut out = Vec::new();
     for (drive, point) in drives.iter().zip(points) {
-        setup.check_time(drive.step, "the `frequency` of the strokes")?;
+        setup.check_time(file, drive.step, FREQUENCY)?;
         let count = out.len();
         let mut history = of_drive(setup, drive, cycles, ejection, &mut |part| {
-            follow(
-                (1000.0 * (count as f64 + part)) as usize,
-                1000 * drives.len(),
-            );
+            follow("cycles", (count as f64 + part) / drives.len() as f64);
         })?;
         history.motion = point.motion;
         out.push(history);

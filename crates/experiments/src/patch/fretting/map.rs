@@ -2,6 +2,7 @@
 //! of their regimes, energy and wear of a cycle, and what becomes of the material.
 
 use crate::Error;
+use crate::patch::Follow;
 use crate::patch::fretting::fail;
 use crate::patch::fretting::spec::{CracksSpec, FrettingSpec, MapSpec};
 use crate::patch::law::PatchLaw;
@@ -145,7 +146,7 @@ pub fn solve(
     setup: &Setup,
     spec: &FrettingSpec,
     map: &MapSpec,
-    follow: &mut dyn FnMut(usize, usize),
+    follow: &mut Follow<'_>,
 ) -> Result<FrettingMap, Error> {
     let source = &file.source;
     let loads = map.load.numbers(file, "motion.map.load", "N")?;
@@ -159,7 +160,8 @@ pub fn solve(
             )
             .into());
     }
-    setup.check_time(setup.speed, "`speed`, the mean speed of the strokes")?;
+    let with = "the mean speed of the strokes, such as `speed: 1 mm/s`";
+    setup.check_time(file, setup.speed, with)?;
     let cracks = spec.cracks.as_ref();
     let cracks = cracks.map(|c| read_cracks(file, setup, c)).transpose()?;
     let bodies = match setup.laws[0].interface().law(Kind::WEAR) {
@@ -191,7 +193,7 @@ pub fn solve(
         let (places, edges) = row(setup, &out, load, grid, &limits, &mut left)?;
         out.places.push(places);
         out.edges.push(edges);
-        follow(k + 1, out.loads.len());
+        follow("map", (k + 1) as f64 / out.loads.len() as f64);
     }
     let all = out.loads.len() * out.amplitudes.len();
     let notes = left.into_iter().map(|(table, places): (String, usize)| {

@@ -12,7 +12,6 @@ use crate::Error;
 use crate::patch::answer::{Band, Cycle, Motion, Point, Wear};
 use crate::patch::fretting::spec::{FrettingSpec, StrokeDrive, drives};
 use crate::patch::law::{PatchLaw, outside};
-use crate::patch::profiles::Contact;
 use crate::patch::rolling::{bodies_that_wear, coarse};
 use crate::patch::said::Said;
 use crate::patch::setup::Setup;
@@ -23,6 +22,8 @@ use fretwork_rolling::cells::half_width;
 use fretwork_rolling::{Amplitude, Estimate, RefinedStroke, Strokes};
 use fretwork_scene::InputError;
 
+/// What a file gives for laws that depend on the velocity of slip.
+const FREQUENCY: &str = "the `frequency` of the stroke, such as `frequency: 20 Hz`";
 /// Force over the load below which it is of the size of the residual of the tractions.
 const LEAST: f64 = 1e-5;
 /// Energy of the drive over that of slip, less 1, that is no longer small.
@@ -72,10 +73,12 @@ impl Stroke {
 /// A law fails, friction does not hold the force, or there is no solution.
 pub fn solve(file: &PatchFile, setup: &Setup, drive: &StrokeDrive) -> Result<Stroke, Error> {
     let with = match drive.amplitude {
-        Amplitude::Displacement(_) => "`frequency`, or `speed`, the mean speed of the stroke",
-        Amplitude::Force(_) => "the `frequency` of the stroke",
+        Amplitude::Displacement(_) => {
+            "`frequency`, or `speed`, the mean speed of the stroke, such as `frequency: 20 Hz`"
+        }
+        Amplitude::Force(_) => FREQUENCY,
     };
-    setup.check_time(drive.step, with)?;
+    setup.check_time(file, drive.step, with)?;
     // The law of the file is solved last, so that what stays with its cells is that of the cycle.
     let others = setup.laws[1..].iter();
     let members = others.map(|law| -> Result<f64, Error> {
@@ -150,9 +153,7 @@ fn point(
             quantity(half, "m")
         ));
     }
-    notes.extend(setup.bodies.yields(found.fine.pressure.largest()));
-    notes.extend(setup.bodies.short_line(setup.load));
-    notes.extend(setup.contact().iter().flat_map(Contact::notes));
+    notes.extend(setup.notes(found.fine.pressure.largest()));
     let force = found.amplitude[1];
     let slips = found.energy.value > 1e-3 * cycle.amplitude[0] * cycle.amplitude[1];
     let energy = if slips {
@@ -212,7 +213,10 @@ fn point(
         resistance: 0.0,
         stuck: Some(cycle.stuck),
         slip_speed: drive.step.map(|s| cycle.fastest / s),
+        slip_speed_error: None,
         temperature: None,
+        temperature_error: None,
+        creepage_error: None,
         wear: wear.unwrap_or_default(),
         iterations: cycle.iterations,
         unique: cycle.unique,

@@ -1,12 +1,12 @@
 //! The profiles of a file: how they are given, read and put in their places.
 
+use crate::patch::columns::column;
 use crate::patch::spec::{PatchFile, value};
 use fretwork_observe::quantity::quantity;
 use fretwork_rolling::Curve;
 use fretwork_scene::InputError;
 use fretwork_scene::material::NumberSpec;
 use fretwork_scene::measured::MeasuredTable;
-use fretwork_scene::units;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -85,23 +85,8 @@ impl ProfileSpec {
         let path = format!("{at}.file");
         let table = MeasuredTable::read(&file.beside(&self.file));
         let table = table.map_err(|e| source.named_at(&path, e))?;
-        let column = |name: &str| -> Result<Vec<f64>, InputError> {
-            let column = table
-                .required(name)
-                .map_err(|e| source.named_at(&path, e))?;
-            let unit = &table.headings[column].unit;
-            if unit.is_empty() {
-                let why = format!(
-                    "the heading `{name}` has no unit: write it as `{name} [mm]`, in the unit of its numbers"
-                );
-                return Err(source.error_at(&path, why));
-            }
-            let in_metres = |v: f64| units::convert(v, unit, "m");
-            let values = table.values(column)?.into_iter().map(in_metres);
-            let values: Result<Vec<f64>, _> = values.collect();
-            values.map_err(|e| source.error_at(&path, format!("column `{name}`: {}", e.message)))
-        };
-        let rows = column(&self.y)?.into_iter().zip(column(&self.z)?);
+        let lengths = |name: &str| column(source, &path, &table, (name, "m"));
+        let rows = lengths(&self.y)?.into_iter().zip(lengths(&self.z)?);
         let down = if self.down { -1.0 } else { 1.0 };
         let rows: Vec<[f64; 2]> = rows.map(|(y, z)| [y, down * z]).collect();
         let onwards = rows.len() > 1 && rows[1][0] > rows[0][0];

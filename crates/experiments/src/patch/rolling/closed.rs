@@ -27,8 +27,7 @@ pub fn point(setup: &Setup, creepage: &Creepage) -> Result<Point, Error> {
     let adhesion = length(force) / setup.load;
     let t_gamma = -(force[0] * creepage.along + force[1] * creepage.across);
     let largest = setup.rung.pressed(&setup.grid).map_or(0.0, |p| p[0]);
-    let mut notes: Vec<String> = setup.bodies.yields(largest).into_iter().collect();
-    notes.extend(setup.bodies.short_line(setup.load));
+    let mut notes = setup.notes(largest);
     if error > COARSE * length(force) {
         notes.push(format!(
             "NOT IN RANGE: the closed form is for small spin, and with this one it may be off by {:.0} % of the force: take `Fastsim` or `Exact`",
@@ -54,7 +53,10 @@ pub fn point(setup: &Setup, creepage: &Creepage) -> Result<Point, Error> {
         resistance: 0.0,
         stuck: None,
         slip_speed: None,
+        slip_speed_error: None,
         temperature: None,
+        temperature_error: None,
+        creepage_error: None,
         wear: Vec::new(),
         iterations: [0; 2],
         unique: true,

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::patch::answer::{Motion, Point};
+use crate::patch::columns::column;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{PatchFile, value};
 use fretwork_elastic::patch::Solid;
@@ -9,7 +10,6 @@ use fretwork_rolling::{Creepage, Polach};
 use fretwork_scene::InputError;
 use fretwork_scene::material::NumberSpec;
 use fretwork_scene::measured::MeasuredTable;
-use fretwork_scene::units::convert;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -198,21 +198,11 @@ pub(in crate::patch) fn measured(
         let at = format!("measured.{k}.file");
         let table = MeasuredTable::read(&file.beside(&spec.file));
         let table = table.map_err(|e| file.source.named_at(&at, e))?;
-        let column = |name: &str| -> Result<Vec<f64>, InputError> {
-            let column = table.required(name)?;
-            let unit = &table.headings[column].unit;
-            let values = table.values(column)?.into_iter();
-            let pure = values.map(|v| convert(v, unit, ""));
-            let pure: Result<Vec<f64>, _> = pure.collect();
-            pure.map_err(|e| {
-                file.source
-                    .error_at(&at, format!("column `{name}`: {}", e.message))
-            })
-        };
+        let pure = |name: &str| column(&file.source, &at, &table, (name, ""));
         let pair = |from: &str, to: Option<&String>| -> Result<Vec<[f64; 2]>, InputError> {
-            let low = column(from)?;
+            let low = pure(from)?;
             let high = match to {
-                Some(to) => column(to)?,
+                Some(to) => pure(to)?,
                 None => low.clone(),
             };
             let ends = low.into_iter().zip(high);

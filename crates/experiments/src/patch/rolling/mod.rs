@@ -7,22 +7,23 @@ pub(in crate::patch) mod passages_shown;
 pub(in crate::patch) mod pulling;
 #[cfg(test)]
 mod tests;
+mod theory;
 pub(in crate::patch) mod wear;
 
 use crate::Error;
+use crate::amounts::short;
 use crate::patch::answer::{Band, Motion, Point};
 use crate::patch::law::{Passage, PatchLaw};
 use crate::patch::method::Rung;
-use crate::patch::profiles::Contact;
 use crate::patch::setup::Setup;
 use crate::patch::spec::{MotionSpec, Numbers, PatchFile, value};
-use crate::patch::text::short;
 use fretwork_observe::quantity::{number, quantity};
 use fretwork_rolling::fields::length;
 use fretwork_rolling::friction::Cells;
 use fretwork_rolling::pull::LARGEST;
-use fretwork_rolling::{Creepage, Fastsim, Refined, Rolling};
+use fretwork_rolling::{Creepage, Estimate, Fastsim, Refined, Rolling};
 use fretwork_scene::InputError;
+use theory::TheoryError;
 
 /// Difference of the energies supplied and dissipated over the latter that is no longer small,
 /// where pressures resist by more than this share of T gamma.
@@ -52,22 +53,10 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
         let list: Vec<f64> = list
             .map(|(k, n)| value(source, &numbers.path(&path, k), n, unit))
             .collect::<Result<_, _>>()?;
-        let large = list
-            .iter()
-            .position(|x| unit.is_empty() && x.abs() > LARGEST);
-        if let Some(k) = large {
-            // A number without a unit may have been meant in per cent.
-            let advice = match numbers.0[k].unit {
-                Some(_) => String::new(),
-                None => format!("; in per cent write {} %", short(list[k])),
-            };
-            return Err(source.error_at(
-                &numbers.path(&path, k),
-                format!(
-                    "a creepage of {} is more than {LARGEST}, where bodies slide rather than roll{advice}",
-                    short(list[k])
-                ),
-            ));
+        for (k, value) in list.iter().enumerate().filter(|_| unit.is_empty()) {
+            if let Some(why) = too_large(*value, numbers.0[k].unit.is_none()) {
+                return Err(source.error_at(&numbers.path(&path, k), why));
+            }
         }
         Ok(list)
     };
@@ -105,6 +94,19 @@ pub fn creepages(file: &PatchFile) -> Result<Vec<Creepage>, InputError> {
     Ok((0..count).map(point).collect())
 }
 
+/// Returns why a creepage is too large; one that is `bare` of a unit may have been meant in per
+/// cent.
+pub(crate) fn too_large(creepage: f64, bare: bool) -> Option<String> {
+    let shown = short(creepage);
+    let advice = match bare {
+        true => format!("; in per cent write {shown} %"),
+        false => String::new(),
+    };
+    (creepage.abs() > LARGEST).then(|| {
+        format!("a creepage of {shown} is more than {LARGEST}, where bodies slide rather than roll{advice}")
+    })
+}
+
 /// A solved point with the fields over its cells.
 #[derive(Debug)]
 pub struct Solved {
@@ -128,7 +130,29 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     });
     let members: Vec<f64> = members.collect::<Result<_, Error>>()?;
     let speed = setup.rolling_speed();
-    let wear = wear::of_passage(setup, &setup.laws[0], &refined, &passage.worn)?;
+    let law = &setup.laws[0];
+    let [one, other] = &refined.coarse;
+    let passages = [passage_of(setup, one, law)?, passage_of(setup, other, law)?];
+    let mut wear = wear::of_passage(setup, law, &refined, (&passage, &passages));
+    let of_grid = wear
+        .first()
+        .map_or([0.0; 2], |w| [w.volume_error, w.volume]);
+    let theory = TheoryError::of(setup, law, creepage, &refined.fine)?;
+    let parts = bodies_that_wear(setup).into_iter();
+    for (wear, (_, part)) in wear.iter_mut().zip(parts) {
+        wear.volume_error += part * theory.volume;
+        wear.depth_error += part * theory.depth;
+    }
+    let slip = largest(
+        fastest(&refined.fine),
+        [fastest(one), fastest(other)],
+        theory.slip,
+    );
+    let heats = setup.speed.is_some() && !passage.temperature.is_empty();
+    let temperature = heats.then(|| {
+        let coarse = passages.each_ref().map(hottest);
+        largest(hottest(&passage), coarse, theory.temperature)
+    });
     let Refined {
         fine,
         force,
@@ -137,12 +161,9 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         ..
     } = refined;
     let grid = fine.grid;
-    let cells = fine.tractions.slip.iter().zip(&fine.pressure.pressure);
-    let touching = cells.clone().filter(|(_, p)| **p > 0.0).count();
+    let touching = fine.pressure.pressure.iter().filter(|p| **p > 0.0).count();
     let sticks = fine.tractions.sticks.iter().zip(&fine.pressure.pressure);
     let stuck = sticks.filter(|(s, p)| **s && **p > 0.0).count();
-    let most = |list: &[f64]| list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let slips = cells.map(|(s, _)| length(*s));
     let adhesion = length(force) / setup.load;
     let t_gamma =
         -(force[0] * creepage.along + force[1] * creepage.across + moment.value * creepage.spin);
@@ -152,11 +173,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
     }
     notes.extend(coarse(&[
         ("the force", length(error), length(force)),
-        (
-            "the wear",
-            wear.first().map_or(0.0, |w| w.volume_error),
-            wear.first().map_or(0.0, |w| w.volume),
-        ),
+        ("the wear", of_grid[0], of_grid[1]),
     ]));
     if let Some(thermal) = setup.laws[0].thermal() {
         let peclet = thermal.peclet(0.5 * grid.extent()[0], speed);
@@ -177,9 +194,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
             quantity(fine.dissipation, "J/m")
         ));
     }
-    notes.extend(setup.bodies.yields(fine.pressure.largest()));
-    notes.extend(setup.bodies.short_line(setup.load));
-    notes.extend(setup.contact().iter().flat_map(Contact::notes));
+    notes.extend(setup.notes(fine.pressure.largest()));
     let mut pressed = fine.pressure.pressure.iter().enumerate();
     let distance = &setup.bodies.distance;
     if pressed.any(|(cell, p)| *p > 0.0 && !distance.knows(grid.middle(cell)[1])) {
@@ -193,7 +208,7 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         Rung::Fastsim(_) => Fastsim::ERROR[usize::from(creepage.spin != 0.0)] * bounds,
         _ => 0.0,
     };
-    let temperature = setup.speed.filter(|_| !passage.temperature.is_empty());
+    notes.extend(temperature.and_then(|t| setup.bodies.melts(t.value)));
     let point = Point {
         motion: Motion::Rolling(*creepage),
         stroke: None,
@@ -206,10 +221,11 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         dissipation: fine.dissipation,
         resistance: fine.resistance,
         stuck: Some(stuck as f64 / touching as f64),
-        slip_speed: setup
-            .speed
-            .map(|v| slips.fold(0.0, f64::max) * v / grid.size[0]),
-        temperature: temperature.map(|_| most(&passage.temperature)),
+        slip_speed: setup.speed.map(|v| v * slip.value),
+        slip_speed_error: setup.speed.map(|v| v * slip.error),
+        temperature: temperature.map(|t| t.value),
+        temperature_error: temperature.map(|t| t.error),
+        creepage_error: None,
         wear,
         iterations: fine.tractions.iterations,
         unique: fine.tractions.unique,
@@ -220,6 +236,43 @@ pub fn solve(setup: &Setup, creepage: &Creepage) -> Result<Solved, Error> {
         rolling: fine,
         passage,
     })
+}
+
+/// Returns the largest slip over the distance rolled.
+fn fastest(rolling: &Rolling) -> f64 {
+    let slips = rolling.tractions.slip.iter().map(|s| length(*s));
+    slips.fold(0.0, f64::max) / rolling.grid.size[0]
+}
+
+/// Returns the highest temperature of a passage (K).
+fn hottest(passage: &Passage) -> f64 {
+    let cells = passage.temperature.iter().copied();
+    cells.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Returns a largest number of a grid with its error: the larger difference to coarse grids, and
+/// that of the theory. The place of a largest number jumps from cell to cell, so that it is not
+/// extrapolated.
+fn largest(fine: f64, coarse: [f64; 2], theory: f64) -> Estimate {
+    let away = coarse.map(|c| (fine - c).abs());
+    Estimate {
+        value: fine,
+        error: away[0].max(away[1]) + theory,
+    }
+}
+
+/// Returns what a law gives in the cells of a solved patch.
+///
+/// # Errors
+/// The law fails.
+fn passage_of(setup: &Setup, rolling: &Rolling, law: &PatchLaw) -> Result<Passage, Error> {
+    let cells = Cells {
+        grid: &rolling.grid,
+        pressure: &rolling.pressure.pressure,
+        speed: setup.rolling_speed(),
+    };
+    let passage = law.passage(cells, &rolling.wearing_slip());
+    passage.map_err(|e| Error::Failed(e.to_string()))
 }
 
 /// Returns a note where the grid errs by more than a small part of numbers, each with its name and
@@ -244,21 +297,14 @@ pub(in crate::patch) fn of_law(
     creepage: &Creepage,
     law: &PatchLaw,
 ) -> Result<(Refined, Passage), Error> {
-    let speed = setup.rolling_speed();
     let solved = setup.refined(creepage, law);
     let fail = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
     if let Some(error) = law.take_error() {
         return Err(fail(&error));
     }
     let refined = solved.map_err(|e| fail(&e))?;
-    let fine = &refined.fine;
-    let cells = Cells {
-        grid: &fine.grid,
-        pressure: &fine.pressure.pressure,
-        speed,
-    };
-    let passage = law.passage(cells, &fine.wearing_slip());
-    Ok((refined, passage.map_err(|e| fail(&e))?))
+    let passage = passage_of(setup, &refined.fine, law)?;
+    Ok((refined, passage))
 }
 
 /// Returns the bodies and their parts in what the wear law gives: by the law and the hardness of

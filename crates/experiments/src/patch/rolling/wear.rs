@@ -1,11 +1,9 @@
 //! Wear of a passage of bodies that roll, with the error of its grid.
 
-use crate::Error;
 use crate::patch::answer::Wear;
-use crate::patch::law::PatchLaw;
+use crate::patch::law::{Passage, PatchLaw};
 use crate::patch::setup::Setup;
 use fretwork_core::laws::Kind;
-use fretwork_rolling::friction::Cells;
 use fretwork_rolling::{Estimate, Refined, Rolling};
 
 /// Depths that a passage takes off the rows of a grid.
@@ -32,7 +30,8 @@ impl Rows {
         self.depth.iter().sum::<f64>() * self.width
     }
 
-    fn deepest(&self) -> f64 {
+    /// Returns the largest depth (m).
+    pub fn deepest(&self) -> f64 {
         self.depth.iter().copied().fold(0.0, f64::max)
     }
 }
@@ -68,38 +67,24 @@ impl Grids {
     }
 }
 
-/// Returns the wear of a passage, of each body where it follows from their hardness; `fine` has the
-/// depths of the cells of the fine grid (m).
-///
-/// # Errors
-/// The law fails.
+/// Returns the wear of a passage, of each body where it follows from their hardness; the passages
+/// are those of the fine grid and the coarse ones.
 pub(super) fn of_passage(
     setup: &Setup,
     law: &PatchLaw,
     refined: &Refined,
-    fine: &[f64],
-) -> Result<Vec<Wear>, Error> {
+    (fine, coarse): (&Passage, &[Passage; 2]),
+) -> Vec<Wear> {
     let Some(wear) = law.interface().law(Kind::WEAR) else {
-        return Ok(Vec::new());
+        return Vec::new();
     };
-    let of = |rolling: &Rolling| -> Result<Rows, Error> {
-        let cells = Cells {
-            grid: &rolling.grid,
-            pressure: &rolling.pressure.pressure,
-            speed: setup.rolling_speed(),
-        };
-        let passage = law.passage(cells, &rolling.wearing_slip());
-        let passage = passage.map_err(|e| Error::Failed(e.to_string()))?;
-        Ok(Rows::of(rolling, &passage.worn))
-    };
-    let [one, other] = &refined.coarse;
     let grids = Grids {
-        fine: Rows::of(&refined.fine, fine),
-        coarse: [of(one)?, of(other)?],
+        fine: Rows::of(&refined.fine, &fine.worn),
+        coarse: [0, 1].map(|k| Rows::of(&refined.coarse[k], &coarse[k].worn)),
     };
     let bodies = super::bodies_that_wear(setup).into_iter();
     let bodies = bodies.map(|(body, part)| grids.wear(body, &wear.plugin.name, part));
-    Ok(bodies.collect())
+    bodies.collect()
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ use super::rolling::comparison;
 use super::rolling::wear::{Grids, Rows};
 use super::rolling::{Solved, of_law};
 use super::setup::Setup;
-use super::spec::MotionSpec;
+use super::spec::{MotionSpec, one_load};
 use super::{Outcome, PatchFile, numbers, rolling};
 use crate::{Error, RunSetup};
 use fretwork_core::laws::{Kind, SearchPath};
@@ -122,7 +122,7 @@ pub fn solve(file: &PatchFile, search: &SearchPath, runs: &Runs<'_>) -> Result<R
         return Err(Error::Usage("the patch has no `third_body`".into()));
     };
     let creepages = creepages(file)?;
-    let mut setup = Setup::new(file, search)?;
+    let mut setup = Setup::new(file, one_load(file, "a patch with a `third_body`")?, search)?;
     check(file, &setup)?;
     setup.laws.truncate(1);
     let window = Window::read(file, spec)?;
