@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The pictures of docs/paraview.md: grains, contacts, bodies and a deformable body of short runs, drawn with pyvista from the .vtkhdf files.
+"""The pictures of docs/paraview.md: grains, contacts and a deformable body of short runs, drawn with pyvista from the .vtkhdf files.
 
     pip install pyvista pillow
     cargo build --release
-    python3 docs/paraview_pictures.py [FOLDER]          # runs four cases into results/paraview, some two minutes, and writes PNG files there
+    python3 docs/paraview_pictures.py [FOLDER]          # runs five cases into results/paraview, some two minutes, and writes PNG files there
     python3 docs/paraview_pictures.py --figures         # writes them to docs/figures
 
 Without a screen on Linux, VTK 9.4 or newer renders in memory; older ones need `xvfb-run python3 docs/paraview_pictures.py`.
@@ -21,6 +21,7 @@ CASES = {
     "spheres": ["cases/shear_cell_3d.ron"],
     "disks": ["cases/plane_shear.ron", "--set", "time.end=1.2"],
     "plate": ["cases/verification/voronoi_plate.ron", "--set", "output.views=8"],
+    "layer": ["cases/wheel_rail_fretting.ron", "--set", "time.end=0.0125", "--set", "output.views=4"],
     "cylinder": ["cases/cylinder_on_flat_fretting.ron", "--set", "time.end=0.0225", "--set", "output.views=9"],
 }
 # By status: 0 no force, 1 stick, 2 slip, 3 intact bond, 4 broken bond without force.
@@ -103,17 +104,27 @@ def contacts(run):
     return plotter
 
 
-def bodies(run):
-    """Outlines coloured by the speed of the grain: `body` of an outline is `id` of a grain."""
-    time, outlines = last(f"{run}/bodies.vtkhdf")
-    points = last(f"{run}/grains.vtkhdf")[1]
-    order = np.argsort(points["id"])
-    row = order[np.searchsorted(points["id"][order], outlines["body"])]
-    outlines["speed"] = np.linalg.norm(points["velocity"], axis=1)[row]
+def shapes(run):
+    """Cells of a plate by their speed."""
+    time, cells = last(f"{run}/shapes.vtkhdf")
+    cells["speed"] = np.linalg.norm(cells["velocity"], axis=1)
     plotter = scene()
-    plotter.add_mesh(outlines, scalars="speed", cmap="viridis", line_width=3, lighting=False, scalar_bar_args=bar("speed (m/s)"))
+    plotter.add_mesh(cells, scalars="speed", cmap="viridis", show_edges=True, lighting=False, scalar_bar_args=bar("speed (m/s)"))
     plotter.add_text(f"t = {time:.3g} s", color="black", font_size=11)
     flat_view(plotter, (-0.11, -0.03), (0.54, 0.23))
+    return plotter
+
+
+def layer(run):
+    """Grains of a third body by the damage of their bonds, and the surfaces of the first bodies."""
+    time, cells = last(f"{run}/shapes.vtkhdf")
+    surfaces = last(f"{run}/bodies.vtkhdf")[1]
+    plotter = scene()
+    plotter.add_mesh(cells, scalars="damage", cmap="inferno_r", clim=(0.0, 1.0), nan_color="#dddddd", lighting=False, scalar_bar_args=bar("damage"))
+    plotter.add_mesh(surfaces, color="black", line_width=2, lighting=False)
+    plotter.add_text(f"t = {time:.3g} s", color="black", font_size=11)
+    low, high = np.array(cells.bounds[0::2]), np.array(cells.bounds[1::2])
+    flat_view(plotter, low, (high[0] + 0.25 * (high[0] - low[0]), high[1]))
     return plotter
 
 
@@ -142,7 +153,7 @@ def main():
         out = os.path.join(options.folder, name)
         if not os.path.exists(os.path.join(out, "summary.json")):
             subprocess.run([PROGRAM, "run", *case, "--out", out, "--force"], check=True, stdout=subprocess.DEVNULL)
-    for picture, run in ((grains, "spheres"), (contacts, "disks"), (bodies, "plate"), (mesh, "cylinder")):
+    for picture, run in ((grains, "spheres"), (contacts, "disks"), (shapes, "plate"), (layer, "layer"), (mesh, "cylinder")):
         path = os.path.join("docs/figures" if options.figures else options.folder, f"paraview_{picture.__name__}.png")
         plotter = picture(os.path.join(options.folder, run))
         image = Image.fromarray(plotter.screenshot(return_img=True))

@@ -256,7 +256,8 @@ def check_h5(path, live):
 ARRAYS = {
     "grains": ("Point", {"id": 1, "radius": 1, "velocity": 3, "spin": 1}),
     "contacts": ("Cell", {"body_1": 1, "body_2": 1, "status": 1, "force": 3, "normal": 3, "force_normal": 1}),
-    "bodies": ("Cell", {"body": 1}),
+    "bodies": ("Cell", {"body": 1, "velocity": 3}),
+    "shapes": ("Cell", {"id": 1, "radius": 1, "velocity": 3, "spin": 1}),
 }
 
 
@@ -268,6 +269,53 @@ def check_arrays(name, data):
         found = given.GetArray(array)
         if found is None or found.GetNumberOfComponents() != components:
             fail(f"VTK has no array {array} of {components} components in {name}.vtkhdf")
+
+
+def check_shapes(folder):
+    """The cells of shapes.vtkhdf are the points of grains.vtkhdf in all states: with their fields, about their places, in 2D of their size."""
+    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    path = os.path.join(folder, "shapes.vtkhdf")
+    if not os.path.exists(path):
+        return
+    with h5py.File(os.path.join(folder, "results.h5"), "r") as file:
+        view = file["views/grains"]
+        flat, counts = int(file.attrs["dimension"]) == 2, view["NumberOfPoints"][:]
+        reader = vtkHDFReader()
+        reader.SetFileName(path)
+        reader.UpdateInformation()
+        if reader.GetNumberOfSteps() != len(counts):
+            fail(f"{path} has {reader.GetNumberOfSteps()} states, grains {len(counts)}")
+        largest = 0.0
+        for k, first in enumerate(np.cumsum(counts) - counts):
+            reader.SetStep(k)
+            reader.Update()
+            cells, rows = reader.GetOutputDataObject(0), slice(first, first + counts[k])
+            if cells.GetNumberOfCells() != counts[k]:
+                fail(f"state {k} of {path} has {cells.GetNumberOfCells()} cells for {counts[k]} grains")
+            for name, values in view["PointData"].items():
+                seen = vtk_to_numpy(cells.GetCellData().GetArray(name))
+                if not np.array_equal(seen, values[rows], equal_nan=True):
+                    fail(f"VTK reads other values of {name} of shapes than of grains in state {k} of {path}")
+            bounds = np.array([cells.GetCell(c).GetBounds() for c in range(counts[k])])
+            at, radius = view["Points"][rows], view["PointData/radius"][rows]
+            outside = np.maximum(bounds[:, 0::2] - at, at - bounds[:, 1::2]).max(axis=1)
+            if (outside > 1e-9 * radius).any():
+                fail(f"a shape of state {k} of {path} is not about the place of its grain")
+            if flat:
+                sizes = vtkCellSizeFilter()
+                sizes.SetInputData(cells)
+                sizes.Update()
+                area = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area"))
+                shaped = area > 0.0
+                # The polygon of a disk has 16 corners: 8 sin(pi/8) over pi of its area. A rounded corner is divided finer.
+                off = np.abs(area[shaped] / (np.pi * radius[shaped] ** 2) - 1.0)
+                largest = max(largest, off.max(initial=0.0))
+        if largest > 1.001 * (1.0 - 8.0 * np.sin(np.pi / 8.0) / np.pi):
+            fail(f"a shape of {path} has an area that is not that of its grain: {100.0 * largest:.1f} % off")
+        print(f"VTK and h5py shapes: {len(counts)} states, areas within {100.0 * largest:.1f} % of those of the grains")
 
 
 def check_vtk(path, name):
@@ -353,7 +401,8 @@ def main():
     check_h5(path, live)
     if not live:
         check_vtk(path, "results.h5")
-        missing = [name for name in ARRAYS if not os.path.exists(os.path.join(folders[0], f"{name}.vtkhdf"))]
+        check_shapes(folders[0])
+        missing = [name for name in ("grains", "contacts", "bodies") if not os.path.exists(os.path.join(folders[0], f"{name}.vtkhdf"))]
         if missing:
             fail(f"there is no {missing[0]}.vtkhdf in {folders[0]}")
         for file in sorted(os.listdir(folders[0])):

@@ -226,7 +226,7 @@ fn a_file_without_shapes_is_refused_with_a_sentence() {
             ..Part::default()
         };
         let parts = [grains, Part::default(), Part::default()];
-        results.append_views(0.5, &parts).unwrap();
+        results.append_views(0.5, &parts, &[]).unwrap();
         results.finish(&folder.0).unwrap();
         let state = r#"State(results: "older.h5", material: "grain")"#;
         let built = folder.build::<Dim2>(&case(2, "stone", state, ""));

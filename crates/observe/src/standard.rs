@@ -9,6 +9,7 @@ use super::first_bodies::WearMaterials;
 use super::fracture::Fracture;
 use super::friction::Cycles;
 use super::friction_test::FrictionTest;
+use super::grain_bonds::GrainBonds;
 use super::heat::HeatObserver;
 use super::jump::CycleJumps;
 use super::law_tables::{LawTables, reads_table};
@@ -74,6 +75,9 @@ pub fn observers(case: &Case, run: &dyn RunView, materials: &WearMaterials) -> O
     let cohesion = |i: &InterfaceSpec| i.law(Kind::COHESION).is_some();
     let bonds = case.interfaces.iter().any(cohesion);
     all.push(Box::new(BrokenBonds::new(bonds)));
+    if bonds {
+        all.push(Box::new(GrainBonds));
+    }
     all.push(Box::new(Fracture::of(case, run)));
     if let Some(circuit) = &case.circuit {
         let worn = WornGrains::new(test.map(|t| t.body), materials.clone());

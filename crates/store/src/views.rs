@@ -45,6 +45,7 @@ pub fn header(
         seed: loaded.case.seed,
         dimension,
         shapes: shapes::of(simulation, built.densities, built.deforming),
+        corners: simulation.grain_corners().iter().map(Vec::len).collect(),
         meshes: meshes::of(&loaded.case, simulation),
         version: run.version.clone(),
         statistics: observers.columns(),
@@ -54,7 +55,11 @@ pub fn header(
             vec![Column::new("body", "", "identity of the body")],
         ],
         numbers: both(FieldKind::Whole),
-        vectors: both(FieldKind::Vector),
+        vectors: {
+            let [grains, contacts, _] = both(FieldKind::Vector);
+            let doc = "velocity of the body at its origin";
+            [grains, contacts, vec![Column::new("velocity", "m/s", doc)]]
+        },
     }
 }
 
@@ -86,13 +91,16 @@ fn part(values: Vec<FieldValues>) -> Part {
     part
 }
 
-/// Returns the size in bytes of a recorded state per grain and per contact: points, cells and
-/// fields of 8 bytes per number.
+/// Returns the size in bytes of a recorded state per grain and per contact: points, cells, corners
+/// and fields of 8 bytes per number.
 pub fn bytes(run: &dyn RunView, circuit: bool) -> [usize; 2] {
     let width = |fields: Vec<FieldInfo>| fields.iter().map(FieldInfo::width).sum::<usize>();
     let grain = width(run.grain_fields(with(run, circuit)));
     let contact = width(run.contact_fields());
-    [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
+    let parts = run.grain_corners();
+    let corners: usize = parts.iter().map(Vec::len).sum();
+    let corners = corners.checked_div(parts.len()).unwrap_or(0);
+    [8 * (3 + 2 + grain + 3 * corners), 8 * (6 + 3 + contact)]
 }
 
 /// Appends the current state of a case, with the values of the observers' columns of the grains, in
@@ -113,7 +121,14 @@ pub fn append(
         column
     }));
     results.append_meshes(run.time(), &meshes::values(&loaded.case, run))?;
-    results.append_views(run.time(), &[grains, contacts(run), bodies(run)])
+    let corners: Vec<f64> = run
+        .grain_corners()
+        .into_iter()
+        .flatten()
+        .flatten()
+        .collect();
+    let parts = [grains, contacts(run), bodies(run)];
+    results.append_views(run.time(), &parts, &corners)
 }
 
 fn grains(run: &dyn RunView, circuit: bool) -> Part {
@@ -135,28 +150,21 @@ fn contacts(run: &dyn RunView) -> Part {
     }
 }
 
+/// The surfaces of first bodies.
 fn bodies(run: &dyn RunView) -> Part {
     let mut part = Part {
-        data: vec![Vec::new(); 1],
+        data: vec![Vec::new()],
+        vectors: vec![Vec::new()],
         ..Part::default()
     };
     let ids = run.bodies().id;
-    let mut add = |body: u32, points: &[[f64; 3]]| {
-        let first = part.points.len() as i64 / 3;
-        part.points.extend(points.iter().flatten());
-        part.cells
-            .push((first..first + points.len() as i64).collect());
-        part.data[0].push(ids[body as usize] as f64);
-    };
     for line in run.surface_outlines() {
-        add(line.body, &line.points);
-    }
-    for mut line in run.piece_outlines() {
-        // Lines need an explicit closing point, polygons do not.
-        if run.dimension() == 2 {
-            line.points.extend(line.points.first().copied());
-        }
-        add(line.body, &line.points);
+        let first = part.points.len() as i64 / 3;
+        part.points.extend(line.points.iter().flatten());
+        part.cells
+            .push((first..first + line.points.len() as i64).collect());
+        part.data[0].push(ids[line.body as usize] as f64);
+        part.vectors[0].extend(run.motion(line.body as usize).velocity);
     }
     part
 }

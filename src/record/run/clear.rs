@@ -15,10 +15,11 @@ const PICTURES: [&str; 2] = ["frame", "bonds"];
 
 /// Files of the program in the folder of a run that exist when older files are removed; they do not
 /// belong to an observer.
-pub(super) const OWN: [&str; 7] = [
+pub(super) const OWN: [&str; 8] = [
     "results.h5",
     "grains.vtkhdf",
     "bodies.vtkhdf",
+    "shapes.vtkhdf",
     "contacts.vtkhdf",
     "statistics.csv",
     Figure::FILE,

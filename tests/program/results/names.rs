@@ -112,7 +112,7 @@ fn views_agree<S: Space>(file: &H5File) {
         assert_eq!(grains.remove(&name), Some(field), "{name}");
     }
     let of_observers: Vec<&str> = grains.keys().map(String::as_str).collect();
-    assert_eq!(of_observers, ["shear"]);
+    assert_eq!(of_observers, ["cluster", "damage", "shear"]);
     let units = grains.iter().map(|(name, [unit, _])| {
         let unit = if unit == "1" { "" } else { unit.as_str() };
         (name.as_str(), unit)
@@ -123,7 +123,7 @@ fn views_agree<S: Space>(file: &H5File) {
         "the pages of the outputs lack {missing:?}"
     );
     let bodies = written(file, &["views/bodies/CellData"]);
-    assert_eq!(bodies.keys().collect::<Vec<_>>(), ["body"]);
+    assert_eq!(bodies.keys().collect::<Vec<_>>(), ["body", "velocity"]);
     // Vectors have three numbers, with which viewers draw arrows.
     for field in [
         "contacts/CellData/force",

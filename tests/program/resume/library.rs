@@ -214,6 +214,7 @@ fn a_callback_stops_a_run_with_all_its_files_and_it_goes_on_with_the_same_bits()
         "grains.vtkhdf",
         "contacts.vtkhdf",
         "bodies.vtkhdf",
+        "shapes.vtkhdf",
         "mean_gap.txt",
     ] {
         assert!(folder.0.join(file).exists(), "{file}");

@@ -46,6 +46,7 @@ mod contacts_view;
 mod control;
 mod fields;
 mod memory;
+mod part_corners;
 pub mod placement;
 mod rows;
 mod run_view;

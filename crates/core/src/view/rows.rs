@@ -130,7 +130,7 @@ pub struct SurfaceView {
     pub flat: Option<[f64; 3]>,
 }
 
-/// A line of a shape: of a surface, or around a piece or one of its faces.
+/// A line of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Index of the body.

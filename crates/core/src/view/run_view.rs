@@ -4,6 +4,7 @@ use super::bodies_view::BodiesView;
 use super::contacts_view::ContactsView;
 use super::fields::{self, FieldInfo, FieldValues, GrainFields};
 use super::memory::MemoryUse;
+use super::part_corners;
 use super::shapes_view::ShapesView;
 use crate::contact::detect::LawTable;
 use crate::energy::Energy;
@@ -110,6 +111,10 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     fn grain_centres(&self) -> Vec<[f64; 3]>;
     /// Returns the centres of these parts, moved into the periodic cell (m).
     fn grain_points(&self) -> Vec<[f64; 3]>;
+    /// Returns the corners of each of these parts (m), as many at all times, in the periodic cell: in
+    /// the plane of a polygon, anticlockwise, which stands for a disk too; in space of a convex
+    /// piece, and the centre of anything else.
+    fn grain_corners(&self) -> Vec<Vec<[f64; 3]>>;
     /// Returns the fields of the parts of grains and first bodies, in the order in which they are
     /// written.
     fn grain_fields(&self, with: GrainFields) -> Vec<FieldInfo>;
@@ -250,6 +255,9 @@ impl<S: Space> RunView for Simulation<S> {
     fn grain_points(&self) -> Vec<[f64; 3]> {
         let wrapped = |part: GrainPart<S>| self.shapes.periodic.wrapped(part.centre).padded();
         GrainPart::all(self).map(wrapped).collect()
+    }
+    fn grain_corners(&self) -> Vec<Vec<[f64; 3]>> {
+        part_corners::of(self)
     }
     fn grain_fields(&self, with: GrainFields) -> Vec<FieldInfo> {
         fields::grain_fields(self, with)

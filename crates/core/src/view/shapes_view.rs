@@ -1,6 +1,5 @@
 //! Reading the shapes of a simulation, and its bodies that are more than rigid.
 
-use super::placement;
 use super::rows::{BallView, Outline, PieceView, ScarVertex, ScarView, SurfaceView};
 use super::systems::{SystemReader, SystemView};
 use crate::bodies::SystemStep;
@@ -25,9 +24,6 @@ pub trait ShapesView {
     /// Returns the current outline of a piece, including its rounding, about its centre, in world
     /// axes (m): one line in 2D, one around each face in 3D.
     fn piece_outline(&self, piece: usize) -> Vec<Vec<[f64; 3]>>;
-    /// Returns the lines around the pieces at their current positions (m), in the periodic cell:
-    /// one around each piece in 2D, one around each face in 3D.
-    fn piece_outlines(&self) -> Vec<Outline>;
     /// The surfaces of all bodies.
     fn surfaces(&self) -> Vec<SurfaceView>;
     /// Returns the lines of a surface in its own frame (m), whose origin is
@@ -108,17 +104,6 @@ impl<S: Space> ShapesView for Simulation<S> {
         let rotation = &self.state.bodies.rotation[piece.body as usize];
         let lines = piece.core.turned(rotation).outline(piece.rounding);
         lines.iter().map(|line| padded(line)).collect()
-    }
-    fn piece_outlines(&self) -> Vec<Outline> {
-        let pieces = self.shapes.pieces.iter();
-        let lines = pieces.flat_map(|piece| {
-            let lines = placement::piece_outline(self, piece).into_iter();
-            lines.map(|corners| Outline {
-                body: piece.body,
-                points: padded(&corners),
-            })
-        });
-        lines.collect()
     }
     fn surfaces(&self) -> Vec<SurfaceView> {
         let surfaces = self.shapes.surfaces.iter().map(|surface| SurfaceView {

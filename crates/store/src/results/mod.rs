@@ -8,6 +8,7 @@
 //! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
 //! /events/TABLE/NAME  one value per event of the observers' tables
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
+//! /views/shapes                                           temporal VTKHDF UnstructuredGrid of the grains' parts
 //! /views/meshes/NAME, /views/surfaces/NAME                temporal VTKHDF UnstructuredGrid of deformable bodies
 //! /checkpoints/even, /checkpoints/odd                    states for `--resume`, see [`crate::checkpoint`]
 //! /VTKHDF      the grains' view                           grains.vtkhdf and others: links to the views, for ParaView
@@ -22,6 +23,7 @@ pub mod maps;
 mod mesh_view;
 mod previous;
 mod reader;
+mod shape_view;
 pub mod shapes;
 pub mod state;
 mod store;
@@ -42,6 +44,7 @@ use events::Events;
 use fretwork_observe::observer::{Event, EventTable};
 use fretwork_observe::statistics::Column;
 use mesh_view::MeshView;
+use shape_view::ShapeView;
 use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -77,6 +80,8 @@ pub struct Header {
     pub events: Vec<EventTable>,
     /// Shapes of grains other than single balls.
     pub shapes: Shaped,
+    /// Corners of each part of grains and first bodies, as many at all times.
+    pub corners: Vec<usize>,
     /// Meshes and surfaces of deformable bodies.
     pub meshes: Vec<Mesh>,
 }
@@ -106,6 +111,7 @@ pub struct Results {
     buffered: Vec<Vec<f64>>,
     events: Vec<Events>,
     views: Vec<View>,
+    shapes: Option<ShapeView>,
     meshes: Vec<MeshView>,
     /// Names of the companion files, and the views that they link to.
     companions: Vec<[String; 2]>,
@@ -137,6 +143,9 @@ impl Results {
         }
         let events = Events::declare(&mut store, &header.events, header.dimension)?;
         let views = declare_views(&mut store, header)?;
+        let shapes = (!header.corners.is_empty())
+            .then(|| ShapeView::declare(&mut store, &header.corners, header.dimension))
+            .transpose()?;
         let meshes = declare_meshes(&mut store, &header.meshes)?;
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;
@@ -150,8 +159,9 @@ impl Results {
             buffered: vec![Vec::new(); header.statistics.len()],
             events,
             views,
+            companions: companions(&header.meshes, shapes.is_some()),
+            shapes,
             meshes,
-            companions: companions(&header.meshes),
             checkpoints,
             flushed: Some((Instant::now(), Duration::ZERO)),
         })
@@ -316,16 +326,25 @@ impl Results {
         pairs.try_for_each(|(mesh, values)| mesh.append(store, time, values))
     }
 
-    /// Appends a state: grains, contacts, bodies.
+    /// Appends a state: grains, contacts, bodies, and the corners of the parts of grains and first
+    /// bodies (m), three numbers each.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn append_views(&mut self, time: f64, parts: &[Part; 3]) -> Result<(), ResultsError> {
+    pub fn append_views(
+        &mut self,
+        time: f64,
+        parts: &[Part; 3],
+        corners: &[f64],
+    ) -> Result<(), ResultsError> {
         let Some(store) = &mut self.store else {
             return Ok(());
         };
         for (view, part) in self.views.iter_mut().zip(parts) {
             view.append(store, time, part)?;
+        }
+        if let Some(shapes) = &mut self.shapes {
+            shapes.append(store, corners)?;
         }
         self.flush_if_due(0)
     }
@@ -405,10 +424,11 @@ fn declare_meshes(store: &mut Store, meshes: &[Mesh]) -> Result<Vec<MeshView>, R
 }
 
 /// Names of the files that link to the views, for ParaView, with these views.
-fn companions(meshes: &[Mesh]) -> Vec<[String; 2]> {
+fn companions(meshes: &[Mesh], shapes: bool) -> Vec<[String; 2]> {
     let always = ["grains", "contacts", "bodies"].map(str::to_owned);
+    let shapes = shapes.then(|| "shapes".to_owned());
     let of_meshes = meshes.iter().map(|mesh| mesh.group.clone());
-    let names = always.into_iter().chain(of_meshes);
+    let names = always.into_iter().chain(shapes).chain(of_meshes);
     names
         .map(|group| {
             let name = group.replacen("meshes/", "mesh_", 1);

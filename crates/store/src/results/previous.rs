@@ -190,6 +190,9 @@ impl Results {
         for view in &mut self.views {
             view.resume(store);
         }
+        if let Some(shapes) = &mut self.shapes {
+            shapes.resume(store);
+        }
         for mesh in &mut self.meshes {
             mesh.resume(store);
         }

@@ -7,7 +7,7 @@
 //! one with the largest force is chosen, and the link must be chosen from both ends, so that chains
 //! do not branch. A chain has at least three grains.
 
-use super::clusters::Sets;
+use crate::sets::Sets;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
