@@ -27,6 +27,7 @@ from ._progress import Progress
 from ._report import compare, report
 from ._results import Results
 from ._sections import Section
+from ._shipped import copy_shipped
 from ._simulation import Simulation, StepReport
 from ._study import read_study
 
@@ -57,6 +58,7 @@ __all__ = [
     "__version__",
     "compare",
     "contact_patch",
+    "copy_shipped",
     "law",
     "material",
     "materials",

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from time import time
-from typing import Any, Union
+from typing import Any, Literal, Union
 from warnings import warn
 
 from . import _fretwork
@@ -15,6 +15,7 @@ from ._check import Check
 from ._errors import Error
 from ._fretwork import CaseData, SimulationData
 from ._observers import Answer, Observer, adapt
+from ._plot import LivePlot
 from ._progress import Progress, display
 from ._report import report as make_report
 from ._results import Results
@@ -223,7 +224,7 @@ class Case:
         out: AnyPath | None = None,
         *,
         threads: int = 1,
-        progress: bool | Callable[[Progress], object] = True,
+        progress: bool | Literal["plot"] | Callable[[Progress], object] = True,
         resume: bool = False,
         report: bool = True,
         observers: Sequence[Observer | Callable[[Simulation], Answer]] = (),
@@ -233,8 +234,9 @@ class Case:
         """Runs the case to its end and returns its results.
 
         Files go to ``out``, by default ``results/NAME`` of the case file; those of an older run there are replaced. They are the
-        same bits as those of ``fretwork run``, on any number of ``threads``. ``progress`` shows a bar (with tqdm), or calls a
-        function with a :class:`Progress` some times a second.
+        same bits as those of ``fretwork run``, on any number of ``threads``. ``progress`` shows a bar (with tqdm), with
+        ``"plot"`` in a notebook also the figure of :meth:`Results.plot` as the run goes on, or calls a function with a
+        :class:`Progress` some times a second.
 
         Ctrl-C ends the run after its step, with all files written, and raises ``KeyboardInterrupt``; ``resume=True`` goes on
         from there, or from the last checkpoint of a run that was killed. A finished run is not repeated.
@@ -246,7 +248,7 @@ class Case:
         Raises ``InputError`` if the case is wrong, ``RunError`` if the run fails, and what an observer raises.
         """
         folder = _fretwork.default_folder(self.file) if out is None else out
-        shows = display(progress)
+        shows = LivePlot(display(True), lambda: Results(folder).statistics) if progress == "plot" else display(progress)
         began = time()
 
         def show(*line: Any) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 
 class Error(Exception):
@@ -67,3 +69,11 @@ def missing(package: str, extra: str, what: str) -> MissingPackageError:
     return MissingPackageError(
         f"{what} needs the package {package}: pip install 'pyfretwork[{extra}]'"
     )
+
+
+def need(package: str, extra: str, what: str) -> Any:
+    """The package, which an extra of this one brings."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise missing(package, extra, what) from error

@@ -10,28 +10,22 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
-from ._errors import InputError, missing
+from ._errors import InputError, need
+from ._plot import figure_of
 
 if TYPE_CHECKING:
     import h5py
     import pandas as pd
     import pyvista as pv
     import xarray as xr
+    from matplotlib.figure import Figure
 
 AXES = ("x", "y", "z")
-
-
-def need(package: str, extra: str, what: str) -> Any:
-    from importlib import import_module
-
-    try:
-        return import_module(package)
-    except ImportError as error:
-        raise missing(package, extra, what) from error
 
 
 def _attributes(data: Any) -> dict[str, str]:
@@ -301,6 +295,47 @@ class Results:
             mesh.field_data["time"] = [float(steps["Values"][state])]
             result: pv.DataSet = mesh
             return result
+
+    def plot(self, *names: str, against: str = "time") -> Figure:
+        """Draws columns of the :attr:`statistics` against another, side by side, with matplotlib; a notebook shows the figure.
+
+        Without names it draws those that show most of the run: loops and friction of a test, damage ratio, temperature; the
+        energies of a run without any of them. ``results.plot("Q", against="delta")`` draws a loop, ``figure.axes`` changes
+        what is drawn, and ``figure.savefig("loop.png")`` writes it. The run may still go on.
+        """
+        return figure_of(self.statistics, names, against)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows of it: the trust in the run, the main results with their half-widths, the warnings."""
+        path = self.folder / "summary.json"
+        where = escape(str(self.folder))
+        if not path.is_file():
+            return f"<p>{where}: the run goes on, or was stopped; <code>statistics</code> and <code>plot()</code> show it so far.</p>"
+        summary, quantities = self.summary, self.quantities
+        headlines = [name for name, entry in quantities.items() if entry.get("role") == "headline" and "*" not in name]
+        rows: list[str] = []
+        for name in headlines or [name for name, entry in quantities.items() if entry.get("role") == "secondary" and "*" not in name]:
+            entry = quantities[name]
+            value: Any = summary
+            for part in name.split("."):
+                value = value.get(part) if isinstance(value, dict) else None
+            if not isinstance(value, (int, float)) or isinstance(value, bool):
+                continue
+            estimate = entry.get("estimate") or {}
+            widths = [estimate[of] for of in ("scatter", "step", "tolerance") if estimate.get(of) is not None]
+            half = ""
+            if widths:
+                width = sum(w * w for w in widths) ** 0.5
+                determined = estimate.get("determined")
+                half = f" ± {width:.2g}" if determined or (determined is None and width <= 0.25 * abs(value)) else " (not determined)"
+            unit = "" if entry.get("unit") == "1" else escape(str(entry.get("unit", "")))
+            label = escape(str(entry.get("label") or entry.get("doc", name)))
+            rows.append(f"<tr><td style='text-align:left'>{label}</td><td>{value:.4g}{half}</td><td style='text-align:left'>{unit}</td></tr>")
+        warned = "".join(f"<li>{escape(text)}</li>" for text in self.warnings)
+        return (
+            f"<p><b>{escape(self.grade or ('trustworthy' if self.trustworthy else 'not trustworthy'))}</b>, {where}</p>"
+            f"<table>{''.join(rows)}</table>" + (f"<ul>{warned}</ul>" if warned else "")
+        )
 
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r})"

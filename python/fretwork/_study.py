@@ -7,8 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
-from ._errors import InputError
-from ._results import need
+from ._errors import InputError, need
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,6 +19,7 @@ mod paths;
 mod report;
 mod run;
 mod search;
+mod shipped;
 mod simulation;
 mod stepper;
 mod workers;
@@ -40,6 +41,7 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(material::materials, module)?)?;
     module.add_function(wrap_pyfunction!(new_case::new_case, module)?)?;
     module.add_function(wrap_pyfunction!(patch::patch, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped::copy_shipped, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;
     law::add(module)

@@ -75,19 +75,7 @@ fn list(args: &ListArgs) -> Result<(), Failure> {
 }
 
 fn copy(args: &CopyArgs) -> Result<(), Failure> {
-    let named = |input: &ShippedInput| input.name() == args.name || input.path == args.name;
-    let found: Vec<ShippedInput> = ShippedInput::all().filter(named).collect();
-    if found.is_empty() {
-        let names: Vec<&str> = ShippedInput::all().map(|input| input.name()).collect();
-        let meant = match crate::scene::source::nearest(&args.name, names) {
-            Some(name) => format!(": did you mean `{name}`?"),
-            None => String::new(),
-        };
-        return Err(Failure::Usage(format!(
-            "nothing that is shipped is named `{}`{meant} (all: fretwork cases list)",
-            args.name
-        )));
-    }
+    let found = inputs::named(&args.name).map_err(Failure::Usage)?;
     for input in found {
         let written = input.copy(&args.out);
         let written = written.map_err(|e| Failure::Failed(e.to_string()))?;

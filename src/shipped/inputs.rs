@@ -229,6 +229,26 @@ pub fn find(kind: InputKind, given: &Path) -> Result<PathBuf, String> {
     ))
 }
 
+/// Returns the inputs of a name, or of a path in the folder of the project: at most one of each
+/// kind.
+///
+/// # Errors
+/// Nothing that is shipped is named so.
+pub fn named(name: &str) -> Result<Vec<ShippedInput>, String> {
+    let is_named = |input: &ShippedInput| input.name() == name || input.path == name;
+    let found: Vec<ShippedInput> = ShippedInput::all().filter(is_named).collect();
+    if found.is_empty() {
+        let meant = match nearest(name, ShippedInput::all().map(|input| input.name())) {
+            Some(name) => format!(": did you mean `{name}`?"),
+            None => String::new(),
+        };
+        return Err(format!(
+            "nothing that is shipped is named `{name}`{meant} (all: fretwork cases list)"
+        ));
+    }
+    Ok(found)
+}
+
 /// Text of a shipped file.
 fn text_of(path: &str) -> Option<&'static str> {
     let found = FILES.iter().find(|(name, _)| *name == path);
