@@ -1,7 +1,7 @@
 //! Links between pages, and pages that sources and cases name.
 
-use super::{lines_with_code, pages, read, root};
-use std::collections::BTreeMap;
+use super::{lines_with_code, pages, pages_for_users, read, root};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The targets of the links of a text.
@@ -9,6 +9,22 @@ pub(super) fn targets(text: &str) -> impl Iterator<Item = &str> {
     let rest = text.split("](").skip(1);
     rest.filter_map(|rest| rest.split([')', '"']).next())
         .map(str::trim)
+}
+
+/// The text of a page without its blocks of code, and without what is between backticks.
+fn without_code(page: &str) -> String {
+    let lines = lines_with_code(page).filter(|(_, code)| !code);
+    let text = lines.map(|(line, _)| line).collect::<Vec<_>>().join("\n");
+    text.split('`').step_by(2).collect::<Vec<_>>().join(" ")
+}
+
+/// The pages to which a page links.
+fn linked(page: &Path) -> Vec<PathBuf> {
+    let text = without_code(&read(page));
+    let files = targets(&text).filter_map(|link| link.split('#').next());
+    let files = files.filter(|f| f.ends_with(".md") && !f.contains("://"));
+    let files = files.filter_map(|f| page.parent()?.join(f).canonicalize().ok());
+    files.collect()
 }
 
 /// The anchors of the headings of a page, as GitHub and the book make them.
@@ -70,12 +86,7 @@ fn links_lead_somewhere() {
     }
     let (mut wrong, mut found) = (Vec::new(), 0);
     for page in all {
-        let text = read(&page);
-        let text = lines_with_code(&text).filter(|(_, code)| !code);
-        let text = text.map(|(line, _)| line).collect::<Vec<_>>().join("\n");
-        // What is between backticks is code.
-        let text = text.split('`').step_by(2).collect::<Vec<_>>().join(" ");
-        for link in targets(&text) {
+        for link in targets(&without_code(&read(&page))) {
             found += 1;
             wrong.extend(broken(&page, link));
         }
@@ -94,6 +105,82 @@ fn the_summary_lists_every_page_once() {
         let name = page.strip_prefix(&docs).unwrap().to_str().unwrap();
         let times = listed.iter().filter(|l| **l == name).count();
         assert_eq!(times, 1, "docs/SUMMARY.md has {name} {times} times");
+    }
+}
+
+#[test]
+fn every_page_for_users_is_two_clicks_from_the_index() {
+    let docs = root().join("docs");
+    let index = docs.join("index.md");
+    let near = linked(&index);
+    let mut reached: BTreeSet<PathBuf> = near.iter().flat_map(|page| linked(page)).collect();
+    reached.extend(near);
+    let listed = pages_for_users().into_iter();
+    let listed = listed.filter(|page| page.starts_with(&docs) && *page != index);
+    let far: Vec<PathBuf> = listed
+        .filter(|page| !reached.contains(&page.canonicalize().unwrap()))
+        .collect();
+    assert!(reached.len() > 50, "{}", reached.len());
+    assert!(
+        far.is_empty(),
+        "docs/index.md, and the pages that it links to, have no link to {far:#?}"
+    );
+}
+
+/// The README and the index send a reader with one question to the same page.
+#[test]
+fn the_index_has_the_pages_of_the_readme() {
+    let users = pages_for_users().into_iter();
+    let users: Vec<PathBuf> = users.map(|page| page.canonicalize().unwrap()).collect();
+    let index = linked(&root().join("docs/index.md"));
+    let mut readme = linked(&root().join("README.md"));
+    readme.retain(|page| users.contains(page) && !page.ends_with("index.md"));
+    assert!(readme.len() > 20, "{}", readme.len());
+    readme.retain(|page| !index.contains(page));
+    assert!(
+        readme.is_empty(),
+        "docs/index.md has no link to {readme:#?}"
+    );
+}
+
+/// Code and tables count as words, so that a page can be looked through.
+#[test]
+fn no_page_for_users_has_more_than_2500_words() {
+    let mut long = Vec::new();
+    for page in pages_for_users() {
+        let words = read(&page).split_whitespace().count();
+        if words > 2500 {
+            long.push(format!("{}: {words}", page.display()));
+        }
+    }
+    assert!(long.is_empty(), "divide these pages by question: {long:#?}");
+}
+
+/// The book has the files outside `docs` to which its pages link.
+#[test]
+fn the_book_copies_what_its_pages_link_to() {
+    let root = root().canonicalize().unwrap();
+    let script = read(&root.join("docs/book.sh"));
+    let (_, list) = script.split_once("for folder in ").unwrap();
+    let (list, _) = list.split_once(';').unwrap();
+    let copied = list.split_whitespace().chain(["docs"]);
+    let copied: Vec<PathBuf> = copied.map(|folder| root.join(folder)).collect();
+    for page in pages()
+        .into_iter()
+        .filter(|page| !page.ends_with("README.md"))
+    {
+        for link in targets(&without_code(&read(&page))) {
+            let file = link.split('#').next().unwrap_or(link);
+            let Ok(target) = page.parent().unwrap().join(file).canonicalize() else {
+                continue;
+            };
+            let there = copied.iter().any(|folder| target.starts_with(folder));
+            assert!(
+                there,
+                "{}: docs/book.sh does not copy {link}",
+                page.display()
+            );
+        }
     }
 }
 

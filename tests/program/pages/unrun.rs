@@ -1,7 +1,9 @@
-//! Commands in blocks that show no output are not run: what they name is checked.
+//! Commands in blocks that show no output are not run: what they name is checked, and so are the
+//! whole cases that pages show.
 
 use super::console::words;
 use super::{pages_for_users, read, root};
+use crate::temp::TempFolder;
 use std::collections::BTreeSet;
 use std::process::Command;
 
@@ -82,6 +84,30 @@ fn commands_that_are_not_run_name_cases_and_keys_that_there_are() {
     }
     assert!(checked.len() > 30, "{}", checked.len());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The whole cases that a page shows.
+fn cases(page: &str) -> impl Iterator<Item = &str> {
+    let blocks = page.split("```ron\n").skip(1);
+    let blocks = blocks.filter_map(|rest| rest.split("```").next());
+    blocks.filter(|text| text.starts_with("(\n") && text.contains("\n    dimension: "))
+}
+
+#[test]
+fn whole_cases_of_the_pages_pass_the_check() {
+    let (folder, mut checked) = (TempFolder::new("whole-cases"), 0);
+    for path in pages_for_users() {
+        for case in cases(&read(&path)) {
+            std::fs::write(folder.join("case.ron"), case).unwrap();
+            let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
+            let command = command.args(["check", "case.ron", "--no-timing"]);
+            let output = command.current_dir(&*folder).output().unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {error}", path.display());
+            checked += 1;
+        }
+    }
+    assert!(checked >= 2, "{checked}");
 }
 
 #[test]
