@@ -11,6 +11,7 @@ from run to run (times, memory addresses, progress bars) are not saved.
 from __future__ import annotations
 
 import base64
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -20,6 +21,7 @@ import nbclient
 import nbformat
 
 FOLDER = Path(__file__).resolve().parent
+ADDRESS = re.compile(r" \(0x[0-9a-f]+\)")
 WIDGET = "application/vnd.jupyter.widget-view+json"
 LARGEST = 250_000
 """Largest notebook with its outputs (bytes)."""
@@ -41,12 +43,20 @@ def clean(notebook: Any) -> None:
         cell.metadata.pop("execution", None)
         if cell.cell_type != "code":
             continue
-        cell.outputs = [output for output in cell.outputs if output.get("name") != "stderr" and WIDGET not in output.get("data", {})]
+        cell.outputs = [output for output in cell.outputs if seen(output)]
         for output in cell.outputs:
             data = output.get("data", {})
             if "image/png" in data:
-                data["image/png"] = smaller(data["image/png"])
-                data.pop("text/plain", None)
+                output.data = type(data)({"image/png": smaller(data["image/png"])})
+            elif "text" in output:
+                output.text = ADDRESS.sub("", output.text)
+
+
+def seen(output: Any) -> bool:
+    """Whether a reader of the saved notebook has something of an output: not of progress, of widgets, and of what they return."""
+    data = output.get("data", {})
+    returned = output.output_type == "display_data" and list(data) == ["text/plain"]
+    return output.get("name") != "stderr" and WIDGET not in data and not returned
 
 
 def smaller(text: str) -> str:
