@@ -21,7 +21,7 @@ CASES = {
     "spheres": ["cases/shear_cell_3d.ron"],
     "disks": ["cases/plane_shear.ron", "--set", "time.end=1.2"],
     "plate": ["cases/verification/voronoi_plate.ron", "--set", "output.views=8"],
-    "layer": ["cases/wheel_rail_fretting.ron", "--set", "time.end=0.0125", "--set", "output.views=4"],
+    "layer": ["cases/fretting_resistance.ron", "--set", "time.end=0.075", "--set", "output.views=3"],
     "cylinder": ["cases/cylinder_on_flat_fretting.ron", "--set", "time.end=0.0225", "--set", "output.views=9"],
 }
 # By status: 0 no force, 1 stick, 2 slip, 3 intact bond, 4 broken bond without force.
