@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from ._errors import InputError, need
@@ -60,13 +61,21 @@ def draw(figure: Figure, table: pd.DataFrame, pairs: Sequence[tuple[str, str]]) 
 def figure_of(table: pd.DataFrame, names: Sequence[str], against: str) -> Figure:
     """A figure of columns against one, or of those that show most."""
     need("matplotlib", "notebooks", "figures of results")
-    from matplotlib.figure import Figure as Plain
+    from matplotlib.figure import Figure as Base
+
+    class Shown(Base):
+        """A figure that a notebook shows, also where pyplot has drawn none before."""
+
+        def _repr_png_(self) -> bytes:
+            out = BytesIO()
+            self.savefig(out, format="png")
+            return out.getvalue()
 
     wrong = [name for name in (*names, against) if name not in table]
     if wrong:
         raise InputError(f"there is no column `{wrong[0]}` in the statistics: {', '.join(table.columns)}", wrong[0])
     pairs = [(against, name) for name in names] or chosen(table)
-    figure = Plain(figsize=(4.2 * len(pairs), 3.2), layout="constrained")
+    figure = Shown(figsize=(4.2 * len(pairs), 3.2), layout="constrained")
     draw(figure, table, pairs)
     return figure
 

@@ -22,6 +22,8 @@ import nbformat
 
 FOLDER = Path(__file__).resolve().parent
 ADDRESS = re.compile(r" \(0x[0-9a-f]+\)")
+UNPACKED = re.compile(r"[^\s:]*/fretwork/[0-9.]+-[0-9a-f]{16}/")
+"""The folder of a user in which shipped cases are."""
 WIDGET = "application/vnd.jupyter.widget-view+json"
 LARGEST = 250_000
 """Largest notebook with its outputs (bytes)."""
@@ -49,7 +51,7 @@ def clean(notebook: Any) -> None:
             if "image/png" in data:
                 output.data = type(data)({"image/png": smaller(data["image/png"])})
             elif "text" in output:
-                output.text = ADDRESS.sub("", output.text)
+                output.text = UNPACKED.sub("", ADDRESS.sub("", output.text))
 
 
 def seen(output: Any) -> bool:

@@ -30,6 +30,16 @@ def test_a_figure_has_the_columns_with_meaning_and_unit(results):
     assert [axis.get_xlabel() for axis in results.plot().axes] == ["time (ms)"] * len(chosen(table))
 
 
+def test_a_notebook_shows_a_figure_without_pyplot(results):
+    from io import BytesIO
+
+    image = pytest.importorskip("PIL.Image")
+    figure = results.plot("kinetic")
+    shown = image.open(BytesIO(figure._repr_png_()))
+    assert shown.size == tuple((figure.get_size_inches() * figure.dpi).astype(int))
+    assert len(shown.convert("L").getcolors()) > 10
+
+
 def test_a_wrong_column_is_named(results):
     with pytest.raises(InputError, match="no column `kinetics`"):
         results.plot("kinetics")
