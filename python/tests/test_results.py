@@ -105,3 +105,22 @@ def test_a_run_that_goes_on_can_be_read(shear, here):
     shear["output.checkpoint"] = {"Steps": 10} if "Steps" in shear.kinds("output.checkpoint") else "Never"
     shear.run("results/b", progress=False, observers=[look])
     assert seen and seen[0][0] == 0.0
+
+
+def shapes_are_the_grains(results):
+    """The cells of the shapes are the points of the grains, with their fields, about their places, and of their size in the plane."""
+    for state in (0, -1):
+        shapes, grains = results.mesh(state, view="shapes"), results.mesh(state)
+        assert shapes.n_cells == grains.n_points
+        assert set(shapes.cell_data) == set(grains.point_data)
+        assert all(np.array_equal(shapes[name], grains[name], equal_nan=True) for name in grains.point_data)
+        assert abs(shapes.cell_centers().points - grains.points).max() < 1e-6 * grains["radius"].min()
+        # A disk is a polygon of 16 corners.
+        area = shapes.compute_cell_sizes(length=False, volume=False)["Area"]
+        np.testing.assert_allclose(area, 8.0 * np.sin(np.pi / 8.0) * grains["radius"] ** 2, rtol=1e-9)
+
+
+def test_shapes_are_the_grains(results):
+    pytest.importorskip("pyvista")
+    assert "shapes" in results.views
+    shapes_are_the_grains(results)
