@@ -45,12 +45,12 @@ GALLERY = {
     "Wheel on rail": {
         "wheel_rail_rolling": ("What is the adhesion of a wheel that rolls over debris?", ""),
         "wheel_rail_creep": ("What happens to the layer while a point passes the patch of a wheel with creepage?", ""),
-        "carter_rolling": ("What force has a rolling line contact at a creepage?", ""),
+        "carter_rolling": ("What force has a rolling line contact at a creepage?", "deformable.png"),
     },
     "Fretting and wear": {
         "cylinder_on_flat_fretting": ("Where does a cylinder that frets on a flat stick, and where does it slip?", ""),
         "sphere_on_flat_fretting": ("Partial or gross slip: where is a ball on a flat?", "fretting_loops.png"),
-        "fretting_wear_elastic": ("What scar does gross slip leave, and how does its pressure change?", ""),
+        "fretting_wear_elastic": ("What scar does gross slip leave, and how does its pressure change?", "scar_flat.png"),
         "fretting_scar": ("What is the shape of the scar below a cylinder?", "scar_flat.png"),
         "punch_scar": ("Why does a punch that rocks wear deeper at its sides?", "scar_flat.png"),
         "fretting_wear_jump": ("How can a thousand cycles of wear be had for the price of a few?", "scar_flat.png"),
@@ -101,7 +101,7 @@ def run(name, picture):
     out = RUNS / name
     if not (out / "summary.json").exists():
         subprocess.run([PROGRAM, "run", ROOT / f"cases/{name}.ron", "--out", out, "--resume"], check=True, stdout=subprocess.DEVNULL)
-    frames = sorted((out / "frames").glob("frame_*.png")) or sorted((out / "frames").glob("*.png"))
+    frames = [*sorted(out.glob("*.png")), *sorted((out / "frames").glob("*.png")), *sorted((out / "frames").glob("frame_*.png"))]
     source = out / picture if picture else frames[-1]
     image = Image.open(source).convert("RGB")
     image.thumbnail((WIDTH, WIDTH))
@@ -143,7 +143,7 @@ def page(times):
             lines += ["", f"### {question}", ""]
             if (PICTURES / f"{name}.png").exists():
                 lines += [f"![{of_case(name, 'name')}](figures/gallery/{name}.png)", ""]
-            lines += [*textwrap.wrap(of_case(name, "doc"), 100), "", f"`fretwork run {name}`{time}; [its case](../cases/{name}.ron)"]
+            lines += [*textwrap.wrap(of_case(name, "doc"), 100), "", f"`fretwork run {name}`{time};", f"[its case](../cases/{name}.ron)"]
     return "\n".join(lines) + "\n"
 
 
