@@ -103,7 +103,7 @@ pub(crate) fn friction(what: &str, text: &str) -> Result<Range, String> {
     if found.high <= LARGEST_FRICTION {
         return Ok(found);
     }
-    let high = shown(found.high, 3);
+    let high = short(found.high);
     let per_cent = bare(text).map(|_| format!("; in per cent write {} %", text.trim()));
     Err(format!(
         "{what}: no pair of solids has a friction coefficient of {high}, dry ones have 0.1 to 2{}",

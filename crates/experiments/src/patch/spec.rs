@@ -289,8 +289,8 @@ pub fn temperature(source: &Source, path: &str, number: &NumberSpec) -> Result<f
         false => Ok(kelvin),
         true => {
             let why = format!(
-                "a temperature without a unit is in kelvin: write {} K for {given} degrees Celsius, or {given} K if that is meant",
-                short(kelvin + CELSIUS),
+                "a temperature without a unit is in kelvin: write {:.2} K for {given} degrees Celsius, or {given} K if that is meant",
+                kelvin + CELSIUS,
                 given = short(kelvin)
             );
             Err(source.error_at(path, why))

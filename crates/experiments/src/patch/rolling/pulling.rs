@@ -13,6 +13,9 @@ use fretwork_scene::InputError;
 
 /// Creepage from which the search begins.
 const FIRST: f64 = 1e-5;
+/// Digits of forces that differ by less than this share.
+const DIGITS: i32 = 6;
+const CLOSE: f64 = 1e-3;
 /// Difference of the force over it at which the creepage is found.
 const FOUND: f64 = 1e-5;
 /// Size of a second creepage over that which was found, from which the slope follows.
@@ -98,10 +101,14 @@ pub(in crate::patch) fn creepage(
     match pull::creepage(wanted, FIRST, FOUND, |size| carried(setup, pull, size))? {
         Pulled::At(size) => Ok(creeps(pull, size)),
         Pulled::Most(most) => {
+            let shown = |force: f64| match (wanted / most - 1.0).abs() < CLOSE {
+                true => format!("{} N", number(force, DIGITS)),
+                false => quantity(force, "N"),
+            };
             let why = format!(
-                "the patch does not carry a force of {} along the rolling: with this law it has at most {}; give a smaller `force`",
-                quantity(wanted, "N"),
-                quantity(most, "N")
+                "the patch does not carry a force of {} along the rolling: with this law it has at most {}, and no creepage follows from as much or more; give a smaller `force`, or creepages",
+                shown(wanted),
+                shown(most)
             );
             Err(file.source.error_at(&pull.path, why).into())
         }
