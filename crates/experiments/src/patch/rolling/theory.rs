@@ -89,7 +89,6 @@ impl FullSlip {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::patch::answer::Point;
     use crate::patch::tests::solved;
 
