@@ -310,7 +310,8 @@ def check_shapes(folder):
                 sizes.Update()
                 area = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area"))
                 shaped = area > 0.0
-                # The polygon of a disk has 16 corners: 8 sin(pi/8) over pi of its area. A rounded corner is divided finer.
+                # The polygon of a disk has 16 corners: 8 sin(pi/8) over pi of its area. A rounded
+                # corner is divided finer.
                 off = np.abs(area[shaped] / (np.pi * radius[shaped] ** 2) - 1.0)
                 largest = max(largest, off.max(initial=0.0))
         if largest > 1.001 * (1.0 - 8.0 * np.sin(np.pi / 8.0) / np.pi):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Sequence
 from io import BytesIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ._errors import InputError, need
@@ -18,18 +20,23 @@ if TYPE_CHECKING:
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
-def chosen(table: pd.DataFrame) -> list[tuple[str, str]]:
-    """Pairs of columns, across and up, that show most of a run: loops and friction of a test, damage of bonds, temperature; the
-    energies of a run without any of them."""
+MOST = 3
+"""Most panels of a figure that is not asked for by names."""
 
-    def varies(name: str) -> bool:
-        return name in table and bool(table[name].max() > table[name].min())
 
-    pairs = []
-    if "Q" in table:
-        pairs = [("delta", "Q"), ("time", "mu")]
-    pairs += [("time", name) for name in ("damage_ratio", "temperature_max") if varies(name)]
-    return pairs or [("time", name) for name in ("kinetic", "friction") if varies(name)] or [("time", "contacts")]
+def chosen(table: pd.DataFrame, figures: Sequence[Any]) -> list[tuple[str, str]]:
+    """Pairs of columns, across and up, of the first curve of each figure that the run describes, those that lead first; the
+    contacts over time of a run without any of them."""
+    pairs: list[tuple[str, str]] = []
+    for figure in sorted(figures, key=lambda figure: not figure["leads"]):
+        for chart in figure["charts"]:
+            for series in chart["series"][:1]:
+                rows = series["source"].get("Rows") if isinstance(series["source"], dict) else None
+                axes = [rows[axis] for axis in "xy"] if rows else []
+                pair = tuple(axis["column"] for axis in axes if axis["over"] is None)
+                if len(pair) == 2 and pair not in pairs and all(name in table for name in pair):
+                    pairs.append(pair)
+    return pairs[:MOST] or [("time", "contacts")]
 
 
 def scaled(values: Any, unit: str) -> tuple[float, str]:
@@ -58,7 +65,15 @@ def draw(figure: Figure, table: pd.DataFrame, pairs: Sequence[tuple[str, str]]) 
         panel.grid(alpha=0.3)
 
 
-def figure_of(table: pd.DataFrame, names: Sequence[str], against: str) -> Figure:
+def described(folder: Path) -> list[Any]:
+    """The figures that a run describes, in `figures.json`."""
+    try:
+        return list(json.loads((folder / "figures.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        return []  # not written yet
+
+
+def figure_of(table: pd.DataFrame, figures: Sequence[Any], names: Sequence[str], against: str) -> Figure:
     """A figure of columns against one, or of those that show most."""
     need("matplotlib", "notebooks", "figures of results")
     from matplotlib.figure import Figure as Base
@@ -74,7 +89,7 @@ def figure_of(table: pd.DataFrame, names: Sequence[str], against: str) -> Figure
     wrong = [name for name in (*names, against) if name not in table]
     if wrong:
         raise InputError(f"there is no column `{wrong[0]}` in the statistics: {', '.join(table.columns)}", wrong[0])
-    pairs = [(against, name) for name in names] or chosen(table)
+    pairs = [(against, name) for name in names] or chosen(table, figures)
     figure = Shown(figsize=(4.2 * len(pairs), 3.2), layout="constrained")
     draw(figure, table, pairs)
     return figure
@@ -88,10 +103,10 @@ class LivePlot(Silent):
     SHARE = 10.0
     """Time of the run over that of drawing, at least."""
 
-    def __init__(self, bar: Silent, read: Callable[[], pd.DataFrame]) -> None:
+    def __init__(self, bar: Silent, folder: Path, read: Callable[[], pd.DataFrame]) -> None:
         need("matplotlib", "notebooks", "the figure of a run")
         need("IPython", "notebooks", "the figure of a run that goes on")
-        self._bar, self._read = bar, read
+        self._bar, self._folder, self._read = bar, folder, read
         self._handle: Any = None
         self._next = time.monotonic() + self.EVERY
 
@@ -117,7 +132,7 @@ class LivePlot(Silent):
             return  # the run has written nothing yet
         if len(table) < 2:
             return
-        figure = figure_of(table, (), "time")
+        figure = figure_of(table, described(self._folder), (), "time")
         if self._handle is None:
             self._handle = display(figure, display_id=True)  # type: ignore[no-untyped-call]
         else:

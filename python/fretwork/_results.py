@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 from ._errors import InputError, need
-from ._plot import figure_of
+from ._plot import described, figure_of
 
 if TYPE_CHECKING:
     import h5py
@@ -299,11 +299,11 @@ class Results:
     def plot(self, *names: str, against: str = "time") -> Figure:
         """Draws columns of the :attr:`statistics` against another, side by side, with matplotlib; a notebook shows the figure.
 
-        Without names it draws those that show most of the run: loops and friction of a test, damage ratio, temperature; the
-        energies of a run without any of them. ``results.plot("Q", against="delta")`` draws a loop, ``figure.axes`` changes
+        Without names it draws columns of the first figures that the run itself draws, such as the loops of a friction test.
+        ``results.plot("Q", against="delta")`` draws a loop, ``figure.axes`` changes
         what is drawn, and ``figure.savefig("loop.png")`` writes it. The run may still go on.
         """
-        return figure_of(self.statistics, names, against)
+        return figure_of(self.statistics, described(self.folder), names, against)
 
     def _repr_html_(self) -> str:
         """What a notebook shows of it: the trust in the run, the main results with their half-widths, the warnings."""

@@ -32,8 +32,8 @@ LARGEST = 250_000
 def execute(notebook: Any, folder: Path) -> None:
     """Runs all cells in a folder; raises what a cell raises."""
     client = nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}})
-    # The client's own handler of output widgets sends on the socket on which it waits for answers, and
-    # now and then one is lost (nbclient, issue 312). Nothing here needs it.
+    # The client's own handler of output widgets sends on the socket on which it waits for answers,
+    # and now and then one is lost (nbclient, issue 312). Nothing here needs it.
     client.comm_open_handlers["jupyter.widget"] = lambda message: None
     client.execute()
 

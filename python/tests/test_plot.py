@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from fretwork import InputError, Progress, Results
-from fretwork._plot import LivePlot, chosen, scaled
+from fretwork._plot import LivePlot, chosen, described, scaled
 from fretwork._progress import Silent
 
 
@@ -27,7 +27,6 @@ def test_a_figure_has_the_columns_with_meaning_and_unit(results):
     assert (line.get_xdata() == table["time"] * 1e3).all() and (line.get_ydata() == table["kinetic"] * factor).all()
     (panel,) = results.plot("friction", against="kinetic").axes
     assert panel.get_xlabel().startswith("kinetic energy (")
-    assert [axis.get_xlabel() for axis in results.plot().axes] == ["time (ms)"] * len(chosen(table))
 
 
 def test_a_notebook_shows_a_figure_without_pyplot(results):
@@ -45,13 +44,23 @@ def test_a_wrong_column_is_named(results):
         results.plot("kinetics")
 
 
-def test_loops_and_friction_are_shown_first():
-    import pandas as pd
+def test_columns_of_the_figures_of_the_run_are_shown(results):
+    table = results.statistics
 
-    table = pd.DataFrame({"time": [0.0, 1.0], "delta": [0.0, 1.0], "Q": [0.0, 1.0], "mu": [0.0, 0.4], "damage_ratio": [0.0, 0.0]})
-    assert chosen(table) == [("delta", "Q"), ("time", "mu")]
-    table["damage_ratio"] = [0.0, 0.1]
-    assert chosen(table)[-1] == ("time", "damage_ratio")
+    def figure(leads, *pairs, over=None):
+        axis = lambda name: {"column": name, "over": over}  # noqa: E731
+        return {"leads": leads, "charts": [{"series": [{"source": {"Rows": {"x": axis(x), "y": axis(y)}}}]} for x, y in pairs]}
+
+    figures = [
+        figure(False, ("time", "kinetic"), ("time", "not there")),
+        figure(True, ("kinetic", "friction")),
+        figure(True, ("time", "friction"), over="kinetic"),
+        {"leads": True, "charts": [{"series": [{"source": "Points"}]}, {"series": []}]},
+    ]
+    assert chosen(table, figures) == [("kinetic", "friction"), ("time", "kinetic")]
+    assert chosen(table, []) == [("time", "contacts")]
+    written = chosen(table, described(results.folder))
+    assert 1 <= len(written) <= 3 and len(results.plot().axes) == len(written)
 
 
 @pytest.mark.parametrize(
@@ -93,7 +102,7 @@ def test_the_figure_of_a_run_is_drawn_again_while_it_goes_on(results, monkeypatc
     monkeypatch.setattr(LivePlot, "EVERY", 0.0)
     monkeypatch.setattr(LivePlot, "SHARE", 0.0)
     tables = iter([results.statistics.iloc[:1], results.statistics.iloc[:10], results.statistics])
-    live = LivePlot(Silent(), lambda: next(tables))
+    live = LivePlot(Silent(), results.folder, lambda: next(tables))
     now = Progress(1, 2, 0, 0, 0, 0, 0, 0.0, 0, 0.0)
     for _ in range(2):
         live.show(now)

@@ -183,7 +183,7 @@ fn no_field_is_documented_that_no_registry_has() {
     }
     let (plane, space) = (names::<Dim2>(), names::<Dim3>());
     // Further fields are those of observers, and those stored once.
-    let more: [&[&str]; 5] = [&["shear"], &[], &[], &["body"], &[]];
+    let more: [&[&str]; 5] = [&["shear", "damage", "cluster"], &[], &[], &["body"], &[]];
     let tables = field_tables();
     let kinds: Vec<&str> = tables.iter().map(|(kind, _)| kind.as_str()).collect();
     assert_eq!(

@@ -111,8 +111,8 @@ pub trait RunView: BodiesView + ShapesView + ContactsView + Debug {
     fn grain_centres(&self) -> Vec<[f64; 3]>;
     /// Returns the centres of these parts, moved into the periodic cell (m).
     fn grain_points(&self) -> Vec<[f64; 3]>;
-    /// Returns the corners of each of these parts (m), as many at all times, in the periodic cell: in
-    /// the plane of a polygon, anticlockwise, which stands for a disk too; in space of a convex
+    /// Returns the corners of each of these parts (m), as many at all times, in the periodic cell:
+    /// in the plane of a polygon, anticlockwise, which stands for a disk too; in space of a convex
     /// piece, and the centre of anything else.
     fn grain_corners(&self) -> Vec<Vec<[f64; 3]>>;
     /// Returns the fields of the parts of grains and first bodies, in the order in which they are
