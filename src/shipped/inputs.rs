@@ -23,6 +23,10 @@ pub enum InputKind {
     Patch,
 }
 
+/// Size of a file (bytes) from which its kind is not looked for: only cases that list many grains
+/// are as large, and they are read once.
+const LARGE: u64 = 1 << 20;
+
 impl InputKind {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::Case, Self::Study, Self::Fit, Self::Patch];
@@ -190,7 +194,8 @@ impl ShippedInput {
 pub fn find(kind: InputKind, given: &Path) -> Result<PathBuf, String> {
     if given.exists() {
         // What cannot be read is said by the reader of the file.
-        let read = Source::read(given).ok();
+        let small = given.metadata().is_ok_and(|file| file.len() < LARGE);
+        let read = small.then(|| Source::read(given).ok()).flatten();
         return match read.and_then(|source| InputKind::of(source.text())) {
             Some(other) if other != kind => Err(other.instead_of(kind, given)),
             _ => Ok(given.to_owned()),
