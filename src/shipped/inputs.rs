@@ -66,7 +66,7 @@ impl InputKind {
         let source = Source::from_text("input", text);
         let has = |key: &&str| source.position_of(key).is_some();
         let mut kinds = Self::ALL.into_iter();
-        kinds.find(|kind| kind.keys().iter().all(|key| has(&key)))
+        kinds.find(|kind| kind.keys().iter().all(&has))
     }
 
     /// The sentence on an input of another kind, with the command that takes it.
