@@ -8,6 +8,7 @@ use fretwork_observe::Observers;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::LoadedCase;
 use fretwork_scene::recorded::ShapedGrain;
+use nalgebra::Vector3;
 
 /// References to the built scene.
 #[derive(Debug)]
@@ -150,21 +151,40 @@ fn contacts(run: &dyn RunView) -> Part {
     }
 }
 
-/// The surfaces of first bodies.
+/// The surfaces and the convex parts of first bodies.
 fn bodies(run: &dyn RunView) -> Part {
     let mut part = Part {
         data: vec![Vec::new()],
         vectors: vec![Vec::new()],
         ..Part::default()
     };
-    let ids = run.bodies().id;
-    for line in run.surface_outlines() {
+    let columns = run.bodies();
+    let mut add = |body: u32, points: &[[f64; 3]]| {
         let first = part.points.len() as i64 / 3;
-        part.points.extend(line.points.iter().flatten());
+        part.points.extend(points.iter().flatten());
         part.cells
-            .push((first..first + line.points.len() as i64).collect());
-        part.data[0].push(ids[line.body as usize] as f64);
-        part.vectors[0].extend(run.motion(line.body as usize).velocity);
+            .push((first..first + points.len() as i64).collect());
+        part.data[0].push(columns.id[body as usize] as f64);
+        part.vectors[0].extend(run.motion(body as usize).velocity);
+    };
+    for line in run.surface_outlines() {
+        add(line.body, &line.points);
+    }
+    for (k, piece) in run.pieces().into_iter().enumerate() {
+        let first = columns.driven.iter().any(|d| d.body == piece.body);
+        if !first || columns.removed[piece.body as usize] {
+            continue;
+        }
+        let centre = run.periodic().wrapped(Vector3::from(piece.centre));
+        for line in run.piece_outline(k) {
+            let placed = line.iter().map(|p| (centre + Vector3::from(*p)).into());
+            let mut points: Vec<[f64; 3]> = placed.collect();
+            // Lines need an explicit closing point, polygons do not.
+            if run.dimension() == 2 {
+                points.extend(points.first().copied());
+            }
+            add(piece.body, &points);
+        }
     }
     part
 }

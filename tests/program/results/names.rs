@@ -124,6 +124,9 @@ fn views_agree<S: Space>(file: &H5File) {
     );
     let bodies = written(file, &["views/bodies/CellData"]);
     assert_eq!(bodies.keys().collect::<Vec<_>>(), ["body", "velocity"]);
+    // First bodies are shown, whatever their shape.
+    let shown = file.dataset("views/bodies/CellData/body").unwrap();
+    assert!(shown.shape()[0] > 0);
     // Vectors have three numbers, with which viewers draw arrows.
     for field in [
         "contacts/CellData/force",
