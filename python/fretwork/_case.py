@@ -248,7 +248,7 @@ class Case:
         Raises ``InputError`` if the case is wrong, ``RunError`` if the run fails, and what an observer raises.
         """
         folder = _fretwork.default_folder(self.file) if out is None else out
-        shows = LivePlot(display(True), folder, lambda: Results(folder).statistics) if progress == "plot" else display(progress)
+        shows = LivePlot(display(True), Path(folder), lambda: Results(folder).statistics) if progress == "plot" else display(progress)
         began = time()
 
         def show(*line: Any) -> None:

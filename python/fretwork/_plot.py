@@ -29,13 +29,12 @@ def chosen(table: pd.DataFrame, figures: Sequence[Any]) -> list[tuple[str, str]]
     contacts over time of a run without any of them."""
     pairs: list[tuple[str, str]] = []
     for figure in sorted(figures, key=lambda figure: not figure["leads"]):
-        for chart in figure["charts"]:
-            for series in chart["series"][:1]:
-                rows = series["source"].get("Rows") if isinstance(series["source"], dict) else None
-                axes = [rows[axis] for axis in "xy"] if rows else []
-                pair = tuple(axis["column"] for axis in axes if axis["over"] is None)
-                if len(pair) == 2 and pair not in pairs and all(name in table for name in pair):
-                    pairs.append(pair)
+        sources = (series["source"] for chart in figure["charts"] for series in chart["series"][:1])
+        rows = (source["Rows"] for source in sources if isinstance(source, dict) and "Rows" in source)
+        curves = ((of["x"]["column"], of["y"]["column"]) for of in rows if of["x"]["over"] is None and of["y"]["over"] is None)
+        pair = next((pair for pair in curves if all(name in table for name in pair)), None)
+        if pair and pair not in pairs:
+            pairs.append(pair)
     return pairs[:MOST] or [("time", "contacts")]
 
 
