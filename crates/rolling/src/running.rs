@@ -263,8 +263,14 @@ pub fn boundaries(
     let stick = match limits.ring < RINGS[0] {
         true => {
             let [one, other] = [slips(RINGS[0])?, slips(RINGS[1])?];
-            let power = (other / one).ln() / (RINGS[1] / RINGS[0]).ln();
-            one * (limits.ring / RINGS[0]).powf(power)
+            match other.is_finite() {
+                true => {
+                    let power = (other / one).ln() / (RINGS[1] / RINGS[0]).ln();
+                    one * (limits.ring / RINGS[0]).powf(power)
+                }
+                // Not so much slips under any displacement.
+                false => one,
+            }
         }
         false => slips(limits.ring)?,
     };
