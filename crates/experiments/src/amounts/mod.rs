@@ -117,14 +117,20 @@ const LEAST_WEAR: f64 = 1e-10;
 /// Archard's K, with the hardness (Pa) of the softer body, where it is known.
 ///
 /// # Errors
-/// It is no range of numbers up to 1, or k = K/H, whose unit is one over a pressure.
-pub(crate) fn archard(what: &str, text: &str, hardness: Option<f64>) -> Result<Range, String> {
+/// It is no range of numbers up to 1, or k = K/H, whose unit is one over a pressure; then the
+/// sentence ends with `instead`, how a k is given.
+pub(crate) fn archard(
+    what: &str,
+    text: &str,
+    hardness: Option<f64>,
+    instead: &str,
+) -> Result<Range, String> {
     let of_pressure = |k: f64| {
         let times = hardness.map_or(String::new(), |h| {
             format!(": {} with {}", shown(k * h, 3), with_units(h, "Pa"))
         });
         format!(
-            "{what}: `{text}` looks like k in 1/Pa, and K is k times the hardness, a pure number{times}"
+            "{what}: `{text}` looks like k in 1/Pa, and K is k times the hardness, a pure number{times}{instead}"
         )
     };
     let in_pressure = || quantity(text, "1/Pa").ok().filter(|k| *k > 0.0);
@@ -190,17 +196,20 @@ mod tests {
         let error = friction("mu", "60").unwrap_err();
         assert!(error.contains("in per cent write 60 %"), "{error}");
         let hard = Some(2.5e9);
-        assert_eq!(archard("wear", "1e-4", hard).map(|r| r.value), Ok(1e-4));
+        assert_eq!(archard("wear", "1e-4", hard, "").map(|r| r.value), Ok(1e-4));
         assert_eq!(wear_rate("wear", "1e-14 1/Pa", hard), Ok(1e-14));
         // 1e-15 m³/(N m) is written in units of engineers, too.
         let engineers = wear_rate("wear", "1e-6 mm^3/(N m)", hard).unwrap();
         assert!((engineers / 1e-15 - 1.0).abs() < 1e-12);
         for (error, words) in [
             (
-                archard("wear", "1e-15", hard).unwrap_err(),
+                archard("wear", "1e-15", hard, "").unwrap_err(),
                 "looks like k in 1/Pa",
             ),
-            (archard("wear", "3", hard).unwrap_err(), "K = 3 is above 1"),
+            (
+                archard("wear", "3", hard, "").unwrap_err(),
+                "K = 3 is above 1",
+            ),
             (
                 wear_rate("wear", "1e-4 1/Pa", hard).unwrap_err(),
                 "K = k H of 2.5",

@@ -131,7 +131,7 @@ impl Wear {
 /// It is none, see [`amounts::archard`].
 fn coefficient(text: &str, contact: &Contact) -> Result<Range, String> {
     let hardness = contact.bodies.iter().filter_map(|b| b.strength.hardness);
-    amounts::archard("wear", text, hardness.reduce(f64::min))
+    amounts::archard("wear", text, hardness.reduce(f64::min), "")
 }
 
 /// The specific wear rates of a window times load and slip of the patch.

@@ -276,11 +276,8 @@ impl Question {
             hardness = hardness.into_iter().chain(own).reduce(f64::min);
         }
         if amounts::bare(text).is_some() {
-            let pure = amounts::archard("wear", text, hardness);
-            let pure = pure.map_err(|e| match e.contains("looks like k") {
-                true => format!("{e}; with its unit, `{text} 1/Pa`, it is taken as k"),
-                false => e,
-            })?;
+            let instead = format!("; with its unit, `{text} 1/Pa`, it is taken as k");
+            let pure = amounts::archard("wear", text, hardness, &instead)?;
             return Ok(Some(format!("{{\"K\": {:e}}}", pure.value)));
         }
         let k = amounts::wear_rate("wear", text, hardness)?;
