@@ -1,7 +1,7 @@
 //! Changes of a case in an experiment: values that all runs share, and values computed from its
 //! factors, `key.path=${2e-5 * strength}`, with a unit if the value has one.
 
-use crate::expression::{Expression, number};
+use fretwork_scene::expression::{Expression, number};
 
 /// A change of the case with expressions in `${...}`.
 #[derive(Clone, Debug)]
@@ -23,7 +23,8 @@ impl Derived {
                 return Err(format!("`{text}` has no `}}` for its `${{`"));
             };
             texts.push(before.to_owned());
-            expressions.push(Expression::parse(inside, names)?);
+            let expression = Expression::of_numbers(inside, names);
+            expressions.push(expression.map_err(|e| e.to_string())?);
             rest = end;
         }
         texts.push(rest.to_owned());

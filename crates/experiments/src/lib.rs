@@ -29,7 +29,6 @@ mod changes;
 pub mod contact_patch;
 pub mod duration;
 mod error;
-mod expression;
 pub mod factor;
 pub mod fit;
 pub mod folder;

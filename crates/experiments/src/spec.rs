@@ -30,13 +30,13 @@ pub trait Spec: DeserializeOwned {
 }
 
 impl<T: Spec> SpecFile<T> {
-    /// Reads a file and checks everything that can be checked without a case. Numbers may have
+    /// Reads a file, RON, JSON or YAML by the ending of its name, and checks everything that can be checked without a case. Numbers may have
     /// units, `low: 5 um`, where the file gives values of a case.
     ///
     /// # Errors
     /// Returns an error with file, line and column.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let mut source = Source::read(path)?;
+        let mut source = Source::read_as::<T>(path)?;
         source.pair_quantities()?;
         let spec: T = source.parse()?;
         spec.check(&source)?;

@@ -14,6 +14,7 @@ pub mod case;
 pub mod check;
 pub mod circuit;
 mod deep;
+pub mod expression;
 pub mod gmsh;
 mod heat;
 mod height_grid;

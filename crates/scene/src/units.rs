@@ -4,6 +4,10 @@
 //! `runits` treats as pure numbers, so that a friction coefficient in degrees would pass) and
 //! hardness scales.
 
+mod amount;
+
+pub(crate) use amount::{Amount, Measure};
+
 use super::source::{ValidationError, nearest};
 use runits::{Dimension, ParseError, UnknownUnit};
 
@@ -120,7 +124,12 @@ pub fn in_si(value: f64, given: &str) -> Result<(f64, String), UnitError> {
             nearest: None,
         });
     }
-    let unit = read(given)?;
+    let symbol = symbol(&read(given)?);
+    Ok((convert(value, given, &symbol)?, symbol))
+}
+
+/// Returns the symbol of the SI unit of a dimension, empty for pure numbers.
+fn symbol(unit: &Unit) -> String {
     let alike = |name: &&&str| {
         read(name).is_ok_and(|u| {
             u.dimension == unit.dimension
@@ -128,19 +137,23 @@ pub fn in_si(value: f64, given: &str) -> Result<(f64, String), UnitError> {
                 && (u.factor - 1.0).abs() < 8.0 * f64::EPSILON
         })
     };
-    let symbol = match USUAL.iter().find(alike) {
+    match USUAL.iter().find(alike) {
         _ if unit.dimension.is_dimensionless() && !unit.angle => String::new(),
         Some(name) => (*name).to_owned(),
         None => {
             let plain = Unit {
                 angle: false,
-                ..unit
+                ..*unit
             };
             let angle = if unit.angle { "rad " } else { "" };
             format!("{angle}{}", base(&plain))
         }
-    };
-    Ok((convert(value, given, &symbol)?, symbol))
+    }
+}
+
+/// Returns whether a word is a unit that cases often have, which is no name of a value.
+pub(crate) fn is_usual(word: &str) -> bool {
+    USUAL.contains(&word)
 }
 
 /// Checks that a text is a unit or a hardness scale.
@@ -328,15 +341,27 @@ fn named(unit: &str) -> String {
 
 /// Returns common units of the same dimension.
 fn fitting(wanted: &str) -> Option<String> {
-    let schema = read(wanted).ok()?;
-    let fits = |name: &&&str| {
-        **name != wanted
-            && read(name).is_ok_and(|u| u.dimension == schema.dimension && u.angle == schema.angle)
-    };
-    let own = named(wanted);
-    let others = USUAL.iter().filter(fits).map(|name| format!("`{name}`"));
-    let all: Vec<String> = std::iter::once(own).chain(others).collect();
+    let others = usual(wanted).into_iter().filter(|name| *name != wanted);
+    let others = others.map(|name| format!("`{name}`"));
+    read(wanted).ok()?;
+    let all: Vec<String> = std::iter::once(named(wanted)).chain(others).collect();
     Some(all.join(", "))
+}
+
+/// Returns the units that are suggested for a wrong or unknown one.
+pub fn all() -> &'static [&'static str] {
+    &USUAL
+}
+
+/// Returns the common units that measure the same as a unit, empty for pure numbers.
+pub fn usual(unit: &str) -> Vec<&'static str> {
+    let Ok(schema) = read(unit) else {
+        return Vec::new();
+    };
+    let fits = |name: &&&str| {
+        read(name).is_ok_and(|u| u.dimension == schema.dimension && u.angle == schema.angle)
+    };
+    USUAL.iter().filter(fits).copied().collect()
 }
 
 /// Returns the base units of a dimension, such as `kg/s^2`.

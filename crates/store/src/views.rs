@@ -40,7 +40,7 @@ pub fn header(
     Header {
         events: observers.event_tables(),
         case_name: loaded.case.name.clone(),
-        case_text: loaded.source.text().to_owned(),
+        case_text: loaded.source.written().to_owned(),
         materials: built.materials.to_vec(),
         plugins: run.plugins.clone(),
         seed: loaded.case.seed,

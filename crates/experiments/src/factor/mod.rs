@@ -5,8 +5,8 @@ mod spec;
 
 pub use spec::FactorSpec;
 
-use crate::expression::number;
 use fretwork_math::design::scale::Scale;
+use fretwork_scene::expression::number;
 use fretwork_scene::quantity::si_quantity;
 
 /// Label of the value of the case, where its file does not give it.

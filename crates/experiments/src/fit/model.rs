@@ -2,8 +2,8 @@
 
 use super::branches::laid_out;
 use super::spec::{AlongSpec, ModelSpec, RowsSpec};
-use crate::expression::Expression;
 use crate::table::csv::without_unit;
+use fretwork_scene::expression::{Expression, ExpressionError};
 use std::path::Path;
 
 /// The name of the length of a step in expressions (s).
@@ -34,12 +34,12 @@ impl Model {
         let starts = columns.iter().map(|c| format!("{c}{START}"));
         let names = columns.iter().cloned().chain(starts);
         let names: Vec<String> = names.chain([TIME_STEP.to_owned()]).collect();
-        let known = |why: String| match why.split_once("; there are ") {
+        let known = |why: ExpressionError| match why.message.split_once("; there are ") {
             Some((why, _)) => format!(
                 "{why}; there are {}, each with {START} for its value in the first row, and {TIME_STEP}",
                 columns.join(", ")
             ),
-            None => why,
+            None => why.to_string(),
         };
         if spec.rows == RowsSpec::LastCycle && !columns.iter().any(|c| c == "cycle") {
             return Err((
@@ -48,8 +48,8 @@ impl Model {
             ));
         }
         Ok(Self {
-            x: Expression::parse(&spec.x, &names).map_err(|why| ("x", known(why)))?,
-            y: Expression::parse(&spec.y, &names).map_err(|why| ("y", known(why)))?,
+            x: Expression::of_numbers(&spec.x, &names).map_err(|why| ("x", known(why)))?,
+            y: Expression::of_numbers(&spec.y, &names).map_err(|why| ("y", known(why)))?,
             columns: columns.to_vec(),
             rows: spec.rows,
             smooth: usize::from(spec.smooth),

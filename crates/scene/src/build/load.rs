@@ -9,16 +9,17 @@ use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a case file and applies `--set`s.
+/// Reads a case file, RON, JSON or YAML by the ending of its name, and applies `--set`s.
 ///
 /// # Errors
 /// Returns an error with file, line and column.
 pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase, InputError> {
-    read(Source::read(path)?, path, sets)
+    read(Case::source(path)?, path, sets)
 }
 
-/// Loads a case from a text. `name` stands for the file in errors; the files that the case names,
-/// and `materials/`, are searched relative to `folder` (an empty path for the working folder).
+/// Loads a case from a text. `name` stands for the file in errors, and says by its ending whether
+/// the text is JSON or YAML; the files that the case names, and `materials/`, are searched relative
+/// to `folder` (an empty path for the working folder).
 ///
 /// # Errors
 /// Returns an error with name, line and column.
@@ -44,7 +45,7 @@ pub fn load_text(
     folder: &Path,
     sets: &[String],
 ) -> Result<LoadedCase, InputError> {
-    read(Source::from_text(name, text), &folder.join(name), sets)
+    read(Case::source_of_text(name, text)?, &folder.join(name), sets)
 }
 
 /// Loads a case from a stream, which is read to its end: at most 64 MiB of UTF-8.

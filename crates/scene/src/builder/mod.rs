@@ -69,6 +69,7 @@ impl CaseBuilder {
             case: Case {
                 name,
                 doc: String::new(),
+                named_values: BTreeMap::new(),
                 dimension,
                 seed: 0,
                 time: TimeSpec {

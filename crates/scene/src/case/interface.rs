@@ -42,6 +42,10 @@ pub struct InterfaceSpec {
     pub area_factor: f64,
 }
 
+fn one() -> f64 {
+    1.0
+}
+
 /// Names of the fields other than slots; the slots come after the first three.
 const OWN: [&str; 10] = [
     "name",
@@ -141,7 +145,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
             bonds_within: within.flatten(),
             bond_opening: opening.unwrap_or_default(),
             healing: healing.flatten(),
-            area_factor: factor.unwrap_or(1.0),
+            area_factor: factor.unwrap_or_else(one),
         };
         match spec.law(Kind::CONTACT) {
             Some(_) => Ok(spec),

@@ -181,6 +181,20 @@ pub(crate) fn of(named: &[String], dimension: usize) -> Option<&'static str> {
         .or_else(|| PURE.contains(&last).then_some(""))
 }
 
+impl super::Case {
+    /// Returns the SI unit of the number at a path of fields, keys, indices and variants: empty for
+    /// pure numbers, `None` where there are texts, or the unit is that of the parameter of a law.
+    pub fn unit_at(path: &[String], dimension: usize) -> Option<&'static str> {
+        let index = |name: &String| name.parse::<usize>().ok();
+        let names: Vec<String> = path
+            .iter()
+            .filter(|n| index(n).is_none())
+            .cloned()
+            .collect();
+        of_element(&names, path.last().and_then(index), dimension)
+    }
+}
+
 /// Returns the unit of a number in a group without names that is the value at a path of names, such
 /// as the time of a point of a table; elsewhere that [`of`] its path.
 pub(crate) fn of_element(

@@ -38,6 +38,7 @@ pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
 use super::jump::JumpSpec;
+use super::material::NumberSpec;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use fretwork_core::bodies::Dof;
@@ -57,6 +58,10 @@ pub struct Case {
     /// What the case shows, and the sources of its numbers.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub doc: String,
+    /// Names of values, which expressions use: `{"p0": "1.12 GPa", "L": "2 mm"}` for
+    /// `"${p0 * L}"`. Reading replaces expressions by their values and removes the names.
+    #[serde(default, rename = "let", skip_serializing_if = "BTreeMap::is_empty")]
+    pub named_values: BTreeMap<String, NumberSpec>,
     /// Dimension, 2 or 3.
     pub dimension: u32,
     /// Seed of all random numbers.

@@ -1,7 +1,9 @@
 //! Cases from their text.
 
+use std::path::Path;
+
 use super::{Case, key_units};
-use crate::source::{InputError, Names, Place, Source, Wanted};
+use crate::source::{InputError, Names, Place, Source, ValueKind, Wanted};
 
 // These functions are compiled in this crate only: the deserializers of a case are half of its
 // code, and a generic call in another crate would compile them again.
@@ -21,13 +23,20 @@ impl Case {
         converted.parse()
     }
 
-    /// Replaces numbers with units in the text of a case, `step: 10 us`, by numbers in SI units,
-    /// and those of parameters of laws by `(value: 10, unit: "us")`.
+    /// Replaces numbers with units in the text of a case, `step: 10 us`, and expressions in names
+    /// of its `let`, `"${p0 * L}"`, by numbers in SI units, and those of parameters of laws by
+    /// `(value: 10, unit: "us")`.
     ///
     /// # Errors
-    /// A unit is unknown, or of another dimension than the number; the error names file, line and
-    /// column.
+    /// A unit or name is unknown, or of another dimension than the number; the error names file,
+    /// line and column.
     pub fn convert_units(source: &mut Source) -> Result<(), InputError> {
+        let written = source.tree().find(source.text(), &["dimension".to_owned()]);
+        if written.is_ok_and(|node| matches!(node.kind, ValueKind::Text)) {
+            // Units of other numbers depend on it.
+            let error = source.error_at("dimension", "the dimension is no text or expression");
+            return Err(error.expected("2 or 3"));
+        }
         let written = source.tree().find(source.text(), &["dimension".to_owned()]);
         let plane = written.is_ok_and(|node| &source.text()[node.span.clone()] == "2");
         let dimension = if plane { 2 } else { 3 };
@@ -46,6 +55,24 @@ impl Case {
                 None => Wanted::AsWritten,
             }
         })
+    }
+
+    /// Reads the file of a case, see [`Source::read_as`].
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no JSON or YAML where its name says so.
+    #[inline(never)]
+    pub fn source(path: &Path) -> Result<Source, InputError> {
+        Source::read_as::<Self>(path)
+    }
+
+    /// Wraps the text of a case, see [`Source::text_as`].
+    ///
+    /// # Errors
+    /// The text is no JSON or YAML where its name says so.
+    #[inline(never)]
+    pub fn source_of_text(name: &str, text: &str) -> Result<Source, InputError> {
+        Source::text_as::<Self>(name, text)
     }
 
     /// Changes a value of the text of a case, see [`Source::set`].
@@ -67,8 +94,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::{Node, ValueKind};
-    use std::path::Path;
+    use crate::source::Node;
 
     const PLANE: &str = r#"(
     name: "a lid", dimension: 2, time: (step: 1e-5, end: 0.2),

@@ -3,10 +3,13 @@
 //! Every error names a file, a line and a column. The location comes from a [`Tree`] of the text,
 //! since the position reported by ron is often not that of the cause.
 
+mod cursor;
 mod diagnostic;
 mod difference;
 mod explain;
 mod file;
+mod formats;
+mod named_values;
 mod names;
 mod nearest;
 pub mod numbers;
@@ -32,9 +35,11 @@ use ron::error::SpannedError;
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
+pub use cursor::{CursorPlace, CursorSlot, SlotKind};
 pub use diagnostic::InputError;
 pub use difference::{Difference, first_difference};
 pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
+pub use formats::Format;
 pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
@@ -51,6 +56,8 @@ pub struct Source {
     path: PathBuf,
     name: String,
     original: Arc<str>,
+    /// The text before its units and expressions were replaced by numbers.
+    written: Option<Arc<str>>,
     text: String,
     tree: Tree,
     sets: Vec<String>,
@@ -82,6 +89,7 @@ impl Source {
             tree: Tree::of(&text),
             source_map: SourceMap::whole(text.len()),
             sets: Vec::new(),
+            written: None,
             text,
         }
     }
@@ -91,9 +99,15 @@ impl Source {
         &self.path
     }
 
-    /// The text, with `--set` applied.
+    /// The text, with `--set` applied, and with numbers in place of units and expressions once
+    /// these were replaced.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The text with `--set` applied, as it was written: with units, names and expressions.
+    pub fn written(&self) -> &str {
+        self.written.as_deref().unwrap_or(&self.text)
     }
 
     /// The syntax tree of the text, with `--set` applied.

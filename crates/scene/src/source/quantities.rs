@@ -1,10 +1,12 @@
-//! Numbers with units in a text, `step: 10 us`: each is replaced by what ron and the schema read,
-//! before the text is parsed.
+//! Numbers with units in a text, `step: 10 us`, and expressions that stand for numbers,
+//! `mass: "${rho * V}"`: each is replaced by what ron and the schema read, before the text is parsed.
 
 use std::ops::Range;
 
+use super::named_values::{NamedValues, has_expression};
 use super::tree::{Entry, Node, Shape, ValueKind, join_path, plain};
 use super::{InputError, Source, Tree};
+use crate::units::{Amount, Measure};
 use crate::{quantity, units};
 
 /// What a number with a unit becomes.
@@ -27,14 +29,21 @@ pub(crate) struct Place<'a> {
     pub index: Option<usize>,
 }
 
-/// A number with a unit, and its position.
-struct Found {
-    number: Range<usize>,
-    unit: Range<usize>,
+/// A number with a unit or an expression, and its position.
+struct Found<'t> {
+    kind: FoundKind<'t>,
+    span: Range<usize>,
     names: Vec<String>,
     index: Option<usize>,
     /// The `unit` beside it, if the number is the `value` of a group.
     beside: Option<Beside>,
+}
+
+enum FoundKind<'t> {
+    /// A number, and its unit.
+    Quantity(Range<usize>, Range<usize>),
+    /// A text with an expression.
+    Expression(&'t Node),
 }
 
 /// Whether the group of a `value` has a `unit` too.
@@ -45,17 +54,18 @@ enum Beside {
 }
 
 impl Source {
-    /// Whether a number of the text has a unit.
+    /// Whether a number of the text has a unit, or is an expression.
     pub(crate) fn has_quantities(&self) -> bool {
         let mut stack: Vec<&Node> = self.tree.root.iter().collect();
         while let Some(node) = stack.pop() {
             match &node.kind {
                 ValueKind::Quantity(_) => return true,
                 ValueKind::Group(group) => stack.extend(group.entries.iter().map(|e| &e.value)),
+                _ if has_expression(&self.text, node) => return true,
                 _ => {}
             }
         }
-        false
+        self.has_named_values()
     }
 
     /// Replaces each number with a unit, `5 um`, by `(value: 5, unit: "um")`, for a schema that
@@ -80,29 +90,43 @@ impl Source {
         if self.tree.fault.is_some() || self.tree.too_deep.is_some() {
             return Ok(());
         }
+        let names = self.named_values()?;
         let mut all = Vec::new();
         if let Some(root) = &self.tree.root {
             collect(&self.text, root, &mut Vec::new(), &mut all);
         }
-        if all.is_empty() {
+        if all.is_empty() && names.whole.is_none() {
             return Ok(());
         }
         // The name of the text's own type is no part of a path.
-        let typed = self.tree.root.as_ref().and_then(Node::group);
-        if typed.is_some_and(|group| group.name.is_some() && !group.is_some(&self.text)) {
-            for found in &mut all {
-                found.names.remove(0);
-            }
-        }
-        let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-        for found in &all {
+        let root = self.tree.root.as_ref().and_then(Node::group);
+        let typed = |group: &&super::Group| group.name.is_some() && !group.is_some(&self.text);
+        let own = usize::from(root.filter(typed).is_some());
+        let within = |found: &Found<'_>| {
+            let whole = names.whole.as_ref();
+            whole
+                .is_some_and(|whole| whole.start <= found.span.start && found.span.end <= whole.end)
+        };
+        let mut edits = Vec::new();
+        for found in all.iter().filter(|found| !within(found)) {
             let place = Place {
-                names: &found.names,
+                names: found.names.get(own..).unwrap_or_default(),
                 index: found.index,
             };
-            if let Some(new) = self.replacement_of(found, wanted(&place))? {
-                edits.push((found.number.start..found.unit.end, new));
-            }
+            let wanted = wanted(&place);
+            let new = match &found.kind {
+                FoundKind::Quantity(number, unit) => {
+                    self.replacement_of(found, number, unit, wanted)?
+                }
+                FoundKind::Expression(node) => self.result_of(found, node, &names, wanted)?,
+            };
+            edits.extend(new.map(|new| (found.span.clone(), new)));
+        }
+        self.refuse_unused(&names)?;
+        edits.extend(names.whole.map(|whole| (whole, String::new())));
+        edits.sort_by_key(|(span, _)| span.start);
+        if self.written.is_none() {
+            self.written = Some(self.text.as_str().into());
         }
         // From the last one on, so that the positions of the others stay valid.
         for (span, new) in edits.into_iter().rev() {
@@ -114,23 +138,27 @@ impl Source {
     }
 
     /// Returns the text that takes the place of a number with a unit; `None` if it stays.
-    fn replacement_of(&self, found: &Found, wanted: Wanted) -> Result<Option<String>, InputError> {
-        let number = &self.text[found.number.clone()];
-        let unit = &self.text[found.unit.clone()];
+    fn replacement_of(
+        &self,
+        found: &Found<'_>,
+        number: &Range<usize>,
+        place: &Range<usize>,
+        wanted: Wanted,
+    ) -> Result<Option<String>, InputError> {
+        let number = &self.text[number.clone()];
+        let unit = &self.text[place.clone()];
         Ok(match (wanted, found.beside) {
             (Wanted::AsWritten, _) => None,
             (Wanted::Pair, Some(Beside::Unit)) => {
                 let message = "the number has a unit, and there is a `unit` beside it";
-                return Err(self
-                    .error_in(&found.unit, message)
-                    .expected("one of the two"));
+                return Err(self.error_in(place, message).expected("one of the two"));
             }
             (Wanted::Pair, Some(Beside::Nothing)) => {
-                self.known(found, unit)?;
+                self.known(place, unit)?;
                 Some(format!("{number}, unit: \"{unit}\""))
             }
             (Wanted::Pair, None) => {
-                self.known(found, unit)?;
+                self.known(place, unit)?;
                 Some(format!("(value: {number}, unit: \"{unit}\")"))
             }
             (Wanted::In(schema), _) => {
@@ -141,20 +169,95 @@ impl Source {
                         let key = self.key_of(found);
                         let kind = kind_of(schema);
                         let message = format!("{key} is {kind}, and {}", error.message);
-                        return Err(self.of_unit(found, message, error));
+                        return Err(self.of_unit(place, message, error));
                     }
                 }
             }
         })
     }
 
-    /// Refuses a unit that no table has, at its place.
-    fn known(&self, found: &Found, unit: &str) -> Result<(), InputError> {
-        units::known(unit).map_err(|error| self.of_unit(found, error.message.clone(), error))
+    /// Returns the text that takes the place of an expression; `None` if it stays.
+    fn result_of(
+        &self,
+        found: &Found<'_>,
+        node: &Node,
+        names: &NamedValues,
+        wanted: Wanted,
+    ) -> Result<Option<String>, InputError> {
+        let amount = match wanted {
+            Wanted::AsWritten => None,
+            _ => self.amount_of(node, names)?,
+        };
+        let Some((Amount { value, measure }, written)) = amount else {
+            names.use_in_text(&self.text[node.span.clone()]);
+            return match wanted {
+                Wanted::In(_) => {
+                    let message = "an expression is the whole text of a number";
+                    Err(self.error_in(&node.span, message).expected("`\"${...}\"`"))
+                }
+                _ => Ok(None),
+            };
+        };
+        // Whole numbers may stand where numbers are counted.
+        let number = match measure.equals(&Measure::NUMBER) && value.abs() < 1e15 {
+            true if value.fract() == 0.0 => format!("{value:.0}"),
+            _ => format!("{value:?}"),
+        };
+        let pair = |before: &str, after: &str| {
+            let unit = measure.symbol().ok_or_else(|| {
+                let message = format!("`{written}` is {}, which no unit has", measure.in_words());
+                self.error_in(&node.span, message)
+            })?;
+            // A pure number is said to be one, so that it does not pass in a unit of the law.
+            let unit = if unit.is_empty() { "1" } else { &unit };
+            Ok(Some(format!("{before}{number}, unit: \"{unit}\"{after}")))
+        };
+        match (wanted, found.beside) {
+            (Wanted::Pair, Some(Beside::Unit)) if measure.is_number() => Ok(Some(number)),
+            (Wanted::Pair, Some(Beside::Unit)) => {
+                let message = format!(
+                    "`{written}` is {}, and there is a `unit` beside it",
+                    measure.in_words()
+                );
+                Err(self
+                    .error_in(&node.span, message)
+                    .expected("one of the two"))
+            }
+            (Wanted::Pair, Some(Beside::Nothing)) => pair("", ""),
+            (Wanted::Pair, None) => pair("(value: ", ")"),
+            (Wanted::In(schema), _) => {
+                let fits = Measure::of_unit(schema).is_ok_and(|field| measure.fits(&field));
+                if fits {
+                    return Ok(Some(number));
+                }
+                let unit = match schema {
+                    "" => String::new(),
+                    unit => format!(", in `{unit}`"),
+                };
+                let message = format!(
+                    "{} is {}{unit}, and `{written}` is {}",
+                    self.key_of(found),
+                    kind_of(schema),
+                    measure.in_words()
+                );
+                Err(self.error_in(&node.span, message))
+            }
+            (Wanted::AsWritten, _) => Ok(None),
+        }
     }
 
-    fn of_unit(&self, found: &Found, message: String, error: units::UnitError) -> InputError {
-        let at = self.error_in(&found.unit, message);
+    /// Refuses a unit that no table has, at its place.
+    fn known(&self, place: &Range<usize>, unit: &str) -> Result<(), InputError> {
+        units::known(unit).map_err(|error| self.of_unit(place, error.message.clone(), error))
+    }
+
+    fn of_unit(
+        &self,
+        place: &Range<usize>,
+        message: String,
+        error: units::UnitError,
+    ) -> InputError {
+        let at = self.error_in(place, message);
         let at = match error.expected {
             Some(expected) => at.expected(expected),
             None => at,
@@ -162,23 +265,30 @@ impl Source {
         at.did_you_mean(error.nearest.as_deref())
     }
 
-    fn key_of(&self, found: &Found) -> String {
-        let span = found.number.start..found.unit.end;
-        let path = self.tree.path_of(&self.text, &span);
+    fn key_of(&self, found: &Found<'_>) -> String {
+        let path = self.tree.path_of(&self.text, &found.span);
         format!("`{}`", join_path(&path))
     }
 }
 
-/// Collects the numbers with units in a value, in the order of the text.
-fn collect(text: &str, node: &Node, names: &mut Vec<String>, out: &mut Vec<Found>) {
-    match &node.kind {
-        ValueKind::Quantity(unit) => out.push(Found {
-            number: node.span.start..node.span.start + quantity::parts(&text[node.span.clone()]).0,
-            unit: unit.clone(),
+/// Collects the numbers with units and the expressions in a value, in the order of the text.
+fn collect<'t>(text: &str, node: &'t Node, names: &mut Vec<String>, out: &mut Vec<Found<'t>>) {
+    let mut found = |kind| {
+        out.push(Found {
+            kind,
+            span: node.span.clone(),
             names: names.clone(),
             index: None,
             beside: None,
-        }),
+        });
+    };
+    match &node.kind {
+        ValueKind::Quantity(unit) => {
+            let length = quantity::parts(&text[node.span.clone()]).0;
+            let number = node.span.start..node.span.start + length;
+            found(FoundKind::Quantity(number, unit.clone()));
+        }
+        ValueKind::Text if has_expression(text, node) => found(FoundKind::Expression(node)),
         ValueKind::Group(group) => {
             let before = names.len();
             if let Some(name) = group.name.as_ref().filter(|_| !group.is_some(text)) {
@@ -196,7 +306,7 @@ fn collect(text: &str, node: &Node, names: &mut Vec<String>, out: &mut Vec<Found
                 let first = out.len();
                 collect(text, &entry.value, names, out);
                 names.truncate(depth);
-                let own = matches!(entry.value.kind, ValueKind::Quantity(_));
+                let own = entry.value.group().is_none();
                 if let Some(found) = out.get_mut(first).filter(|_| own) {
                     found.index = key.is_none().then_some(index);
                     let value = key.as_deref() == Some("value");

@@ -241,7 +241,7 @@ impl<'a> Scanner<'a> {
                 format!("a text has straight double quotes, `\"...\"`, not `{c}`")
             }
             '\u{2212}' | '\u{2013}' => format!("a minus is `-`, not `{c}`"),
-            '$' => "`$` is for studies and fits; write the value".to_owned(),
+            '$' => "an expression stands in quotes: `\"${...}\"`".to_owned(),
             c => format!("unexpected character {c:?}"),
         };
         self.fault(self.here(), message);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 
+use super::named_values::has_expression;
 use super::schema::{self, Level};
 use super::tree::{Node, Shape, Tree, ValueKind, join_path, split_path};
 use super::{InputError, Source, scan};
@@ -64,10 +65,15 @@ impl<'a> Assignment<'a> {
 
     /// Returns whether the value is not valid RON, such as a path, and may be a text.
     fn is_bare(&self) -> bool {
-        !self
+        let bare = !self
             .value()
-            .contains(['(', ')', '[', ']', '{', '}', '"', ','])
-            && !is_value(self.value())
+            .contains(['(', ')', '[', ']', '{', '}', '"', ',']);
+        self.is_expression() || bare && !is_value(self.value())
+    }
+
+    /// Returns whether the value is an expression without its quotes.
+    fn is_expression(&self) -> bool {
+        self.value().starts_with("${") && self.value().ends_with('}')
     }
 
     /// Returns the value, if it is one complete RON value; otherwise an error.
@@ -399,9 +405,10 @@ fn replacement(
     let held = node.unwrap_some(text);
     // An existing `Some` around the old value is kept, unless the new value has its own.
     let target = if option { node } else { held };
-    let is_text = matches!(held.kind, ValueKind::Text);
-    let unquoted = wanted.is_word() || wanted.is_bare();
-    let new = if is_text && unquoted && !option {
+    // A text with an expression stands for a number.
+    let is_text = matches!(held.kind, ValueKind::Text) && !has_expression(text, held);
+    let unquoted = is_text && (wanted.is_word() || wanted.is_bare());
+    let new = if (unquoted || wanted.is_expression()) && !option {
         quote(value)
     } else {
         wanted.complete()?

@@ -42,7 +42,7 @@ pub(super) struct RangeLocation {
 ///
 /// Maps positions in the modified text to positions in the file, whose line numbers are the only
 /// ones that the user can look up.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct SourceMap(Vec<SourceRange>);
 
 impl SourceMap {
@@ -50,6 +50,18 @@ impl SourceMap {
     pub fn whole(length: usize) -> Self {
         let from = RangeOrigin::File(0);
         Self(vec![SourceRange { length, from }])
+    }
+
+    /// Adds text to the end that is the file's own from this byte on.
+    pub fn push_from(&mut self, length: usize, file: usize) {
+        let from = RangeOrigin::File(file);
+        self.0.push(SourceRange { length, from });
+    }
+
+    /// Adds text to the end that stands for these bytes of the file.
+    pub fn push_for(&mut self, length: usize, file: Range<usize>) {
+        let from = RangeOrigin::InPlaceOf(file);
+        self.0.push(SourceRange { length, from });
     }
 
     /// Returns the location of a range of the text in use.

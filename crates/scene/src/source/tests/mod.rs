@@ -8,6 +8,8 @@ use super::numbers::{Fraction, NonNegative, Positive};
 use super::*;
 
 mod errors;
+mod formats;
+mod named_values;
 mod noise;
 mod sets;
 

@@ -1,0 +1,86 @@
+//! Input files as JSON and YAML: read into a tree whose values know their places, and written as
+//! RON by the schema, so that everything after that is one reader.
+
+mod item;
+mod lay_out;
+mod of_ron;
+mod read;
+mod to_ron;
+
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+
+use super::{InputError, Source, read_text};
+
+/// A format of input files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// RON, the format of the shipped files.
+    Ron,
+    /// JSON.
+    Json,
+    /// YAML 1.2.
+    Yaml,
+}
+
+impl Format {
+    /// Returns the format of a file by the ending of its name; RON for unknown ones.
+    pub fn of(path: &Path) -> Self {
+        let ending = path.extension().and_then(|e| e.to_str());
+        match ending.map(str::to_lowercase).as_deref() {
+            Some("json") => Self::Json,
+            Some("yaml" | "yml") => Self::Yaml,
+            _ => Self::Ron,
+        }
+    }
+}
+
+impl Source {
+    /// Reads the file of a `T`, as RON, JSON or YAML by the ending of its name.
+    ///
+    /// # Errors
+    /// The errors of [`read_text`], or the text is no JSON or YAML.
+    pub fn read_as<T: DeserializeOwned>(path: &Path) -> Result<Self, InputError> {
+        Self::text_as::<T>(path, read_text(path)?)
+    }
+
+    /// Wraps the text of a `T` under the name of its file, by whose ending it is RON, JSON or YAML.
+    ///
+    /// # Errors
+    /// The text is no JSON or YAML.
+    pub fn text_as<T: DeserializeOwned>(
+        name: impl AsRef<Path>,
+        text: impl Into<String>,
+    ) -> Result<Self, InputError> {
+        let format = Format::of(name.as_ref());
+        let mut source = Self::from_text(name, text);
+        if format != Format::Ron {
+            let item = read::read(&source.name, &source.original, format)?;
+            let (text, source_map) = to_ron::write::<T>(&source.original, &item);
+            source.tree = super::Tree::of(&text);
+            source.text = text;
+            source.source_map = source_map;
+        }
+        Ok(source)
+    }
+
+    /// Returns the text as it was written, in another format and laid out anew. Comments are lost.
+    ///
+    /// # Errors
+    /// The text is not well formed, or has a number that the format has not.
+    pub fn in_format(&self, format: Format) -> Result<String, InputError> {
+        let written = Self::from_text(&self.path, self.written());
+        if let Some(fault) = &written.tree.fault {
+            return Err(self.error_in(&fault.span, fault.message.clone()));
+        }
+        match &written.tree.root {
+            Some(root) if format == Format::Ron => Ok(lay_out::ron(&written.text, root)),
+            Some(root) => {
+                let item = of_ron::item(&written, root)?;
+                lay_out::item(&item, format).map_err(|why| InputError::about(&self.name, why))
+            }
+            None => Err(InputError::about(&self.name, "holds no value")),
+        }
+    }
+}
